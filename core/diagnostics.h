@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace vat {
+
+struct BodyDiagnostics {
+  BodyId id;
+  std::string name;
+  Real mass;                             ///< [kg]
+  Vec3 center_of_mass;                   ///< [m]
+  Vec3 linear_momentum;                  ///< [kg m/s]
+  Vec3 angular_momentum;                 ///< about the world's origin [kg m^2/s]
+  std::optional<Quat> orientation;       ///< rigid bodies
+  std::optional<Vec3> angular_velocity;  ///< rigid bodies, world axes [rad/s]
+};
+
+/// Measured over the present state; nothing here feeds back into it.
+struct Diagnostics {
+  Real time;  ///< [s]
+  std::vector<BodyDiagnostics> bodies;
+  Real kinetic_energy;            ///< [J] of all particles and rigid bodies
+  Real gravitational_energy;      ///< [J] -m g.x over all particles
+  Real elastic_energy;            ///< [J] in static springs
+  Real contact_energy;            ///< [J] in dynamic connections and against the walls
+  Real mean_density_error;        ///< liquid: mean of max(0, rho/rho_0 - 1); 0 without liquid
+  Real max_density_error;         ///< liquid: greatest rho/rho_0 - 1, at least 0
+  std::size_t particles_outside;  ///< beyond a wall of the vat
+};
+
+}  // namespace vat

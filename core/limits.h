@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/types.h"
+
+/// Every cap on what a scene can make grow, with the reason. The server has its own limits on
+/// clients and messages in server/limits.h.
+namespace vat {
+
+inline constexpr std::size_t kMaxParticles = 1'000'000;  // memory: about 1 kB each with its pairs
+inline constexpr std::size_t kMaxSprings = 4'000'000;    // 13 per particle of a lattice, and slack
+inline constexpr std::size_t kMaxBodies = 4096;          // the frame's per-body blocks stay small
+inline constexpr std::size_t kMaxMaterials = 64;         // the interface table is quadratic in it
+inline constexpr std::size_t kMaxNameLength = 64;        // names are shown to other users
+inline constexpr std::size_t kMaxTextLength = 4096;      // title and description
+inline constexpr std::size_t kMaxMeshTriangles = 200'000;  // inside tests are linear in it
+inline constexpr std::size_t kMaxStepsPerTick = 10'000;    // a tick must end
+inline constexpr std::size_t kMaxGrabs = 64;               // one a user
+inline constexpr std::size_t kMaxAppliedForces = 256;      // pending timed forces
+
+inline constexpr Real kMinLength = 1e-6;     // [m] spacing, radius, extent
+inline constexpr Real kMaxLength = 1e6;      // [m] coordinates and extents
+inline constexpr Real kMaxSpeed = 1e4;       // [m/s] also the guard's bound
+inline constexpr Real kMinMass = 1e-12;      // [kg]
+inline constexpr Real kMaxMass = 1e12;       // [kg]
+inline constexpr Real kMaxStiffness = 1e12;  // [N/m], [m^2/s^2]
+inline constexpr Real kMinStep = 1e-7;       // [s]
+inline constexpr Real kMaxStep = 0.1;        // [s]
+inline constexpr Real kMaxTick = 1.0;        // [s]
+
+}  // namespace vat

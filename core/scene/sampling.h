@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/support/result.h"
+
+namespace vat {
+
+struct SampledSpring {
+  Index a = 0;
+  Index b = 0;
+  Real stiffness = 0;    ///< [N/m]
+  Real damping = 0;      ///< [N s/m]
+  Real rest_length = 0;  ///< [m]
+};
+
+/// A body as particles in world coordinates at time 0; all columns have equal length.
+struct SampledBody {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> velocities;
+  std::vector<Real> masses;
+  std::vector<Real> radii;
+  std::vector<Index> fixed;
+  std::vector<SampledSpring> springs;
+};
+
+/// Turns a body's description into particles and springs, in an order that depends on nothing but
+/// the description. Sampled shapes are filled with a simple cubic lattice of `spacing`, centred on
+/// the shape's bounding box; a particle belongs to the shape if its centre does. Solid bodies get
+/// mass = density * exact volume of the shape in equal parts (or the given mass); a liquid particle
+/// gets density * spacing^3 so that the lattice is at rest density. The body must be valid.
+SampledBody sample_body(const BodyDescription& body, const Material& material);
+
+/// Exact volume of a sampled shape [m^3]; zero for explicit particles.
+Real shape_volume(const Shape& shape);
+
+}  // namespace vat

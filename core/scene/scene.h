@@ -1,0 +1,166 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/types.h"
+
+/// A scene as plain values: what a user writes. Nothing here is checked; see core/scene/validate.h
+/// for the ranges and core/model/compile.h for what a scene becomes. SI units throughout.
+namespace vat {
+
+enum class BodyKind : std::uint8_t { liquid = 0, deformable = 1, rigid = 2 };
+
+enum class IntegratorId : std::uint8_t {
+  explicit_euler,
+  symplectic_euler,
+  velocity_verlet,
+  heun,
+  runge_kutta_4,
+};
+
+/// A Hooke spring's constants: stiffness k [N/m] of Boldt eq. 3 and damping along the spring
+/// [N s/m] (not in the paper; 0 is the paper's spring).
+struct SpringConstants {
+  Real stiffness = 0;
+  Real damping = 0;
+};
+
+/// SPH constants of a liquid material.
+struct LiquidConstants {
+  Real stiffness = 0;       ///< k of Boldt eq. 14 [m^2/s^2], the square of the speed of sound
+  Real viscosity = 0;       ///< dynamic viscosity mu [Pa s]
+  Real support_radius = 0;  ///< h [m]: every kernel is zero at this distance
+};
+
+/// Static springs that the shape sampler puts between lattice neighbours of a deformable body:
+/// structural along the axes, shear along face diagonals, bend between second neighbours along the
+/// axes. An absent kind makes no springs.
+struct LatticeSprings {
+  std::optional<SpringConstants> structural;
+  std::optional<SpringConstants> shear;
+  std::optional<SpringConstants> bend;
+};
+
+struct Material {
+  std::string name;
+  Real density = 1000;                          ///< [kg/m^3]; rest density for a liquid
+  std::optional<LiquidConstants> liquid;        ///< needed by liquid bodies
+  std::optional<LatticeSprings> springs;        ///< used by sampled deformable bodies
+  std::optional<SpringConstants> self_contact;  ///< dynamic springs within one deformable body
+};
+
+struct BoxShape {
+  Vec3 center = Vec3::Zero();
+  Vec3 size = Vec3::Zero();
+};
+struct SphereShape {
+  Vec3 center = Vec3::Zero();
+  Real radius = 0;
+};
+struct CylinderShape {
+  Vec3 center = Vec3::Zero();
+  Vec3 axis = Vec3::UnitZ();  ///< any length but zero
+  Real radius = 0;
+  Real height = 0;
+};
+/// Closed triangle mesh; triangles are counter-clockwise seen from outside.
+struct MeshShape {
+  std::string source;  ///< where the mesh came from, for messages only
+  std::vector<Vec3> vertices;
+  std::vector<std::array<Index, 3>> triangles;
+};
+/// Particles one by one. `velocities`, `masses` and `radii` are empty or as long as `positions`;
+/// empty masses: the body's mass in equal parts, or density times spacing cubed; empty radii: the
+/// body's radius. `fixed` lists particles that never move (deformable bodies only).
+struct ParticleShape {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> velocities;
+  std::vector<Real> masses;
+  std::vector<Real> radii;
+  std::vector<Index> fixed;
+};
+using Shape = std::variant<BoxShape, SphereShape, CylinderShape, MeshShape, ParticleShape>;
+
+/// One static connection (Boldt def. 0.2) between two particles of its body.
+struct SpringDescription {
+  Index a = 0;
+  Index b = 0;
+  SpringConstants constants;
+  std::optional<Real> rest_length;  ///< l [m]; default: the distance at the start
+};
+
+/// One body. The shape is given in the body's own frame; `position` and `orientation` place that
+/// frame in the world, `velocity` and `angular_velocity` (world axes, about the centre of mass) set
+/// it in motion.
+struct BodyDescription {
+  std::string name;
+  BodyKind kind = BodyKind::liquid;
+  std::string material;
+  Shape shape;
+  Real spacing = 0;            ///< lattice spacing of the sampler [m]; unused by ParticleShape
+  std::optional<Real> mass;    ///< whole body [kg]; default: from the material's density
+  std::optional<Real> radius;  ///< particle radius [m]; default: half the spacing
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+  std::vector<SpringDescription> springs;  ///< deformable bodies only, beside the lattice springs
+};
+
+/// The name that stands for the vat's walls in an interface.
+inline constexpr const char* kVatMaterial = "vat";
+
+/// Interface (Boldt def. 0.6) between any two bodies of two materials, or a material and the vat's
+/// walls: dynamic connections of rest length `threshold`, present while the distance is below it.
+struct InterfaceDescription {
+  std::array<std::string, 2> materials;
+  SpringConstants constants;
+  std::optional<Real> threshold;  ///< [m]; default: the sum of the two particles' radii
+};
+
+/// Sliding along an axis and back: offset(t) = axis * stroke/2 * (1 - cos(2 pi t / period)).
+struct SlideMotion {
+  Vec3 axis = Vec3::UnitX();
+  Real stroke = 0;  ///< greatest offset [m]
+  Real period = 1;  ///< [s]
+};
+
+/// An axis-aligned container with analytic walls, at `min`..`max` at time 0. Without a lid it is
+/// open at +z and its side walls go up for ever.
+struct Vat {
+  Vec3 min = Vec3::Zero();
+  Vec3 max = Vec3::Zero();
+  bool lid = false;
+  std::optional<SlideMotion> motion;
+};
+
+/// `tick` is the interval at which a server applies commands and publishes frames; it is a whole
+/// number of steps.
+struct Numerics {
+  IntegratorId integrator = IntegratorId::velocity_verlet;
+  Real step = 1e-3;  ///< dt [s]
+  Real tick = 0.02;  ///< [s]
+};
+
+struct Scene {
+  std::string name;
+  std::string title;
+  std::string description;
+  Vec3 gravity{0, 0, -9.81};
+  std::vector<Material> materials;
+  std::vector<InterfaceDescription> interfaces;
+  SpringConstants default_interface{1000, 1};  ///< for pairs that `interfaces` does not list
+  std::vector<BodyDescription> bodies;
+  std::optional<Vat> vat;
+  Numerics numerics;
+};
+
+/// Names used in scene files, messages and tables.
+const char* to_string(BodyKind kind);
+const char* to_string(IntegratorId id);
+
+}  // namespace vat

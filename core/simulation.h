@@ -1,0 +1,160 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/scene/scene.h"
+#include "core/support/parallel.h"
+#include "core/support/result.h"
+#include "core/types.h"
+
+namespace vat {
+
+struct Model;
+struct State;
+struct Workspace;
+
+/// A rigid body's pose and motion.
+struct RigidPose {
+  Vec3 center_of_mass;
+  Quat orientation;  ///< body axes to world axes; identity at time 0
+  Vec3 velocity;
+  Vec3 angular_velocity;  ///< world axes
+};
+
+/// Read-only view of one body; valid until the simulation next changes.
+struct BodyView {
+  BodyId id;
+  std::string_view name;
+  BodyKind kind;
+  std::string_view material;
+  std::span<const Vec3> positions;
+  std::span<const Vec3> velocities;
+  std::span<const Real> masses;
+  std::span<const Real> radii;
+  std::optional<RigidPose> pose;          ///< rigid bodies
+  std::span<const Vec3> local_positions;  ///< rigid bodies: particles about the centre of mass
+};
+
+/// SPH fields of one liquid body at the present positions, one value a particle.
+struct LiquidFields {
+  std::vector<Real> density;   ///< [kg/m^3]
+  std::vector<Real> pressure;  ///< [Pa]
+};
+
+/// What the guard saw. A step that ends with a non-finite value, outside the domain or above
+/// kMaxSpeed is undone, and the steps are repeated with half the length, up to three halvings.
+struct GuardEvent {
+  enum class Cause { non_finite, outside_domain, too_fast };
+  Cause cause;
+  Real time;  ///< [s] end of the failed step
+  BodyId body;
+  Index particle;  ///< within the body
+  Real step;       ///< [s] length of the failed step
+  bool recovered;  ///< false: the state is the last good one and the simulation should pause
+};
+const char* to_string(GuardEvent::Cause cause);
+
+struct AdvanceReport {
+  std::uint64_t steps = 0;  ///< steps taken, retries included
+  bool failed = false;      ///< the state is the one before the call
+  std::vector<GuardEvent> events;
+};
+
+/// Told when each stage of the step begins and ends; for profiles. The core has no clock.
+class StageObserver {
+ public:
+  virtual ~StageObserver() = default;
+  virtual void stage_begins(std::string_view stage) = 0;
+  virtual void stage_ends(std::string_view stage) = 0;
+};
+
+/// Everything needed to go on with the same bits.
+class Snapshot;
+
+/// A particle simulation of one scene. Commands take effect between steps. Not thread-safe; one
+/// simulation must not be used from two threads at once. Same scene, same commands: same bits, for
+/// any TaskRunner.
+class Simulation {
+ public:
+  /// Fails with every error of the scene. `runner` may be null (serial) and must outlive this.
+  static Result<Simulation> create(const Scene& scene, TaskRunner* runner = nullptr);
+
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// Takes `steps` steps of step_size(), guarded as a whole: see GuardEvent.
+  AdvanceReport advance(std::uint32_t steps);
+
+  Real time() const;       ///< [s]
+  Real step_size() const;  ///< [s]
+  std::uint32_t steps_per_tick() const;
+  std::size_t particle_count() const;
+  std::size_t spring_count() const;
+  const Scene& scene() const;  ///< as it is now: commands change it
+
+  std::vector<BodyView> bodies() const;
+  std::optional<BodyView> find_body(BodyId id) const;
+  std::optional<BodyId> find_body(std::string_view name) const;
+  /// The vat's present displacement [m]; zero without a vat or motion.
+  Vec3 vat_offset() const;
+  /// Fails for a body that is not liquid.
+  Result<LiquidFields> liquid_fields(BodyId id) const;
+
+  /// 64-bit hash of all that is integrated: equal states, equal hashes.
+  std::uint64_t state_hash() const;
+  Snapshot snapshot() const;
+  /// Goes back to a snapshot taken from this simulation, bodies and commands in force included.
+  void restore(const Snapshot& snapshot);
+
+  Diagnostics diagnostics() const;
+  /// The stages of one force evaluation and the columns they read and write, as text.
+  std::string plan_text() const;
+  void set_observer(StageObserver* observer);
+
+  /// Adds a body at the present time. Fails like create(), paths under "/body"; its name must be
+  /// new.
+  Result<BodyId> add_body(const BodyDescription& body);
+  Status remove_body(BodyId id);
+  Status set_gravity(const Vec3& gravity);
+  /// Adds or replaces one interface.
+  Status set_interface(const InterfaceDescription& interface);
+  /// A force [N] on the whole body, in equal accelerations, for `duration` seconds.
+  Status apply_force(BodyId id, const Vec3& force, Real duration);
+
+  /// Ties a particle to a target by a critically damped spring. A deformable or liquid body is held
+  /// by the particles around the grabbed one. `grab` is the caller's name for it; starting a grab
+  /// that exists moves it to the new particle.
+  Status grab_start(std::uint64_t grab, BodyId id, Index particle, const Vec3& target);
+  Status grab_move(std::uint64_t grab, const Vec3& target);
+  Status grab_end(std::uint64_t grab);
+
+ private:
+  Simulation();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+class Snapshot {
+ public:
+  Snapshot(const Snapshot&);
+  Snapshot(Snapshot&&) noexcept;
+  Snapshot& operator=(const Snapshot&);
+  Snapshot& operator=(Snapshot&&) noexcept;
+  ~Snapshot();
+
+ private:
+  friend class Simulation;
+  struct Content;
+  explicit Snapshot(std::shared_ptr<const Content> content);
+  std::shared_ptr<const Content> content_;
+};
+
+}  // namespace vat

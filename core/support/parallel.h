@@ -1,0 +1,38 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace vat {
+
+/// Runs independent blocks of work; the core owns no threads. `run` calls `block(0) … block(n-1)`,
+/// each exactly once, in any order and from any thread, and returns when all have ended.
+class TaskRunner {
+ public:
+  virtual ~TaskRunner() = default;
+  virtual void run(std::size_t block_count, const std::function<void(std::size_t)>& block) = 0;
+  virtual std::size_t thread_count() const = 0;
+};
+
+/// Block size of every parallel pass and reduction. Fixed, so that the order of every sum, and so
+/// every bit of the result, does not depend on the number of threads.
+inline constexpr std::size_t kBlockSize = 256;
+
+/// Calls `body(begin, end)` over [0, count) in blocks; serially where `runner` is null or the range
+/// is a single block. `body` may write only what belongs to its own range.
+template <class Body>
+void for_blocks(TaskRunner* runner, std::size_t count, Body&& body) {
+  const std::size_t block_count = (count + kBlockSize - 1) / kBlockSize;
+  const auto block = [&](std::size_t b) {
+    body(b * kBlockSize, std::min(count, (b + 1) * kBlockSize));
+  };
+  if (runner == nullptr || runner->thread_count() < 2 || block_count < 2) {
+    for (std::size_t b = 0; b < block_count; ++b) block(b);
+  } else {
+    runner->run(block_count, block);
+  }
+}
+
+}  // namespace vat

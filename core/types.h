@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+
+namespace vat {
+
+/// Scalar of the state and of the integration. All quantities are in SI units.
+using Real = double;
+using Vec3 = Eigen::Matrix<Real, 3, 1>;
+using Mat3 = Eigen::Matrix<Real, 3, 3>;
+/// Unit quaternion; components are always written in the order (w, x, y, z).
+using Quat = Eigen::Quaternion<Real>;
+using Index = std::uint32_t;
+
+/// Identifies a body for the life of a simulation; never used again after the body is removed.
+using BodyId = std::uint32_t;
+
+}  // namespace vat
