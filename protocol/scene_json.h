@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "core/support/result.h"
@@ -16,17 +18,25 @@ using MeshSource = std::function<Result<std::string>(const std::string& name)>;
 /// A source that reads `name` below `folder`; refuses absolute names and "..".
 MeshSource meshes_in_folder(std::string folder);
 
+/// Bounds of the text of a scene.
+inline constexpr JsonLimits kSceneLimits{4 * 1024 * 1024, 16, 1'000'000};
+
 /// JSON -> Scene. Returns the scene only if both the document and the scene (find_errors) are
-/// without errors; otherwise all of them.
+/// without errors; otherwise all of them. Where the document has errors, find_errors sees only the
+/// parts that were read fully.
 Result<Scene> read_scene(const Json& document, const MeshSource& meshes);
 Result<Scene> read_scene_text(std::string_view text, const MeshSource& meshes);
+/// Reads a scene file and the meshes beside it. A scene without a name gets the file's, without its
+/// ending.
+Result<Scene> read_scene_file(const std::string& path);
 
 /// One body or interface, as in a scene file; checks the document only. `path` prefixes errors.
 Result<BodyDescription> read_body(const Json& document, const std::string& path,
                                   const MeshSource& meshes);
 Result<InterfaceDescription> read_interface(const Json& document, const std::string& path);
 
-/// Scene -> JSON that read_scene takes back to an equal scene.
+/// Scene -> JSON that read_scene takes back to an equal scene, bit by bit. Meshes are written with
+/// their vertices and triangles, so that the result stands alone.
 Json write_scene(const Scene& scene);
 
 /// The catalogue: every `*.json` of a folder, by name (the file name without its ending).

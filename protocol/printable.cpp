@@ -1,0 +1,16 @@
+#include "protocol/printable.h"
+
+#include <algorithm>
+
+namespace vat {
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMaxLength = 160;  // a line or two of a terminal
+  std::string result(text.substr(0, kMaxLength));
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  if (text.size() > kMaxLength) result += "...";
+  return result;
+}
+
+}  // namespace vat

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "core/scene/scene.h"
+#include "protocol/json_reader.h"
+#include "protocol/scene_json.h"
+
+/// Readers of the parts of a scene. Each adds what is wrong to `errors` and returns a value in any
+/// case, which is of use only if nothing was added.
+namespace vat::scene_parts {
+
+/// Limits that belong to the file format; those of the values themselves are in core/limits.h.
+inline constexpr std::size_t kMaxFileName = 256;
+inline constexpr std::size_t kMaxInterfaces = 4096;  // 64 materials and the vat, pair by pair
+
+SpringConstants to_spring_constants(ObjectReader& reader);
+SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors);
+Material to_material(const Json& value, std::string path, Errors& errors);
+InterfaceDescription to_interface(const Json& value, std::string path, Errors& errors);
+Vat to_vat(const Json& value, std::string path, Errors& errors);
+Numerics to_numerics(const Json& value, std::string path, Errors& errors);
+Shape to_shape(const Json& value, const std::string& path, const MeshSource& meshes,
+               Errors& errors);
+BodyDescription to_body(const Json& value, const std::string& path, const MeshSource& meshes,
+                        Errors& errors);
+
+}  // namespace vat::scene_parts

@@ -1,0 +1,144 @@
+#include <type_traits>
+
+#include "protocol/scene_json.h"
+
+namespace vat {
+namespace {
+
+Json to_json(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json to_json(const std::vector<Vec3>& vectors) {
+  Json list = Json::array();
+  for (const Vec3& v : vectors) list.push_back(to_json(v));
+  return list;
+}
+
+Json to_json(const SpringConstants& constants) {
+  return {{"stiffness", constants.stiffness}, {"damping", constants.damping}};
+}
+
+Json to_json(const LatticeSprings& springs) {
+  Json json = Json::object();
+  if (springs.structural) json["structural"] = to_json(*springs.structural);
+  if (springs.shear) json["shear"] = to_json(*springs.shear);
+  if (springs.bend) json["bend"] = to_json(*springs.bend);
+  return json;
+}
+
+Json to_json(const Material& material) {
+  Json json = {{"name", material.name}, {"density", material.density}};
+  if (material.liquid) {
+    json["liquid"] = {{"stiffness", material.liquid->stiffness},
+                      {"viscosity", material.liquid->viscosity},
+                      {"support_radius", material.liquid->support_radius}};
+  }
+  if (material.springs) json["springs"] = to_json(*material.springs);
+  if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
+  return json;
+}
+
+Json to_json(const InterfaceDescription& interface) {
+  Json json = to_json(interface.constants);
+  json["materials"] = interface.materials;
+  if (interface.threshold) json["threshold"] = *interface.threshold;
+  return json;
+}
+
+Json to_json(const Vat& vat) {
+  Json json = {{"min", to_json(vat.min)}, {"max", to_json(vat.max)}, {"lid", vat.lid}};
+  if (vat.motion) {
+    json["motion"] = {{"type", "slide"},
+                      {"axis", to_json(vat.motion->axis)},
+                      {"stroke", vat.motion->stroke},
+                      {"period", vat.motion->period}};
+  }
+  return json;
+}
+
+Json to_json(const BoxShape& box) {
+  return {{"type", "box"}, {"center", to_json(box.center)}, {"size", to_json(box.size)}};
+}
+
+Json to_json(const SphereShape& sphere) {
+  return {{"type", "sphere"}, {"center", to_json(sphere.center)}, {"radius", sphere.radius}};
+}
+
+Json to_json(const CylinderShape& cylinder) {
+  return {{"type", "cylinder"},
+          {"center", to_json(cylinder.center)},
+          {"axis", to_json(cylinder.axis)},
+          {"radius", cylinder.radius},
+          {"height", cylinder.height}};
+}
+
+Json to_json(const MeshShape& mesh) {
+  return {{"type", "mesh"},
+          {"source", mesh.source},
+          {"vertices", to_json(mesh.vertices)},
+          {"triangles", mesh.triangles}};
+}
+
+Json to_json(const ParticleShape& particles) {
+  Json json = {{"type", "particles"}, {"positions", to_json(particles.positions)}};
+  if (!particles.velocities.empty()) json["velocities"] = to_json(particles.velocities);
+  if (!particles.masses.empty()) json["masses"] = particles.masses;
+  if (!particles.radii.empty()) json["radii"] = particles.radii;
+  if (!particles.fixed.empty()) json["fixed"] = particles.fixed;
+  return json;
+}
+
+Json to_json(const SpringDescription& spring) {
+  Json json = to_json(spring.constants);
+  json["particles"] = {spring.a, spring.b};
+  if (spring.rest_length) json["rest_length"] = *spring.rest_length;
+  return json;
+}
+
+Json to_json(const BodyDescription& body) {
+  Json json = {{"name", body.name},
+               {"kind", to_string(body.kind)},
+               {"material", body.material},
+               {"shape", std::visit([](const auto& shape) { return to_json(shape); }, body.shape)},
+               {"position", to_json(body.position)},
+               {"orientation", Json::array({body.orientation.w(), body.orientation.x(),
+                                            body.orientation.y(), body.orientation.z()})},
+               {"velocity", to_json(body.velocity)},
+               {"angular_velocity", to_json(body.angular_velocity)}};
+  // Explicit particles may go without a spacing, which zero stands for.
+  if (body.spacing != 0) json["spacing"] = body.spacing;
+  if (body.mass) json["mass"] = *body.mass;
+  if (body.radius) json["radius"] = *body.radius;
+  for (const SpringDescription& spring : body.springs) json["springs"].push_back(to_json(spring));
+  return json;
+}
+
+template <class T>
+Json to_list(const std::vector<T>& values) {
+  Json list = Json::array();
+  for (const T& value : values) list.push_back(to_json(value));
+  return list;
+}
+
+}  // namespace
+
+Json write_scene(const Scene& scene) {
+  Json json = {{"format", "vat.scene/1"},
+               {"name", scene.name},
+               {"title", scene.title},
+               {"description", scene.description},
+               {"gravity", to_json(scene.gravity)},
+               {"materials", to_list(scene.materials)},
+               {"default_interface", to_json(scene.default_interface)},
+               {"interfaces", to_list(scene.interfaces)},
+               {"numerics",
+                {{"integrator", to_string(scene.numerics.integrator)},
+                 {"step", scene.numerics.step},
+                 {"tick", scene.numerics.tick}}},
+               {"bodies", to_list(scene.bodies)}};
+  if (scene.vat) json["vat"] = to_json(*scene.vat);
+  return json;
+}
+
+}  // namespace vat
