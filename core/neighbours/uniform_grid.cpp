@@ -1,0 +1,67 @@
+#include "core/neighbours/uniform_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/limits.h"
+#include "core/support/check.h"
+
+namespace vat {
+
+void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size) {
+  constexpr Real kFar = 1e3 * kMaxLength;  // beyond it the guard ends the step; only stay finite
+  Vec3 low = Vec3::Constant(kFar);
+  Vec3 high = Vec3::Constant(-kFar);
+  for (const Vec3& p : points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (p[axis] < low[axis]) low[axis] = p[axis];
+      if (p[axis] > high[axis]) high[axis] = p[axis];
+    }
+  }
+  low = low.cwiseMax(-kFar).cwiseMin(kFar);
+  high = high.cwiseMin(kFar).cwiseMax(low);
+
+  // Sparse points get larger cells: correct for any cell not smaller than the search radius.
+  const Real most_cells = static_cast<Real>(std::max<std::size_t>(4096, 8 * points.size()));
+  const auto cells_along = [&](int axis) {
+    return std::floor((high[axis] - low[axis]) / cell_size) + 1;
+  };
+  while (cells_along(0) * cells_along(1) * cells_along(2) > most_cells) cell_size *= 2;
+
+  origin_ = low;
+  cell_size_ = cell_size;
+  inverse_cell_size_ = 1 / cell_size;
+  for (int axis = 0; axis < 3; ++axis) {
+    count_[static_cast<std::size_t>(axis)] = static_cast<Index>(cells_along(axis));
+  }
+}
+
+void UniformGrid::build(std::span<const Vec3> points, Real cell_size) {
+  VAT_CHECK(cell_size > 0);
+  choose_cells(points, cell_size);
+  const std::size_t cell_count = std::size_t{count_[0]} * count_[1] * count_[2];
+  cell_begin_.assign(cell_count + 1, 0);
+  cell_of_.resize(points.size());
+  order_.resize(points.size());
+
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& p = points[i];
+    const Index x = coordinate(p.x(), 0);
+    const Index y = coordinate(p.y(), 1);
+    const Index z = coordinate(p.z(), 2);
+    const Index cell = (z * count_[1] + y) * count_[0] + x;
+    cell_of_[i] = cell;
+    ++cell_begin_[cell + 1];
+  }
+  for (std::size_t cell = 0; cell < cell_count; ++cell) {
+    cell_begin_[cell + 1] += cell_begin_[cell];
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order_[cell_begin_[cell_of_[i]]++] = static_cast<Index>(i);
+  }
+  // The fill moved each beginning to its end: move them back by one cell.
+  std::copy_backward(cell_begin_.begin(), cell_begin_.end() - 2, cell_begin_.end() - 1);
+  cell_begin_[0] = 0;
+}
+
+}  // namespace vat

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/types.h"
+
+namespace vat {
+
+/// Points sorted into cubic cells (counting sort, stable: by cell, then by index). Cells are x
+/// fastest, so the cells that a search touches lie in few contiguous runs of slots. Any finite or
+/// non-finite position is accepted; memory is linear in the number of points, because cells grow
+/// where points are far apart.
+class UniformGrid {
+ public:
+  /// `cell_size` > 0 [m]: best the search radius.
+  void build(std::span<const Vec3> points, Real cell_size);
+
+  /// Slot -> index of the point; slots of a cell are contiguous.
+  std::span<const Index> order() const { return order_; }
+  Real cell_size() const { return cell_size_; }
+
+  /// Calls f(begin, end) for runs of slots that together hold, each once, every point closer to
+  /// `p` than `radius` (and others).
+  template <class F>
+  void for_each_run(const Vec3& p, Real radius, F&& f) const {
+    if (order_.empty()) return;
+    const Real reach = radius * (1 + 1e-6);  // more than p - radius can be rounded by
+    std::array<Index, 3> low;
+    std::array<Index, 3> high;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      low[axis] = coordinate(p[a] - reach, axis);
+      high[axis] = coordinate(p[a] + reach, axis);
+    }
+    for (Index z = low[2]; z <= high[2]; ++z) {
+      for (Index y = low[1]; y <= high[1]; ++y) {
+        const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + y) * count_[0];
+        const Index begin = cell_begin_[row + low[0]];
+        const Index end = cell_begin_[row + high[0] + 1];
+        if (begin < end) f(begin, end);
+      }
+    }
+  }
+
+ private:
+  /// Cell coordinate along an axis, clamped to the grid; monotone in `x`, 0 for a NaN.
+  Index coordinate(Real x, std::size_t axis) const {
+    const Real c = (x - origin_[static_cast<Eigen::Index>(axis)]) * inverse_cell_size_;
+    if (!(c > 0)) return 0;
+    const Index last = count_[axis] - 1;
+    return c >= last ? last : static_cast<Index>(c);
+  }
+  void choose_cells(std::span<const Vec3> points, Real cell_size);
+
+  Vec3 origin_ = Vec3::Zero();
+  Real cell_size_ = 1;
+  Real inverse_cell_size_ = 1;
+  std::array<Index, 3> count_{1, 1, 1};
+  std::vector<Index> cell_begin_;  // per cell, and one past the last
+  std::vector<Index> cell_of_;     // per point
+  std::vector<Index> order_;
+};
+
+}  // namespace vat

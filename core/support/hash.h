@@ -1,0 +1,34 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "core/types.h"
+
+namespace vat {
+
+/// FNV-1a over 64-bit words: the offset basis and prime are the published 64-bit ones, the input
+/// unit is a word in place of a byte. -0.0 and 0.0 differ, so equal hashes mean equal bits.
+class StateHash {
+ public:
+  void add(std::uint64_t word) {
+    value_ ^= word;
+    value_ *= 0x100000001b3ULL;
+    value_ ^= value_ >> 32;  // a word-wise multiply never moves high bits down
+  }
+  void add(Real value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(const Vec3& v) {
+    for (int axis = 0; axis < 3; ++axis) add(v[axis]);
+  }
+  void add(const Quat& q) {
+    add(q.w());
+    add(Vec3(q.vec()));
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace vat
