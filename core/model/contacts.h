@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/model/model.h"
+
+namespace vat {
+
+/// Fills the tables of contact laws and what follows from them: reach, exclusions, flags. Bodies,
+/// particles and springs must be in the model already.
+void compile_contacts(Model& model);
+
+}  // namespace vat

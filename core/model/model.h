@@ -1,0 +1,116 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kernels/poly6.h"
+#include "core/kernels/spiky.h"
+#include "core/kernels/viscosity_kernel.h"
+#include "core/scene/sampling.h"
+#include "core/scene/scene.h"
+#include "core/step/step_plan.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// A range of indices [begin, end).
+struct IndexRange {
+  Index begin = 0;
+  Index end = 0;
+  Index size() const { return end - begin; }
+};
+
+struct ModelBody {
+  BodyId id = 0;
+  std::string name;
+  BodyKind kind = BodyKind::liquid;
+  Index material = 0;
+  IndexRange particles;
+  Index rigid = 0;  ///< place among the rigid bodies; only for kind rigid
+  Real mass = 0;
+  std::shared_ptr<const SampledBody> sample;
+};
+
+/// One material's SPH constants with everything that depends on h alone.
+struct LiquidModel {
+  explicit LiquidModel(const Material& material);
+  Real support_radius;
+  Real rest_density;
+  Real stiffness;
+  Real viscosity;
+  Poly6 density_kernel;
+  Spiky pressure_kernel;
+  ViscosityKernel viscosity_kernel;
+};
+
+/// Dynamic connection between particles of two materials: unilateral spring and dashpot with
+/// l = threshold, so that it neither sticks nor jumps in energy when it comes and goes.
+struct ContactLaw {
+  Real stiffness = 0;  ///< [N/m]
+  Real damping = 0;    ///< [N s/m]
+  Real threshold = 0;  ///< [m]; 0 means the sum of the radii (against a wall: the radius)
+};
+
+/// A static connection seen from one of its particles.
+struct SpringEnd {
+  Index other = 0;
+  Real stiffness = 0;
+  Real damping = 0;
+  Real rest_length = 0;
+};
+
+struct RigidModel {
+  Index body = 0;  ///< index into Model::bodies
+  IndexRange particles;
+  Real inverse_mass = 0;
+  Mat3 inertia;          ///< I_body about the centre of mass, in body axes [kg m^2]
+  Mat3 inverse_inertia;  ///< in body axes
+};
+
+/// A compiled scene: constant while it is stepped. Particles are ordered liquid, deformable, rigid,
+/// each body contiguous.
+struct Model {
+  Scene scene;
+  std::vector<ModelBody> bodies;  ///< in the scene's order
+
+  Index liquid_count = 0;  ///< particles [0, liquid_count) are liquid
+  Index free_count = 0;    ///< particles [0, free_count) move on their own; the rest are rigid
+  Index particle_count = 0;
+
+  // One entry a particle.
+  std::vector<Real> mass;
+  std::vector<Real> inverse_mass;  ///< 0: fixed, or part of a rigid body
+  std::vector<Real> radius;
+  std::vector<Index> body;  ///< index into bodies
+  std::vector<Index> material;
+  std::vector<Vec3> local_position;  ///< rigid particles, from free_count on: body axes, about cm
+
+  std::vector<std::optional<LiquidModel>> liquids;  ///< by material
+  std::vector<RigidModel> rigid_bodies;
+
+  // Static springs of free particles: ends of particle i are [spring_begin[i], spring_begin[i+1]),
+  // in order of `other`.
+  std::vector<Index> spring_begin;
+  std::vector<SpringEnd> spring_ends;
+
+  std::vector<ContactLaw> contact_laws;                       ///< materials x materials
+  std::vector<ContactLaw> wall_laws;                          ///< by material
+  std::vector<std::optional<SpringConstants>> self_contacts;  ///< by material
+  // Pairs of one deformable body that never collide: joined by a spring, or closer at the start
+  // than they may come. Sorted; begins have an entry per free particle and one more.
+  std::vector<Index> exclusion_begin;
+  std::vector<Index> exclusions;
+  Real contact_reach = 0;      ///< [m] no contact between particles further apart than this
+  bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
+  bool has_self_contact = false;
+
+  StepPlan plan;
+
+  const ContactLaw& contact_law(Index material_a, Index material_b) const {
+    return contact_laws[material_a * scene.materials.size() + material_b];
+  }
+};
+
+}  // namespace vat

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/scene/sampling.h"
+#include "core/types.h"
+
+namespace vat {
+
+struct MassProperties {
+  Real mass = 0;        ///< M = sum m_e [kg]
+  Vec3 center_of_mass;  ///< r_cm [m]
+  Mat3 inertia;         ///< about r_cm [kg m^2]
+};
+
+/// I = sum m_e ((x.x) 1 - x x^T) + 2/5 m_e r_e^2 1: the last term is each particle's own as a solid
+/// sphere, and keeps single and collinear particles from a singular tensor.
+MassProperties mass_properties(const SampledBody& body);
+
+}  // namespace vat

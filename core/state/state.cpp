@@ -1,0 +1,46 @@
+#include "core/state/state.h"
+
+#include <algorithm>
+
+#include "core/rigid/rigid_motion.h"
+
+namespace vat {
+
+void place_body(const Model& model, const ModelBody& body, Configuration& configuration) {
+  const SampledBody& sample = *body.sample;
+  std::ranges::copy(sample.positions, configuration.position.begin() + body.particles.begin);
+  std::ranges::copy(sample.velocities, configuration.velocity.begin() + body.particles.begin);
+  for (const Index fixed : sample.fixed) {
+    configuration.velocity[body.particles.begin + fixed].setZero();
+  }
+  if (body.kind != BodyKind::rigid) return;
+
+  const RigidModel& rigid = model.rigid_bodies[body.rigid];
+  RigidState& state = configuration.rigid[body.rigid];
+  const BodyDescription& description = model.scene.bodies[rigid.body];
+  state = {Vec3::Zero(), description.orientation.normalized(), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t i = 0; i < sample.positions.size(); ++i) {
+    state.center_of_mass += sample.masses[i] * sample.positions[i];
+    state.momentum += sample.masses[i] * sample.velocities[i];
+  }
+  state.center_of_mass *= rigid.inverse_mass;
+  // From the given angular velocity and I, not from the particles' own motion: the latter lacks the
+  // spin of each particle as a sphere.
+  const Mat3 r = state.orientation.toRotationMatrix();
+  state.angular_momentum = r * (rigid.inertia * (r.transpose() * description.angular_velocity));
+  pose_rigid_body(model, rigid, state, configuration);
+}
+
+State initial_state(const Model& model) {
+  State state;
+  state.now.position.resize(model.particle_count);
+  state.now.velocity.resize(model.particle_count);
+  state.now.rigid.resize(model.rigid_bodies.size());
+  for (const ModelBody& body : model.bodies) place_body(model, body, state.now);
+  state.forces.particle.assign(model.particle_count, Vec3::Zero());
+  state.forces.rigid_force.assign(model.rigid_bodies.size(), Vec3::Zero());
+  state.forces.rigid_torque.assign(model.rigid_bodies.size(), Vec3::Zero());
+  return state;
+}
+
+}  // namespace vat

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// Pose and momenta of a rigid body. The angular momentum, not the angular velocity, is state: it
+/// is exactly constant where no torque acts.
+struct RigidState {
+  Vec3 center_of_mass;    ///< r_cm [m]
+  Quat orientation;       ///< body axes to world axes
+  Vec3 momentum;          ///< M v_cm [kg m/s]
+  Vec3 angular_momentum;  ///< L about r_cm, world axes [kg m^2/s]
+};
+
+/// What is integrated. Positions and velocities of rigid particles follow from the rigid states and
+/// are kept here so that every force sees one geometry.
+struct Configuration {
+  std::vector<Vec3> position;
+  std::vector<Vec3> velocity;
+  std::vector<RigidState> rigid;
+};
+
+/// Forces at a configuration: on every particle [N], and their resultants on rigid bodies.
+struct Forces {
+  std::vector<Vec3> particle;
+  std::vector<Vec3> rigid_force;   ///< f_res, Boldt eq. 5 [N]
+  std::vector<Vec3> rigid_torque;  ///< tau about r_cm, Boldt eq. 6 [N m]
+};
+
+/// All that is needed to go on with the same bits.
+struct State {
+  Configuration now;
+  std::uint64_t step_count = 0;  ///< nominal steps since time 0
+  Forces forces;                 ///< of the last evaluation; velocity Verlet opens a step with them
+  bool forces_current = false;  ///< false: something but the integrator changed what they depend on
+};
+
+/// The state at time 0.
+State initial_state(const Model& model);
+
+/// The initial configuration of one body, written over its part of `state`.
+void place_body(const Model& model, const ModelBody& body, Configuration& configuration);
+
+}  // namespace vat
