@@ -1,0 +1,38 @@
+#include "core/forces/external.h"
+
+#include "core/step/workspace.h"
+
+namespace vat {
+namespace {
+
+void add_applied_force(const AppliedForce& applied, StepContext& c) {
+  if (c.time >= applied.until) return;
+  const IndexRange particles = c.model.bodies[applied.body].particles;
+  for (Index i = particles.begin; i < particles.end; ++i) {
+    c.forces.particle[i] += c.model.mass[i] * applied.acceleration;
+  }
+}
+
+void add_grab(const Grab& grab, StepContext& c) {
+  const Index first = c.model.bodies[grab.body].particles.begin;
+  const Index held = first + grab.particle;
+  Vec3 force = grab.stiffness * (grab.target - c.configuration.position[held]) -
+               grab.damping * c.configuration.velocity[held];
+  const Real size = force.norm();
+  if (size > grab.max_force) force *= grab.max_force / size;
+  force /= static_cast<Real>(grab.held.size());
+  for (const Index i : grab.held) c.forces.particle[first + i] += force;
+}
+
+}  // namespace
+
+void set_external_forces(StepContext& c) {
+  const Vec3 gravity = c.controls.gravity;
+  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
+  });
+  for (const AppliedForce& applied : c.controls.applied_forces) add_applied_force(applied, c);
+  for (const Grab& grab : c.controls.grabs) add_grab(grab, c);
+}
+
+}  // namespace vat

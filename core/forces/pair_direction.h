@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/types.h"
+
+namespace vat {
+
+/// A unit vector for two particles in the same place, where x_ij / |x_ij| has no meaning: a hash of
+/// the pair, so that it is the same in every run, and opposite when i and j change places.
+inline Vec3 coincident_direction(Index i, Index j) {
+  const Index low = i < j ? i : j;
+  const Index high = i < j ? j : i;
+  std::uint64_t bits = (std::uint64_t{low} << 32 | high) * 0x9e3779b97f4a7c15ULL;
+  Vec3 direction;
+  for (int axis = 0; axis < 3; ++axis) {
+    bits ^= bits >> 29;
+    bits *= 0xbf58476d1ce4e5b9ULL;
+    direction[axis] = static_cast<Real>(bits >> 40) - 0x1p23 + 0.5;  // never zero
+  }
+  direction.normalize();
+  return i < j ? direction : Vec3(-direction);
+}
+
+/// x_ij / r, or the above for r = 0.
+inline Vec3 pair_direction(const Vec3& x_ij, Real r, Index i, Index j) {
+  return r > 0 ? Vec3(x_ij / r) : coincident_direction(i, j);
+}
+
+}  // namespace vat

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace vat {
+
+struct StepContext;
+
+/// Stage: static connections of deformable bodies, Boldt eq. 3 with a dashpot along the spring.
+void add_spring_forces(StepContext& context);
+
+}  // namespace vat

@@ -1,0 +1,18 @@
+#include "core/forces/vat_motion.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace vat {
+
+VatMotion vat_motion(const Vat& vat, Real time) {
+  if (!vat.motion) return {};
+  const SlideMotion& slide = *vat.motion;
+  const Vec3 axis = slide.axis.normalized();
+  const Real rate = 2 * std::numbers::pi / slide.period;
+  const Real half_stroke = slide.stroke / 2;
+  return {axis * (half_stroke * (1 - std::cos(rate * time))),
+          axis * (half_stroke * rate * std::sin(rate * time))};
+}
+
+}  // namespace vat

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/types.h"
+
+namespace vat {
+
+/// A particle tied to a target by a damped spring whose force is shared by the held particles.
+struct Grab {
+  std::uint64_t id = 0;
+  BodyId body_id = 0;
+  Index body = 0;           ///< index into Model::bodies
+  Index particle = 0;       ///< within the body
+  std::vector<Index> held;  ///< within the body; `particle` among them
+  Vec3 target = Vec3::Zero();
+  Real stiffness = 0;  ///< [N/m]
+  Real damping = 0;    ///< [N s/m]
+  Real max_force = 0;  ///< [N]
+};
+
+/// The same acceleration for every particle of a body until a time.
+struct AppliedForce {
+  BodyId body_id = 0;
+  Index body = 0;  ///< index into Model::bodies
+  Vec3 acceleration = Vec3::Zero();
+  Real until = 0;  ///< [s]
+};
+
+/// What users do to a simulation beyond its scene.
+struct Controls {
+  Vec3 gravity = Vec3::Zero();
+  std::vector<Grab> grabs;
+  std::vector<AppliedForce> applied_forces;
+};
+
+}  // namespace vat

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/simulation.h"
+#include "core/step/workspace.h"
+
+namespace vat {
+
+/// Evaluates all forces: runs the model's plan.
+struct ForceModel {
+  const Model& model;
+  const Controls& controls;
+  Workspace& work;
+  TaskRunner* runner = nullptr;
+  StageObserver* observer = nullptr;
+
+  /// Forces at `configuration` and `time`; also moves rigid particles to their poses.
+  void evaluate(Configuration& configuration, Real time, Forces& forces) const;
+};
+
+}  // namespace vat

@@ -1,0 +1,149 @@
+#include "core/step/measure.h"
+
+#include <algorithm>
+
+#include "core/forces/contact_search.h"
+#include "core/forces/vat_motion.h"
+#include "core/rigid/rigid_motion.h"
+
+namespace vat {
+namespace {
+
+BodyDiagnostics measure_free_body(const Model& model, const ModelBody& body,
+                                  const Configuration& at) {
+  BodyDiagnostics result{body.id,      body.name,    body.mass, Vec3::Zero(),
+                         Vec3::Zero(), Vec3::Zero(), {},        {}};
+  for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+    const Vec3 momentum = model.mass[i] * at.velocity[i];
+    result.center_of_mass += (model.mass[i] / body.mass) * at.position[i];
+    result.linear_momentum += momentum;
+    result.angular_momentum += at.position[i].cross(momentum);
+  }
+  return result;
+}
+
+BodyDiagnostics measure_rigid_body(const Model& model, const ModelBody& body,
+                                   const Configuration& at) {
+  const RigidState& state = at.rigid[body.rigid];
+  return {
+      body.id,
+      body.name,
+      body.mass,
+      state.center_of_mass,
+      state.momentum,
+      state.angular_momentum + state.center_of_mass.cross(state.momentum),
+      state.orientation,
+      angular_velocity(model.rigid_bodies[body.rigid], state.orientation, state.angular_momentum)};
+}
+
+Real kinetic_energy(const Model& model, const Configuration& at) {
+  Real energy = 0;
+  for (Index i = 0; i < model.free_count; ++i) {
+    energy += 0.5 * model.mass[i] * at.velocity[i].squaredNorm();
+  }
+  for (std::size_t b = 0; b < at.rigid.size(); ++b) {
+    const RigidModel& rigid = model.rigid_bodies[b];
+    const RigidState& state = at.rigid[b];
+    const Vec3 omega = angular_velocity(rigid, state.orientation, state.angular_momentum);
+    energy += 0.5 * rigid.inverse_mass * state.momentum.squaredNorm() +
+              0.5 * omega.dot(state.angular_momentum);
+  }
+  return energy;
+}
+
+Real elastic_energy(const Model& model, const Configuration& at) {
+  Real energy = 0;
+  for (Index i = model.liquid_count; i < model.free_count; ++i) {
+    for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+      const SpringEnd& spring = model.spring_ends[s];
+      const Real stretch = (at.position[i] - at.position[spring.other]).norm() - spring.rest_length;
+      energy += 0.25 * spring.stiffness * stretch * stretch;  // each spring has two ends here
+    }
+  }
+  return energy;
+}
+
+Real pair_contact_energy(const Model& model, const Workspace& work, const Configuration& at) {
+  Real energy = 0;
+  for (Index i = 0; i < model.particle_count; ++i) {
+    for_each_contact(model, work, at, i, [&](const Contact& contact) {
+      const Real overlap = contact.threshold - contact.distance;
+      energy += 0.25 * contact.stiffness * overlap * overlap;  // each contact is found twice
+    });
+  }
+  return energy;
+}
+
+Real wall_contact_energy(const Model& model, const Configuration& at, Real time) {
+  const Vat& vat = *model.scene.vat;
+  const VatMotion motion = vat_motion(vat, time);
+  Real energy = 0;
+  for (Index i = 0; i < model.particle_count; ++i) {
+    const ContactLaw& law = model.wall_laws[model.material[i]];
+    const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
+    for (int wall = 0; wall < wall_count(vat); ++wall) {
+      const Real overlap = threshold - wall_distance(vat, motion, wall, at.position[i]);
+      if (overlap > 0) energy += 0.5 * law.stiffness * overlap * overlap;
+    }
+  }
+  return energy;
+}
+
+std::size_t count_outside(const Model& model, const Configuration& at, Real time) {
+  const Vat& vat = *model.scene.vat;
+  const VatMotion motion = vat_motion(vat, time);
+  std::size_t count = 0;
+  for (const Vec3& position : at.position) {
+    bool outside = false;
+    for (int wall = 0; wall < wall_count(vat); ++wall) {
+      outside = outside || !(wall_distance(vat, motion, wall, position) >= 0);
+    }
+    count += outside ? 1 : 0;
+  }
+  return count;
+}
+
+void measure_density_error(const Model& model, const Workspace& work, Diagnostics& result) {
+  Real sum = 0;
+  for (Index i = 0; i < model.liquid_count; ++i) {
+    const Real rest_density = model.liquids[model.material[i]]->rest_density;
+    const Real error = std::max(Real{0}, work.density[i] / rest_density - 1);
+    sum += error;
+    result.max_density_error = std::max(result.max_density_error, error);
+  }
+  if (model.liquid_count > 0) result.mean_density_error = sum / model.liquid_count;
+}
+
+}  // namespace
+
+Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) {
+  const Model& model = force_model.model;
+  Forces forces;
+  forces.particle.resize(model.particle_count);
+  forces.rigid_force.resize(model.rigid_bodies.size());
+  forces.rigid_torque.resize(model.rigid_bodies.size());
+  force_model.evaluate(at, time, forces);
+
+  Diagnostics result{};
+  result.time = time;
+  for (const ModelBody& body : model.bodies) {
+    result.bodies.push_back(body.kind == BodyKind::rigid ? measure_rigid_body(model, body, at)
+                                                         : measure_free_body(model, body, at));
+  }
+  result.kinetic_energy = kinetic_energy(model, at);
+  for (Index i = 0; i < model.particle_count; ++i) {
+    result.gravitational_energy -= model.mass[i] * force_model.controls.gravity.dot(at.position[i]);
+  }
+  result.elastic_energy = elastic_energy(model, at);
+  if (model.contact_reach > 0) {
+    result.contact_energy = pair_contact_energy(model, force_model.work, at);
+  }
+  if (model.scene.vat) {
+    result.contact_energy += wall_contact_energy(model, at, time);
+    result.particles_outside = count_outside(model, at, time);
+  }
+  measure_density_error(model, force_model.work, result);
+  return result;
+}
+
+}  // namespace vat

@@ -1,0 +1,103 @@
+#include "core/step/step_plan.h"
+
+#include <array>
+
+#include "core/forces/contacts.h"
+#include "core/forces/external.h"
+#include "core/forces/liquid.h"
+#include "core/forces/rigid.h"
+#include "core/forces/springs.h"
+#include "core/forces/walls.h"
+#include "core/model/model.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
+    "position",     "velocity", "rigid_state", "force",       "liquid_cells",
+    "liquid_pairs", "density",  "pressure",    "solid_cells", "rigid_force"};
+
+std::string join(const std::vector<Column>& columns) {
+  std::string text;
+  for (const Column column : columns) {
+    if (!text.empty()) text += ' ';
+    text += kColumnNames[static_cast<std::size_t>(column)];
+  }
+  return text;
+}
+
+bool any_viscosity(const Model& model) {
+  for (const ModelBody& body : model.bodies) {
+    if (body.kind == BodyKind::liquid && model.liquids[body.material]->viscosity > 0) return true;
+  }
+  return false;
+}
+
+void add_liquid_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  plan.add("sort_liquid", {position, velocity}, {liquid_cells}, &sort_liquid);
+  plan.add("liquid_density", {liquid_cells}, {liquid_pairs, density}, &compute_liquid_density);
+  plan.add("liquid_pressure", {density}, {pressure}, &compute_liquid_pressure);
+  if (any_viscosity(model)) {
+    plan.add("liquid_forces", {liquid_cells, liquid_pairs, density, pressure, velocity}, {force},
+             &add_liquid_forces<true>);
+  } else {
+    plan.add("liquid_forces_inviscid", {liquid_cells, liquid_pairs, density, pressure}, {force},
+             &add_liquid_forces<false>);
+  }
+}
+
+void add_contact_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  plan.add("sort_solids", {position}, {solid_cells}, &sort_solids);
+  if (model.liquid_count > 0) {
+    plan.add("contacts", {position, velocity, solid_cells, liquid_cells}, {force}, &add_contacts);
+  } else {
+    plan.add("contacts", {position, velocity, solid_cells}, {force}, &add_contacts);
+  }
+}
+
+}  // namespace
+
+PlanBuilder::PlanBuilder(std::initializer_list<Column> given) {
+  for (const Column column : given) written_[static_cast<std::size_t>(column)] = true;
+}
+
+void PlanBuilder::add(std::string_view name, std::initializer_list<Column> reads,
+                      std::initializer_list<Column> writes, StageFunction run) {
+  for (const Column column : reads) VAT_CHECK(written_[static_cast<std::size_t>(column)]);
+  for (const Column column : writes) written_[static_cast<std::size_t>(column)] = true;
+  plan_.stages.push_back({name, reads, writes, run});
+}
+
+StepPlan make_step_plan(const Model& model) {
+  using enum Column;
+  PlanBuilder plan({position, velocity, rigid_state});
+  if (!model.rigid_bodies.empty()) {
+    plan.add("pose_rigid_bodies", {rigid_state}, {position, velocity}, &pose_rigid_bodies);
+  }
+  plan.add("external_forces", {position, velocity}, {force}, &set_external_forces);
+  if (model.liquid_count > 0) add_liquid_stages(model, plan);
+  if (model.contact_reach > 0) add_contact_stages(model, plan);
+  if (!model.spring_ends.empty()) {
+    plan.add("springs", {position, velocity}, {force}, &add_spring_forces);
+  }
+  if (model.scene.vat) plan.add("walls", {position, velocity}, {force}, &add_wall_forces);
+  if (!model.rigid_bodies.empty()) {
+    plan.add("gather_rigid_forces", {position, rigid_state, force}, {rigid_force},
+             &gather_rigid_forces);
+  }
+  return std::move(plan).finish();
+}
+
+std::string to_text(const StepPlan& plan) {
+  std::string text;
+  for (const Stage& stage : plan.stages) {
+    text += stage.name;
+    text += "\n  reads  " + join(stage.reads) + "\n  writes " + join(stage.writes) + "\n";
+  }
+  return text;
+}
+
+}  // namespace vat

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/neighbours/uniform_grid.h"
+#include "core/state/state.h"
+#include "core/step/controls.h"
+#include "core/support/parallel.h"
+
+namespace vat {
+
+/// Points of one kind in cell order, coordinates in columns of their own so that a compiler can
+/// vectorise distance tests over a run of slots.
+struct CellSortedPoints {
+  UniformGrid grid;
+  std::vector<Real> x;
+  std::vector<Real> y;
+  std::vector<Real> z;
+
+  void build(std::span<const Vec3> points, Real cell_size);
+};
+
+/// What a pressure or viscosity pair reads of a liquid particle, one cache line.
+struct LiquidRecord {
+  Vec3 position;
+  Real volume;  ///< m / rho [m^3]
+  Vec3 velocity;
+  Real pressure;  ///< [Pa]
+};
+
+/// Neighbours of one block of liquid slots: those of the block's k-th slot are
+/// [begin[k], begin[k + 1]) of `slots`. One buffer a block, so that blocks are filled side by side.
+struct PairBlock {
+  std::vector<Index> slots;
+  std::array<Index, kBlockSize + 1> begin;
+};
+
+/// Scratch of force evaluations, kept from one to the next so that nothing is allocated in a steady
+/// step. Nothing here outlives an evaluation in meaning.
+struct Workspace {
+  CellSortedPoints liquid;
+  std::vector<LiquidRecord> liquid_records;  ///< by slot
+  std::vector<PairBlock> liquid_pairs;
+  std::vector<Real> density;   ///< by liquid particle [kg/m^3]
+  std::vector<Real> pressure;  ///< by liquid particle [Pa]
+  CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
+};
+
+/// What a stage sees.
+struct StepContext {
+  const Model& model;
+  const Controls& controls;
+  Real time;  ///< [s]
+  Configuration& configuration;
+  Forces& forces;
+  Workspace& work;
+  TaskRunner* runner;
+};
+
+}  // namespace vat
