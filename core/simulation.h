@@ -16,14 +16,10 @@
 
 namespace vat {
 
-struct Model;
-struct State;
-struct Workspace;
-
 /// A rigid body's pose and motion.
 struct RigidPose {
   Vec3 center_of_mass;
-  Quat orientation;  ///< body axes to world axes; identity at time 0
+  Quat orientation;  ///< body axes, those of the body's shape, to world axes
   Vec3 velocity;
   Vec3 angular_velocity;  ///< world axes
 };
@@ -39,7 +35,7 @@ struct BodyView {
   std::span<const Real> masses;
   std::span<const Real> radii;
   std::optional<RigidPose> pose;          ///< rigid bodies
-  std::span<const Vec3> local_positions;  ///< rigid bodies: particles about the centre of mass
+  std::span<const Vec3> local_positions;  ///< rigid bodies: about the centre of mass, body axes
 };
 
 /// SPH fields of one liquid body at the present positions, one value a particle.
@@ -75,7 +71,6 @@ class StageObserver {
   virtual void stage_ends(std::string_view stage) = 0;
 };
 
-/// Everything needed to go on with the same bits.
 class Snapshot;
 
 /// A particle simulation of one scene. Commands take effect between steps. Not thread-safe; one
@@ -142,6 +137,7 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Everything needed to go on with the same bits. Copies share their content.
 class Snapshot {
  public:
   Snapshot(const Snapshot&);

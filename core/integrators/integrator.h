@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/state/state.h"
+#include "core/step/force_model.h"
+
+namespace vat {
+
+/// Arrays that the Runge-Kutta methods keep between steps; empty for the others.
+struct IntegratorScratch {
+  Configuration start;
+  Configuration increment;  ///< weighted sum of the stages' rates
+};
+
+/// One step of `dt` seconds from `time`. Free particles and rigid bodies advance together, and
+/// every stage sees forces that are functions of its own configuration and time.
+///
+/// | method | force evaluations | order |
+/// |---|---|---|
+/// | explicit_euler | 1 | 1 |
+/// | symplectic_euler | 1 | 1 |
+/// | velocity_verlet | 1 | 2 (1 in damping, which is taken at the half step) |
+/// | heun | 2 | 2 |
+/// | runge_kutta_4 | 4 | 4 |
+void take_step(IntegratorId id, const ForceModel& force_model, State& state, Real time, Real dt,
+               IntegratorScratch& scratch);
+
+/// x += dt v for free particles, and the torque-free motion of rigid bodies.
+void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt);
+/// v += dt f / m, P += dt f_res, L += dt tau.
+void kick(const Model& model, TaskRunner* runner, const Forces& forces,
+          Configuration& configuration, Real dt);
+
+/// Explicit Runge-Kutta methods whose stages each need only the one before.
+void take_runge_kutta_step(IntegratorId id, const ForceModel& force_model, State& state, Real time,
+                           Real dt, IntegratorScratch& scratch);
+
+}  // namespace vat

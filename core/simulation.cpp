@@ -1,0 +1,245 @@
+#include "core/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/forces/vat_motion.h"
+#include "core/model/compile.h"
+#include "core/rigid/rigid_motion.h"
+#include "core/scene/validate.h"
+#include "core/simulation_impl.h"
+#include "core/step/guard.h"
+#include "core/step/measure.h"
+#include "core/support/hash.h"
+
+namespace vat {
+
+const char* to_string(GuardEvent::Cause cause) {
+  switch (cause) {
+    case GuardEvent::Cause::non_finite:
+      return "non_finite";
+    case GuardEvent::Cause::outside_domain:
+      return "outside_domain";
+    case GuardEvent::Cause::too_fast:
+      return "too_fast";
+  }
+  VAT_CHECK(false && "not a cause");
+  return "";
+}
+
+const ModelBody* Simulation::Impl::find(BodyId id) const {
+  const auto found = std::ranges::find(model->bodies, id, &ModelBody::id);
+  return found == model->bodies.end() ? nullptr : &*found;
+}
+
+void Simulation::Impl::pose_rigid_particles() {
+  for (std::size_t b = 0; b < model->rigid_bodies.size(); ++b) {
+    pose_rigid_body(*model, model->rigid_bodies[b], state.now.rigid[b], state.now);
+  }
+}
+
+Simulation::Simulation() : impl_(std::make_unique<Impl>()) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
+  Errors errors = find_errors(scene);
+  if (!errors.empty()) return errors;
+  Simulation simulation;
+  Impl& impl = *simulation.impl_;
+  impl.runner = runner;
+  std::vector<BodyId> ids;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(impl.next_id++);
+  impl.model = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
+  impl.controls.gravity = scene.gravity;
+  impl.state = initial_state(*impl.model);
+  return simulation;
+}
+
+namespace {
+
+constexpr int kMaxHalvings = 3;
+
+/// Takes `steps` nominal steps, each in `pieces` equal parts; the fault that stopped it, if any.
+std::optional<Fault> take_steps(const ForceModel& force_model, State& state, std::uint32_t steps,
+                                std::uint32_t pieces, IntegratorScratch& scratch,
+                                std::uint64_t& taken) {
+  const Numerics& numerics = force_model.model.scene.numerics;
+  const Real dt = numerics.step / pieces;
+  const GuardBounds bounds = guard_bounds(force_model.model, dt);
+  for (std::uint32_t s = 0; s < steps; ++s) {
+    const Real start = static_cast<Real>(state.step_count) * numerics.step;
+    for (std::uint32_t piece = 0; piece < pieces; ++piece) {
+      take_step(numerics.integrator, force_model, state, start + piece * dt, dt, scratch);
+      ++taken;
+      if (auto fault = find_fault(force_model.model, state.now, bounds)) return fault;
+    }
+    ++state.step_count;
+  }
+  return {};
+}
+
+}  // namespace
+
+AdvanceReport Simulation::advance(std::uint32_t steps) {
+  Impl& impl = *impl_;
+  const ForceModel force_model{*impl.model, impl.controls, impl.work, impl.runner, impl.observer};
+  AdvanceReport report;
+  impl.backup = impl.state;
+  for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
+    const std::uint32_t pieces = 1u << halvings;
+    const auto fault =
+        take_steps(force_model, impl.state, steps, pieces, impl.scratch, report.steps);
+    if (!fault) break;
+    const Real dt = impl.step_size() / pieces;
+    report.events.push_back({fault->cause, impl.time() + dt, impl.model->bodies[fault->body].id,
+                             fault->particle, dt, true});
+    impl.state = impl.backup;
+    report.failed = halvings == kMaxHalvings;
+  }
+  if (report.failed) {
+    for (GuardEvent& event : report.events) event.recovered = false;
+  }
+  std::erase_if(impl.controls.applied_forces,
+                [&](const AppliedForce& applied) { return applied.until <= impl.time(); });
+  impl.pose_rigid_particles();
+  return report;
+}
+
+Real Simulation::time() const {
+  return impl_->time();
+}
+Real Simulation::step_size() const {
+  return impl_->step_size();
+}
+std::uint32_t Simulation::steps_per_tick() const {
+  const Numerics& numerics = impl_->model->scene.numerics;
+  return static_cast<std::uint32_t>(std::llround(numerics.tick / numerics.step));
+}
+std::size_t Simulation::particle_count() const {
+  return impl_->model->particle_count;
+}
+std::size_t Simulation::spring_count() const {
+  return impl_->model->spring_ends.size() / 2;
+}
+const Scene& Simulation::scene() const {
+  return impl_->model->scene;
+}
+
+namespace {
+
+BodyView view_of(const Model& model, const Configuration& at, const ModelBody& body) {
+  const auto part = [&](const auto& column) {
+    return std::span(column).subspan(body.particles.begin, body.particles.size());
+  };
+  BodyView view{body.id,
+                body.name,
+                body.kind,
+                model.scene.materials[body.material].name,
+                part(at.position),
+                part(at.velocity),
+                part(model.mass),
+                part(model.radius),
+                {},
+                {}};
+  if (body.kind == BodyKind::rigid) {
+    const RigidModel& rigid = model.rigid_bodies[body.rigid];
+    const RigidState& state = at.rigid[body.rigid];
+    view.pose =
+        RigidPose{state.center_of_mass, state.orientation, rigid.inverse_mass * state.momentum,
+                  angular_velocity(rigid, state.orientation, state.angular_momentum)};
+    view.local_positions =
+        std::span(model.local_position)
+            .subspan(body.particles.begin - model.free_count, body.particles.size());
+  }
+  return view;
+}
+
+}  // namespace
+
+std::vector<BodyView> Simulation::bodies() const {
+  std::vector<BodyView> views;
+  views.reserve(impl_->model->bodies.size());
+  for (const ModelBody& body : impl_->model->bodies) {
+    views.push_back(view_of(*impl_->model, impl_->state.now, body));
+  }
+  return views;
+}
+
+std::optional<BodyView> Simulation::find_body(BodyId id) const {
+  const ModelBody* body = impl_->find(id);
+  if (body == nullptr) return {};
+  return view_of(*impl_->model, impl_->state.now, *body);
+}
+
+std::optional<BodyId> Simulation::find_body(std::string_view name) const {
+  const auto found = std::ranges::find(impl_->model->bodies, name, &ModelBody::name);
+  if (found == impl_->model->bodies.end()) return {};
+  return found->id;
+}
+
+Vec3 Simulation::vat_offset() const {
+  const std::optional<Vat>& vat = impl_->model->scene.vat;
+  return vat ? vat_motion(*vat, impl_->time()).offset : Vec3(Vec3::Zero());
+}
+
+std::uint64_t Simulation::state_hash() const {
+  const Impl& impl = *impl_;
+  StateHash hash;
+  hash.add(impl.state.step_count);
+  for (Index i = 0; i < impl.model->free_count; ++i) hash.add(impl.state.now.position[i]);
+  for (Index i = 0; i < impl.model->free_count; ++i) hash.add(impl.state.now.velocity[i]);
+  for (const RigidState& rigid : impl.state.now.rigid) {
+    hash.add(rigid.center_of_mass);
+    hash.add(rigid.orientation);
+    hash.add(rigid.momentum);
+    hash.add(rigid.angular_momentum);
+  }
+  return hash.value();
+}
+
+Diagnostics Simulation::diagnostics() const {
+  const ForceModel force_model{*impl_->model, impl_->controls, impl_->measured, impl_->runner};
+  return measure(force_model, impl_->state.now, impl_->time());
+}
+
+Result<LiquidFields> Simulation::liquid_fields(BodyId id) const {
+  const ModelBody* body = impl_->find(id);
+  if (body == nullptr) return Error{"no_such_body", "/body", "there is no such body"};
+  if (body->kind != BodyKind::liquid) {
+    return Error{"not_liquid", "/body", "body '" + body->name + "' is not liquid"};
+  }
+  diagnostics();  // leaves density and pressure of the present positions in `measured`
+  const auto part = [&](const std::vector<Real>& column) {
+    return std::vector<Real>(column.begin() + body->particles.begin,
+                             column.begin() + body->particles.end);
+  };
+  return LiquidFields{part(impl_->measured.density), part(impl_->measured.pressure)};
+}
+
+std::string Simulation::plan_text() const {
+  return to_text(impl_->model->plan);
+}
+void Simulation::set_observer(StageObserver* observer) {
+  impl_->observer = observer;
+}
+
+Snapshot Simulation::snapshot() const {
+  return Snapshot(std::make_shared<const Snapshot::Content>(*impl_));
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+  static_cast<Snapshot::Content&>(*impl_) = *snapshot.content_;
+  impl_->work = {};
+  impl_->measured = {};
+}
+
+Snapshot::Snapshot(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+Snapshot::Snapshot(const Snapshot&) = default;
+Snapshot::Snapshot(Snapshot&&) noexcept = default;
+Snapshot& Snapshot::operator=(const Snapshot&) = default;
+Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
+Snapshot::~Snapshot() = default;
+
+}  // namespace vat
