@@ -40,12 +40,14 @@ struct Frame {
   std::vector<FrameBlock> blocks;
 };
 
-/// The grid on which positions are sent: covers [min, max] with 65 535 steps per axis or fewer.
+/// The grid on which positions are sent: covers [min, max] with at most 65 535 steps per axis.
 struct FrameGrid {
   std::array<double, 3> origin{};
-  double quantum = 0;
+  double quantum = 0;  ///< [m] finite and above 0
 };
-/// The finest needed grid: quantum = 2 * max_error, or coarser where [min, max] does not fit.
+/// The coarsest grid that keeps `max_error` [m] per axis: quantum = 2 * max_error, or more where
+/// [min, max] does not fit. A `max_error` that is not above 0 asks for the finest grid that covers
+/// the domain. The corners must be finite.
 FrameGrid make_frame_grid(const Vec3& min, const Vec3& max, double max_error);
 
 /// What a session publishes at a tick: a copy that encoders may read at any time, from any thread.
@@ -64,12 +66,14 @@ struct PublishedState {
 };
 PublishedState publish(const Simulation& simulation);
 
-/// Bytes of a key frame. `sequence` and `dropped` may be patched in afterwards by patch_client, so
-/// that clients share one encoding.
+/// Bytes of a key frame. A position inside the grid is sent with an error of at most quantum / 2 per
+/// axis; one outside is moved to the nearest grid position. `sequence` and `dropped` may be patched
+/// in afterwards by patch_client, so that clients share one encoding.
 std::vector<std::uint8_t> encode_key_frame(const PublishedState& state, const FrameGrid& grid);
 void patch_client(std::span<std::uint8_t> frame, std::uint32_t sequence, std::uint32_t dropped);
 
-/// Error codes: bad_magic, bad_version, bad_type, bad_header, bad_block, truncated, extra_bytes.
+/// The frame, only if every byte is as PROTOCOL.md says. Error codes: bad_magic, bad_version,
+/// bad_type, bad_header, bad_block, truncated, extra_bytes.
 Result<Frame> decode_frame(std::span<const std::uint8_t> bytes);
 
 }  // namespace vat
