@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <string>
+#include <type_traits>
+
+namespace vat {
+
+// .npy and .ply are written little-endian, straight from memory.
+static_assert(std::endian::native == std::endian::little);
+
+/// Appends the bytes of a number in memory order.
+template <class Number>
+void append_bytes(std::string& bytes, Number value) {
+  static_assert(std::is_arithmetic_v<Number>);
+  const auto raw = std::bit_cast<std::array<char, sizeof value>>(value);
+  bytes.append(raw.data(), raw.size());
+}
+
+}  // namespace vat

@@ -1,0 +1,72 @@
+#include "server/output/csv_writer.h"
+
+#include <utility>
+
+#include "server/output/output_file.h"
+#include "server/output/text.h"
+
+namespace vat {
+
+namespace {
+
+void append_vector(std::string& text, const Vec3& v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    text += ',';
+    append_number(text, v[axis]);
+  }
+}
+
+void append_body(std::string& text, const Simulation& simulation, const BodyView& body) {
+  const LiquidFields fields = liquid_fields_of(simulation, body);
+  std::string start;  // the same for every row of the body
+  append_number(start, simulation.time());
+  start += ',';
+  append_csv_field(start, body.name);
+  start += ',';
+  start += to_string(body.kind);
+  start += ',';
+  for (std::size_t i = 0; i < body.positions.size(); ++i) {
+    text += start;
+    append_number(text, i);
+    append_vector(text, body.positions[i]);
+    append_vector(text, body.velocities[i]);
+    text += ',';
+    if (!fields.density.empty()) append_number(text, fields.density[i]);
+    text += ',';
+    if (!fields.pressure.empty()) append_number(text, fields.pressure[i]);
+    text += '\n';
+  }
+}
+
+class CsvWriter final : public FrameWriter {
+ public:
+  explicit CsvWriter(OutputFile file) : file_(std::move(file)) {}
+
+  Status write(const Simulation& simulation) override {
+    for (const BodyView& body : simulation.bodies()) {
+      text_.clear();
+      append_body(text_, simulation, body);
+      if (Status written = file_.append(text_); !written) return written;
+    }
+    return {};
+  }
+
+  Status finish() override { return file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::string text_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameWriter>> create_csv_writer(const std::string& name) {
+  Result<OutputFile> file = OutputFile::create(name);
+  if (!file) return file.errors();
+  const Status written =
+      file.value().append("time,body,kind,particle,x,y,z,vx,vy,vz,density,pressure\n");
+  if (!written) return written.errors();
+  return std::unique_ptr<FrameWriter>(std::make_unique<CsvWriter>(std::move(file).value()));
+}
+
+}  // namespace vat

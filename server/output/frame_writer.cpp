@@ -1,0 +1,51 @@
+#include "server/output/frame_writer.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "server/output/csv_writer.h"
+#include "server/output/npy_writer.h"
+#include "server/output/ply_writer.h"
+#include "server/output/vtk_writer.h"
+
+namespace vat {
+
+namespace {
+
+std::string ending_of(const std::string& name) {
+  return std::filesystem::path(name).extension().string();
+}
+
+}  // namespace
+
+bool is_frame_file_name(const std::string& name) {
+  const std::string ending = ending_of(name);
+  return ending == ".csv" || ending == ".vtk" || ending == ".ply" || ending == ".npy";
+}
+
+Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
+                                                         std::size_t frame_count) {
+  const std::string ending = ending_of(name);
+  if (ending == ".csv") return create_csv_writer(name);
+  if (ending == ".npy") return create_npy_writer(name);
+  if (ending == ".vtk") return create_vtk_writer(name, frame_count);
+  if (ending == ".ply") return create_ply_writer(name, frame_count);
+  return Error{"bad_file_name", name, std::string("must end in ") + kFrameEndings};
+}
+
+std::string series_name(const std::string& name, std::size_t index, std::size_t count) {
+  constexpr std::size_t kMinDigits = 4;
+  if (count < 2) return name;
+  const std::size_t width = std::max(kMinDigits, std::to_string(count - 1).size());
+  const std::string digits = std::to_string(index);
+  const std::string ending = ending_of(name);
+  const std::string stem = name.substr(0, name.size() - ending.size());
+  return stem + "-" + std::string(width - std::min(width, digits.size()), '0') + digits + ending;
+}
+
+LiquidFields liquid_fields_of(const Simulation& simulation, const BodyView& body) {
+  if (body.kind != BodyKind::liquid) return {};
+  return simulation.liquid_fields(body.id).value();
+}
+
+}  // namespace vat

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "core/simulation.h"
+#include "core/support/result.h"
+
+namespace vat {
+
+/// Writes the particles of a simulation at a series of times. Particles are in the order of the
+/// scene's bodies. The path of every error is the file's name.
+class FrameWriter {
+ public:
+  virtual ~FrameWriter() = default;
+  /// Adds the present state as one output time.
+  virtual Status write(const Simulation& simulation) = 0;
+  /// Completes the output; without it a file that grows keeps the ending ".part".
+  virtual Status finish() = 0;
+};
+
+/// The endings that create_frame_writer() knows, for messages.
+inline constexpr const char* kFrameEndings = ".csv, .vtk, .ply or .npy";
+
+/// Whether the name has one of the endings of kFrameEndings.
+bool is_frame_file_name(const std::string& name);
+
+/// Chooses the format by the file name's ending, which must be known:
+/// - `.csv`: one row per particle and time, with a header row.
+/// - `.vtk`: legacy VTK polydata in text, one file per time (see series_name()).
+/// - `.ply`: binary points coloured by kind of body, one file per time.
+/// - `.npy`: one array [times, particles, 6] of float64: x, y, z, vx, vy, vz.
+/// `frame_count` is the number of times that will be written.
+Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
+                                                         std::size_t frame_count);
+
+/// Name of one file of a series: "run.vtk" becomes "run-0000.vtk", "run-0001.vtk"…; a series of one
+/// keeps its name.
+std::string series_name(const std::string& name, std::size_t index, std::size_t count);
+
+/// The liquid's fields of a body; empty for the other kinds.
+LiquidFields liquid_fields_of(const Simulation& simulation, const BodyView& body);
+
+}  // namespace vat

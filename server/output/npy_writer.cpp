@@ -1,0 +1,63 @@
+#include "server/output/npy_writer.h"
+
+#include <cstdint>
+#include <utility>
+
+#include "server/output/bytes.h"
+#include "server/output/output_file.h"
+
+namespace vat {
+
+namespace {
+
+constexpr std::size_t kHeaderSize =
+    128;  // a multiple of 64, as the format asks; room for any shape
+
+// Header of NumPy's format 1.0: magic, version, length of the rest, and the array's type and shape
+// as a Python literal, padded with spaces to a line of fixed length.
+std::string npy_header(std::size_t frame_count, std::size_t particle_count) {
+  std::string header("\x93NUMPY\x01\x00", 8);
+  append_bytes(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));
+  header += "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(frame_count) +
+            ", " + std::to_string(particle_count) + ", 6), }";
+  header.resize(kHeaderSize - 1, ' ');
+  return header + '\n';
+}
+
+class NpyWriter final : public FrameWriter {
+ public:
+  explicit NpyWriter(OutputFile file) : file_(std::move(file)) {}
+
+  // The header is renewed with each frame, so that what a failed run leaves behind can be read.
+  Status write(const Simulation& simulation) override {
+    bytes_.clear();
+    for (const BodyView& body : simulation.bodies()) append_body(body);
+    if (Status written = file_.append(bytes_); !written) return written;
+    return file_.overwrite_start(npy_header(++frame_count_, simulation.particle_count()));
+  }
+
+  Status finish() override { return file_.commit(); }
+
+ private:
+  void append_body(const BodyView& body) {
+    for (std::size_t i = 0; i < body.positions.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) append_bytes(bytes_, body.positions[i][axis]);
+      for (int axis = 0; axis < 3; ++axis) append_bytes(bytes_, body.velocities[i][axis]);
+    }
+  }
+
+  OutputFile file_;
+  std::size_t frame_count_ = 0;
+  std::string bytes_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameWriter>> create_npy_writer(const std::string& name) {
+  Result<OutputFile> file = OutputFile::create(name);
+  if (!file) return file.errors();
+  if (Status written = file.value().append(npy_header(0, 0)); !written) return written.errors();
+  return std::unique_ptr<FrameWriter>(std::make_unique<NpyWriter>(std::move(file).value()));
+}
+
+}  // namespace vat

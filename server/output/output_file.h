@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/support/result.h"
+
+namespace vat {
+
+/// A file that bears its name only once it is complete: until commit() it is called NAME.part, so
+/// that what a failed run leaves behind is never taken for a result. Devices and pipes are written
+/// directly. The path of every error is the file's name.
+class OutputFile {
+ public:
+  /// Creates NAME.part, or replaces what was there.
+  static Result<OutputFile> create(const std::string& name);
+
+  /// Adds bytes at the end.
+  Status append(std::string_view bytes);
+  /// Replaces the first bytes; the file must be at least as long.
+  Status overwrite_start(std::string_view bytes);
+  /// Closes the file and gives it its name. Nothing may be written after.
+  Status commit();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  OutputFile(std::string name, std::string written_name, std::FILE* file);
+  Error system_error(const char* what) const;
+
+  std::string name_;
+  std::string written_name_;  ///< where the bytes go until commit()
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace vat

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "server/output/frame_writer.h"
+
+namespace vat {
+
+/// One file per output time. Each file is complete as soon as it bears its name.
+class SeriesWriter : public FrameWriter {
+ public:
+  SeriesWriter(std::string name, std::size_t frame_count);
+
+  Status write(const Simulation& simulation) final;
+  Status finish() final { return {}; }
+
+ protected:
+  /// The whole content of the file for the present state.
+  virtual std::string content(const Simulation& simulation) const = 0;
+
+ private:
+  std::string name_;
+  std::size_t frame_count_;
+  std::size_t next_frame_ = 0;
+};
+
+}  // namespace vat

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "core/support/check.h"
+
+namespace vat {
+
+/// Appends a number in the fewest digits that read back to the same bits.
+template <class Number>
+void append_number(std::string& text, Number value) {
+  char buffer[32];
+  const std::to_chars_result result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  VAT_CHECK(result.ec == std::errc{});
+  text.append(buffer, result.ptr);
+}
+
+/// Appends a CSV field (RFC 4180): quoted only where it has to be.
+void append_csv_field(std::string& text, std::string_view field);
+
+}  // namespace vat
