@@ -1,0 +1,71 @@
+#include "server/cli/bench_report.h"
+
+#include <array>
+#include <iomanip>
+#include <sstream>
+
+#include "server/output/text.h"
+
+namespace vat {
+
+namespace {
+
+std::string hash_text(std::uint64_t hash) {
+  std::ostringstream text;
+  text << std::hex << std::setfill('0') << std::setw(16) << hash;
+  return text.str();
+}
+
+std::string rounded(Real value, int digits) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
+constexpr std::size_t kColumnCount = 11;
+constexpr std::array<int, kColumnCount> kWidths = {24, 18, 10, 8, 8, 7, 10, 10, 16, 10, 18};
+
+void print_columns(std::ostream& out, const std::array<std::string, kColumnCount>& texts) {
+  for (std::size_t i = 0; i < kColumnCount; ++i) {
+    out << (i < 2 ? std::left : std::right) << std::setw(kWidths[i]) << texts[i];
+  }
+  out << std::endl;  // a row takes seconds: show it at once
+}
+
+}  // namespace
+
+void print_bench_header(std::ostream& out) {
+  print_columns(out, {"scene", "integrator", "particles", "springs", "threads", "steps", "ms/step",
+                      "min", "part. steps/s", "real time", "hash"});
+}
+
+void print_bench_row(std::ostream& out, const BenchRow& row) {
+  print_columns(out, {row.scene, row.integrator, std::to_string(row.particles),
+                      std::to_string(row.springs), std::to_string(row.threads),
+                      std::to_string(row.steps), rounded(row.median_ms_per_step, 4),
+                      rounded(row.min_ms_per_step, 4), rounded(row.particle_steps_per_second(), 0),
+                      rounded(row.real_time_factor(), 2), hash_text(row.state_hash)});
+}
+
+std::string bench_csv_header() {
+  return "scene,integrator,particles,springs,threads,steps,ms_per_step_median,ms_per_step_min,"
+         "particle_steps_per_second,real_time_factor,state_hash\n";
+}
+
+std::string bench_csv_row(const BenchRow& row) {
+  std::string text;
+  append_csv_field(text, row.scene);
+  text += ',' + row.integrator;
+  for (const std::uint64_t count : {std::uint64_t{row.particles}, std::uint64_t{row.springs},
+                                    std::uint64_t{row.threads}, row.steps}) {
+    text += ',' + std::to_string(count);
+  }
+  for (const Real value : {row.median_ms_per_step, row.min_ms_per_step,
+                           row.particle_steps_per_second(), row.real_time_factor()}) {
+    text += ',';
+    append_number(text, value);
+  }
+  return text + ',' + hash_text(row.state_hash) + '\n';
+}
+
+}  // namespace vat

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "core/support/result.h"
+
+namespace vat {
+
+/// Exit codes of the program.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;  ///< invalid input, or a run that failed
+inline constexpr int kExitUsage = 2;   ///< unknown option, or a bad value for one
+
+/// One line per error: "PATH: message". An error about the whole input bears the input's name.
+void print_errors(std::ostream& out, const std::string& input, const Errors& errors);
+
+/// Prints the errors to stderr; returns kExitFailed.
+int fail(const std::string& input, const Errors& errors);
+
+}  // namespace vat

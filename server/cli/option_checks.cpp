@@ -1,0 +1,23 @@
+#include "server/cli/option_checks.h"
+
+#include <string>
+
+#include "server/output/text.h"
+
+namespace vat {
+
+CLI::Validator real_in(double min, double max) {
+  std::string range = "[";
+  append_number(range, min);
+  range += ", ";
+  append_number(range, max);
+  range += "]";
+  const auto check = [min, max, range](const std::string& text) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= min && value <= max;
+    return good ? std::string() : "'" + text + "' is not a number in " + range;
+  };
+  return CLI::Validator(check, "in " + range);
+}
+
+}  // namespace vat

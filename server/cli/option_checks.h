@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace vat {
+
+/// A finite number in [min, max]. CLI::Range lets NaN through.
+CLI::Validator real_in(double min, double max);
+
+}  // namespace vat

@@ -1,0 +1,56 @@
+#include "server/cli/validate.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "core/scene/validate.h"
+#include "core/simulation.h"
+#include "server/cli/command.h"
+#include "server/cli/scene_argument.h"
+
+namespace vat {
+
+namespace {
+
+struct Options {
+  std::string scene;
+  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+};
+
+void print_summary(const std::string& argument, const Simulation& simulation) {
+  const Numerics& numerics = simulation.scene().numerics;
+  std::cout << argument << ": valid; bodies: " << simulation.bodies().size()
+            << ", particles: " << simulation.particle_count()
+            << ", springs: " << simulation.spring_count()
+            << ", steps per tick: " << simulation.steps_per_tick() << " of "
+            << simulation.step_size() << " s (" << to_string(numerics.integrator) << ")\n";
+}
+
+int validate(const Options& options) {
+  const Result<Scene> scene = load_scene(options.scene, options.scenes_folder);
+  if (!scene) return fail(options.scene, scene.errors());
+  const Result<Simulation> simulation = Simulation::create(scene.value());
+  if (!simulation) return fail(options.scene, simulation.errors());
+  for (const Warning& warning : find_warnings(scene.value())) {
+    std::cerr << "warning: " << (warning.path.empty() ? options.scene : warning.path) << ": "
+              << warning.message << '\n';
+  }
+  print_summary(options.scene, simulation.value());
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "validate", "Check a scene; print every error and warning with its JSON pointer");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, kSceneHelp)->required();
+  command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
+  command->footer("Exit codes: 0 valid (warnings allowed), 1 invalid, 2 wrong usage.");
+  command->callback([options, &exit_code] { exit_code = validate(*options); });
+}
+
+}  // namespace vat
