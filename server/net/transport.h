@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// The network as the rest of the server sees it; the WebSocket library stays behind it. C++17 and
+/// standard types only, so that the library's own target can include it.
+namespace vat {
+
+/// Names a connection for the life of the server; never used twice.
+using ConnectionId = std::uint64_t;
+
+/// One open WebSocket. Every member may be called from any thread and after the peer has gone, when
+/// it does nothing.
+class Connection {
+ public:
+  virtual ~Connection() = default;
+  virtual ConnectionId id() const = 0;
+  virtual void send_text(std::string message) = 0;
+  /// The bytes are shared, not copied, until they are handed to the socket.
+  virtual void send_binary(std::shared_ptr<const std::string> bytes) = 0;
+  /// Bytes handed to send_* that the socket has not taken yet.
+  virtual std::size_t queued_bytes() const = 0;
+  /// Sends a close frame with a code of PROTOCOL.md; later sends do nothing.
+  virtual void close(std::uint16_t code, std::string_view reason) = 0;
+};
+
+/// Told of what comes in, always on the transport's one thread, in order for each connection:
+/// opened, then messages, then closed.
+class ConnectionHandler {
+ public:
+  virtual ~ConnectionHandler() = default;
+  virtual void opened(std::shared_ptr<Connection> connection) = 0;
+  virtual void text_received(ConnectionId id, std::string_view message) = 0;
+  virtual void binary_received(ConnectionId id, std::string_view message) = 0;
+  virtual void closed(ConnectionId id) = 0;
+};
+
+struct HttpResponse {
+  int status = 200;
+  std::string content_type;
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+/// Answers a plain HTTP request; called on the transport's thread.
+using HttpHandler = std::function<HttpResponse(std::string_view method, std::string_view target)>;
+
+struct TransportSettings {
+  std::string host = "127.0.0.1";         ///< a numeric address
+  std::uint16_t port = 8080;              ///< 0: any free port
+  std::size_t max_connections = 256;      ///< WebSockets; the next one is closed with 1013
+  std::size_t max_message_bytes = 0;      ///< a longer one closes the connection with 1009
+  std::size_t max_http_request_bytes = 0;  ///< a longer request is refused
+};
+
+/// One port for HTTP and WebSocket, served by one thread of its own from start() to stop().
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  /// Begins to listen and serve. Throws std::runtime_error that names host and port if it cannot.
+  /// Returns the port that is listened on.
+  virtual std::uint16_t start() = 0;
+  /// Stops listening, closes every connection with 1001, waits for the closing handshakes at most
+  /// two seconds, and joins the thread.
+  virtual void stop() = 0;
+};
+
+/// The handlers must outlive the transport.
+std::unique_ptr<Transport> make_websocket_transport(TransportSettings settings,
+                                                    ConnectionHandler& connections,
+                                                    HttpHandler http);
+
+}  // namespace vat
