@@ -20,6 +20,9 @@ struct Warning {
 /// whole number of steps, and the limits of core/limits.h.
 Errors find_errors(const Scene& scene);
 
+/// The errors of one body to be added to a scene without errors; paths start with `path`.
+Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path);
+
 /// Things that are allowed and likely to disappoint: bodies that overlap one another or the walls
 /// at the start, spacing against support radius, and stiffness, viscosity and speed of sound
 /// against the step. The scene must be without errors.
