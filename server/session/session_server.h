@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/support/result.h"
+#include "protocol/scene_json.h"
+#include "server/limits.h"
+#include "server/net/transport.h"
+
+namespace vat {
+
+/// Names a session for the life of the server; never used twice.
+using SessionId = std::uint64_t;
+
+struct ServerSettings {
+  ServerLimits limits;
+  std::string version;      ///< told by server.info
+  std::size_t threads = 0;  ///< that step the sessions; 0: as many as the machine has cores
+};
+
+/// The server behind the transport: its sessions, its clients, and the methods of PROTOCOL.md.
+///
+/// The transport's thread reads messages and answers what needs no session; commands go to the
+/// session's inbox. All sessions share one pool of threads, each on a strand of its own, so that a
+/// session is never run by two threads at once. Every function may be called from any thread.
+class SessionServer final : public ConnectionHandler {
+ public:
+  /// `catalogue` must outlive this.
+  SessionServer(const Catalogue& catalogue, ServerSettings settings);
+  ~SessionServer() override;
+  SessionServer(const SessionServer&) = delete;
+  SessionServer& operator=(const SessionServer&) = delete;
+
+  /// Starts a session, playing. Fails with the scene's errors, or with the code limit_reached.
+  Result<SessionId> create_session(std::string name, const Scene& scene);
+
+  /// Ends all sessions, tells their clients by session.closed, and joins the threads; a tick that
+  /// runs is ended first. Nothing that comes in later has an effect.
+  void stop();
+
+  void opened(std::shared_ptr<Connection> connection) override;
+  void text_received(ConnectionId id, std::string_view message) override;
+  void binary_received(ConnectionId id, std::string_view message) override;
+  void closed(ConnectionId id) override;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vat
