@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,7 +13,7 @@
 namespace vat {
 
 /// Names a session for the life of the server; never used twice.
-using SessionId = std::uint64_t;
+using SessionId = std::string;
 
 struct ServerSettings {
   ServerLimits limits;
