@@ -1,0 +1,112 @@
+#!/usr/bin/env bash
+# Proves that a fresh clone works on a bare Debian 12 machine: makes one in a folder (debootstrap,
+# chroot), clones this checkout's HEAD into it, runs `./vat serve` twice and `./vat test` once,
+# and prints how long each took. Needs root and debootstrap.
+#
+# From the environment: MIRROR (a Debian mirror), PORT (8080), CPUS (as for taskset: "0-1"),
+# BASE (an earlier debootstrap folder to copy, in place of a new one). Proxies, extra
+# certificates (NODE_EXTRA_CA_CERTS) and npm's registry are those of this machine.
+set -euo pipefail
+
+repository=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/..
+mirror=${MIRROR:-http://deb.debian.org/debian}
+port=${PORT:-8080}
+cpus=${CPUS:-0-$(($(nproc) - 1))}
+work=$(mktemp -d /var/tmp/vat-clean-machine.XXXXXX)
+machine=$work/machine
+checkout="/root/a folder/vat"
+server=
+
+say() { printf 'clean machine: %s\n' "$*"; }
+
+fail() {
+  say "FAILED: $*"
+  exit 1
+}
+
+clean_up() {
+  [[ -z $server ]] || kill "$server" 2>/dev/null || true
+  for place in dev/shm dev/pts dev proc; do
+    ! mountpoint -q "$machine/$place" || umount -l "$machine/$place"
+  done
+  rm -rf --one-file-system "$work"
+}
+
+make_machine() {
+  if [[ -n ${BASE:-} ]]; then
+    cp -a -- "$BASE" "$machine"
+  else
+    debootstrap --variant=minbase bookworm "$machine" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+      { cat "$work/debootstrap.log" && fail "debootstrap"; }
+  fi
+  mount -t proc proc "$machine/proc"
+  mount --bind /dev "$machine/dev"
+  mount -t devpts devpts "$machine/dev/pts"
+  mount -t tmpfs tmpfs "$machine/dev/shm"
+}
+
+# What this machine needs to reach the network, and a bare one there would have too.
+give_network() {
+  cp /etc/resolv.conf /etc/hosts "$machine/etc/"
+  apt-config dump Acquire >"$machine/etc/apt/apt.conf.d/99network"
+  if [[ -n ${NODE_EXTRA_CA_CERTS:-} ]]; then
+    cp -L "$NODE_EXTRA_CA_CERTS" "$machine/etc/network-certificates.pem"
+  fi
+}
+
+# Runs a command in the checkout, with the environment of a fresh log-in and no more.
+inside() {
+  local environment=(HOME=/root TERM=dumb LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin) name
+  for name in http_proxy https_proxy no_proxy npm_config_registry; do
+    [[ -z ${!name:-} ]] || environment+=("$name=${!name}")
+  done
+  [[ -z ${NODE_EXTRA_CA_CERTS:-} ]] ||
+    environment+=(NODE_EXTRA_CA_CERTS=/etc/network-certificates.pem)
+  # shellcheck disable=SC2016 # expanded by the inner shell
+  exec taskset -c "$cpus" env -i "${environment[@]}" chroot "$machine" \
+    bash -c 'cd "$1" && shift && exec "$@"' bash "$checkout" "$@"
+}
+
+answers() { curl --silent --fail --output "${2:-/dev/null}" "http://127.0.0.1:$port$1"; }
+
+# Starts the server, waits until it answers, looks at the page, stops it. Sets `seconds`.
+serve_once() {
+  local start=$EPOCHREALTIME
+  (inside ./vat serve --port "$port") >"$work/serve.log" 2>&1 &
+  server=$!
+  until answers /healthz; do
+    kill -0 "$server" 2>/dev/null || { cat "$work/serve.log" && fail "./vat serve ended"; }
+    sleep 0.05
+  done
+  seconds=$(awk "BEGIN {printf \"%.1f\", $EPOCHREALTIME - $start}")
+  answers / "$work/page.html" || fail "no page at /"
+  grep -q '<script' "$work/page.html" || fail "the page at / is not the viewer"
+  kill -TERM "$server"
+  wait "$server" || { cat "$work/serve.log" && fail "the server did not stop cleanly"; }
+  server=
+}
+
+main() {
+  local start
+  ((EUID == 0)) || fail "needs root, for chroot"
+  ! answers / || fail "something answers on port $port already; set PORT"
+  trap clean_up EXIT
+  make_machine
+  give_network
+  git clone --quiet --no-local "$repository" "$machine$checkout"
+  say "bare Debian $(cat "$machine/etc/debian_version"), processors $cpus"
+  serve_once
+  say "./vat serve from nothing: the page after $seconds s"
+  sed 's/^/    /' "$work/serve.log"
+  serve_once
+  say "./vat serve again: the page after $seconds s"
+  start=$SECONDS
+  (inside ./vat test) >"$work/test.log" 2>&1 || { cat "$work/test.log" && fail "./vat test"; }
+  grep -E 'tests passed' "$work/test.log"
+  say "./vat test: $((SECONDS - start)) s"
+  start=$SECONDS
+  (inside ./vat test) >"$work/test.log" 2>&1 || { cat "$work/test.log" && fail "./vat test again"; }
+  say "./vat test again: $((SECONDS - start)) s"
+}
+
+main "$@"
