@@ -108,7 +108,6 @@ Status Simulation::remove_body(BodyId id) {
 }
 
 Status Simulation::set_gravity(const Vec3& gravity) {
-  constexpr Real kMaxGravity = 1000;  // [m/s^2]
   if (Status status = check_vector(gravity, kMaxGravity, "/gravity"); !status) return status;
   Scene scene = impl_->model->scene;
   scene.gravity = gravity;
@@ -144,8 +143,7 @@ Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
   if (Status status = check_vector(force, kMaxMass, "/force"); !status) return status;
-  constexpr Real kMaxDuration = 3600;  // [s]
-  if (!(duration > 0 && duration <= kMaxDuration)) {
+  if (!(duration > 0 && duration <= kMaxForceTime)) {
     return Error{"out_of_range", "/duration", "must be above 0 and at most 3600 seconds"};
   }
   if (impl_->controls.applied_forces.size() >= kMaxAppliedForces) {

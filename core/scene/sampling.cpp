@@ -1,0 +1,165 @@
+#include "core/scene/sampling.h"
+
+#include <numbers>
+
+#include "core/scene/lattice.h"
+#include "core/scene/mesh.h"
+
+namespace vat {
+namespace {
+
+using Offset = std::array<int, 3>;
+
+/// Half of the neighbours of each kind; the other half are the same springs from the other end.
+constexpr std::array<Offset, 3> kStructural{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr std::array<Offset, 6> kShear{
+    {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}}};
+constexpr std::array<Offset, 3> kBend{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
+
+/// Finds the point at a place of the lattice.
+class LatticeIndex {
+ public:
+  LatticeIndex(const Lattice& lattice, const std::vector<LatticePoint>& points)
+      : size_(lattice.size), index_(static_cast<std::size_t>(lattice.point_count()), kNone) {
+    for (Index p = 0; p < points.size(); ++p) index_[slot(points[p].at)] = p;
+  }
+
+  std::optional<Index> find(const LatticePoint& from, const Offset& offset) const {
+    std::array<Index, 3> at = from.at;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Real moved = static_cast<Real>(at[axis]) + offset[axis];
+      if (moved < 0 || moved >= size_[axis]) return {};
+      at[axis] = static_cast<Index>(moved);
+    }
+    const Index found = index_[slot(at)];
+    return found == kNone ? std::nullopt : std::optional(found);
+  }
+
+ private:
+  static constexpr Index kNone = ~Index{0};
+
+  std::size_t slot(const std::array<Index, 3>& at) const {
+    const auto width = static_cast<std::size_t>(size_[0]);
+    const auto depth = static_cast<std::size_t>(size_[1]);
+    return (at[2] * depth + at[1]) * width + at[0];
+  }
+
+  std::array<Real, 3> size_;
+  std::vector<Index> index_;
+};
+
+template <std::size_t count>
+void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeIndex& index,
+                         const std::array<Offset, count>& offsets,
+                         const std::optional<SpringConstants>& constants, SampledBody& sample) {
+  if (!constants) return;
+  for (Index a = 0; a < points.size(); ++a) {
+    for (const Offset& offset : offsets) {
+      if (const auto b = index.find(points[a], offset)) {
+        const Real length = (points[a].position - points[*b].position).norm();
+        sample.springs.push_back({a, *b, constants->stiffness, constants->damping, length});
+      }
+    }
+  }
+}
+
+void sample_lattice(const BodyDescription& body, const Material& material, SampledBody& sample) {
+  const Lattice lattice = make_lattice(body.shape, body.spacing);
+  const std::vector<LatticePoint> points = fill_lattice(body.shape, lattice);
+  for (const LatticePoint& point : points) sample.positions.push_back(point.position);
+  const std::size_t count = points.size();
+  Real mass = material.density * body.spacing * body.spacing * body.spacing;
+  if (body.kind != BodyKind::liquid) {
+    mass = material.density * shape_volume(body.shape) / static_cast<Real>(count);
+  }
+  if (body.mass) mass = *body.mass / static_cast<Real>(count);
+  sample.masses.assign(count, mass);
+  sample.radii.assign(count, body.radius.value_or(body.spacing / 2));
+  sample.velocities.assign(count, Vec3::Zero());
+  if (body.kind == BodyKind::deformable && material.springs) {
+    const LatticeIndex index(lattice, points);
+    add_lattice_springs(points, index, kStructural, material.springs->structural, sample);
+    add_lattice_springs(points, index, kShear, material.springs->shear, sample);
+    add_lattice_springs(points, index, kBend, material.springs->bend, sample);
+  }
+}
+
+void take_particles(const ParticleShape& shape, const BodyDescription& body,
+                    const Material& material, SampledBody& sample) {
+  const std::size_t count = shape.positions.size();
+  const Real equal_mass = body.mass ? *body.mass / static_cast<Real>(count)
+                                    : material.density * body.spacing * body.spacing * body.spacing;
+  sample.positions = shape.positions;
+  sample.velocities = shape.velocities;
+  sample.masses = shape.masses;
+  sample.radii = shape.radii;
+  sample.fixed = shape.fixed;
+  if (sample.velocities.empty()) sample.velocities.assign(count, Vec3::Zero());
+  if (sample.masses.empty()) sample.masses.assign(count, equal_mass);
+  if (sample.radii.empty()) sample.radii.assign(count, body.radius.value_or(body.spacing / 2));
+}
+
+void add_listed_springs(const BodyDescription& body, SampledBody& sample) {
+  for (const SpringDescription& spring : body.springs) {
+    const Real distance = (sample.positions[spring.a] - sample.positions[spring.b]).norm();
+    sample.springs.push_back({spring.a, spring.b, spring.constants.stiffness,
+                              spring.constants.damping, spring.rest_length.value_or(distance)});
+  }
+}
+
+Vec3 center_of_mass(const SampledBody& sample) {
+  Vec3 moment = Vec3::Zero();
+  Real mass = 0;
+  for (std::size_t i = 0; i < sample.positions.size(); ++i) {
+    moment += sample.masses[i] * sample.positions[i];
+    mass += sample.masses[i];
+  }
+  return moment / mass;
+}
+
+void place(const BodyDescription& body, SampledBody& sample) {
+  const Mat3 rotation = body.orientation.normalized().toRotationMatrix();
+  for (Vec3& position : sample.positions) position = body.position + rotation * position;
+  const Vec3 center = center_of_mass(sample);
+  for (std::size_t i = 0; i < sample.positions.size(); ++i) {
+    const Vec3 turning = body.angular_velocity.cross(sample.positions[i] - center);
+    sample.velocities[i] = rotation * sample.velocities[i] + body.velocity + turning;
+  }
+  for (const Index fixed : sample.fixed) sample.velocities[fixed].setZero();
+}
+
+Real volume_of(const BoxShape& box) {
+  return box.size.prod();
+}
+Real volume_of(const SphereShape& sphere) {
+  return 4 * std::numbers::pi / 3 * sphere.radius * sphere.radius * sphere.radius;
+}
+Real volume_of(const CylinderShape& cylinder) {
+  return std::numbers::pi * cylinder.radius * cylinder.radius * cylinder.height;
+}
+Real volume_of(const MeshShape& mesh) {
+  return mesh_volume(mesh);
+}
+Real volume_of(const ParticleShape&) {
+  return 0;
+}
+
+}  // namespace
+
+SampledBody sample_body(const BodyDescription& body, const Material& material) {
+  SampledBody sample;
+  if (const auto* particles = std::get_if<ParticleShape>(&body.shape)) {
+    take_particles(*particles, body, material, sample);
+  } else {
+    sample_lattice(body, material, sample);
+  }
+  add_listed_springs(body, sample);
+  place(body, sample);
+  return sample;
+}
+
+Real shape_volume(const Shape& shape) {
+  return std::visit([](const auto& s) { return volume_of(s); }, shape);
+}
+
+}  // namespace vat

@@ -1,0 +1,37 @@
+#include "core/scene/scene.h"
+
+#include "core/support/check.h"
+
+namespace vat {
+
+const char* to_string(BodyKind kind) {
+  switch (kind) {
+    case BodyKind::liquid:
+      return "liquid";
+    case BodyKind::deformable:
+      return "deformable";
+    case BodyKind::rigid:
+      return "rigid";
+  }
+  VAT_CHECK(false && "not a kind of body");
+  return "";
+}
+
+const char* to_string(IntegratorId id) {
+  switch (id) {
+    case IntegratorId::explicit_euler:
+      return "explicit_euler";
+    case IntegratorId::symplectic_euler:
+      return "symplectic_euler";
+    case IntegratorId::velocity_verlet:
+      return "velocity_verlet";
+    case IntegratorId::heun:
+      return "heun";
+    case IntegratorId::runge_kutta_4:
+      return "runge_kutta_4";
+  }
+  VAT_CHECK(false && "not an integrator");
+  return "";
+}
+
+}  // namespace vat

@@ -1,0 +1,204 @@
+#include "core/scene/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "core/limits.h"
+#include "core/scene/validate_parts.h"
+
+namespace vat {
+
+void check_constants(const SpringConstants& constants, const std::string& path, RangeCheck& check) {
+  check.real(constants.stiffness, 0, kMaxStiffness, path + "/stiffness");
+  check.real(constants.damping, 0, kMaxDamping, path + "/damping");
+}
+
+namespace {
+
+std::string element(const char* list, std::size_t index) {
+  return list + ('/' + std::to_string(index));
+}
+
+void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeCheck& check) {
+  check.real(liquid.stiffness, 0, kMaxStiffness, path + "/stiffness");
+  check.real(liquid.viscosity, 0, kMaxViscosity, path + "/viscosity");
+  check.real(liquid.support_radius, kMinLength, kMaxLength, path + "/support_radius");
+}
+
+void check_material(const Material& material, const std::string& path, RangeCheck& check) {
+  check.text(material.name, kMaxNameLength, false, path + "/name");
+  if (material.name == kVatMaterial) {
+    check.add("reserved_name", path + "/name", "must not be \"vat\": that names the walls");
+  }
+  check.real(material.density, kMinDensity, kMaxDensity, path + "/density");
+  if (material.liquid) check_liquid(*material.liquid, path + "/liquid", check);
+  if (material.self_contact) {
+    check_constants(*material.self_contact, path + "/self_contact", check);
+  }
+  if (!material.springs) return;
+  const auto lattice = [&](const std::optional<SpringConstants>& constants, const char* name) {
+    if (constants) check_constants(*constants, path + "/springs/" + name, check);
+  };
+  lattice(material.springs->structural, "structural");
+  lattice(material.springs->shear, "shear");
+  lattice(material.springs->bend, "bend");
+}
+
+void check_materials(const Scene& scene, RangeCheck& check) {
+  if (scene.materials.size() > kMaxMaterials) {
+    check.add("too_many", "/materials", "at most " + std::to_string(kMaxMaterials) + " materials");
+  }
+  std::set<std::string> names;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const std::string path = element("/materials", m);
+    check_material(scene.materials[m], path, check);
+    if (!names.insert(scene.materials[m].name).second) {
+      check.add("duplicate", path + "/name", "must not be the name of an earlier material");
+    }
+  }
+}
+
+bool is_known(const Scene& scene, const std::string& material) {
+  return material == kVatMaterial ||
+         std::ranges::find(scene.materials, material, &Material::name) != scene.materials.end();
+}
+
+void check_interface(const Scene& scene, const InterfaceDescription& interface,
+                     const std::string& path, RangeCheck& check) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (is_known(scene, interface.materials[side])) continue;
+    check.add("unknown_name", path + "/materials/" + std::to_string(side),
+              "must be \"vat\" or the name of one of the scene's materials");
+  }
+  if (interface.materials[0] == kVatMaterial && interface.materials[1] == kVatMaterial) {
+    check.add("unknown_name", path + "/materials", "must name at least one of the materials");
+  }
+  check_constants(interface.constants, path, check);
+  if (interface.threshold) {
+    check.real(*interface.threshold, kMinLength, kMaxLength, path + "/threshold");
+  }
+}
+
+void check_interfaces(const Scene& scene, RangeCheck& check) {
+  check_constants(scene.default_interface, "/default_interface", check);
+  std::set<std::pair<std::string, std::string>> pairs;
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const std::string path = element("/interfaces", i);
+    check_interface(scene, scene.interfaces[i], path, check);
+    const auto& [first, second] = scene.interfaces[i].materials;
+    if (!pairs.insert(std::minmax(first, second)).second) {
+      check.add("duplicate", path + "/materials", "must not be a pair that came before");
+    }
+  }
+}
+
+void check_slide(const SlideMotion& motion, const std::string& path, RangeCheck& check) {
+  if (check.vector(motion.axis, -kMaxLength, kMaxLength, path + "/axis") &&
+      motion.axis.norm() < kMinLength) {
+    check.add("out_of_range", path + "/axis", "must not be the zero vector");
+  }
+  const bool stroke = check.real(motion.stroke, -kMaxLength, kMaxLength, path + "/stroke");
+  const bool period = check.real(motion.period, kMinPeriod, kMaxPeriod, path + "/period");
+  if (stroke && period && std::numbers::pi * std::abs(motion.stroke) / motion.period > kMaxSpeed) {
+    check.add("out_of_range", path + "/period", "is too short: the vat would pass 10000 m/s");
+  }
+}
+
+void check_vat(const Vat& vat, RangeCheck& check) {
+  const bool min = check.vector(vat.min, -kMaxLength, kMaxLength, "/vat/min");
+  const bool max = check.vector(vat.max, -kMaxLength, kMaxLength, "/vat/max");
+  if (min && max && !((vat.max - vat.min).array() >= kMinLength).all()) {
+    check.add("out_of_range", "/vat/max", "must be above min along every axis");
+  }
+  if (vat.motion) check_slide(*vat.motion, "/vat/motion", check);
+}
+
+void check_numerics(const Numerics& numerics, RangeCheck& check) {
+  constexpr Real kWhole = 1e-9;  // rounding of tick / step
+  const bool step = check.real(numerics.step, kMinStep, kMaxStep, "/numerics/step");
+  const bool tick = check.real(numerics.tick, kMinStep, kMaxTick, "/numerics/tick");
+  if (!step || !tick) return;
+  const Real steps = numerics.tick / numerics.step;
+  const Real whole = std::round(steps);
+  if (whole < 1 || whole > static_cast<Real>(kMaxStepsPerTick) ||
+      std::abs(steps - whole) > kWhole * steps) {
+    check.add("out_of_range", "/numerics/tick",
+              "must be a whole number of steps, 1 to " + std::to_string(kMaxStepsPerTick));
+  }
+}
+
+struct Totals {
+  std::size_t particles = 0;
+  std::size_t springs = 0;
+  void add(const BodySize& size) {
+    particles += size.particles;
+    springs += size.springs;
+  }
+};
+
+void check_totals(const Totals& totals, const std::string& path, RangeCheck& check) {
+  if (totals.particles > kMaxParticles) {
+    check.add("too_many", path, "at most " + std::to_string(kMaxParticles) + " particles in all");
+  }
+  if (totals.springs > kMaxSprings) {
+    check.add("too_many", path, "at most " + std::to_string(kMaxSprings) + " springs in all");
+  }
+}
+
+void check_bodies(const Scene& scene, RangeCheck& check) {
+  if (scene.bodies.size() > kMaxBodies) {
+    check.add("too_many", "/bodies", "at most " + std::to_string(kMaxBodies) + " bodies");
+    return;
+  }
+  Totals totals;
+  std::set<std::string> names;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const std::string path = element("/bodies", b);
+    totals.add(check_body(scene, scene.bodies[b], path, check));
+    if (!names.insert(scene.bodies[b].name).second) {
+      check.add("duplicate", path + "/name", "must not be the name of an earlier body");
+    }
+  }
+  check_totals(totals, "/bodies", check);
+}
+
+}  // namespace
+
+Errors find_errors(const Scene& scene) {
+  Errors errors;
+  RangeCheck check(errors);
+  check.text(scene.name, kMaxNameLength, true, "/name");
+  check.text(scene.title, kMaxTextLength, true, "/title");
+  check.text(scene.description, kMaxTextLength, true, "/description");
+  check.vector(scene.gravity, -kMaxGravity, kMaxGravity, "/gravity");
+  check_materials(scene, check);
+  check_interfaces(scene, check);
+  if (scene.vat) check_vat(*scene.vat, check);
+  check_numerics(scene.numerics, check);
+  check_bodies(scene, check);
+  return errors;
+}
+
+Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path) {
+  Errors errors;
+  RangeCheck check(errors);
+  if (scene.bodies.size() >= kMaxBodies) {
+    check.add("too_many", path, "at most " + std::to_string(kMaxBodies) + " bodies");
+    return errors;
+  }
+  if (std::ranges::find(scene.bodies, body.name, &BodyDescription::name) != scene.bodies.end()) {
+    check.add("duplicate", path + "/name", "must not be the name of another body");
+  }
+  Totals totals;
+  totals.add(check_body(scene, body, path, check));
+  for (const BodyDescription& present : scene.bodies) {
+    totals.add(check_body(scene, present, path, check));
+  }
+  check_totals(totals, path, check);
+  return errors;
+}
+
+}  // namespace vat

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "core/neighbours/uniform_grid.h"
+#include "core/scene/sampling.h"
+#include "core/scene/step_limits.h"
+#include "core/scene/validate.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kOverlap = 0.1;  // of the distance at which two particles touch; less is no matter
+
+std::string number(Real value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Every particle of the scene at the start, with the body that it belongs to.
+struct Start {
+  std::vector<SampledBody> bodies;
+  std::vector<Vec3> positions;
+  std::vector<Real> radii;
+  std::vector<Index> body;
+};
+
+Start sample_all(const Scene& scene) {
+  Start start;
+  for (const BodyDescription& body : scene.bodies) {
+    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
+    const auto index = static_cast<Index>(start.bodies.size());
+    start.bodies.push_back(sample_body(body, *material));
+    const SampledBody& sample = start.bodies.back();
+    start.positions.insert(start.positions.end(), sample.positions.begin(), sample.positions.end());
+    start.radii.insert(start.radii.end(), sample.radii.begin(), sample.radii.end());
+    start.body.insert(start.body.end(), sample.positions.size(), index);
+  }
+  return start;
+}
+
+std::string body_path(std::size_t index) {
+  return "/bodies/" + std::to_string(index);
+}
+
+using BodyPair = std::pair<Index, Index>;
+
+/// Pairs of particles of two bodies that overlap, counted by pair of bodies.
+std::map<BodyPair, std::size_t> count_overlaps(const Start& start) {
+  std::map<BodyPair, std::size_t> overlaps;
+  if (start.radii.empty()) return overlaps;
+  const Real reach = 2 * std::ranges::max(start.radii);
+  UniformGrid grid;
+  grid.build(start.positions, reach);
+  for (Index i = 0; i < start.positions.size(); ++i) {
+    grid.for_each_run(start.positions[i], reach, [&](Index begin, Index end) {
+      for (Index slot = begin; slot < end; ++slot) {
+        const Index j = grid.order()[slot];
+        if (start.body[j] >= start.body[i]) continue;
+        const Real touching = start.radii[i] + start.radii[j];
+        const Real distance = (start.positions[i] - start.positions[j]).norm();
+        if (distance < (1 - kOverlap) * touching) ++overlaps[{start.body[j], start.body[i]}];
+      }
+    });
+  }
+  return overlaps;
+}
+
+void warn_of_overlaps(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
+  for (const auto& [bodies, count] : count_overlaps(start)) {
+    warnings.push_back({"bodies_overlap", body_path(bodies.second),
+                        "overlaps \"" + scene.bodies[bodies.first].name + "\" at the start, at " +
+                            std::to_string(count) + " pairs of particles: they will jump apart"});
+  }
+}
+
+void warn_of_walls(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
+  if (!scene.vat) return;
+  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
+    const SampledBody& sample = start.bodies[b];
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < sample.positions.size(); ++i) {
+      const Real gap = (1 - kOverlap) * sample.radii[i];
+      const Vec3 below = sample.positions[i] - scene.vat->min;
+      const Vec3 above = scene.vat->max - sample.positions[i];
+      Real nearest = std::min(below.minCoeff(), std::min(above.x(), above.y()));
+      if (scene.vat->lid) nearest = std::min(nearest, above.z());
+      if (nearest < gap) ++count;
+    }
+    if (count > 0) {
+      warnings.push_back({"wall_overlap", body_path(b),
+                          "overlaps the vat's walls at the start, with " + std::to_string(count) +
+                              " particles: it will jump away from them"});
+    }
+  }
+}
+
+/// In 3-d a support radius of 1.3 to 3 spacings reaches about 8 to 110 neighbours; the kernels of
+/// [MCG03] want 20 to 60.
+void warn_of_support(const Scene& scene, std::vector<Warning>& warnings) {
+  constexpr Real kLeast = 1.3;
+  constexpr Real kMost = 3;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyDescription& body = scene.bodies[b];
+    if (body.kind != BodyKind::liquid || body.spacing == 0) continue;
+    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
+    const Real ratio = material->liquid->support_radius / body.spacing;
+    if (ratio >= kLeast && ratio <= kMost) continue;
+    warnings.push_back({"support_radius", body_path(b) + "/spacing",
+                        "the support radius is " + number(ratio) + " spacings; " + number(kLeast) +
+                            " to " + number(kMost) + " gives good sums"});
+  }
+}
+
+void warn_of_loose_particles(const Scene& scene, const Start& start,
+                             std::vector<Warning>& warnings) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const bool loose = scene.bodies[b].kind == BodyKind::deformable &&
+                       start.bodies[b].positions.size() > 1 && start.bodies[b].springs.empty();
+    if (loose) {
+      warnings.push_back({"no_springs", body_path(b),
+                          "has no springs: neither its material nor the body gives any"});
+    }
+  }
+}
+
+void warn_of_steps(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
+  for (const StepLimit& limit : find_step_limits(scene, start.bodies)) {
+    if (scene.numerics.step <= limit.step) continue;
+    const std::string remedy =
+        limit.step > 0 ? "is longer than " + number(limit.step) + " s, at which " + limit.reason
+                       : "is too long whatever it is: " + limit.reason;
+    warnings.push_back({"unstable_step", "/numerics/step", remedy + " (" + limit.path + ")"});
+  }
+}
+
+}  // namespace
+
+std::vector<Warning> find_warnings(const Scene& scene) {
+  const Start start = sample_all(scene);
+  std::vector<Warning> warnings;
+  warn_of_overlaps(scene, start, warnings);
+  warn_of_walls(scene, start, warnings);
+  warn_of_support(scene, warnings);
+  warn_of_loose_particles(scene, start, warnings);
+  warn_of_steps(scene, start, warnings);
+  return warnings;
+}
+
+}  // namespace vat
