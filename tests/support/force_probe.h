@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/model/compile.h"
+#include "core/step/force_model.h"
+
+namespace vat::test {
+
+/// The forces of one configuration: a scene compiled and its plan run, with nothing integrated.
+class ForceProbe {
+ public:
+  explicit ForceProbe(const Scene& scene, TaskRunner* runner = nullptr) : runner_(runner) {
+    std::vector<BodyId> ids(scene.bodies.size());
+    for (std::size_t b = 0; b < ids.size(); ++b) ids[b] = static_cast<BodyId>(b + 1);
+    model_ = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
+    state_ = initial_state(*model_);
+    controls_.gravity = scene.gravity;
+    evaluate();
+  }
+
+  void evaluate(Real time = 0) {
+    ForceModel{*model_, controls_, work_, runner_}.evaluate(state_.now, time, state_.forces);
+  }
+  const Model& model() const { return *model_; }
+  State& state() { return state_; }
+  const Workspace& work() const { return work_; }
+  /// Of particle `i` of the body with this place in the scene [N].
+  const Vec3& force(std::size_t body, Index i = 0) const {
+    return state_.forces.particle[model_->bodies[body].particles.begin + i];
+  }
+
+ private:
+  std::shared_ptr<const Model> model_;
+  State state_;
+  Controls controls_;
+  Workspace work_;
+  TaskRunner* runner_;
+};
+
+}  // namespace vat::test

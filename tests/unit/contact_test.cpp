@@ -1,0 +1,258 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/forces/pair_direction.h"
+#include "tests/support/force_probe.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+using test::ForceProbe;
+using test::make_body;
+using test::make_particles;
+using test::make_scene;
+
+constexpr Real kStiffness = 500;  // [N/m]
+constexpr Real kDamping = 3;      // [N s/m]
+constexpr Real kRadius = 0.1;     // [m]
+
+/// Two single particles on the x axis, `distance` apart, closing at `closing` metres a second.
+Scene make_pair_scene(Real distance, Real closing, BodyKind first = BodyKind::deformable,
+                      BodyKind second = BodyKind::deformable) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.materials = {test::make_liquid("a", 1000, {0, 0, 0.1}),
+                     test::make_liquid("b", 1000, {0, 0, 0.1})};
+  scene.default_interface = {kStiffness, kDamping};
+  scene.bodies = {make_body("left", first, "a", make_particles({{0, 0, 0}}, 1), kRadius),
+                  make_body("right", second, "b", make_particles({{distance, 0, 0}}, 2), kRadius)};
+  scene.bodies[0].velocity = closing * Vec3::UnitX();
+  return scene;
+}
+
+Real push_on_right(const Scene& scene) {
+  const ForceProbe probe(scene);
+  const Vec3 force = probe.force(1);
+  EXPECT_EQ(force, Vec3(-probe.force(0)));
+  EXPECT_EQ(force.y(), 0);
+  EXPECT_EQ(force.z(), 0);
+  return force.x();
+}
+
+TEST(Contact, IsASpringOfTheOverlap) {
+  EXPECT_NEAR(push_on_right(make_pair_scene(0.15, 0)), kStiffness * 0.05, 1e-12);
+}
+
+TEST(Contact, StartsBelowTheSumOfRadii) {
+  EXPECT_EQ(push_on_right(make_pair_scene(2 * kRadius, 0)), 0);
+  EXPECT_EQ(push_on_right(make_pair_scene(2 * kRadius + 1e-9, 1)), 0);
+  EXPECT_GT(push_on_right(make_pair_scene(2 * kRadius - 1e-9, 0)), 0);
+}
+
+TEST(Contact, StartsBelowAThresholdWhereOneIsGiven) {
+  for (const Real threshold : {0.12, 0.3}) {
+    Scene scene = make_pair_scene(threshold, 0);
+    scene.interfaces = {{{"b", "a"}, {kStiffness, 0}, threshold}};
+    EXPECT_EQ(push_on_right(scene), 0);
+    std::get<ParticleShape>(scene.bodies[1].shape).positions[0].x() = threshold - 0.01;
+    EXPECT_NEAR(push_on_right(scene), kStiffness * 0.01, 1e-10);
+  }
+}
+
+TEST(Contact, DampsTheApproachAndNeverPulls) {
+  EXPECT_NEAR(push_on_right(make_pair_scene(0.15, 2)), kStiffness * 0.05 + kDamping * 2, 1e-12);
+  EXPECT_NEAR(push_on_right(make_pair_scene(0.15, -2)), kStiffness * 0.05 - kDamping * 2, 1e-12);
+  EXPECT_EQ(push_on_right(make_pair_scene(0.15, -1000)), 0);
+}
+
+TEST(Contact, DoesNotSeeSlidingSpeed) {
+  Scene scene = make_pair_scene(0.15, 0);
+  scene.bodies[0].velocity = {0, 5, -7};
+  EXPECT_NEAR(push_on_right(scene), kStiffness * 0.05, 1e-12);
+}
+
+TEST(Contact, UsesTheInterfaceOfTheTwoMaterials) {
+  Scene scene = make_pair_scene(0.15, 0);
+  scene.interfaces = {{{"b", "a"}, {70, 0}, {}}, {{"a", "a"}, {1, 0}, {}}};
+  EXPECT_NEAR(push_on_right(scene), 70 * 0.05, 1e-12);
+  scene.bodies[1].material = "a";
+  EXPECT_NEAR(push_on_right(scene), 1 * 0.05, 1e-12);
+  scene.bodies[0].material = scene.bodies[1].material = "b";
+  EXPECT_NEAR(push_on_right(scene), kStiffness * 0.05, 1e-12);
+}
+
+TEST(Contact, JoinsEveryPairOfKinds) {
+  for (const BodyKind first : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
+    for (const BodyKind second : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
+      EXPECT_NEAR(push_on_right(make_pair_scene(0.15, 0, first, second)), kStiffness * 0.05, 1e-12)
+          << to_string(first) << " and " << to_string(second);
+    }
+  }
+}
+
+TEST(Contact, IsNotBetweenBodiesOfOneLiquid) {
+  Scene scene = make_pair_scene(0.15, 0, BodyKind::liquid, BodyKind::liquid);
+  scene.bodies[1].material = "a";  // no pressure either: the stiffness of the gas is 0
+  EXPECT_EQ(push_on_right(scene), 0);
+}
+
+TEST(Contact, OfParticlesInOnePlaceIsOppositeAndFull) {
+  const ForceProbe probe(make_pair_scene(0, 0));
+  EXPECT_EQ(probe.force(0), Vec3(-probe.force(1)));
+  EXPECT_NEAR(probe.force(0).norm(), kStiffness * 2 * kRadius, 1e-10);
+}
+
+TEST(Contact, DirectionInOnePlaceIsAUnitVectorOfThePair) {
+  for (Index i = 0; i < 50; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const Vec3 n = coincident_direction(i, j);
+      EXPECT_NEAR(n.norm(), 1, 1e-15);
+      EXPECT_EQ(n, Vec3(-coincident_direction(j, i)));
+      EXPECT_EQ(n, pair_direction(Vec3::Zero(), 0, i, j));
+    }
+  }
+  EXPECT_NE(coincident_direction(0, 1), coincident_direction(0, 2));
+}
+
+/// Particles of one body: 0 and 1 joined by a spring of no stiffness, 2 and 3 overlapping at the
+/// start, 4 free.
+Scene make_self_scene() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.materials = {test::make_material("rubber")};
+  scene.materials[0].self_contact = SpringConstants{kStiffness, 0};
+  scene.bodies = {make_body(
+      "body", BodyKind::deformable, "rubber",
+      make_particles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2.15, 0, 0}, {4, 0, 0}}, 1), kRadius)};
+  scene.bodies[0].springs = {{0, 1, {0, 0}, {}}};
+  return scene;
+}
+
+Vec3 self_force(Index moved, const Vec3& place, Index asked) {
+  ForceProbe probe(make_self_scene());
+  probe.state().now.position[moved] = place;
+  probe.evaluate();
+  return probe.force(0, asked);
+}
+
+TEST(Contact, WithinABodyJoinsParticlesThatWereApart) {
+  EXPECT_NEAR(self_force(4, {0, 0.15, 0}, 4).y(), kStiffness * 0.05, 1e-12);
+  EXPECT_NEAR(self_force(4, {0, 0.15, 0}, 0).y(), -kStiffness * 0.05, 1e-12);
+}
+
+TEST(Contact, WithinABodyLeavesOutWhatASpringJoins) {
+  EXPECT_EQ(self_force(1, {0, 0.15, 0}, 0), Vec3::Zero());
+}
+
+TEST(Contact, WithinABodyLeavesOutWhatOverlapsAtTheStart) {
+  EXPECT_EQ(self_force(4, {4, 0, 0}, 2), Vec3::Zero());
+  EXPECT_EQ(self_force(3, {2.05, 0, 0}, 2), Vec3::Zero());
+}
+
+TEST(Contact, WithinABodyNeedsTheMaterialToHaveIt) {
+  Scene scene = make_self_scene();
+  scene.materials[0].self_contact.reset();
+  ForceProbe probe(scene);
+  probe.state().now.position[4] = {0, 0.15, 0};
+  probe.evaluate();
+  EXPECT_EQ(probe.force(0, 4), Vec3::Zero());
+}
+
+// The cell search must miss no pair: against all pairs, with different radii in every body.
+TEST(Contact, EqualsBruteForce) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<Real> unit(0, 1);
+  Scene scene = make_pair_scene(0, 0);
+  for (std::size_t b = 0; b < 2; ++b) {
+    ParticleShape shape;
+    for (int n = 0; n < 300; ++n) {
+      shape.positions.push_back({unit(random), unit(random), unit(random)});
+      shape.radii.push_back(0.01 + 0.08 * unit(random));
+      shape.masses.push_back(1);
+    }
+    scene.bodies[b].shape = shape;
+    scene.bodies[b].velocity = Vec3::Zero();
+  }
+  const ForceProbe probe(scene);
+  const auto& a = std::get<ParticleShape>(scene.bodies[0].shape);
+  const auto& b = std::get<ParticleShape>(scene.bodies[1].shape);
+  int touching = 0;
+  for (Index i = 0; i < 300; ++i) {
+    Vec3 expected = Vec3::Zero();
+    for (Index j = 0; j < 300; ++j) {
+      const Vec3 x = a.positions[i] - b.positions[j];
+      const Real overlap = a.radii[i] + b.radii[j] - x.norm();
+      if (overlap <= 0) continue;
+      ++touching;
+      expected += kStiffness * overlap * x.normalized();
+    }
+    EXPECT_LT((probe.force(0, i) - expected).norm(), 1e-11);
+  }
+  EXPECT_GT(touching, 100);
+}
+
+Scene make_wall_scene(const Vec3& position, const Vec3& velocity, bool lid = true) {
+  Scene scene = make_pair_scene(0, 0);
+  scene.bodies = {
+      make_body("ball", BodyKind::deformable, "a", make_particles({position}, 1), kRadius)};
+  scene.bodies[0].velocity = velocity;
+  scene.vat = Vat{Vec3(-1, -2, -3), Vec3(1, 2, 3), lid, {}};
+  return scene;
+}
+
+Vec3 wall_force(const Scene& scene) {
+  return ForceProbe(scene).force(0);
+}
+
+TEST(Contact, WithEachWallPushesInwards) {
+  const Vec3 size(1, 2, 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Real side : {-1.0, 1.0}) {
+      const Vec3 inside = side * (size[axis] - 0.04) * Vec3::Unit(axis);
+      EXPECT_LT((wall_force(make_wall_scene(inside, Vec3::Zero())) +
+                 side * kStiffness * 0.06 * Vec3::Unit(axis))
+                    .norm(),
+                1e-10);
+      const Vec3 beyond = side * (size[axis] + 0.3) * Vec3::Unit(axis);
+      EXPECT_LT((wall_force(make_wall_scene(beyond, Vec3::Zero())) +
+                 side * kStiffness * 0.4 * Vec3::Unit(axis))
+                    .norm(),
+                1e-10);
+    }
+  }
+  EXPECT_EQ(wall_force(make_wall_scene(Vec3::Zero(), Vec3::Zero())), Vec3::Zero());
+}
+
+TEST(Contact, WithWallsIsDampedAndNeverPulls) {
+  const Vec3 near_floor(0, 0, -2.95);
+  EXPECT_NEAR(wall_force(make_wall_scene(near_floor, {0, 0, -2})).z(),
+              kStiffness * 0.05 + kDamping * 2, 1e-10);
+  EXPECT_EQ(wall_force(make_wall_scene(near_floor, {0, 0, 1000})), Vec3::Zero());
+}
+
+TEST(Contact, WithTheLidNeedsOne) {
+  const Vec3 near_top(0, 0, 2.95);
+  EXPECT_LT(wall_force(make_wall_scene(near_top, Vec3::Zero(), true)).z(), 0);
+  EXPECT_EQ(wall_force(make_wall_scene(near_top, Vec3::Zero(), false)), Vec3::Zero());
+}
+
+TEST(Contact, WithWallsUsesTheirInterface) {
+  Scene scene = make_wall_scene({0, 0, -2.7}, Vec3::Zero());
+  scene.interfaces = {{{"a", kVatMaterial}, {70, 0}, 0.5}};
+  EXPECT_NEAR(wall_force(scene).z(), 70 * 0.2, 1e-10);
+  scene.interfaces = {{{kVatMaterial, "a"}, {70, 0}, 0.5}};
+  EXPECT_NEAR(wall_force(scene).z(), 70 * 0.2, 1e-10);
+}
+
+TEST(Contact, WithAMovingWallSeesItsPlaceAndSpeed) {
+  Scene scene = make_wall_scene({-0.95, 0, 0}, Vec3::Zero());
+  scene.vat->motion = SlideMotion{Vec3(2, 0, 0), 0.2, 4};
+  // offset = 0.1 (1 - cos(pi t / 2)), speed = 0.1 pi/2 sin(pi t / 2): at t = 1, 0.1 and 0.157.
+  ForceProbe probe(scene);
+  EXPECT_NEAR(probe.force(0).x(), kStiffness * 0.05, 1e-10);
+  probe.evaluate(1);
+  EXPECT_NEAR(probe.force(0).x(), kStiffness * 0.15 + kDamping * 0.05 * std::numbers::pi, 1e-10);
+}
+
+}  // namespace
+}  // namespace vat

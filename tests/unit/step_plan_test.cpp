@@ -1,0 +1,165 @@
+#include "core/step/step_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/step/workspace.h"
+#include "tests/support/force_probe.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+using test::make_body;
+using test::make_particles;
+using test::make_scene;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+Scene scene_of(const std::vector<BodyDescription>& bodies, Real viscosity = 0) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.materials = {test::make_liquid("water", 1000, {100, viscosity, 0.1}),
+                     test::make_liquid("oil", 800, {100, viscosity, 0.1}),
+                     test::make_material("solid")};
+  scene.bodies = bodies;
+  return scene;
+}
+
+BodyDescription body_of(const char* name, BodyKind kind, const char* material) {
+  return make_body(name, kind, material, make_particles({Vec3::Zero(), 0.1 * Vec3::UnitX()}, 0.1),
+                   0.05);
+}
+
+std::vector<std::string> stages_of(const Scene& scene) {
+  const test::ForceProbe probe(scene);
+  std::vector<std::string> names;
+  for (const Stage& stage : probe.model().plan.stages) names.emplace_back(stage.name);
+  return names;
+}
+
+const BodyDescription kPool = body_of("pool", BodyKind::liquid, "water");
+const BodyDescription kBall = body_of("ball", BodyKind::rigid, "solid");
+const BodyDescription kDust = body_of("dust", BodyKind::deformable, "solid");
+
+BodyDescription make_spring_body() {
+  BodyDescription body = kDust;
+  body.name = "pair";
+  body.springs = {{0, 1, {100, 0}, {}}};
+  return body;
+}
+
+TEST(StepPlan, OfNothingSetsForcesOnly) {
+  EXPECT_THAT(stages_of(scene_of({})), ElementsAre("external_forces"));
+}
+
+TEST(StepPlan, OfOneLiquidHasNoContacts) {
+  EXPECT_THAT(stages_of(scene_of({kPool})),
+              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
+                          "liquid_forces_inviscid"));
+}
+
+TEST(StepPlan, HasViscosityOnlyWhereALiquidOfTheSceneHasIt) {
+  EXPECT_THAT(stages_of(scene_of({kPool}, 1)),
+              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
+                          "liquid_forces"));
+  Scene scene = scene_of({kPool});
+  scene.materials[1].liquid->viscosity = 1;  // of a material that no body has
+  EXPECT_THAT(stages_of(scene), ::testing::Contains("liquid_forces_inviscid"));
+}
+
+TEST(StepPlan, OfTwoBodiesOfOneLiquidHasNoContacts) {
+  BodyDescription second = kPool;
+  second.name = "second";
+  EXPECT_THAT(stages_of(scene_of({kPool, second})),
+              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
+                          "liquid_forces_inviscid"));
+}
+
+TEST(StepPlan, OfTwoLiquidsHasContacts) {
+  EXPECT_THAT(stages_of(scene_of({kPool, body_of("film", BodyKind::liquid, "oil")})),
+              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
+                          "liquid_forces_inviscid", "sort_solids", "contacts"));
+}
+
+TEST(StepPlan, OfOneDeformableBodyHasItsSpringsOnly) {
+  EXPECT_THAT(stages_of(scene_of({kDust})), ElementsAre("external_forces"));
+  EXPECT_THAT(stages_of(scene_of({make_spring_body()})), ElementsAre("external_forces", "springs"));
+}
+
+TEST(StepPlan, OfSelfContactHasContacts) {
+  Scene scene = scene_of({make_spring_body()});
+  scene.materials[2].self_contact = SpringConstants{100, 0};
+  EXPECT_THAT(stages_of(scene),
+              ElementsAre("external_forces", "sort_solids", "contacts", "springs"));
+}
+
+TEST(StepPlan, OfOneRigidBodyPosesAndGathers) {
+  EXPECT_THAT(stages_of(scene_of({kBall})),
+              ElementsAre("pose_rigid_bodies", "external_forces", "gather_rigid_forces"));
+}
+
+TEST(StepPlan, HasWallsOnlyWithAVat) {
+  Scene scene = scene_of({kDust});
+  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
+  EXPECT_THAT(stages_of(scene), ElementsAre("external_forces", "walls"));
+}
+
+TEST(StepPlan, OfEverythingIsInOrder) {
+  Scene scene = scene_of({kPool, make_spring_body(), kBall}, 1);
+  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
+  EXPECT_THAT(stages_of(scene),
+              ElementsAre("pose_rigid_bodies", "external_forces", "sort_liquid", "liquid_density",
+                          "liquid_pressure", "liquid_forces", "sort_solids", "contacts", "springs",
+                          "walls", "gather_rigid_forces"));
+}
+
+TEST(StepPlan, AsTextNamesStagesAndColumns) {
+  const test::ForceProbe probe(scene_of({make_spring_body()}));
+  EXPECT_EQ(to_text(probe.model().plan),
+            "external_forces\n  reads  position velocity\n  writes force\n"
+            "springs\n  reads  position velocity\n  writes force\n");
+}
+
+TEST(StepPlan, OfASimulationFollowsItsBodies) {
+  Simulation simulation = test::make_simulation(scene_of({kPool}));
+  EXPECT_EQ(simulation.plan_text().find("contacts"), std::string::npos);
+  const Result<BodyId> ball = simulation.add_body(kBall);
+  ASSERT_TRUE(ball);
+  EXPECT_NE(simulation.plan_text().find("contacts"), std::string::npos);
+  ASSERT_TRUE(simulation.remove_body(ball.value()));
+  EXPECT_EQ(simulation.plan_text().find("contacts"), std::string::npos);
+}
+
+struct RecordingObserver : StageObserver {
+  void stage_begins(std::string_view stage) override { record.push_back("+" + std::string(stage)); }
+  void stage_ends(std::string_view stage) override { record.push_back("-" + std::string(stage)); }
+  std::vector<std::string> record;
+};
+
+TEST(StepPlan, TellsTheObserverOfEachStage) {
+  Scene scene = scene_of({make_spring_body()});
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  Simulation simulation = test::make_simulation(scene);
+  RecordingObserver observer;
+  simulation.set_observer(&observer);
+  simulation.advance(1);
+  EXPECT_THAT(observer.record,
+              ElementsAre("+external_forces", "-external_forces", "+springs", "-springs"));
+  observer.record.clear();
+  simulation.set_observer(nullptr);
+  simulation.advance(1);
+  EXPECT_THAT(observer.record, IsEmpty());
+}
+
+void do_nothing(StepContext&) {}
+
+TEST(StepPlanDeathTest, AColumnIsReadOnlyOnceWritten) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  PlanBuilder builder({Column::position});
+  builder.add("ok", {Column::position}, {Column::density}, &do_nothing);
+  builder.add("also", {Column::density}, {Column::pressure}, &do_nothing);
+  EXPECT_DEATH(builder.add("bad", {Column::velocity}, {}, &do_nothing), "written_");
+}
+
+}  // namespace
+}  // namespace vat
