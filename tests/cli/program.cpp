@@ -1,0 +1,98 @@
+#include "tests/cli/program.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace vat::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+pid_t start(std::vector<std::string> words, const std::string& out, const std::string& err) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  constexpr int kCreate = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), kCreate, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), kCreate, 0600);
+  pid_t pid = -1;
+  const int failed = posix_spawn(&pid, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) throw std::runtime_error("cannot start " + words[0]);
+  return pid;
+}
+
+}  // namespace
+
+ProgramResult run_vat_to(const std::string& out_name, const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  const std::string err = folder.file("err");
+  std::vector<std::string> words = {VAT_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const pid_t pid = start(words, out_name, err);
+  int status = 0;
+  if (waitpid(pid, &status, 0) != pid) throw std::runtime_error("the program is lost");
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read_file(err)};
+}
+
+ProgramResult run_vat(const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  ProgramResult result = run_vat_to(out, arguments);
+  result.out = read_file(out);
+  return result;
+}
+
+std::string test_scene(const std::string& name) {
+  return VAT_SOURCE_DIR "/tests/cli/scenes/" + name + ".json";
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  path_ = (fs::temp_directory_path() / "vat-cli-XXXXXX").string();
+  if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no temporary folder");
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;  // nothing depends on the removal
+  fs::remove_all(path_, ignored);
+}
+
+std::vector<std::string> TemporaryFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(path_)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace vat::test

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vat::test {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< -1: ended by a signal
+  std::string out;
+  std::string err;
+};
+
+/// Runs the built program to its end.
+ProgramResult run_vat(const std::vector<std::string>& arguments);
+
+/// The same with standard output to a file or device of this name; `out` stays empty.
+ProgramResult run_vat_to(const std::string& out_name, const std::vector<std::string>& arguments);
+
+/// Path of one of the scenes beside these tests.
+std::string test_scene(const std::string& name);
+
+/// The whole content of a file; fails the test where it cannot be read.
+std::string read_file(const std::string& path);
+
+std::vector<std::string> lines_of(const std::string& text);
+
+/// A folder of its own for one test, removed with all it holds.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  /// Path of a file in the folder.
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+  /// Names of what is in the folder, sorted.
+  std::vector<std::string> names() const;
+
+ private:
+  std::string path_;
+};
+
+}  // namespace vat::test

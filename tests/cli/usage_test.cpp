@@ -1,0 +1,108 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/program.h"
+
+namespace vat::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+
+struct WrongUse {
+  std::vector<std::string> arguments;
+  std::string named;  ///< what the message must name
+};
+
+class WrongUsage : public testing::TestWithParam<WrongUse> {};
+
+TEST_P(WrongUsage, ExitsWithTwoAndNamesTheCause) {
+  const ProgramResult result = run_vat(GetParam().arguments);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, HasSubstr(GetParam().named));
+}
+
+std::vector<std::string> with_scene(std::vector<std::string> options) {
+  options.insert(options.begin(), {"simulate", test_scene("pair")});
+  return options;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Usage, WrongUsage,
+    testing::Values(WrongUse{{}, "subcommand"}, WrongUse{{"conquer"}, "conquer"},
+                    WrongUse{{"simulate"}, "scene"}, WrongUse{{"validate"}, "scene"},
+                    WrongUse{with_scene({"--speed", "2"}), "--speed"},
+                    WrongUse{with_scene({"--until", "-1"}), "--until"},
+                    WrongUse{with_scene({"--until", "nan"}), "--until"},
+                    WrongUse{with_scene({"--until", "1e400"}), "--until"},
+                    WrongUse{with_scene({"--until", "soon"}), "--until"},
+                    WrongUse{with_scene({"--every", "0"}), "--every"},
+                    WrongUse{with_scene({"--dt", "0"}), "--dt"},
+                    WrongUse{with_scene({"--dt", "0.2"}), "--dt"},
+                    WrongUse{with_scene({"--threads", "0"}), "--threads"},
+                    WrongUse{with_scene({"--threads", "1.5"}), "--threads"},
+                    WrongUse{with_scene({"--threads", "-1"}), "--threads"},
+                    WrongUse{with_scene({"--integrator", "magic"}), "--integrator"},
+                    WrongUse{with_scene({"--integrator", "7"}), "--integrator"},
+                    WrongUse{with_scene({"--output", "run.xyz"}), ".csv, .vtk, .ply or .npy"},
+                    WrongUse{with_scene({"--output", "run"}), ".csv, .vtk, .ply or .npy"},
+                    WrongUse{{"bench", "--fast"}, "--fast"}));
+
+TEST(Usage, VersionIsPrinted) {
+  const ProgramResult result = run_vat({"--version"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, MatchesRegex("vat [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST(Usage, HelpDescribesTheOutputFiles) {
+  const ProgramResult result = run_vat({"simulate", "--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* text :
+       {".csv", ".vtk", ".ply", ".npy", "--every", "velocity_verlet", "2 wrong"}) {
+    EXPECT_THAT(result.out, HasSubstr(text));
+  }
+}
+
+TEST(Usage, AllIntegratorsAreAccepted) {
+  for (const char* name :
+       {"explicit_euler", "symplectic_euler", "velocity_verlet", "heun", "runge_kutta_4"}) {
+    const ProgramResult result =
+        run_vat({"simulate", test_scene("pair"), "--until", "0.02", "--integrator", name});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  }
+}
+
+TEST(Usage, UnknownSceneListsTheCatalogue) {
+  const TemporaryFolder folder;
+  for (const char* command : {"simulate", "validate", "bench"}) {
+    const ProgramResult result = run_vat({command, "atlantis"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr("atlantis: is not in the catalogue, which has"));
+    EXPECT_THAT(result.err, HasSubstr("dam-break"));
+  }
+}
+
+TEST(Usage, SceneFolderCanBeChosen) {
+  const std::string folder = VAT_SOURCE_DIR "/tests/cli/scenes";
+  EXPECT_EQ(run_vat({"validate", "pair", "--scenes", folder}).exit_code, 0);
+  const ProgramResult missing = run_vat({"validate", "pair", "--scenes", folder + "/none"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr(folder + "/none: "));
+}
+
+TEST(Usage, UnreadableScenesAreErrors) {
+  const TemporaryFolder folder;
+  const std::string missing = folder.file("none.json");
+  const ProgramResult none = run_vat({"simulate", missing});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr(missing + ": does not exist"));
+  const ProgramResult a_folder = run_vat({"simulate", folder.file("")});
+  EXPECT_EQ(a_folder.exit_code, 1);
+  EXPECT_THAT(a_folder.err, HasSubstr(": is not a file"));
+}
+
+}  // namespace
+}  // namespace vat::test
