@@ -14,7 +14,7 @@ port=${PORT:-8080}
 cpus=${CPUS:-0-$(($(nproc) - 1))}
 work=$(mktemp -d /var/tmp/vat-clean-machine.XXXXXX)
 machine=$work/machine
-checkout="/root/a folder/vat"
+checkout="/srv/a folder/vat"
 server=
 
 say() { printf 'clean machine: %s\n' "$*"; }

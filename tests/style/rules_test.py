@@ -1,0 +1,165 @@
+"""Each rule accepts a tree that keeps it and refuses each way to break it."""
+
+import os
+import re
+import unittest
+
+import document_rules
+import source_rules
+from tree import Tree, read_tree
+
+REFERENCES = """# References
+| equation | file | what |
+|---|---|---|
+| Boldt eq. 3 | `core/a.h`, `core/b.cpp` | spring |
+| [MCG03] eq. 20 | `core/a.h` | kernel |
+
+- [MCG03] An article.
+"""
+CITING = {
+    "core/a.h": "/// Boldt eq. 3, [MCG03] eq. 20\n",
+    "core/b.cpp": "// The force of Boldt\n// eq. 3\n",
+    "core/REFERENCES.md": REFERENCES,
+}
+PACKAGED = {
+    "docker/packages.txt": "# list\nrun a\nbuild g++ g++\n",
+    "docker/Dockerfile": "RUN ./vat packages run && true\n",
+    "vat": "    serve) packages build && x ;;\n",
+}
+
+
+class RuleTest(unittest.TestCase):
+    def accepts(self, rule, files):
+        self.assertEqual(rule(Tree(files)), [])
+
+    def refuses(self, rule, files, *mentioned):
+        faults = rule(Tree(files))
+        self.assertEqual(len(faults), 1, faults)
+        for word in mentioned:
+            self.assertIn(word, faults[0])
+
+
+class SourceRules(RuleTest):
+    def test_layering_accepts_downward_includes(self):
+        self.accepts(source_rules.layering, {
+            "core/a.cpp": '#include <vector>\n#include <Eigen/Core>\n#include "core/a.h"\n',
+            "protocol/a.cpp": '#include <nlohmann/json.hpp>\n#include "core/a.h"\n',
+            "server/a.cpp": '#include <CLI/CLI.hpp>\n#include "protocol/a.h"\n',
+            "server/net/a.cpp": "#include <websocketpp/server.hpp>\n",
+            "tests/unit/a.cpp": '#include "server/a.h"\n#include <gtest/gtest.h>\n',
+        })
+
+    def test_layering_refuses_upward_and_foreign_includes(self):
+        for path, include in (
+            ("core/a.h", '"protocol/a.h"'),
+            ("core/a.h", '"server/a.h"'),
+            ("core/a.h", "<nlohmann/json.hpp>"),
+            ("core/a.h", "<boost/asio.hpp>"),
+            ("core/a.h", "<chrono>"),
+            ("core/a.h", "<iostream>"),
+            ("protocol/a.h", '"server/a.h"'),
+            ("protocol/a.h", "<boost/asio.hpp>"),
+            ("server/a.h", '"tests/a.h"'),
+            ("server/a.h", "<websocketpp/server.hpp>"),
+        ):
+            with self.subTest(path=path, include=include):
+                text = f"#pragma once\n#  include {include}\n"
+                self.refuses(source_rules.layering, {path: text}, f"{path}:2", include.strip('<>"'))
+
+    def test_determinism(self):
+        rule = source_rules.determinism
+        self.accepts(rule, {"core/a.cpp": "operand(1);  // not rand()\n",
+                            "server/a.cpp": "std::unordered_map<int, int> m;\n"})
+        for line in ("std::unordered_map<int, int> m;", "std::reduce(a, b);", "int i = rand();",
+                     "std::atomic<double> sum;", "std::execution::par"):
+            with self.subTest(line=line):
+                self.refuses(rule, {"core/a.cpp": line + "\n"}, "core/a.cpp:1")
+
+    def test_file_length(self):
+        longest = "x\n" * source_rules.MAX_LINES
+        self.accepts(source_rules.file_length, {"a.cpp": longest, "web/package-lock.json": "\n" * 999})
+        self.refuses(source_rules.file_length, {"web/a.ts": longest + "x\n"}, "web/a.ts", "501")
+
+    def test_line_ends(self):
+        self.accepts(source_rules.line_ends, {"a.md": "x\n", "empty.txt": ""})
+        self.refuses(source_rules.line_ends, {"a.md": "x"}, "no newline")
+        self.refuses(source_rules.line_ends, {"a.md": "x\r\n"}, "carriage return")
+
+    def test_tabs(self):
+        self.accepts(source_rules.tabs, {"a.cpp": '"\\t"\n', "Makefile": "\tx\n"})
+        self.refuses(source_rules.tabs, {"a.cpp": "x\n\tx\n"}, "a.cpp:2")
+
+    def test_denied_words(self):
+        rule = source_rules.denied_words
+        self.accepts(rule, {"a.cpp": '// a hackle; "build/tmp/x"; HOME=/root\n'})
+        for line in ("// TODO later", "// fixme", "// XXX", "// a hack", '"/root/x"', '"/work/x"',
+                     "cd /home/someone", "(/tmp/x)"):
+            with self.subTest(line=line):
+                self.refuses(rule, {"web/a.ts": f"\n{line}\n"}, "web/a.ts:2")
+
+    def test_header_docstrings(self):
+        rule = source_rules.header_docstrings
+        self.accepts(rule, {"core/a.h": "/// What it is.\nstruct A {};\n", "core/a.cpp": "int a;\n"})
+        self.refuses(rule, {"core/a.h": "// a note\nstruct A {};\n"}, "core/a.h")
+
+
+class DocumentRules(RuleTest):
+    def changed(self, files, path, old, new):
+        self.assertIn(old, files[path])
+        return files | {path: files[path].replace(old, new)}
+
+    def test_equations_in_reads_lists_and_broken_lines(self):
+        self.assertEqual(
+            document_rules.equations_in("// Boldt eqs. 5, 6\n  /// and 7; Boldt\n// def. 0.2"),
+            {"Boldt eq. 5", "Boldt eq. 6", "Boldt eq. 7", "Boldt def. 0.2"})
+
+    def test_citations(self):
+        rule = document_rules.citations
+        self.accepts(rule, CITING)
+        self.refuses(rule, CITING | {"core/c.h": "/// Boldt eq. 9\n"}, "core/c.h", "eq. 9")
+        self.refuses(rule, CITING | {"core/c.h": "/// Boldt eq. 3\n"}, "core/c.h", "eq. 3")
+        self.refuses(rule, CITING | {"core/b.cpp": "\n"}, "core/b.cpp does not cite Boldt eq. 3")
+
+    def test_bibliography(self):
+        rule = document_rules.bibliography
+        self.accepts(rule, CITING)
+        self.refuses(rule, CITING | {"core/c.h": "/// [DC96]\n"}, "[DC96]")
+        self.refuses(rule, CITING | {"core/a.h": "\n"}, "nothing in core cites [MCG03]")
+
+    def test_links(self):
+        rule = document_rules.links
+        self.accepts(rule, {
+            "docs/a.md": "[b](b.md#x) [up](../c/) [web](https://x.y) [here](#a) `[no](gone.md)`\n",
+            "docs/b.md": "x\n", "c/d.txt": "x\n"})
+        self.refuses(rule, {"docs/a.md": "![](picture.png)\n"}, "picture.png")
+
+    def test_packages(self):
+        rule = document_rules.packages
+        self.accepts(rule, PACKAGED)
+        self.refuses(rule, PACKAGED | {"docker/packages.txt": "run a\nbuild b\nextra c\n"}, "extra")
+        self.refuses(rule, self.changed(PACKAGED, "vat", "build", "build web"), "no group web")
+        self.refuses(rule, self.changed(PACKAGED, "docker/Dockerfile", "true", "apt-get install x"),
+                     "past ./vat")
+
+    def test_commands(self):
+        rule = document_rules.commands
+        files = {"vat": "  serve      run\n  test       try\n",
+                 "README.md": "| `./vat serve` | x |\n| `./vat test` | y |\n"}
+        self.accepts(rule, files)
+        self.refuses(rule, self.changed(files, "vat", "  test       try\n", ""), "has no test")
+        self.refuses(rule, files | {"README.md": "| `./vat serve` | x |\n"}, "no row for ./vat test")
+
+
+class Coverage(unittest.TestCase):
+    def test_every_rule_has_a_test(self):
+        tests = {name for case in (SourceRules, DocumentRules) for name in dir(case)}
+        for rule in source_rules.RULES + document_rules.RULES:
+            self.assertTrue(any(t.startswith(f"test_{rule.__name__}") for t in tests), rule.__name__)
+
+    def test_read_tree_sees_this_file_and_skips_nothing_of_it(self):
+        tree = read_tree(os.path.dirname(os.path.abspath(__file__)))
+        self.assertTrue(re.search(r"skips_nothing_of_it", tree.files["rules_test.py"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,120 @@
+"""Rules for source files: layers, form, words. A rule is a function: Tree -> list of faults."""
+
+import re
+
+CPP = (".cpp", ".h")
+SOURCE = CPP + (".ts", ".js", ".css", ".html", ".py", ".sh")
+MAX_LINES = 500
+
+# What each layer may include: prefixes of "quoted" headers and of <angled> ones with a folder or
+# an ending of their own. Headers of the standard library have neither.
+LAYERS = {
+    "core/": (("core/",), ("Eigen/",)),
+    "protocol/": (("core/", "protocol/"), ("nlohmann/", "tiny_obj_loader.h")),
+    "server/": (
+        ("core/", "protocol/", "server/"),
+        ("CLI/", "Eigen/", "boost/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/"),
+    ),
+}
+NOT_IN_CORE = {"chrono", "ctime", "iostream", "fstream", "filesystem", "random", "thread"}
+ONLY_IN = {"websocketpp/": "server/net/"}
+
+# Whatever lets the order of operations depend on threads, addresses or chance.
+NOT_DETERMINISTIC = re.compile(
+    r"\bunordered_|\bstd::(?:reduce|transform_reduce|execution|async)\b|\brand\(|ffast-math"
+    r"|\batomic<\s*(?:float|double|Real)\b"
+)
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+DENIED = re.compile(
+    r"\b(?:TODO|FIXME|XXX)\b|\bhack(?:s|y|ish)?\b|(?<![\w./*-])/(?:work|root|home|tmp)/", re.IGNORECASE
+)
+# This folder spells out the words that it refuses.
+DENIED_EXCEPT = "tests/style/"
+
+
+def numbered(text):
+    return enumerate(text.splitlines(), start=1)
+
+
+def include_fault(path, layer, quote, header):
+    quoted, angled = LAYERS[layer]
+    if quote == '"':
+        return None if header.startswith(quoted) else f"{layer} may not include {header}"
+    if "/" in header or "." in header:
+        if not header.startswith(angled):
+            return f"{layer} may not include <{header}>"
+        for prefix, home in ONLY_IN.items():
+            if header.startswith(prefix) and not path.startswith(home):
+                return f"only {home} may include <{header}>"
+    elif layer == "core/" and header in NOT_IN_CORE:
+        return f"core/ has no clock, files, chance or threads: <{header}>"
+    return None
+
+
+def layering(tree):
+    faults = []
+    for layer in LAYERS:
+        for path, text in tree.matching([layer], CPP):
+            for number, line in numbered(text):
+                match = INCLUDE.match(line)
+                fault = include_fault(path, layer, *match.groups()) if match else None
+                if fault:
+                    faults.append(f"{path}:{number}: {fault}")
+    return faults
+
+
+def determinism(tree):
+    return [
+        f"{path}:{number}: results may depend on more than the scene: {match.group()}"
+        for path, text in tree.matching(["core/"], CPP)
+        for number, line in numbered(text)
+        if (match := NOT_DETERMINISTIC.search(line.split("//")[0]))
+    ]
+
+
+def file_length(tree):
+    return [
+        f"{path}: {lines} lines; at most {MAX_LINES}"
+        for path, text in tree.matching([""], SOURCE)
+        if (lines := len(text.splitlines())) > MAX_LINES
+    ]
+
+
+def line_ends(tree):
+    faults = []
+    for path, text in sorted(tree.files.items()):
+        if text and not text.endswith("\n"):
+            faults.append(f"{path}: no newline at the end")
+        if "\r" in text:
+            faults.append(f"{path}: carriage return")
+    return faults
+
+
+def tabs(tree):
+    return [
+        f"{path}:{number}: tab"
+        for path, text in tree.matching([""], CPP)
+        for number, line in numbered(text)
+        if "\t" in line
+    ]
+
+
+def denied_words(tree):
+    return [
+        f"{path}:{number}: {match.group()}"
+        for path, text in sorted(tree.files.items())
+        if not path.startswith(DENIED_EXCEPT) and not path.endswith("package-lock.json")
+        for number, line in numbered(text)
+        if (match := DENIED.search(line))
+    ]
+
+
+def header_docstrings(tree):
+    return [
+        f"{path}: no docstring (///)"
+        for path, text in tree.matching(["core/"], [".h"])
+        if not re.search(r"^\s*///", text, re.MULTILINE)
+    ]
+
+
+RULES = (layering, determinism, file_length, line_ends, tabs, denied_words, header_docstrings)
