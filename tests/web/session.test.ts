@@ -1,0 +1,145 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Session } from '../../web/client/index';
+import type { Frame, SessionDescription } from '../../web/client/index';
+import { FakeSocket } from './fake_socket';
+import { goldenBytes } from './golden';
+
+const kDescription = { session: 's1', epoch: 2, scene: 'pool' };
+
+let descriptions: SessionDescription[];
+let frames: { frame: Frame; bytes: number }[];
+let offsets: number[];
+let states: string[];
+let faults: string[];
+let seconds: number;
+let session: Session;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  FakeSocket.forget();
+  [descriptions, frames, offsets, states, faults] = [[], [], [], [], []];
+  seconds = 50;
+  session = new Session(
+    {
+      url: 'ws://server/ws',
+      socket: FakeSocket,
+      now: () => seconds,
+      timeoutMs: 1000,
+      clockPeriodMs: 5000,
+      retryDelayMs: () => 100,
+    },
+    {
+      onState: ({ name }) => states.push(name),
+      onDescription: (description) => descriptions.push(description),
+      onFrame: (frame, bytes) => frames.push({ frame, bytes }),
+      onClockOffset: (offset) => offsets.push(offset),
+      onFault: (message) => faults.push(message),
+    },
+  );
+});
+
+afterEach(() => {
+  session.close();
+  expect(vi.getTimerCount()).toBe(0);
+  vi.useRealTimers();
+});
+
+/** Lets the newest socket open and answers all that a session asks to get in. */
+async function enter(): Promise<FakeSocket> {
+  const socket = FakeSocket.newest;
+  socket.accept();
+  await socket.answer('server.info', { result: { time: 1050 } });
+  await socket.answer('session.join', { result: { description: kDescription } });
+  await socket.answer('frames.subscribe', { result: { tick: 0 } });
+  return socket;
+}
+
+describe('entering', () => {
+  it('measures the clock, joins and subscribes', async () => {
+    session.open();
+    const socket = await enter();
+    expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
+    expect(offsets).toEqual([1000]);
+    expect(descriptions).toEqual([kDescription]);
+  });
+
+  it('does the same again after a break', async () => {
+    session.open();
+    (await enter()).break();
+    vi.advanceTimersByTime(100);
+    const second = await enter();
+    expect(second.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
+    expect(states).toEqual(['connecting', 'open', 'waiting', 'connecting', 'open']);
+    expect(descriptions).toHaveLength(2);
+  });
+
+  it('begins again on a new line where the server refuses to let it in', async () => {
+    session.open();
+    const socket = FakeSocket.newest;
+    socket.accept();
+    await socket.answer('server.info', { result: { time: 1050 } });
+    const error = { code: 1002, message: 'there is no session', data: { kind: 'no_such_session' } };
+    await socket.answer('session.join', { error });
+    expect(states.at(-1)).toBe('waiting');
+    expect(socket.closed).toBe(true);
+    vi.advanceTimersByTime(100);
+    await enter();
+    expect(descriptions).toHaveLength(1);
+  });
+
+  it('enters anew when its session is closed', async () => {
+    session.open();
+    const socket = await enter();
+    const params = { session: 's1', reason: 'closed by a client' };
+    socket.receiveJson({ method: 'session.closed', params });
+    await socket.answer('server.info', { result: { time: 1050 } });
+    await socket.answer('session.join', { result: { description: kDescription } });
+    expect(descriptions).toHaveLength(2);
+  });
+});
+
+describe('while it is in', () => {
+  it('takes each new description', async () => {
+    session.open();
+    const socket = await enter();
+    socket.receiveJson({ method: 'session.description', params: { ...kDescription, epoch: 3 } });
+    expect(descriptions.map(({ epoch }) => epoch)).toEqual([2, 3]);
+  });
+
+  it('decodes frames and acknowledges them when told to', async () => {
+    session.open();
+    const socket = await enter();
+    const bytes = goldenBytes('v1-all');
+    socket.receive(bytes);
+    expect(frames).toHaveLength(1);
+    expect(frames[0]?.bytes).toBe(bytes.byteLength);
+    expect(socket.methods).not.toContain('frames.ack');
+    session.acknowledge(frames[0]?.frame.header.sequence ?? 0);
+    expect(socket.sent.at(-1)).toMatchObject({ method: 'frames.ack', params: { sequence: 9 } });
+    expect(socket.sent.at(-1)).not.toHaveProperty('id');
+  });
+
+  it('reports a frame that cannot be read and goes on', async () => {
+    session.open();
+    const socket = await enter();
+    socket.receive(new ArrayBuffer(10));
+    expect(faults).toEqual([expect.stringContaining('(truncated)')]);
+    socket.receive(goldenBytes('v1-empty'));
+    expect(frames).toHaveLength(1);
+  });
+
+  it('measures the clock again and again', async () => {
+    session.open();
+    const socket = await enter();
+    vi.advanceTimersByTime(5000);
+    expect(socket.methods.filter((method) => method === 'server.info')).toHaveLength(2);
+  });
+
+  it('gives up a line on which the server answers no more', async () => {
+    session.open();
+    await enter();
+    vi.advanceTimersByTime(5000);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(states.at(-1)).toBe('waiting');
+  });
+});

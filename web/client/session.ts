@@ -1,0 +1,114 @@
+import { ClockOffset } from './clock';
+import { Connection } from './connection';
+import type { ConnectionOptions, ConnectionState } from './connection';
+import { decodeFrame, FrameError } from './frame';
+import type { Frame } from './frame';
+import type { Event, MethodName, Params, Result, SessionDescription } from './messages';
+import { RequestError } from './requests';
+
+export interface SessionHandlers {
+  onState?(state: ConnectionState): void;
+  /** After joining, and after each change of scene or bodies before its first frame. */
+  onDescription?(description: SessionDescription): void;
+  onEvent?(event: Event): void;
+  /** A decoded frame and its size. Answer with `acknowledge` once it is taken. */
+  onFrame?(frame: Frame, bytes: number): void;
+  /** Seconds that the server's clock is ahead of `now`. */
+  onClockOffset?(seconds: number): void;
+  /** Something that a user should hear of; the session goes on. */
+  onFault?(message: string): void;
+}
+
+export interface SessionOptions extends ConnectionOptions {
+  /** Our clock [s]. */
+  now: () => number;
+  /** Time between two round trips that measure the clock and prove that the line lives. */
+  clockPeriodMs?: number;
+}
+
+/** One client in the server's first session: joins, subscribes, and does so again after a break. */
+export class Session {
+  private readonly connection: Connection;
+  private clock = new ClockOffset();
+  private clockTimer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(
+    private readonly options: SessionOptions,
+    private readonly handlers: SessionHandlers,
+  ) {
+    this.connection = new Connection(options, {
+      onState: (state) => this.handleState(state),
+      onEvent: (event) => this.handleEvent(event),
+      onFrame: (bytes) => this.handleFrame(bytes),
+      onFault: (message) => handlers.onFault?.(message),
+    });
+  }
+
+  open(): void {
+    this.connection.open();
+  }
+
+  close(): void {
+    this.connection.close();
+  }
+
+  request<M extends MethodName>(method: M, params: Params<M>): Promise<Result<M>> {
+    return this.connection.request(method, params);
+  }
+
+  /** Acknowledges the frame with this sequence and all before it; the server then sends more. */
+  acknowledge(sequence: number): void {
+    this.connection.notify('frames.ack', { sequence });
+  }
+
+  private handleState(state: ConnectionState): void {
+    clearTimeout(this.clockTimer);
+    this.handlers.onState?.(state);
+    if (state.name === 'open') void this.enter();
+  }
+
+  private async enter(): Promise<void> {
+    try {
+      this.clock = new ClockOffset();
+      await this.measureClock();
+      const { description } = await this.request('session.join', {});
+      this.handlers.onDescription?.(description);
+      await this.request('frames.subscribe', {});
+    } catch (error) {
+      this.restart(error);
+    }
+  }
+
+  /** A request that entering or measuring needs has failed: begin again on a new line. */
+  private restart(error: unknown): void {
+    if (!(error instanceof RequestError)) throw error;
+    this.connection.restart(error.message); // does nothing if the line is down already
+  }
+
+  private async measureClock(): Promise<void> {
+    const sent = this.options.now();
+    const { time } = await this.request('server.info', {});
+    this.clock.add(sent, this.options.now(), time);
+    if (this.clock.seconds !== undefined) this.handlers.onClockOffset?.(this.clock.seconds);
+    clearTimeout(this.clockTimer);
+    this.clockTimer = setTimeout(
+      () => void this.measureClock().catch((error: unknown) => this.restart(error)),
+      this.options.clockPeriodMs ?? 5000,
+    );
+  }
+
+  private handleEvent(event: Event): void {
+    if (event.event === 'session.description') this.handlers.onDescription?.(event.params);
+    else this.handlers.onEvent?.(event);
+    if (event.event === 'session.closed') void this.enter(); // the server may have another one
+  }
+
+  private handleFrame(bytes: ArrayBuffer): void {
+    try {
+      this.handlers.onFrame?.(decodeFrame(bytes), bytes.byteLength);
+    } catch (error) {
+      if (!(error instanceof FrameError)) throw error;
+      this.handlers.onFault?.(`a frame that cannot be read (${error.code}): ${error.message}`);
+    }
+  }
+}

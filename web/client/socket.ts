@@ -1,0 +1,32 @@
+/** What the client uses of a WebSocket: the browser's and the `ws` package's both have it. */
+export interface Socket {
+  binaryType: string;
+  onopen: ((event: never) => void) | null;
+  onclose: ((event: never) => void) | null;
+  onmessage: ((event: never) => void) | null;
+  onerror: ((event: never) => void) | null;
+  send(text: string): void;
+  close(code?: number, reason?: string): void;
+}
+
+export type SocketConstructor = new (url: string, protocol: string) => Socket;
+
+export interface SocketClose {
+  code: number;
+  reason: string;
+}
+
+/** The close codes of PROTOCOL.md, "Flow control", and the one of a broken line, in words. */
+const kCloseReasons: Readonly<Record<number, string>> = {
+  1001: 'the server stops',
+  1002: 'the server saw a protocol error',
+  1006: 'the server cannot be reached',
+  1009: 'a message was too large',
+  1013: 'the server has too many connections',
+  4008: 'this client is too slow',
+};
+
+export function describeClose({ code, reason }: SocketClose): string {
+  const words = kCloseReasons[code] ?? `close code ${code}`;
+  return reason === '' ? words : `${words}: ${reason}`;
+}

@@ -1,0 +1,176 @@
+import type { Event, Frame, SessionDescription } from '../client/index';
+import { RequestError } from '../client/index';
+import { Grabber } from './grab/grabber';
+import { ConnectionLine } from './panel/connection_line';
+import { Counters } from './panel/counters';
+import { element } from './panel/elements';
+import { describeGuard, Notices } from './panel/notices';
+import { Playback } from './panel/playback';
+import { Scenes } from './panel/scenes';
+import { now } from './stream/clock';
+import { Stream, streamUrl } from './stream/stream';
+import type { Report } from './stream/stream';
+import { HeldMarker } from './view/held_marker';
+import { theme } from './view/palette';
+import { Stage } from './view/stage';
+import { World } from './view/world';
+
+/** Joins the stream from the server, the drawn world and the panel. */
+export class App {
+  private readonly canvas = element('view', HTMLCanvasElement);
+  private readonly stream = new Stream(streamUrl(location.href), (report) => this.handle(report));
+  private readonly darkness = window.matchMedia('(prefers-color-scheme: dark)');
+  private readonly world = new World(theme(this.darkness.matches));
+  private readonly marker = new HeldMarker();
+  private readonly stage = new Stage(this.canvas, () => this.showNewest());
+  private readonly grabber = new Grabber(
+    this.stage,
+    this.world,
+    this.marker,
+    this.stream.request,
+    (error) => this.refuse(error),
+  );
+  private readonly connection = new ConnectionLine(() => this.stream.open());
+  private readonly counters = new Counters(now);
+  private readonly notices = new Notices();
+  private readonly scenes = new Scenes((scene) => this.command('scene.load', { scene }));
+  private readonly playback = new Playback({
+    play: () => this.command('control.play', {}),
+    pause: () => this.command('control.pause', {}),
+    step: () => this.command('control.step', {}),
+    reset: () => this.command('control.reset', {}),
+    setSpeed: (speed) => this.command('control.set_speed', { speed }),
+  });
+  private description: SessionDescription | undefined;
+  private clockOffset: number | undefined;
+  /** Came in since the last drawing. */
+  private newest: Frame | undefined;
+  /** The scene that the camera was set up for. */
+  private framedScene: string | undefined;
+
+  start(): void {
+    this.stage.scene.add(this.world.group, this.marker.group);
+    this.paint();
+    this.darkness.addEventListener('change', () => this.paint());
+    this.stream.open();
+  }
+
+  private paint(): void {
+    const look = theme(this.darkness.matches);
+    this.world.paint(look);
+    this.stage.paint(look);
+  }
+
+  private handle(report: Report): void {
+    switch (report.type) {
+      case 'state':
+        this.connection.show(report.state);
+        if (report.state.name !== 'open') this.enable(false);
+        break;
+      case 'description':
+        this.describe(report.description);
+        break;
+      case 'event':
+        this.handleEvent(report.event);
+        break;
+      case 'frame':
+        this.counters.addFrame(report.bytes);
+        this.newest = report.frame;
+        break;
+      case 'clock':
+        this.clockOffset = report.offset;
+        break;
+      case 'fault':
+        this.notices.add('error', `The server sent ${report.message}.`);
+        break;
+    }
+  }
+
+  private handleEvent({ event, params }: Event): void {
+    switch (event) {
+      case 'session.status':
+        this.counters.showStatus(params);
+        this.playback.showPlaying(params.playing);
+        this.playback.showSpeed(params.speed);
+        break;
+      case 'session.guard':
+        this.notices.add(
+          params.recovered ? 'warning' : 'error',
+          describeGuard(params, this.description),
+        );
+        break;
+      case 'session.closed':
+        this.enable(false);
+        this.notices.add('warning', `The session was closed: ${params.reason}`);
+        break;
+      case 'session.description': // comes as a report of its own
+        break;
+    }
+  }
+
+  /** A scene or its bodies have changed, or the session is entered anew. */
+  private describe(description: SessionDescription): void {
+    const isEntry = this.canvas.dataset.joined !== 'true';
+    this.grabber.release();
+    this.description = description;
+    this.newest = undefined;
+    this.world.describe(description);
+    this.scenes.describe(description);
+    this.playback.showPlaying(description.playing);
+    this.playback.showSpeed(description.speed);
+    this.canvas.dataset.scene = description.scene;
+    if (isEntry) this.enter();
+  }
+
+  private enter(): void {
+    this.enable(true);
+    this.stream.request('scene.list', {}).then(
+      ({ scenes }) => this.scenes.list(scenes),
+      (error: unknown) => this.refuse(error),
+    );
+  }
+
+  private enable(enabled: boolean): void {
+    this.canvas.dataset.joined = String(enabled);
+    this.playback.enable(enabled);
+    this.scenes.enable(enabled);
+    this.grabber.enable(enabled);
+  }
+
+  private command(...request: Parameters<Stream['request']>): void {
+    this.stream.request(...request).catch((error: unknown) => {
+      this.refuse(error);
+      this.scenes.refresh();
+    });
+  }
+
+  /** What the server refuses is said; that the line is down is seen from the connection's state. */
+  private refuse(error: unknown): void {
+    if (!(error instanceof RequestError)) throw error;
+    if (error.kind !== 'disconnected') this.notices.add('error', error.message);
+  }
+
+  private showNewest(): void {
+    const frame = this.newest;
+    this.newest = undefined;
+    if (frame) this.showFrame(frame);
+    this.grabber.update();
+  }
+
+  private showFrame(frame: Frame): void {
+    this.stream.acknowledge(frame.header.sequence);
+    if (!this.world.show(frame)) return;
+    this.frameCamera();
+    this.counters.showFrame(frame.header, this.clockOffset);
+    this.canvas.dataset.tick = String(frame.header.tick);
+    this.stage.invalidate();
+  }
+
+  /** Points the camera at a new scene; a view that the user has chosen is kept otherwise. */
+  private frameCamera(): void {
+    if (this.framedScene === this.description?.scene) return;
+    this.framedScene = this.description?.scene;
+    this.world.fitGround();
+    this.stage.frame(this.world.bounds());
+  }
+}

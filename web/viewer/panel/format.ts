@@ -1,0 +1,29 @@
+/** Numbers as the panel shows them. */
+
+const kThinSpace = '\u202f';
+
+/** A whole number with its thousands set apart. */
+export function formatCount(count: number): string {
+  return Math.round(count)
+    .toString()
+    .replace(/\B(?=(\d{3})+$)/g, kThinSpace);
+}
+
+export function formatSeconds(seconds: number): string {
+  return `${seconds.toFixed(2)} s`;
+}
+
+/** A factor of real time. */
+export function formatFactor(factor: number): string {
+  return `${factor.toFixed(2)} ×`;
+}
+
+export function formatBytes(bytes: number): string {
+  if (bytes < 1000) return `${Math.round(bytes)} B`;
+  if (bytes < 1e6) return `${(bytes / 1e3).toFixed(1)} kB`;
+  return `${(bytes / 1e6).toFixed(2)} MB`;
+}
+
+export function formatMilliseconds(seconds: number): string {
+  return `${Math.round(1000 * seconds)} ms`;
+}

@@ -1,0 +1,54 @@
+import type { GuardEvent, SessionDescription } from '../../client/index';
+import { element, onPress } from './elements';
+import { formatSeconds } from './format';
+
+const kMostShown = 4;
+
+type Level = 'warning' | 'error';
+
+/** Messages that stay until they are dismissed; the newest first, a few at most. */
+export class Notices {
+  private readonly list = element('notices', HTMLOListElement);
+
+  add(level: Level, text: string): void {
+    const newest = this.list.firstElementChild;
+    if (newest?.firstChild?.textContent === text) return; // said already
+    const item = document.createElement('li');
+    item.dataset.level = level;
+    const dismiss = document.createElement('button');
+    dismiss.type = 'button';
+    dismiss.ariaLabel = 'Dismiss';
+    dismiss.textContent = '×';
+    onPress(dismiss, () => {
+      item.remove();
+      this.update();
+    });
+    const words = document.createElement('span');
+    words.textContent = text;
+    item.append(words, dismiss);
+    this.list.prepend(item);
+    this.update();
+  }
+
+  private update(): void {
+    while (this.list.children.length > kMostShown) this.list.lastElementChild?.remove();
+    const section = this.list.parentElement;
+    if (section) section.hidden = this.list.children.length === 0;
+  }
+}
+
+const kCauses: Readonly<Record<GuardEvent['cause'], string>> = {
+  non_finite: 'got a position or velocity that is not a number',
+  outside_domain: 'left the domain',
+  too_fast: 'moved too fast',
+};
+
+/** What the guard of the simulation saw and did, in words. */
+export function describeGuard(guard: GuardEvent, description?: SessionDescription): string {
+  const body = description?.bodies.find((candidate) => candidate.body === guard.body);
+  const name = body ? `“${body.name}”` : `body ${guard.body}`;
+  const what = `At ${formatSeconds(guard.time)} particle ${guard.particle} of ${name} ${kCauses[guard.cause]}`;
+  return guard.recovered
+    ? `${what}; the step was repeated with smaller ones.`
+    : `${what}. The session has paused at the last good state; reset it to go on.`;
+}

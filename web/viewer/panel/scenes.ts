@@ -1,0 +1,65 @@
+import type { BodyKindName, SceneEntry, SessionDescription } from '../../client/index';
+import { element } from './elements';
+import { formatCount } from './format';
+
+const kKindWords: Readonly<Record<BodyKindName, string>> = {
+  liquid: 'liquid',
+  deformable: 'deformable',
+  rigid: 'rigid',
+};
+
+/** The scene picker, what the scene is, and what its colours mean. */
+export class Scenes {
+  private readonly picker = element('scene', HTMLSelectElement);
+  private readonly text = element('scene-text', HTMLElement);
+  private readonly legend = element('legend', HTMLElement);
+  private entries: SceneEntry[] = [];
+  private current: SessionDescription | undefined;
+
+  constructor(load: (scene: string) => void) {
+    this.picker.addEventListener('change', () => {
+      load(this.picker.value);
+      this.picker.blur();
+    });
+  }
+
+  enable(enabled: boolean): void {
+    this.picker.disabled = !enabled;
+  }
+
+  /** Shows the scene that the session runs, also after a choice that was refused. */
+  refresh(): void {
+    if (this.current) this.describe(this.current);
+  }
+
+  list(entries: SceneEntry[]): void {
+    this.entries = entries;
+    this.picker.replaceChildren(...entries.map(({ name, title }) => new Option(title, name)));
+    this.refresh();
+  }
+
+  describe(description: SessionDescription): void {
+    this.current = description;
+    const entry = this.entries.find(({ name }) => name === description.scene);
+    // A scene that is not of the catalogue leaves the picker empty.
+    this.picker.value = entry?.name ?? '';
+    const title = description.title || description.scene;
+    document.title = `${title} – vat`;
+    this.text.textContent = entry?.description ?? title;
+    this.explainColours(description);
+  }
+
+  private explainColours({ bodies }: SessionDescription): void {
+    const counts = new Map<BodyKindName, number>();
+    for (const { kind, particles } of bodies) {
+      counts.set(kind, (counts.get(kind) ?? 0) + particles);
+    }
+    const items = [...counts].map(([kind, count]) => {
+      const item = document.createElement('li');
+      item.dataset.kind = kind;
+      item.textContent = `${kKindWords[kind]} ${formatCount(count)}`;
+      return item;
+    });
+    this.legend.replaceChildren(...items);
+  }
+}

@@ -1,0 +1,74 @@
+import { RequestError } from '../../client/index';
+import type { MethodName, Params, Result } from '../../client/index';
+import type { FromWorker, ToWorker } from './wire';
+
+/** What the worker reports by itself; replies to requests come as promises instead. */
+export type Report = Exclude<FromWorker, { type: 'result' | 'refusal' }>;
+
+export type Request = <M extends MethodName>(method: M, params: Params<M>) => Promise<Result<M>>;
+
+interface Waiting {
+  resolve(result: unknown): void;
+  reject(error: RequestError): void;
+}
+
+/** The page's end of the worker that holds the connection. */
+export class Stream {
+  private readonly worker = new Worker(new URL('./stream.worker.ts', import.meta.url), {
+    type: 'module',
+  });
+  private readonly waiting = new Map<number, Waiting>();
+  private lastKey = 0;
+
+  constructor(
+    private readonly url: string,
+    private readonly onReport: (report: Report) => void,
+  ) {
+    this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.handle(data);
+  }
+
+  /** Connects now; also cuts short the wait before the next attempt. */
+  open(): void {
+    this.post({ type: 'open', url: this.url });
+  }
+
+  readonly request: Request = (method, params) => {
+    const key = ++this.lastKey;
+    this.post({ type: 'request', key, method, params });
+    return new Promise((resolve, reject) => {
+      this.waiting.set(key, { resolve: resolve as Waiting['resolve'], reject });
+    });
+  };
+
+  acknowledge(sequence: number): void {
+    this.post({ type: 'acknowledge', sequence });
+  }
+
+  private post(message: ToWorker): void {
+    this.worker.postMessage(message);
+  }
+
+  private handle(message: FromWorker): void {
+    if (message.type === 'result') {
+      this.take(message.key)?.resolve(message.result);
+    } else if (message.type === 'refusal') {
+      const { kind, message: text, code, data } = message.refusal;
+      this.take(message.key)?.reject(new RequestError(kind, text, code, data));
+    } else {
+      this.onReport(message);
+    }
+  }
+
+  private take(key: number): Waiting | undefined {
+    const waiting = this.waiting.get(key);
+    this.waiting.delete(key);
+    return waiting;
+  }
+}
+
+/** The server's WebSocket beside this page. */
+export function streamUrl(page: string): string {
+  const url = new URL('/ws', page);
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  return url.href;
+}

@@ -1,0 +1,63 @@
+/** Holds the connection and decodes frames, so that the page's thread only draws. */
+import { RequestError, Session } from '../../client/index';
+import type { Frame, MethodName, Params } from '../../client/index';
+import { now } from './clock';
+import type { FromWorker, Refusal, ToWorker } from './wire';
+
+let session: Session | undefined;
+
+function post(message: FromWorker, transfer: Transferable[] = []): void {
+  self.postMessage(message, { transfer });
+}
+
+function open(url: string): void {
+  session?.close();
+  session = new Session(
+    { url, socket: WebSocket, now },
+    {
+      onState: (state) => post({ type: 'state', state }),
+      onDescription: (description) => post({ type: 'description', description }),
+      onEvent: (event) => post({ type: 'event', event }),
+      onFrame: (frame, bytes) => post({ type: 'frame', frame, bytes }, buffersOf(frame)),
+      onClockOffset: (offset) => post({ type: 'clock', offset }),
+      onFault: (message) => post({ type: 'fault', message }),
+    },
+  );
+  session.open();
+}
+
+function buffersOf(frame: Frame): ArrayBuffer[] {
+  const buffers = frame.blocks.flatMap((block) =>
+    'positions' in block ? [block.positions.buffer] : [],
+  );
+  return [...new Set(buffers)];
+}
+
+async function request(key: number, method: MethodName, params: object): Promise<void> {
+  try {
+    if (!session) throw new RequestError('disconnected', `${method}: not connected`);
+    const result = await session.request(method, params as Params<typeof method>);
+    post({ type: 'result', key, result });
+  } catch (error) {
+    if (!(error instanceof RequestError)) throw error;
+    post({ type: 'refusal', key, refusal: refusalOf(error) });
+  }
+}
+
+function refusalOf({ kind, message, code, data }: RequestError): Refusal {
+  return { kind, message, code, data };
+}
+
+self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
+  switch (data.type) {
+    case 'open':
+      open(data.url);
+      break;
+    case 'request':
+      void request(data.key, data.method, data.params);
+      break;
+    case 'acknowledge':
+      session?.acknowledge(data.sequence);
+      break;
+  }
+};

@@ -1,0 +1,32 @@
+import type {
+  ConnectionState,
+  ErrorData,
+  Event,
+  Frame,
+  MethodName,
+  SessionDescription,
+} from '../../client/index';
+
+/** Messages between the page and the worker that holds the connection. */
+export type ToWorker =
+  | { type: 'open'; url: string }
+  | { type: 'request'; key: number; method: MethodName; params: object }
+  | { type: 'acknowledge'; sequence: number };
+
+export type FromWorker =
+  | { type: 'state'; state: ConnectionState }
+  | { type: 'description'; description: SessionDescription }
+  | { type: 'event'; event: Event }
+  | { type: 'frame'; frame: Frame; bytes: number }
+  | { type: 'clock'; offset: number }
+  | { type: 'fault'; message: string }
+  | { type: 'result'; key: number; result: unknown }
+  | { type: 'refusal'; key: number; refusal: Refusal };
+
+/** A RequestError's fields: errors lose theirs between threads. */
+export interface Refusal {
+  kind: string;
+  message: string;
+  code: number | undefined;
+  data: ErrorData | undefined;
+}

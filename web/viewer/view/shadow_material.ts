@@ -1,0 +1,74 @@
+import { Color, CustomBlending, MinEquation, OneFactor, ShaderMaterial, Vector4 } from 'three';
+
+/** The floor that shadows fall on; one object serves all bodies. */
+export interface FloorUniforms {
+  floor_z: { value: number };
+  /** Least and greatest x and y: min x, min y, max x, max y. */
+  floor_bounds: { value: Vector4 };
+  /** Height above the floor at which a particle casts no shadow any more [m]. */
+  reach: { value: number };
+  floor_color: { value: Color };
+  shadow_color: { value: Color };
+}
+
+export function floorUniforms(): FloorUniforms {
+  return {
+    floor_z: { value: 0 },
+    floor_bounds: { value: new Vector4() },
+    reach: { value: 1 },
+    floor_color: { value: new Color() },
+    shadow_color: { value: new Color() },
+  };
+}
+
+const kVertexShader = /* glsl */ `
+  in vec3 center;
+  uniform float radius;
+  uniform float floor_z;
+  uniform float reach;
+  out vec2 spot;
+  out float strength;
+  out vec2 at;
+
+  void main() {
+    vec3 world = (modelMatrix * vec4(center, 1.0)).xyz;
+    strength = clamp(1.0 - (world.z - floor_z) / reach, 0.0, 1.0);
+    spot = position.xy;
+    at = world.xy + 2.2 * radius * position.xy;
+    gl_Position = projectionMatrix * viewMatrix * vec4(at, floor_z, 1.0);
+  }
+`;
+
+const kFragmentShader = /* glsl */ `
+  in vec2 spot;
+  in float strength;
+  in vec2 at;
+  uniform vec4 floor_bounds;
+  uniform vec3 floor_color;
+  uniform vec3 shadow_color;
+
+  void main() {
+    if (any(lessThan(at, floor_bounds.xy)) || any(greaterThan(at, floor_bounds.zw))) discard;
+    float dark = strength * (1.0 - smoothstep(0.0, 1.0, length(spot)));
+    gl_FragColor = vec4(mix(floor_color, shadow_color, dark), 1.0);
+    #include <colorspace_fragment>
+  }
+`;
+
+/**
+ * A soft dark spot on the floor below each particle; the darkest wins, so spots do not add up.
+ * Not marked transparent: it is drawn after the floor and before all spheres.
+ */
+export function shadowMaterial(radius: number, floor: FloorUniforms): ShaderMaterial {
+  return new ShaderMaterial({
+    vertexShader: kVertexShader,
+    fragmentShader: kFragmentShader,
+    uniforms: { radius: { value: radius }, ...floor },
+    depthTest: false,
+    depthWrite: false,
+    blending: CustomBlending,
+    blendEquation: MinEquation,
+    blendSrc: OneFactor,
+    blendDst: OneFactor,
+  });
+}

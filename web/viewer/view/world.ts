@@ -1,0 +1,122 @@
+import { Box3, Group, Vector3 } from 'three';
+import type { Ray } from 'three';
+import { BodyKind } from '../../client/index';
+import type { BodyKindName, Frame, SessionDescription, Vector } from '../../client/index';
+import { BodyView, isGrid } from './body_view';
+import { Ground } from './ground';
+import type { Theme } from './palette';
+import { floorUniforms } from './shadow_material';
+import { VatView } from './vat_view';
+
+/** A particle under the pointer. */
+export interface Picked {
+  body: number;
+  particle: number;
+  position: Vector3;
+}
+
+/** Everything that a session shows: its bodies, its vat, and the ground below. */
+export class World {
+  readonly group = new Group();
+  private readonly ground: Ground;
+  private readonly floor = floorUniforms();
+  private bodies = new Map<number, BodyView>();
+  private vat: VatView | undefined;
+  private description: SessionDescription | undefined;
+
+  constructor(private look: Theme) {
+    this.ground = new Ground(look);
+    this.group.add(this.ground.mesh);
+    this.paint(look);
+  }
+
+  /** Replaces the bodies and the vat by those described. */
+  describe(description: SessionDescription): void {
+    this.clear();
+    this.description = description;
+    const counts: Record<BodyKindName, number> = { liquid: 0, deformable: 0, rigid: 0 };
+    for (const body of description.bodies) {
+      const view = new BodyView(body, counts[body.kind]++, this.floor);
+      this.bodies.set(body.body, view);
+      this.group.add(view.group);
+    }
+    if (description.vat) {
+      this.vat = new VatView(description.vat, this.look);
+      this.group.add(this.vat.group);
+      this.moveVat([0, 0, 0]);
+    }
+  }
+
+  /** Lays the ground below what is shown now. */
+  fitGround(): void {
+    this.ground.fit(this.bounds());
+  }
+
+  /** Returns false for a frame of another epoch, which this world cannot show. */
+  show(frame: Frame): boolean {
+    if (frame.header.epoch !== this.description?.epoch) return false;
+    for (const block of frame.blocks) {
+      if (block.kind === BodyKind.vat) this.moveVat(block.offset);
+      else if (isGrid(block)) this.bodies.get(block.body)?.showGrid(block, frame.header);
+      else this.bodies.get(block.body)?.showPose(block);
+    }
+    return true;
+  }
+
+  /** What a first camera should see: the vat or, without one, the bodies as they are. */
+  bounds(): Box3 {
+    const vat = this.description?.vat;
+    if (vat) return new Box3(new Vector3(...vat.min), new Vector3(...vat.max));
+    const box = new Box3();
+    for (const view of this.bodies.values()) view.expand(box);
+    return box;
+  }
+
+  pick(ray: Ray): Picked | undefined {
+    let nearest: Picked | undefined;
+    let distance = Infinity;
+    for (const [body, view] of this.bodies) {
+      const hit = view.pick(ray);
+      if (!hit || hit.distance >= distance) continue;
+      distance = hit.distance;
+      nearest = { body, particle: hit.particle, position: view.positionOf(hit.particle) };
+    }
+    return nearest;
+  }
+
+  /** Where a particle is now and its radius; undefined once its body is gone. */
+  particle(body: number, particle: number): { position: Vector3; radius: number } | undefined {
+    const view = this.bodies.get(body);
+    return view && { position: view.positionOf(particle), radius: view.description.radius };
+  }
+
+  paint(look: Theme): void {
+    this.look = look;
+    this.ground.paint(look);
+    this.vat?.paint(look);
+    this.floor.floor_color.value.copy(look.floor);
+    this.floor.shadow_color.value.copy(look.shadow);
+  }
+
+  private moveVat(offset: Vector): void {
+    const vat = this.description?.vat;
+    if (!vat || !this.vat) return;
+    this.vat.moveTo(offset);
+    const [x, y, z] = offset;
+    this.floor.floor_z.value = vat.min[2] + z;
+    this.floor.reach.value = 0.6 * (vat.max[2] - vat.min[2]);
+    this.floor.floor_bounds.value.set(
+      vat.min[0] + x,
+      vat.min[1] + y,
+      vat.max[0] + x,
+      vat.max[1] + y,
+    );
+  }
+
+  private clear(): void {
+    for (const view of this.bodies.values()) view.dispose();
+    this.bodies = new Map();
+    this.vat?.dispose();
+    this.vat = undefined;
+  }
+}

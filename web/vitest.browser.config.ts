@@ -1,0 +1,25 @@
+import { resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vitest/config';
+
+const web = resolve(fileURLToPath(import.meta.url), '..');
+const repository = resolve(web, '..');
+
+export default defineConfig({
+  root: repository,
+  server: { fs: { allow: [repository] } },
+  resolve: {
+    // The tests lie outside of this folder, from where its packages are not found.
+    alias: {
+      'playwright-core': resolve(web, 'node_modules/playwright-core/index.mjs'),
+      ws: resolve(web, 'node_modules/ws/wrapper.mjs'),
+    },
+  },
+  test: {
+    include: ['tests/browser/**/*.test.ts'],
+    bail: 1,
+    fileParallelism: false,
+    testTimeout: 180_000,
+    hookTimeout: 180_000,
+  },
+});

@@ -1,0 +1,12 @@
+import { resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vitest/config';
+
+const web = resolve(fileURLToPath(import.meta.url), '..');
+const repository = resolve(web, '..');
+
+export default defineConfig({
+  root: repository,
+  server: { fs: { allow: [repository] } },
+  test: { include: ['tests/web/**/*.test.ts'] },
+});
