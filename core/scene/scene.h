@@ -101,14 +101,14 @@ struct BodyDescription {
   BodyKind kind = BodyKind::liquid;
   std::string material;
   Shape shape;
-  Real spacing = 0;            ///< lattice spacing of the sampler [m]; unused by ParticleShape
-  std::optional<Real> mass;    ///< whole body [kg]; default: from the material's density
-  std::optional<Real> radius;  ///< particle radius [m]; default: half the spacing
+  Real spacing = 0;              ///< lattice spacing of the sampler [m]; unused by ParticleShape
+  std::optional<Real> mass{};    ///< whole body [kg]; default: from the material's density
+  std::optional<Real> radius{};  ///< particle radius [m]; default: half the spacing
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
-  std::vector<SpringDescription> springs;  ///< deformable bodies only, beside the lattice springs
+  std::vector<SpringDescription> springs{};  ///< deformable bodies only, beside the lattice springs
 };
 
 /// The name that stands for the vat's walls in an interface.

@@ -1,0 +1,293 @@
+#include "core/scene/validate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/limits.h"
+#include "core/simulation.h"
+#include "tests/unit/mesh_shapes.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+
+/// One body of each kind, every list with an element.
+Scene valid_scene() {
+  Scene scene;
+  scene.name = "valid";
+  scene.materials.resize(3);
+  scene.materials[0].name = "water";
+  scene.materials[0].liquid = LiquidConstants{100, 1, 0.1};
+  scene.materials[1].name = "rubber";
+  scene.materials[1].springs = LatticeSprings{{{100, 1}}, {{50, 1}}, {{20, 1}}};
+  scene.materials[1].self_contact = SpringConstants{100, 1};
+  scene.materials[2].name = "wood";
+  scene.interfaces = {{{"water", "vat"}, {100, 1}, 0.05}, {{"wood", "wood"}, {100, 1}, {}}};
+  scene.vat = Vat{{0, 0, 0}, {1, 1, 1}, true, SlideMotion{{1, 0, 0}, 0.1, 1}};
+  scene.bodies.resize(4);
+  scene.bodies[0] = {"pool", BodyKind::liquid, "water", BoxShape{{0.5, 0.5, 0.1}, {1, 1, 0.2}},
+                     0.05};
+  scene.bodies[1] = {"cube", BodyKind::deformable, "rubber",
+                     BoxShape{{0.5, 0.5, 0.4}, {0.2, 0.2, 0.2}}, 0.05};
+  scene.bodies[2] = {"ball", BodyKind::rigid, "wood", SphereShape{{0.5, 0.5, 0.8}, 0.1}, 0.05};
+  scene.bodies[3].name = "pendulum";
+  scene.bodies[3].kind = BodyKind::deformable;
+  scene.bodies[3].material = "wood";
+  scene.bodies[3].shape =
+      ParticleShape{{{0.1, 0.1, 0.9}, {0.1, 0.1, 0.7}}, {}, {1, 1}, {0.01, 0.01}, {0}};
+  scene.bodies[3].springs = {{0, 1, {100, 0}, {}}};
+  return scene;
+}
+
+ParticleShape& particles(Scene& scene) {
+  return std::get<ParticleShape>(scene.bodies[3].shape);
+}
+
+TEST(Validate, FindsNothingWrongInAValidScene) {
+  const Errors errors = find_errors(valid_scene());
+  EXPECT_TRUE(errors.empty()) << errors.front().path << ' ' << errors.front().message;
+  EXPECT_TRUE(find_errors(Scene{}).empty());
+}
+
+struct Mistake {
+  const char* path;
+  const char* code;
+  std::function<void(Scene&)> make;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+  *out << mistake.path << ' ' << mistake.code;
+}
+
+class OneMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(OneMistake, IsReportedAtItsPlaceAndAlone) {
+  Scene scene = valid_scene();
+  GetParam().make(scene);
+  const Errors errors = find_errors(scene);
+  ASSERT_EQ(errors.size(), 1u) << testing::PrintToString(errors.empty() ? "" : errors[0].path);
+  EXPECT_EQ(errors[0].path, GetParam().path);
+  EXPECT_EQ(errors[0].code, GetParam().code);
+  EXPECT_THAT(errors[0].message, testing::Not(testing::IsEmpty()));
+  EXPECT_FALSE(Simulation::create(scene).ok());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scene, OneMistake,
+    testing::Values(
+        Mistake{"/name", "bad_text", [](Scene& s) { s.name.assign(kMaxNameLength + 1, 'x'); }},
+        Mistake{"/title", "bad_text", [](Scene& s) { s.title.assign(kMaxTextLength + 1, 'x'); }},
+        Mistake{"/gravity", "out_of_range", [](Scene& s) { s.gravity.y() = kNan; }},
+        Mistake{"/gravity", "out_of_range", [](Scene& s) { s.gravity.z() = -1001; }},
+        Mistake{"/default_interface/stiffness", "out_of_range",
+                [](Scene& s) { s.default_interface.stiffness = -1; }},
+        Mistake{"/vat/min", "out_of_range", [](Scene& s) { s.vat->min.x() = -kInfinity; }},
+        Mistake{"/vat/motion/axis", "out_of_range",
+                [](Scene& s) { s.vat->motion->axis.setZero(); }},
+        Mistake{"/vat/motion/stroke", "out_of_range",
+                [](Scene& s) { s.vat->motion->stroke = kNan; }},
+        Mistake{"/vat/motion/period", "out_of_range", [](Scene& s) { s.vat->motion->period = 0; }},
+        Mistake{"/vat/motion/period", "out_of_range",
+                [](Scene& s) { s.vat->motion->stroke = 1e5; }},
+        Mistake{"/numerics/step", "out_of_range", [](Scene& s) { s.numerics.step = 0; }},
+        Mistake{"/numerics/tick", "out_of_range", [](Scene& s) { s.numerics.tick = 2; }},
+        Mistake{"/numerics/tick", "out_of_range", [](Scene& s) { s.numerics.tick = 0.0205; }},
+        Mistake{"/numerics/tick", "out_of_range", [](Scene& s) { s.numerics.step = 0.1; }},
+        Mistake{"/numerics/tick", "out_of_range", [](Scene& s) { s.numerics.step = 1e-6; }}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Materials, OneMistake,
+    testing::Values(Mistake{"/materials/2/name", "duplicate",
+                            [](Scene& s) {
+                              s.materials.push_back(s.materials[2]);
+                              std::swap(s.materials[2], s.materials[3]);
+                              s.materials[3].name = "stone";
+                              s.materials[2].name = "rubber";
+                              s.bodies[2].material = s.bodies[3].material = "stone";
+                              s.interfaces[1].materials = {"stone", "stone"};
+                            }},
+                    Mistake{"/materials/3/name", "reserved_name",
+                            [](Scene& s) {
+                              s.materials.push_back({"vat", 1, {}, {}, {}});
+                            }},
+                    Mistake{"/materials/3/name", "bad_text",
+                            [](Scene& s) { s.materials.emplace_back(); }},
+                    Mistake{"/materials/0/density", "out_of_range",
+                            [](Scene& s) { s.materials[0].density = 0; }},
+                    Mistake{"/materials/0/liquid/stiffness", "out_of_range",
+                            [](Scene& s) { s.materials[0].liquid->stiffness = -1; }},
+                    Mistake{"/materials/0/liquid/viscosity", "out_of_range",
+                            [](Scene& s) { s.materials[0].liquid->viscosity = kInfinity; }},
+                    Mistake{"/materials/0/liquid/support_radius", "out_of_range",
+                            [](Scene& s) { s.materials[0].liquid->support_radius = 0; }},
+                    Mistake{"/materials/1/springs/shear/stiffness", "out_of_range",
+                            [](Scene& s) { s.materials[1].springs->shear->stiffness = -1; }},
+                    Mistake{"/materials/1/springs/bend/damping", "out_of_range",
+                            [](Scene& s) { s.materials[1].springs->bend->damping = kNan; }},
+                    Mistake{"/materials/1/self_contact/damping", "out_of_range",
+                            [](Scene& s) { s.materials[1].self_contact->damping = -1; }},
+                    Mistake{"/materials", "too_many", [](Scene& s) {
+                              while (s.materials.size() <= kMaxMaterials) {
+                                s.materials.push_back(s.materials[2]);
+                                s.materials.back().name = "m" + std::to_string(s.materials.size());
+                              }
+                            }}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Interfaces, OneMistake,
+    testing::Values(Mistake{"/interfaces/0/materials/0", "unknown_name",
+                            [](Scene& s) { s.interfaces[0].materials[0] = "oil"; }},
+                    Mistake{"/interfaces/0/materials", "unknown_name",
+                            [](Scene& s) { s.interfaces[0].materials[0] = "vat"; }},
+                    Mistake{"/interfaces/2/materials", "duplicate",
+                            [](Scene& s) {
+                              s.interfaces.push_back({{"vat", "water"}, {1, 1}, {}});
+                            }},
+                    Mistake{"/interfaces/1/stiffness", "out_of_range",
+                            [](Scene& s) { s.interfaces[1].constants.stiffness = 1e13; }},
+                    Mistake{"/interfaces/0/threshold", "out_of_range",
+                            [](Scene& s) { s.interfaces[0].threshold = 0; }}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, OneMistake,
+    testing::Values(
+        Mistake{"/bodies/1/name", "duplicate", [](Scene& s) { s.bodies[1].name = "pool"; }},
+        Mistake{"/bodies/1/name", "bad_text", [](Scene& s) { s.bodies[1].name = ""; }},
+        Mistake{"/bodies/1/material", "unknown_name", [](Scene& s) { s.bodies[1].material = "x"; }},
+        Mistake{"/bodies/0/material", "not_liquid",
+                [](Scene& s) { s.bodies[0].material = "wood"; }},
+        Mistake{"/bodies/2/spacing", "out_of_range", [](Scene& s) { s.bodies[2].spacing = kNan; }},
+        Mistake{"/bodies/2/spacing", "too_many", [](Scene& s) { s.bodies[2].spacing = 1e-5; }},
+        Mistake{"/bodies/2/mass", "out_of_range", [](Scene& s) { s.bodies[2].mass = 0; }},
+        Mistake{"/bodies/2/radius", "out_of_range", [](Scene& s) { s.bodies[2].radius = -1; }},
+        Mistake{"/bodies/2/orientation", "out_of_range",
+                [](Scene& s) { s.bodies[2].orientation = Quat(0, 0, 0, 0); }},
+        Mistake{"/bodies/2/velocity", "out_of_range",
+                [](Scene& s) { s.bodies[2].velocity.x() = 1e5; }},
+        Mistake{"/bodies/2/angular_velocity", "out_of_range",
+                [](Scene& s) { s.bodies[2].angular_velocity.x() = kNan; }},
+        Mistake{"/bodies/2", "outside_vat", [](Scene& s) { s.bodies[2].position.x() = 0.5; }},
+        Mistake{"/bodies/2", "outside_vat", [](Scene& s) { s.bodies[2].position.z() = 0.3; }},
+        Mistake{"/bodies/2/springs", "not_allowed",
+                [](Scene& s) {
+                  s.bodies[2].springs = {{0, 1, {1, 0}, {}}};
+                }},
+        Mistake{"/bodies/2/shape/radius", "out_of_range",
+                [](Scene& s) {
+                  s.bodies[2].shape = SphereShape{{0.5, 0.5, 0.8}, -1};
+                }},
+        Mistake{"/bodies/2/shape/size", "out_of_range",
+                [](Scene& s) {
+                  s.bodies[2].shape = BoxShape{{0.5, 0.5, 0.8}, {1, 0, 1}};
+                }},
+        Mistake{"/bodies/2/shape/axis", "out_of_range",
+                [](Scene& s) {
+                  s.bodies[2].shape = CylinderShape{{0.5, 0.5, 0.8}, {0, 0, 0}, 0.1, 0.1};
+                }},
+        Mistake{"/bodies/2/shape", "open_mesh",
+                [](Scene& s) {
+                  MeshShape mesh = box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+                  mesh.triangles.pop_back();
+                  s.bodies[2].shape = mesh;
+                }},
+        Mistake{"/bodies/2/shape", "inverted_mesh",
+                [](Scene& s) {
+                  s.bodies[2].shape = inside_out(box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9}));
+                }},
+        Mistake{"/bodies/2/shape/triangles/3", "out_of_range",
+                [](Scene& s) {
+                  MeshShape mesh = box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+                  mesh.triangles[3][1] = 8;
+                  s.bodies[2].shape = mesh;
+                }},
+        Mistake{"/bodies/2/spacing", "no_particles", [](Scene& s) {
+                  // Two boxes with the centre of both, the only lattice point, between them.
+                  s.bodies[2].spacing = 0.3;
+                  s.bodies[2].shape = joined(box_mesh({0.4, 0.4, 0.7}, {0.45, 0.6, 0.9}),
+                                             box_mesh({0.55, 0.4, 0.7}, {0.6, 0.6, 0.9}));
+                }}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Particles, OneMistake,
+    testing::Values(
+        Mistake{"/bodies/3/shape/positions", "out_of_range",
+                [](Scene& s) { particles(s).positions.clear(); }},
+        Mistake{"/bodies/3/shape/positions/1", "out_of_range",
+                [](Scene& s) { particles(s).positions[1].z() = kNan; }},
+        Mistake{"/bodies/3/shape/masses", "wrong_length",
+                [](Scene& s) { particles(s).masses = {1}; }},
+        Mistake{"/bodies/3/shape/masses/0", "out_of_range",
+                [](Scene& s) { particles(s).masses[0] = 0; }},
+        Mistake{"/bodies/3/shape/radii/1", "out_of_range",
+                [](Scene& s) { particles(s).radii[1] = kInfinity; }},
+        Mistake{"/bodies/3/shape/velocities", "wrong_length",
+                [](Scene& s) { particles(s).velocities = {Vec3::Zero()}; }},
+        Mistake{"/bodies/3/shape/fixed/0", "out_of_range",
+                [](Scene& s) { particles(s).fixed = {2}; }},
+        Mistake{"/bodies/3/shape/fixed", "duplicate",
+                [](Scene& s) {
+                  particles(s).fixed = {1, 1};
+                }},
+        Mistake{"/bodies/3/mass", "missing", [](Scene& s) { particles(s).masses.clear(); }},
+        Mistake{"/bodies/3/radius", "missing", [](Scene& s) { particles(s).radii.clear(); }},
+        Mistake{"/bodies/3/springs/0/particles", "out_of_range",
+                [](Scene& s) { s.bodies[3].springs[0].b = 2; }},
+        Mistake{"/bodies/3/springs/0/particles", "out_of_range",
+                [](Scene& s) { s.bodies[3].springs[0].b = 0; }},
+        Mistake{"/bodies/3/springs/0/stiffness", "out_of_range",
+                [](Scene& s) { s.bodies[3].springs[0].constants.stiffness = -1; }},
+        Mistake{"/bodies/3/springs/0/rest_length", "out_of_range",
+                [](Scene& s) { s.bodies[3].springs[0].rest_length = -1; }}));
+
+TEST(Validate, ReportsEveryMistakeAtOnce) {
+  Scene scene = valid_scene();
+  scene.numerics.step = -1;
+  scene.materials[0].density = kNan;
+  scene.bodies[0].spacing = 0;
+  scene.bodies[2].mass = -1;
+  std::vector<std::string> paths;
+  for (const Error& error : find_errors(scene)) paths.push_back(error.path);
+  EXPECT_THAT(paths, testing::ElementsAre("/materials/0/density", "/numerics/step",
+                                          "/bodies/0/spacing", "/bodies/2/mass"));
+}
+
+TEST(Validate, LimitsTheTotals) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.materials[0].name = "m";
+  scene.materials[0].springs = LatticeSprings{{{1, 0}}, {{1, 0}}, {{1, 0}}};
+  const BoxShape box{{0, 0, 0}, {1, 1, 1}};
+  scene.bodies = {{"a", BodyKind::rigid, "m", box, 0.0125},
+                  {"b", BodyKind::rigid, "m", box, 0.0125}};
+  const auto codes = [&] {
+    std::vector<std::string> found;
+    for (const Error& error : find_errors(scene)) found.push_back(error.code + error.path);
+    return found;
+  };
+  EXPECT_THAT(codes(), testing::ElementsAre("too_many/bodies"));  // 2 x 80^3 particles
+  scene.bodies[0].spacing = 0.02;
+  EXPECT_THAT(codes(), testing::IsEmpty());
+  scene.bodies = {{"a", BodyKind::deformable, "m", box, 0.0125}};
+  EXPECT_THAT(codes(), testing::ElementsAre("too_many/bodies"));  // 12 x 80^3 springs
+}
+
+TEST(Validate, ChecksABodyToBeAdded) {
+  Scene scene = valid_scene();
+  BodyDescription body = scene.bodies[2];
+  EXPECT_EQ(find_body_errors(scene, body, "/body").at(0).path, "/body/name");
+  body.name = "another ball";
+  EXPECT_TRUE(find_body_errors(scene, body, "/body").empty());
+  body.material = "cheese";
+  const Errors errors = find_body_errors(scene, body, "/body");
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].path, "/body/material");
+}
+
+}  // namespace
+}  // namespace vat
