@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "tests/unit/mesh_shapes.h"
 
@@ -122,8 +123,10 @@ std::size_t springs_of(const LatticeSprings& springs, Shape shape) {
   Material material = steel();
   material.springs = springs;
   const SampledBody sample = sample_body(body, material);
+  std::set<std::pair<Index, Index>> pairs;
   for (const SampledSpring& spring : sample.springs) {
     EXPECT_NE(spring.a, spring.b);
+    EXPECT_TRUE(pairs.insert(std::minmax(spring.a, spring.b)).second) << "joined twice";
     const Real distance = (sample.positions[spring.a] - sample.positions[spring.b]).norm();
     EXPECT_NEAR(spring.rest_length, distance, 1e-14);
   }
