@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -53,11 +54,15 @@ struct HttpResponse {
 using HttpHandler = std::function<HttpResponse(std::string_view method, std::string_view target)>;
 
 struct TransportSettings {
-  std::string host = "127.0.0.1";         ///< a numeric address
-  std::uint16_t port = 8080;              ///< 0: any free port
-  std::size_t max_connections = 256;      ///< WebSockets; the next one is closed with 1013
-  std::size_t max_message_bytes = 0;      ///< a longer one closes the connection with 1009
-  std::size_t max_http_request_bytes = 0;  ///< a longer request is refused
+  std::string host = "127.0.0.1";                  ///< a numeric address
+  std::uint16_t port = 8080;                       ///< 0: any free port
+  std::size_t max_connections = 256;               ///< WebSockets; the next is closed with 1013
+  std::size_t max_message_bytes = 1024 * 1024;     ///< a longer one closes with 1009
+  std::size_t max_http_request_bytes = 16 * 1024;  ///< of the body; a longer one gets 413
+  std::chrono::milliseconds handshake_timeout{10'000};  ///< for a whole request or upgrade
+  std::chrono::milliseconds ping_interval{20'000};  ///< a peer silent for two of them is dropped
+  /// Told of faults of this program (a handler that throws); called on the transport's thread.
+  std::function<void(std::string_view)> report;
 };
 
 /// One port for HTTP and WebSocket, served by one thread of its own from start() to stop().

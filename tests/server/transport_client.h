@@ -1,0 +1,91 @@
+#pragma once
+
+#include <utility>  // Boost.Asio 1.74 under C++20 forgets it
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace vat::test {
+
+inline constexpr std::chrono::seconds kPatience{10};  ///< then a test fails rather than hangs
+
+/// Bytes as they are, to and from 127.0.0.1. A call that cannot end within kPatience throws
+/// std::runtime_error, as does a write to a peer that has gone.
+class RawClient {
+ public:
+  explicit RawClient(std::uint16_t port);
+
+  void write(std::string_view bytes);
+  /// At least one byte; empty: the peer has closed or reset the connection.
+  std::string read_some();
+  std::string read_exactly(std::size_t size);
+  /// All until the peer closes or resets the connection.
+  std::string read_all();
+  /// Ends the connection with a reset, as a killed process with unread bytes does.
+  void reset();
+  void close();
+
+ private:
+  template <class Start>
+  void await(Start&& start);
+
+  boost::asio::io_context io_;
+  boost::asio::ip::tcp::socket socket_;
+};
+
+struct HttpReply {
+  int status = 0;
+  std::string head;
+  std::string body;
+  /// The header's value; empty where there is none.
+  std::string header(std::string_view name) const;
+};
+
+HttpReply parse_reply(const std::string& bytes);
+/// One request with the given header lines, each ending in CRLF.
+HttpReply http(std::uint16_t port, std::string_view method, std::string_view target,
+               std::string_view headers = "", std::string_view body = "");
+
+struct Frame {
+  int opcode = 0;  ///< 1 text, 2 binary, 8 close, 9 ping, 10 pong
+  std::string payload;
+};
+
+/// The bytes of a masked client frame.
+std::string client_frame(int opcode, std::string_view payload, bool final = true);
+
+/// A WebSocket in the hands of a test: written from RFC 6455, not with the server's library.
+class WsClient {
+ public:
+  /// Opens /ws with vat.v1; throws where the server refuses.
+  explicit WsClient(std::uint16_t port);
+
+  void send_text(std::string_view text) { raw_.write(client_frame(1, text)); }
+  void send_binary(std::string_view bytes) { raw_.write(client_frame(2, bytes)); }
+  /// Nothing where the connection has ended.
+  std::optional<Frame> read_frame();
+  /// The next text or binary message; throws where the connection ends instead.
+  Frame read_message();
+  /// Reads on to the close frame and answers it. Returns its code, 0 where the connection ends
+  /// without one.
+  int read_close();
+  RawClient& raw() { return raw_; }
+
+ private:
+  RawClient raw_;
+  std::string buffer_;
+};
+
+/// Header lines of a correct upgrade of vat.v1, without Host.
+std::string upgrade_headers(std::string_view subprotocol = "vat.v1",
+                            std::string_view version = "13");
+/// Status of an upgrade with these header lines.
+HttpReply try_upgrade(std::uint16_t port, std::string_view target, std::string_view headers);
+
+}  // namespace vat::test

@@ -1,0 +1,88 @@
+#include "tests/server/transport_fixture.h"
+
+namespace vat::test {
+
+namespace {
+
+class TransportUpgradeTest : public TransportTest {
+ protected:
+  TransportUpgradeTest() { start(); }
+  std::string origin(const std::string& value) {
+    return upgrade_headers() + "Origin: " + value + "\r\n";
+  }
+  std::string host() const { return "127.0.0.1:" + std::to_string(port); }
+};
+
+TEST_F(TransportUpgradeTest, GrantsTheSubprotocol) {
+  const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers());
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
+  // The answer to this key that RFC 6455, section 1.3 prints.
+  EXPECT_EQ(reply.header("Sec-WebSocket-Accept"), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+  EXPECT_TRUE(recorder.wait_closed(1));
+}
+
+TEST_F(TransportUpgradeTest, PicksTheSubprotocolFromSeveral) {
+  const HttpReply reply = try_upgrade(port, "/ws?name=x", upgrade_headers("vat.v2, vat.v1"));
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
+}
+
+TEST_F(TransportUpgradeTest, RefusesAnotherSubprotocolOrNone) {
+  for (const char* subprotocol : {"", "vat.v2", "VAT.V1", "vat.v10"}) {
+    const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers(subprotocol));
+    EXPECT_EQ(reply.status, 400) << subprotocol;
+    EXPECT_NE(reply.body.find("vat.v1"), std::string::npos) << reply.body;
+  }
+}
+
+TEST_F(TransportUpgradeTest, RefusesOtherPaths) {
+  for (const char* target : {"/", "/ws/", "/WS", "/wss", "/x/ws", "//ws", "/%77s", "/?/ws"}) {
+    EXPECT_EQ(try_upgrade(port, target, upgrade_headers()).status, 400) << target;
+  }
+}
+
+TEST_F(TransportUpgradeTest, RefusesOtherVersions) {
+  for (const char* version : {"7", "8", "12", "14", "-1", "thirteen"}) {
+    EXPECT_EQ(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
+  }
+  // The library takes these for a draft of 2010 and answers without asking.
+  for (const char* version : {"", "0"}) {
+    EXPECT_GE(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
+  }
+}
+
+TEST_F(TransportUpgradeTest, AdmitsPagesOfThisServerOnly) {
+  EXPECT_EQ(try_upgrade(port, "/ws", origin("http://" + host())).status, 101);
+  EXPECT_EQ(try_upgrade(port, "/ws", origin("https://" + host())).status, 101);
+  const std::vector<std::string> foreign_origins{"http://example.org",
+                                                 "null",
+                                                 "http://127.0.0.1",
+                                                 "http://localhost:" + std::to_string(port),
+                                                 "http://" + host() + ".example.org",
+                                                 "http://" + host() + "0",
+                                                 host(),
+                                                 "http://example.org/http://" + host()};
+  for (const std::string& foreign : foreign_origins) {
+    EXPECT_EQ(try_upgrade(port, "/ws", origin(foreign)).status, 403) << foreign;
+  }
+}
+
+TEST_F(TransportUpgradeTest, NeverCompresses) {
+  const HttpReply reply = try_upgrade(
+      port, "/ws", upgrade_headers() + "Sec-WebSocket-Extensions: permessage-deflate\r\n");
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Extensions"), "");
+}
+
+TEST_F(TransportUpgradeTest, ARefusedClientIsNotAnnounced) {
+  try_upgrade(port, "/ws", upgrade_headers(""));
+  try_upgrade(port, "/", upgrade_headers());
+  WsClient good(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  EXPECT_EQ(recorder.connections.size(), 1u);
+}
+
+}  // namespace
+
+}  // namespace vat::test
