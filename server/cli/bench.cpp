@@ -11,6 +11,7 @@
 #include "server/cli/bench_measure.h"
 #include "server/cli/bench_report.h"
 #include "server/cli/command.h"
+#include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"
 #include "server/output/output_file.h"
 
@@ -110,7 +111,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("scenes", options->scenes, "Scenes; default: the whole catalogue");
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
   command->add_flag("--quick", options->quick, "One short run of each");
-  command->add_option("--output", options->output, "CSV file for the results");
+  command->add_option("--output", options->output, "File for the results: .csv")
+      ->check(csv_file_name());
   command->footer(
       "Exit codes: 0 fine, 1 invalid scene, failed run or states that differ between "
       "thread counts, 2 wrong usage.");

@@ -9,8 +9,9 @@ namespace vat {
 
 /// Exit codes of the program.
 inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;  ///< invalid input, or a run that failed
-inline constexpr int kExitUsage = 2;   ///< unknown option, or a bad value for one
+inline constexpr int kExitFailed = 1;    ///< invalid input, or a run that failed
+inline constexpr int kExitUsage = 2;     ///< unknown option, or a bad value for one
+inline constexpr int kExitSignal = 128;  ///< plus the number of the signal that ended a run
 
 /// One line per error: "PATH: message". An error about the whole input bears the input's name.
 void print_errors(std::ostream& out, const std::string& input, const Errors& errors);

@@ -1,5 +1,6 @@
 #include "server/cli/option_checks.h"
 
+#include <filesystem>
 #include <string>
 
 #include "server/output/text.h"
@@ -18,6 +19,14 @@ CLI::Validator real_in(double min, double max) {
     return good ? std::string() : "'" + text + "' is not a number in " + range;
   };
   return CLI::Validator(check, "in " + range);
+}
+
+CLI::Validator csv_file_name() {
+  const auto check = [](const std::string& name) {
+    const bool good = std::filesystem::path(name).extension() == ".csv";
+    return good ? std::string() : "'" + name + "' must end in .csv";
+  };
+  return CLI::Validator(check, "FILE");
 }
 
 }  // namespace vat

@@ -1,6 +1,7 @@
 #include "server/cli/simulate.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -14,12 +15,14 @@
 #include "server/cli/command.h"
 #include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"
+#include "server/cli/simulate_interrupt.h"
 #include "server/cli/simulate_profile.h"
 #include "server/cli/simulate_progress.h"
 #include "server/cli/simulate_run.h"
 #include "server/cli/simulate_schedule.h"
 #include "server/output/diagnostics_writer.h"
 #include "server/output/frame_writer.h"
+#include "server/output/text.h"
 #include "server/task_runner.h"
 
 namespace vat {
@@ -47,9 +50,9 @@ z, linear and angular momentum about the origin NAME.px py pz lx ly lz, and for 
 orientation NAME.qw qx qy qz and angular velocity NAME.wx wy wz.
 
 Outputs are made at t = 0, at each multiple of --every, and at the end. A file ends in .part until
-it is complete, and keeps that ending if the run fails.
+it is complete, and keeps that ending if the run fails or is interrupted.
 
-Exit codes: 0 fine, 1 invalid scene or failed run, 2 wrong usage.)";
+Exit codes: 0 fine, 1 invalid scene or failed run, 2 wrong usage, 128 + n interrupted by signal n.)";
 
 std::map<std::string, IntegratorId> integrator_names() {
   std::map<std::string, IntegratorId> names;
@@ -116,15 +119,24 @@ Result<Writers> create_writers(const Options& options, const Schedule& schedule,
   return writers;
 }
 
-Status run_with_outputs(const Options& options, const Schedule& schedule, Simulation& simulation,
+Error interrupted_at(Real time) {
+  std::string message = "interrupted at t = ";
+  append_number(message, time);
+  return {"interrupted", "", message + " s; files that are not complete end in .part"};
+}
+
+Status run_with_outputs(const Options& options, const Schedule& schedule,
+                        const InterruptWatch& interrupt, Simulation& simulation,
                         RunTotals& totals) {
   Result<Writers> writers = create_writers(options, schedule, simulation);
   if (!writers) return writers.errors();
   ProgressBar bar;
   RunHooks hooks;
   hooks.output = [&](const RunTotals& so_far) { return writers.value().write(simulation, so_far); };
-  hooks.progress = [&](std::uint64_t step, Real time) {
+  hooks.progress = [&](std::uint64_t step, Real time) -> Status {
     bar.show(step, schedule.total_steps, time);
+    if (interrupt.signal() != 0) return interrupted_at(time);
+    return {};
   };
   hooks.notice = [&bar](const std::string& text) {
     bar.clear();
@@ -176,6 +188,7 @@ int simulate(const Options& options) {
   Schedule schedule;
   const Result<Scene> scene = load_scene_for(options, schedule);
   if (!scene) return fail(options.scene, scene.errors());
+  for (const std::string& notice : schedule.notices) std::cerr << notice << '\n';
   ThreadPoolRunner runner(options.threads);
   Result<Simulation> created = Simulation::create(scene.value(), &runner);
   if (!created) return fail(options.scene, created.errors());
@@ -183,12 +196,14 @@ int simulate(const Options& options) {
   if (options.plan) std::cout << simulation.plan_text();
   if (options.only_plan()) return kExitOk;
 
-  for (const std::string& notice : schedule.notices) std::cerr << notice << '\n';
   StageProfile profile;
   if (options.profile) simulation.set_observer(&profile);
   RunTotals totals;
-  if (Status done = run_with_outputs(options, schedule, simulation, totals); !done) {
-    return fail(options.scene, done.errors());
+  const InterruptWatch interrupt;
+  const Status done = run_with_outputs(options, schedule, interrupt, simulation, totals);
+  if (!done) {
+    const int failed = fail(options.scene, done.errors());
+    return interrupt.signal() != 0 ? kExitSignal + interrupt.signal() : failed;
   }
   if (options.profile) print_profile(profile, simulation, totals);
   if (options.hash) print_hash(simulation);
@@ -218,11 +233,20 @@ void add_options(CLI::App& command, Options& options) {
   command
       .add_option("--output", options.output, "File for the particles: .csv, .vtk, .ply or .npy")
       ->check(CLI::Validator(check_frame_file_name, "FILE"));
-  command.add_option("--diagnostics", options.diagnostics, "File for the diagnostics: .csv");
+  command.add_option("--diagnostics", options.diagnostics, "File for the diagnostics: .csv")
+      ->check(csv_file_name());
   command.add_flag("--plan", options.plan,
                    "Print the stages of a step; alone or with --integrator and --dt, do no more");
   command.add_flag("--profile", options.profile, "Print where the time went");
   command.add_flag("--hash", options.hash, "Print a hash of the last state");
+}
+
+void check_together(const Options& options) {
+  namespace fs = std::filesystem;
+  if (options.output.empty() || options.diagnostics.empty()) return;
+  if (fs::weakly_canonical(options.output) == fs::weakly_canonical(options.diagnostics)) {
+    throw CLI::ValidationError("--diagnostics", "must not be the file of --output");
+  }
 }
 
 }  // namespace
@@ -232,7 +256,10 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
   command->footer(kFooter);
-  command->callback([options, &exit_code] { exit_code = simulate(*options); });
+  command->callback([options, &exit_code] {
+    check_together(*options);
+    exit_code = simulate(*options);
+  });
 }
 
 }  // namespace vat

@@ -45,7 +45,7 @@ Status run(Simulation& simulation, const Schedule& schedule, const RunHooks& hoo
     const auto count = static_cast<std::uint32_t>(stop - step);
     if (Status taken = take_steps(simulation, count, hooks, totals); !taken) return taken;
     step = stop;
-    hooks.progress(step, simulation.time());
+    if (Status go_on = hooks.progress(step, simulation.time()); !go_on) return go_on;
     if (step % schedule.steps_per_output != 0 && step != schedule.total_steps) continue;
     if (Status written = hooks.output(totals); !written) return written;
   }

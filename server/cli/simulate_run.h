@@ -19,13 +19,13 @@ struct RunTotals {
 
 /// What happens at the stops of a run.
 struct RunHooks {
-  std::function<Status(const RunTotals&)> output;               ///< at each output time
-  std::function<void(std::uint64_t step, Real time)> progress;  ///< after each tick
-  std::function<void(const std::string&)> notice;               ///< at the first recovered event
+  std::function<Status(const RunTotals&)> output;                 ///< at each output time
+  std::function<Status(std::uint64_t step, Real time)> progress;  ///< after each tick
+  std::function<void(const std::string&)> notice;                 ///< at the first recovered event
 };
 
 /// Takes the schedule's steps, tick by tick like a server, so that both reach the same states. Ends
-/// at the first output that fails, and at a step that the guard could not save.
+/// at the first hook that fails, and at a step that the guard could not save.
 Status run(Simulation& simulation, const Schedule& schedule, const RunHooks& hooks,
            RunTotals& totals);
 

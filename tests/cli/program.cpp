@@ -7,11 +7,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace vat::test {
 
@@ -36,25 +38,58 @@ pid_t start(std::vector<std::string> words, const std::string& out, const std::s
   return pid;
 }
 
+int wait_for(pid_t pid) {
+  int status = 0;
+  if (waitpid(pid, &status, 0) != pid) throw std::runtime_error("the program is lost");
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::vector<std::string> vat_words(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {VAT_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+
 }  // namespace
 
 ProgramResult run_vat_to(const std::string& out_name, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   const std::string err = folder.file("err");
-  std::vector<std::string> words = {VAT_PROGRAM};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  const pid_t pid = start(words, out_name, err);
-  int status = 0;
-  if (waitpid(pid, &status, 0) != pid) throw std::runtime_error("the program is lost");
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read_file(err)};
+  const int exit_code = wait_for(start(vat_words(arguments), out_name, err));
+  return {exit_code, "", read_file(err)};
 }
 
 ProgramResult run_vat(const std::vector<std::string>& arguments) {
+  return RunningProgram(arguments).finish();
+}
+
+ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>& arguments) {
+  // Without the trap the system would kill the program, instead of failing its writes.
+  const std::string script = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec \"$@\"";
+  std::vector<std::string> words = {"/bin/sh", "-c", script, "sh"};
+  const std::vector<std::string> vat = vat_words(arguments);
+  words.insert(words.end(), vat.begin(), vat.end());
   const TemporaryFolder folder;
-  const std::string out = folder.file("out");
-  ProgramResult result = run_vat_to(out, arguments);
-  result.out = read_file(out);
-  return result;
+  const int exit_code = wait_for(start(words, folder.file("out"), folder.file("err")));
+  return {exit_code, read_file(folder.file("out")), read_file(folder.file("err"))};
+}
+
+RunningProgram::RunningProgram(const std::vector<std::string>& arguments)
+    : process_(start(vat_words(arguments), folder_.file("out"), folder_.file("err"))) {}
+
+RunningProgram::~RunningProgram() {
+  if (process_ < 0) return;
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+void RunningProgram::send(int signal) const {
+  if (kill(process_, signal) != 0) throw std::runtime_error("the program is lost");
+}
+
+ProgramResult RunningProgram::finish() {
+  const int exit_code = wait_for(std::exchange(process_, -1));
+  return {exit_code, read_file(folder_.file("out")), read_file(folder_.file("err"))};
 }
 
 std::string test_scene(const std::string& name) {

@@ -6,7 +6,7 @@
 namespace vat::test {
 
 struct ProgramResult {
-  int exit_code = -1;  ///< -1: ended by a signal
+  int exit_code = -1;  ///< -1: killed by a signal
   std::string out;
   std::string err;
 };
@@ -16,6 +16,9 @@ ProgramResult run_vat(const std::vector<std::string>& arguments);
 
 /// The same with standard output to a file or device of this name; `out` stays empty.
 ProgramResult run_vat_to(const std::string& out_name, const std::vector<std::string>& arguments);
+
+/// The same where no file may grow beyond `blocks` of 512 bytes, as on a disk that fills up.
+ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>& arguments);
 
 /// Path of one of the scenes beside these tests.
 std::string test_scene(const std::string& name);
@@ -40,6 +43,23 @@ class TemporaryFolder {
 
  private:
   std::string path_;
+};
+
+/// The built program at work; ended by force if it still is when this goes.
+class RunningProgram {
+ public:
+  explicit RunningProgram(const std::vector<std::string>& arguments);
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  void send(int signal) const;
+  /// Waits for its end.
+  ProgramResult finish();
+
+ private:
+  TemporaryFolder folder_;
+  int process_ = -1;
 };
 
 }  // namespace vat::test

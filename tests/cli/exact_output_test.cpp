@@ -1,0 +1,196 @@
+// Every number that the program writes is, bit by bit, the one of a simulation in this process.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+
+#include "core/simulation.h"
+#include "protocol/scene_json.h"
+#include "tests/cli/program.h"
+#include "tests/cli/readers.h"
+
+namespace vat::test {
+namespace {
+
+constexpr std::uint32_t kStepsPerOutput = 30;  // not the tick's 20: the program stops more often
+constexpr std::size_t kOutputs = 5;
+
+/// The simulation that the program is to repeat; 0.12 s in four intervals of 0.03 s.
+Simulation reference() {
+  return Simulation::create(read_scene_file(test_scene("mixed")).value()).value();
+}
+
+void run_program(const TemporaryFolder& folder, const std::string& output) {
+  const ProgramResult result =
+      run_vat({"simulate", test_scene("mixed"), "--until", "0.12", "--every", "0.03", "--threads",
+               "3", "--output", folder.file(output), "--diagnostics", folder.file("d.csv")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+}
+
+/// Calls `check(simulation, output)` at each output time.
+template <class Check>
+void at_each_output(Check check) {
+  Simulation simulation = reference();
+  check(simulation, std::size_t{0});
+  for (std::size_t output = 1; output < kOutputs; ++output) {
+    ASSERT_FALSE(simulation.advance(kStepsPerOutput).failed);
+    check(simulation, output);
+  }
+}
+
+/// Position and velocity, x to vz.
+std::array<double, 6> motion_of(const BodyView& body, std::size_t i) {
+  const Vec3& x = body.positions[i];
+  const Vec3& v = body.velocities[i];
+  return {x.x(), x.y(), x.z(), v.x(), v.y(), v.z()};
+}
+
+void expect_row(const Table& table, std::size_t row, const Simulation& simulation,
+                const BodyView& body, std::size_t i) {
+  ASSERT_EQ(table.number(row, "time"), simulation.time());
+  ASSERT_EQ(table.text(row, "body"), body.name);
+  ASSERT_EQ(table.text(row, "kind"), to_string(body.kind));
+  ASSERT_EQ(table.number(row, "particle"), static_cast<double>(i));
+  const std::array<double, 6> motion = motion_of(body, i);
+  for (std::size_t c = 0; c < 6; ++c) ASSERT_EQ(parse_number(table.rows[row][4 + c]), motion[c]);
+}
+
+TEST(ExactOutput, Csv) {
+  const TemporaryFolder folder;
+  run_program(folder, "run.csv");
+  const Table table = read_csv(folder.file("run.csv"));
+  std::size_t row = 0;
+  at_each_output([&](const Simulation& simulation, std::size_t) {
+    ASSERT_LE(row + simulation.particle_count(), table.rows.size());
+    for (const BodyView& body : simulation.bodies()) {
+      const bool liquid = body.kind == BodyKind::liquid;
+      const LiquidFields fields =
+          liquid ? simulation.liquid_fields(body.id).value() : LiquidFields{};
+      for (std::size_t i = 0; i < body.positions.size(); ++i, ++row) {
+        expect_row(table, row, simulation, body, i);
+        if (!liquid) continue;
+        ASSERT_EQ(table.number(row, "density"), fields.density[i]);
+        ASSERT_EQ(table.number(row, "pressure"), fields.pressure[i]);
+      }
+    }
+  });
+  EXPECT_EQ(row, table.rows.size());
+}
+
+TEST(ExactOutput, Npy) {
+  const TemporaryFolder folder;
+  run_program(folder, "run.npy");
+  const Array array = read_npy(folder.file("run.npy"));
+  std::size_t next = 0;
+  at_each_output([&](const Simulation& simulation, std::size_t) {
+    ASSERT_EQ(array.shape, (std::vector{kOutputs, simulation.particle_count(), std::size_t{6}}));
+    for (const BodyView& body : simulation.bodies()) {
+      for (std::size_t i = 0; i < body.positions.size(); ++i) {
+        for (const double value : motion_of(body, i)) ASSERT_EQ(array.values.at(next++), value);
+      }
+    }
+  });
+  EXPECT_EQ(next, array.values.size());
+}
+
+std::string numbered(const char* ending, std::size_t output) {
+  return "run-000" + std::to_string(output) + ending;
+}
+
+TEST(ExactOutput, Vtk) {
+  const TemporaryFolder folder;
+  run_program(folder, "run.vtk");
+  at_each_output([&](const Simulation& simulation, std::size_t output) {
+    const VtkFile file = read_vtk(folder.file(numbered(".vtk", output)));
+    ASSERT_EQ(file.time, simulation.time());
+    ASSERT_EQ(file.kind.size(), simulation.particle_count());
+    std::size_t p = 0;
+    double number = 0;
+    for (const BodyView& body : simulation.bodies()) {
+      for (std::size_t i = 0; i < body.positions.size(); ++i, ++p) {
+        const std::array<double, 6> motion = motion_of(body, i);
+        for (std::size_t c = 0; c < 3; ++c) {
+          ASSERT_EQ(file.points[3 * p + c], motion[c]);
+          ASSERT_EQ(file.velocity[3 * p + c], motion[3 + c]);
+        }
+        ASSERT_EQ(file.body[p], number);
+        ASSERT_EQ(file.radius[p], body.radii[i]);
+      }
+      ++number;
+    }
+  });
+}
+
+TEST(ExactOutput, PlyInSinglePrecision) {
+  const TemporaryFolder folder;
+  run_program(folder, "run.ply");
+  at_each_output([&](const Simulation& simulation, std::size_t output) {
+    const std::vector<PlyVertex> vertices = read_ply(folder.file(numbered(".ply", output)));
+    ASSERT_EQ(vertices.size(), simulation.particle_count());
+    std::size_t p = 0;
+    for (const BodyView& body : simulation.bodies()) {
+      for (std::size_t i = 0; i < body.positions.size(); ++i, ++p) {
+        const std::array<double, 6> motion = motion_of(body, i);
+        for (std::size_t c = 0; c < 6; ++c) {
+          ASSERT_EQ(vertices[p].values[c], static_cast<float>(motion[c]));
+        }
+        ASSERT_EQ(vertices[p].values[6], static_cast<float>(body.radii[i]));
+      }
+    }
+  });
+}
+
+void expect_vector(const Table& table, std::size_t row, const std::string& body,
+                   const std::array<const char*, 3>& names, const Vec3& v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string column = body + '.' + names.at(static_cast<std::size_t>(axis));
+    EXPECT_EQ(table.number(row, column), v[axis]) << column;
+  }
+}
+
+void expect_body(const Table& table, std::size_t row, const BodyDiagnostics& body) {
+  EXPECT_EQ(table.number(row, body.name + ".mass"), body.mass);
+  expect_vector(table, row, body.name, {"x", "y", "z"}, body.center_of_mass);
+  expect_vector(table, row, body.name, {"px", "py", "pz"}, body.linear_momentum);
+  expect_vector(table, row, body.name, {"lx", "ly", "lz"}, body.angular_momentum);
+  if (!body.orientation) return;
+  const Quat& q = *body.orientation;
+  EXPECT_EQ(table.number(row, body.name + ".qw"), q.w());
+  expect_vector(table, row, body.name, {"qx", "qy", "qz"}, q.vec());
+  expect_vector(table, row, body.name, {"wx", "wy", "wz"}, body.angular_velocity.value());
+}
+
+TEST(ExactOutput, Diagnostics) {
+  const TemporaryFolder folder;
+  run_program(folder, "run.npy");
+  const Table table = read_csv(folder.file("d.csv"));
+  ASSERT_EQ(table.rows.size(), kOutputs);
+  at_each_output([&](const Simulation& simulation, std::size_t row) {
+    const Diagnostics d = simulation.diagnostics();
+    EXPECT_EQ(table.number(row, "time"), d.time);
+    EXPECT_EQ(table.number(row, "kinetic_energy"), d.kinetic_energy);
+    EXPECT_EQ(table.number(row, "gravitational_energy"), d.gravitational_energy);
+    EXPECT_EQ(table.number(row, "elastic_energy"), d.elastic_energy);
+    EXPECT_EQ(table.number(row, "contact_energy"), d.contact_energy);
+    EXPECT_EQ(table.number(row, "mean_density_error"), d.mean_density_error);
+    EXPECT_EQ(table.number(row, "max_density_error"), d.max_density_error);
+    EXPECT_EQ(table.number(row, "particles_outside"), static_cast<double>(d.particles_outside));
+    for (const BodyDiagnostics& body : d.bodies) expect_body(table, row, body);
+  });
+}
+
+TEST(ExactOutput, Hash) {
+  Simulation simulation = reference();
+  simulation.advance(120);
+  char expected[32];
+  std::snprintf(expected, sizeof expected, "hash %016llx\n",
+                static_cast<unsigned long long>(simulation.state_hash()));
+  const ProgramResult result =
+      run_vat({"simulate", test_scene("mixed"), "--until", "0.12", "--hash"});
+  EXPECT_EQ(result.out, expected);
+}
+
+}  // namespace
+}  // namespace vat::test
