@@ -2,7 +2,10 @@
 
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "core/limits.h"
 #include "protocol/printable.h"
@@ -12,6 +15,37 @@ namespace {
 
 Error mesh_error(const std::string& source, const std::string& what) {
   return {"bad_mesh", "", source + ": " + what};
+}
+
+constexpr std::string_view kBlank = " \t\r";
+
+/// Takes the first word off `line`; empty where there is none.
+std::string_view take_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlank));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+bool is_finite_number(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  double number = 0;
+  const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return failure == std::errc() && end == word.data() + word.size() && std::isfinite(number);
+}
+
+/// The number, from 1, of the first line whose vertex has not three numbers; 0 where there is none.
+/// The library takes 0 for what it cannot read.
+std::size_t bad_vertex_line(std::string_view text) {
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (take_word(line) != "v") continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!is_finite_number(take_word(line))) return number;
+    }
+  }
+  return 0;
 }
 
 std::size_t triangle_count(const tinyobj::ObjReader& reader) {
@@ -52,6 +86,9 @@ Result<MeshShape> read_obj(const std::string& text, const std::string& source, R
   if (text.size() > kMaxObjBytes) {
     return Error{"too_large", "",
                  source + ": at most " + std::to_string(kMaxObjBytes) + " bytes are allowed"};
+  }
+  if (const std::size_t line = bad_vertex_line(text); line != 0) {
+    return mesh_error(source, "line " + std::to_string(line) + ": a vertex needs three numbers");
   }
   tinyobj::ObjReaderConfig config;
   config.triangulate = true;

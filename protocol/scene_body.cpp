@@ -177,8 +177,9 @@ Shape to_shape(const Json& value, const std::string& path, const MeshSource& mes
       shape = read_cylinder(reader);
       break;
     case 3:
-      shape = reader.has("vertices") ? read_inline_mesh(reader, errors)
-                                     : read_mesh_file(reader, meshes, errors);
+      shape = reader.has("vertices") || reader.has("triangles")
+                  ? Shape(read_inline_mesh(reader, errors))
+                  : Shape(read_mesh_file(reader, meshes, errors));
       break;
     default:
       shape = read_particles(reader, errors);

@@ -1,0 +1,135 @@
+#include <bit>
+#include <type_traits>
+
+#include "tests/unit/scene_json_cases.h"
+
+namespace vat::scene_cases {
+namespace {
+
+/// Writes every member of a scene. Each struct is taken apart by a structured binding, so that a
+/// member added to it and forgotten here does not compile.
+class BitWriter {
+ public:
+  std::string take() { return std::move(text_); }
+
+  void put(Real value) { put_number(std::bit_cast<std::uint64_t>(value)); }
+  void put(Index value) { put_number(value); }
+  void put(bool value) { put_number(value ? 1 : 0); }
+  void put(const std::string& value) { text_ += '"' + value + "\"\n"; }
+  void put(const Vec3& value) {
+    for (int axis = 0; axis < 3; ++axis) put(value[axis]);
+  }
+  void put(const Quat& value) {
+    put(value.w());
+    put(Vec3(value.vec()));
+  }
+  template <class T>
+  void put(const std::optional<T>& value) {
+    put(value.has_value());
+    if (value) put(*value);
+  }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    put_number(values.size());
+    for (const T& value : values) put(value);
+  }
+  template <class T, std::size_t n>
+  void put(const std::array<T, n>& values) {
+    for (const T& value : values) put(value);
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void put(Enum value) { put_number(static_cast<std::uint64_t>(value)); }
+
+  void put(const SpringConstants& constants) {
+    const auto& [stiffness, damping] = constants;
+    put_all(stiffness, damping);
+  }
+  void put(const LiquidConstants& liquid) {
+    const auto& [stiffness, viscosity, support_radius] = liquid;
+    put_all(stiffness, viscosity, support_radius);
+  }
+  void put(const LatticeSprings& springs) {
+    const auto& [structural, shear, bend] = springs;
+    put_all(structural, shear, bend);
+  }
+  void put(const Material& material) {
+    const auto& [name, density, liquid, springs, self_contact] = material;
+    put_all(name, density, liquid, springs, self_contact);
+  }
+  void put(const InterfaceDescription& interface) {
+    const auto& [materials, constants, threshold] = interface;
+    put_all(materials, constants, threshold);
+  }
+  void put(const SlideMotion& motion) {
+    const auto& [axis, stroke, period] = motion;
+    put_all(axis, stroke, period);
+  }
+  void put(const Vat& vat) {
+    const auto& [min, max, lid, motion] = vat;
+    put_all(min, max, lid, motion);
+  }
+  void put(const Numerics& numerics) {
+    const auto& [integrator, step, tick] = numerics;
+    put_all(integrator, step, tick);
+  }
+  void put(const BoxShape& box) {
+    const auto& [center, size] = box;
+    put_all(center, size);
+  }
+  void put(const SphereShape& sphere) {
+    const auto& [center, radius] = sphere;
+    put_all(center, radius);
+  }
+  void put(const CylinderShape& cylinder) {
+    const auto& [center, axis, radius, height] = cylinder;
+    put_all(center, axis, radius, height);
+  }
+  void put(const MeshShape& mesh) {
+    const auto& [source, vertices, triangles] = mesh;
+    put_all(source, vertices, triangles);
+  }
+  void put(const ParticleShape& particles) {
+    const auto& [positions, velocities, masses, radii, fixed] = particles;
+    put_all(positions, velocities, masses, radii, fixed);
+  }
+  void put(const Shape& shape) {
+    put_number(shape.index());
+    std::visit([this](const auto& form) { put(form); }, shape);
+  }
+  void put(const SpringDescription& spring) {
+    const auto& [a, b, constants, rest_length] = spring;
+    put_all(a, b, constants, rest_length);
+  }
+  void put(const BodyDescription& body) {
+    const auto& [name, kind, material, shape, spacing, mass, radius, position, orientation,
+                 velocity, angular_velocity, springs] = body;
+    put_all(name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
+            angular_velocity, springs);
+  }
+  void put(const Scene& scene) {
+    const auto& [name, title, description, gravity, materials, interfaces, default_interface,
+                 bodies, vat, numerics] = scene;
+    put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
+            vat, numerics);
+  }
+
+ private:
+  template <class... Values>
+  void put_all(const Values&... values) {
+    (put(values), ...);
+  }
+  void put_number(std::uint64_t value) { text_ += std::to_string(value) + '\n'; }
+
+  std::string text_;
+};
+
+}  // namespace
+
+std::string bits_of(const Scene& scene) {
+  BitWriter writer;
+  writer.put(scene);
+  return writer.take();
+}
+
+}  // namespace vat::scene_cases

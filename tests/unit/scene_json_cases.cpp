@@ -1,0 +1,157 @@
+#include "tests/unit/scene_json_cases.h"
+
+#include "core/support/check.h"
+
+namespace vat::scene_cases {
+
+const char* const kFullDocument = R"json({
+  "format": "vat.scene/1",
+  "name": "everything",
+  "title": "Every member",
+  "description": "One body of each kind and shape",
+  "gravity": [0.125, -0.25, -1.625],
+  "materials": [
+    {"name": "water", "density": 998.5,
+     "liquid": {"stiffness": 90, "viscosity": 0.75, "support_radius": 0.125}},
+    {"name": "rubber", "density": 500.25,
+     "springs": {"structural": {"stiffness": 1000.5, "damping": 1.5},
+                 "shear": {"stiffness": 500.5, "damping": 0.5},
+                 "bend": {"stiffness": 250.5, "damping": 0.25}},
+     "self_contact": {"stiffness": 300.5, "damping": 2.5}},
+    {"name": "wood", "density": 600.125}
+  ],
+  "default_interface": {"stiffness": 1500.5, "damping": 3.5},
+  "interfaces": [
+    {"materials": ["water", "vat"], "stiffness": 2000.5, "damping": 5.5, "threshold": 0.0625},
+    {"materials": ["rubber", "wood"], "stiffness": 800.5, "damping": 4.5, "threshold": 0.03125}
+  ],
+  "vat": {"min": [-2, -1.5, -0.5], "max": [3, 1.75, 2.5], "lid": true,
+          "motion": {"type": "slide", "axis": [0, 2, 0], "stroke": 0.2, "period": 2.5}},
+  "numerics": {"integrator": "runge_kutta_4", "step": 0.0005, "tick": 0.01},
+  "bodies": [
+    {"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.0625,
+     "shape": {"type": "box", "center": [0.1, 0.2, 0.3], "size": [0.5, 0.25, 0.125]},
+     "radius": 0.03, "position": [1, -0.5, 0.25], "orientation": [0.5, 0.5, 0.5, 0.5],
+     "velocity": [0.1, 0.2, 0.3]},
+    {"name": "ball", "kind": "rigid", "material": "wood", "spacing": 0.05,
+     "shape": {"type": "sphere", "center": [0.01, 0.02, 0.03], "radius": 0.125},
+     "mass": 2.5, "position": [-1, 0.5, 1.5], "angular_velocity": [1.5, -2.5, 3.5]},
+    {"name": "rod", "kind": "deformable", "material": "rubber", "spacing": 0.04,
+     "shape": {"type": "cylinder", "center": [0, 0, 0.1], "axis": [1, 2, 2],
+               "radius": 0.1, "height": 0.3},
+     "position": [-1, -0.75, 1.5]},
+    {"name": "wedge", "kind": "rigid", "material": "wood", "spacing": 0.05,
+     "shape": {"type": "mesh", "file": "meshes/wedge.obj", "scale": 0.5}, "position": [2, 0, 1]},
+    {"name": "tetra", "kind": "rigid", "material": "wood", "spacing": 0.05,
+     "shape": {"type": "mesh", "source": "by hand",
+               "vertices": [[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]],
+               "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]},
+     "position": [2, 0.75, 1]},
+    {"name": "pair", "kind": "deformable", "material": "rubber", "spacing": 0.05,
+     "shape": {"type": "particles",
+               "positions": [[0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]],
+               "velocities": [[0, 0, 0], [0, 1, 0], [0, 0, 1]],
+               "masses": [0.1, 0.2, 0.3],
+               "radii": [0.01, 0.02, 0.03],
+               "fixed": [0]},
+     "springs": [{"particles": [0, 1], "stiffness": 100.5, "damping": 0.125, "rest_length": 0.2},
+                 {"particles": [2, 1], "stiffness": 50.5}],
+     "position": [0, 1, 2]}
+  ]
+})json";
+
+namespace {
+
+std::vector<Material> full_materials() {
+  return {{"water", 998.5, LiquidConstants{90, 0.75, 0.125}, {}, {}},
+          {"rubber",
+           500.25,
+           {},
+           LatticeSprings{SpringConstants{1000.5, 1.5}, SpringConstants{500.5, 0.5},
+                          SpringConstants{250.5, 0.25}},
+           SpringConstants{300.5, 2.5}},
+          {"wood", 600.125, {}, {}, {}}};
+}
+
+BodyDescription body(const char* name, BodyKind kind, const char* material, Shape shape,
+                     Real spacing, const Vec3& position) {
+  BodyDescription result;
+  result.name = name;
+  result.kind = kind;
+  result.material = material;
+  result.shape = std::move(shape);
+  result.spacing = spacing;
+  result.position = position;
+  return result;
+}
+
+const std::vector<std::array<Index, 3>> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+
+MeshShape tetrahedron(const char* source) {
+  return {source, {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}, kTetrahedron};
+}
+
+ParticleShape full_particles() {
+  return {{{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}},
+          {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+          {0.1, 0.2, 0.3},
+          {0.01, 0.02, 0.03},
+          {0}};
+}
+
+std::vector<BodyDescription> full_bodies() {
+  std::vector<BodyDescription> bodies{
+      body("pool", BodyKind::liquid, "water", BoxShape{{0.1, 0.2, 0.3}, {0.5, 0.25, 0.125}}, 0.0625,
+           {1, -0.5, 0.25}),
+      body("ball", BodyKind::rigid, "wood", SphereShape{{0.01, 0.02, 0.03}, 0.125}, 0.05,
+           {-1, 0.5, 1.5}),
+      body("rod", BodyKind::deformable, "rubber", CylinderShape{{0, 0, 0.1}, {1, 2, 2}, 0.1, 0.3},
+           0.04, {-1, -0.75, 1.5}),
+      body("wedge", BodyKind::rigid, "wood", tetrahedron("meshes/wedge.obj"), 0.05, {2, 0, 1}),
+      body("tetra", BodyKind::rigid, "wood", tetrahedron("by hand"), 0.05, {2, 0.75, 1}),
+      body("pair", BodyKind::deformable, "rubber", full_particles(), 0.05, {0, 1, 2})};
+  bodies[0].radius = 0.03;
+  bodies[0].orientation = Quat(0.5, 0.5, 0.5, 0.5);
+  bodies[0].velocity = {0.1, 0.2, 0.3};
+  bodies[1].mass = 2.5;
+  bodies[1].angular_velocity = {1.5, -2.5, 3.5};
+  bodies[5].springs = {{0, 1, {100.5, 0.125}, 0.2}, {2, 1, {50.5, 0}, {}}};
+  return bodies;
+}
+
+}  // namespace
+
+Scene full_scene() {
+  Scene scene;
+  scene.name = "everything";
+  scene.title = "Every member";
+  scene.description = "One body of each kind and shape";
+  scene.gravity = {0.125, -0.25, -1.625};
+  scene.materials = full_materials();
+  scene.default_interface = {1500.5, 3.5};
+  scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5}, 0.0625},
+                      {{"rubber", "wood"}, {800.5, 4.5}, 0.03125}};
+  scene.vat = Vat{{-2, -1.5, -0.5}, {3, 1.75, 2.5}, true, SlideMotion{{0, 2, 0}, 0.2, 2.5}};
+  scene.numerics = {IntegratorId::runge_kutta_4, 0.0005, 0.01};
+  scene.bodies = full_bodies();
+  return scene;
+}
+
+Result<std::string> full_meshes(const std::string& name) {
+  if (name != "meshes/wedge.obj") return no_meshes(name);
+  return std::string(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+      "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+}
+
+Result<std::string> no_meshes(const std::string& name) {
+  return Error{"no_such_file", "", name + ": is not there"};
+}
+
+std::string lines(const Errors& errors) {
+  std::string result;
+  for (const Error& error : errors) result += error.code + ' ' + error.path + '\n';
+  return result;
+}
+
+}  // namespace vat::scene_cases
