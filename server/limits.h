@@ -3,35 +3,34 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/limits.h"
-
-/// Every cap on what clients can make the server grow or do, with the reason. `server.info` tells
-/// them by the names of this file without the leading "max_"; core/limits.h caps single scenes.
+/// Every cap on what clients can make the server grow or do, with the reason. core/limits.h has
+/// those of single scenes.
 namespace vat {
 
 struct ServerLimits {
-  std::size_t max_connections = 256;         ///< WebSockets; threads and memory are shared by all
-  std::size_t max_sessions = 16;             ///< each holds a simulation and steps it all the time
+  std::size_t max_connections = 256;         ///< WebSockets; one thread reads all of them
+  std::size_t max_sessions = 16;             ///< each holds a simulation and steps it
   std::size_t max_clients_per_session = 64;  ///< each frame is copied and sent once a client
-  std::size_t max_particles = 200'000;       ///< of one session; 1 kB and 6 bytes a frame each
-  /// Particles times steps of one tick: a tick cannot be interrupted, and others wait for its
-  /// thread (about a second at the limit).
+  std::size_t max_particles = 200'000;       ///< of one session; about 1 kB each
+  /// Particles times steps of one tick: a tick is not interrupted, and commands wait for it. About
+  /// a second at the limit.
   std::size_t max_particle_steps_per_tick = 4'000'000;
-  std::size_t max_message_bytes = 64 * 1024;              ///< of messages without a scene or body
-  std::size_t max_scene_message_bytes = 4 * 1024 * 1024;  ///< of messages with one
-  std::size_t max_message_values = 100'000;               ///< parsing holds up the network's thread
-  std::size_t max_message_depth = 16;                     ///< JSON levels; a scene needs 8
-  std::size_t max_commands_in_flight = 256;     ///< of one client: sent to a session, unanswered
-  std::size_t max_grabs_per_client = 10;        ///< one a finger; core/limits.h caps a session's
-  std::size_t max_name_bytes = kMaxNameLength;  ///< session names are shown to other users
-  std::uint64_t max_ticks_per_step = 1000;      ///< of one control.step: it must end
-  std::size_t max_bodies_per_query = kMaxBodies;
+  std::size_t max_message_bytes = 64 * 1024;  ///< of messages that hold neither scene nor body
+  std::size_t max_scene_message_bytes = 4 * 1024 * 1024;  ///< of messages that do
+  std::size_t max_commands_in_flight = 256;               ///< of one client: not answered yet
+  std::size_t max_bytes_in_flight = 8'000'000;            ///< of these commands' messages
+  std::size_t max_grabs_per_client = 10;                  ///< one a finger
 };
 
-/// Frames sent and not acknowledged; PROTOCOL.md fixes it.
-inline constexpr std::uint32_t kFrameWindow = 3;
-
-/// Control messages that may wait for one client; PROTOCOL.md fixes it.
+/// Fixed by PROTOCOL.md.
+inline constexpr std::size_t kMaxMessageDepth = 16;
+inline constexpr std::size_t kMaxMessageValues = 100'000;
+inline constexpr std::size_t kMaxTicksPerStep = 1000;
+inline constexpr std::size_t kMaxFrameInterval = 100;  // [ticks]
+inline constexpr double kMinSpeedFactor = 0.05;        // simulated seconds per second
+inline constexpr double kMaxSpeedFactor = 4;           // the same
+inline constexpr std::uint32_t kFrameWindow = 3;       // frames sent and not acknowledged
 inline constexpr std::size_t kMaxControlQueueBytes = 1024 * 1024;
+inline constexpr std::size_t kMaxLongMessages = 2;  // longer than that, in the control queue
 
 }  // namespace vat

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "server/session/client_outbox.h"
+#include "server/session/rpc_message.h"
+
+namespace vat {
+
+/// Who sent a command, and is answered once. Moves with the command; one that is never answered
+/// (the client has gone) is taken off the client's commands in flight all the same.
+class Caller {
+ public:
+  /// Without an id nothing is sent: a notification.
+  Caller(std::shared_ptr<ClientOutbox> client, std::optional<Json> id)
+      : client_(std::move(client)), id_(std::move(id)) {}
+  Caller(Caller&& other) noexcept
+      : client_(std::move(other.client_)),
+        id_(std::move(other.id_)),
+        counted_bytes_(std::exchange(other.counted_bytes_, std::nullopt)) {}
+  Caller& operator=(Caller&& other) noexcept {
+    std::swap(client_, other.client_);
+    std::swap(id_, other.id_);
+    std::swap(counted_bytes_, other.counted_bytes_);
+    return *this;
+  }
+  ~Caller() { uncount(); }
+
+  const std::shared_ptr<ClientOutbox>& client() const { return client_; }
+
+  /// Counts the command, a message of `bytes`, as in flight until it is answered; the error if the
+  /// client has too much in flight.
+  std::optional<RpcError> count(std::size_t bytes, std::size_t max_commands,
+                                std::size_t max_bytes) {
+    if (!client_->begin_command(bytes, max_commands, max_bytes)) {
+      return limit_reached("commands_in_flight", max_commands);
+    }
+    counted_bytes_ = bytes;
+    return {};
+  }
+
+  void answer(const RpcResult& result) {
+    uncount();  // first: the client may send the next command as soon as it has the answer
+    if (id_) client_->send(write_reply(*id_, result));
+  }
+
+ private:
+  void uncount() {
+    if (counted_bytes_) client_->end_command(*std::exchange(counted_bytes_, std::nullopt));
+  }
+
+  std::shared_ptr<ClientOutbox> client_;
+  std::optional<Json> id_;
+  std::optional<std::size_t> counted_bytes_;
+};
+
+}  // namespace vat

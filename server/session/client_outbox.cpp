@@ -1,0 +1,134 @@
+#include "server/session/client_outbox.h"
+
+#include <utility>
+
+#include "protocol/frame_codec.h"
+#include "server/limits.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint16_t kTooSlow = 4008;
+
+}  // namespace
+
+void ControlQueue::sent(std::size_t bytes, bool control, std::size_t queued) {
+  take(queued);
+  waiting_.push_back({bytes, control});
+  waiting_bytes_ += bytes;
+  count(waiting_.back(), true);
+}
+
+bool ControlQueue::over_limit() const {
+  return control_bytes_ > kMaxControlQueueBytes || long_messages_ > kMaxLongMessages;
+}
+
+// The socket takes messages in order: those that still wait are the last ones.
+void ControlQueue::take(std::size_t queued) {
+  while (!waiting_.empty() && waiting_bytes_ - waiting_.front().bytes >= queued) {
+    waiting_bytes_ -= waiting_.front().bytes;
+    count(waiting_.front(), false);
+    waiting_.pop_front();
+  }
+}
+
+void ControlQueue::count(const Entry& entry, bool adds) {
+  if (!entry.control) return;
+  const bool is_long = entry.bytes > kMaxControlQueueBytes;
+  std::size_t& counter = is_long ? long_messages_ : control_bytes_;
+  const std::size_t amount = is_long ? 1 : entry.bytes;
+  counter = adds ? counter + amount : counter - amount;
+}
+
+ClientOutbox::ClientOutbox(std::shared_ptr<Connection> connection)
+    : connection_(std::move(connection)) {}
+
+void ClientOutbox::send(std::string text) {
+  const std::lock_guard lock(mutex_);
+  send_control(std::move(text));
+}
+
+std::uint64_t ClientOutbox::join() {
+  const std::lock_guard lock(mutex_);
+  membership_ += membership_ % 2 == 0 ? 1 : 2;
+  waiting_ = nullptr;
+  acknowledged_ = sequence_;
+  return membership_;
+}
+
+void ClientOutbox::leave() {
+  const std::lock_guard lock(mutex_);
+  membership_ += membership_ % 2;
+  waiting_ = nullptr;
+}
+
+void ClientOutbox::send_event(std::uint64_t membership, const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  if (membership == membership_) send_control(text);
+}
+
+void ClientOutbox::offer_frame(std::uint64_t membership, SharedFrame frame) {
+  const std::lock_guard lock(mutex_);
+  if (membership != membership_ || closed_) return;
+  if (sequence_ - acknowledged_ < kFrameWindow) {
+    send_frame(frame);
+    return;
+  }
+  if (waiting_ != nullptr) ++dropped_;
+  waiting_ = std::move(frame);
+}
+
+void ClientOutbox::drop_waiting(std::uint64_t membership) {
+  const std::lock_guard lock(mutex_);
+  if (membership != membership_ || waiting_ == nullptr) return;
+  waiting_ = nullptr;
+  ++dropped_;
+}
+
+bool ClientOutbox::acknowledge(std::uint32_t sequence) {
+  const std::lock_guard lock(mutex_);
+  if (sequence == 0 || sequence > sequence_) return false;
+  if (sequence > acknowledged_) acknowledged_ = sequence;
+  if (waiting_ != nullptr && sequence_ - acknowledged_ < kFrameWindow) {
+    send_frame(std::exchange(waiting_, nullptr));
+  }
+  return true;
+}
+
+bool ClientOutbox::begin_command(std::size_t bytes, std::size_t max_commands,
+                                 std::size_t max_bytes) {
+  const std::lock_guard lock(mutex_);
+  if (commands_ >= max_commands || command_bytes_ + bytes > max_bytes) return false;
+  ++commands_;
+  command_bytes_ += bytes;
+  return true;
+}
+
+void ClientOutbox::end_command(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  --commands_;
+  command_bytes_ -= bytes;
+}
+
+void ClientOutbox::send_control(std::string text) {
+  if (closed_) return;
+  queue_.sent(text.size(), true, connection_->queued_bytes());
+  if (queue_.over_limit()) {
+    closed_ = true;
+    waiting_ = nullptr;
+    connection_->close(kTooSlow, "too slow: the control queue is full");
+    return;
+  }
+  connection_->send_text(std::move(text));
+}
+
+void ClientOutbox::send_frame(const SharedFrame& frame) {
+  // The caller's bytes are shared with other clients, so the two fields go into a copy.
+  auto bytes = std::make_shared<std::string>(frame->begin(), frame->end());
+  patch_client({reinterpret_cast<std::uint8_t*>(bytes->data()), bytes->size()}, ++sequence_,
+               dropped_);
+  queue_.sent(bytes->size(), false, connection_->queued_bytes());
+  connection_->send_binary(std::move(bytes));
+}
+
+}  // namespace vat

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/net/transport.h"
+
+namespace vat {
+
+/// An encoded frame that many clients share; sequence and dropped are patched into each copy.
+using SharedFrame = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+/// Control messages that the socket has not taken yet, known from the sizes of all that was sent
+/// and the bytes that are queued now. The bound of PROTOCOL.md: 1 MiB, and beside it two messages
+/// that are longer than that themselves (a description or a state of very many particles).
+class ControlQueue {
+ public:
+  /// Notes a message that is sent; `queued` is what the socket had not taken just before.
+  void sent(std::size_t bytes, bool control, std::size_t queued);
+  bool over_limit() const;
+
+ private:
+  struct Entry {
+    std::size_t bytes;
+    bool control;
+  };
+  void take(std::size_t queued);
+  void count(const Entry& entry, bool adds);
+
+  std::deque<Entry> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  std::size_t control_bytes_ = 0;
+  std::size_t long_messages_ = 0;
+};
+
+/// One client's side of the flow control in PROTOCOL.md: replies and events are reliable, frames
+/// latest-wins in a window of three. Safe to use from any thread.
+///
+/// What a session sends names the membership that the client's last join got; after the client has
+/// left, it goes nowhere, however late it comes.
+class ClientOutbox {
+ public:
+  explicit ClientOutbox(std::shared_ptr<Connection> connection);
+
+  ConnectionId id() const { return connection_->id(); }
+  /// Sends, whatever the membership is: replies.
+  void send(std::string text);
+
+  /// Begins a membership and ends the one before. Frames that are in flight no longer count.
+  std::uint64_t join();
+  void leave();
+  void send_event(std::uint64_t membership, const std::string& text);
+  /// Sends the frame, or keeps it in place of the one that waits.
+  void offer_frame(std::uint64_t membership, SharedFrame frame);
+  /// Drops the frame that waits: its epoch has ended.
+  void drop_waiting(std::uint64_t membership);
+  /// False if there was no frame of this sequence.
+  bool acknowledge(std::uint32_t sequence);
+
+  /// Counts a command in, unless the client would then have more than `max_commands` of them, or
+  /// `max_bytes` of their messages, in flight.
+  bool begin_command(std::size_t bytes, std::size_t max_commands, std::size_t max_bytes);
+  void end_command(std::size_t bytes);
+
+ private:
+  // All with the mutex held.
+  void send_control(std::string text);
+  void send_frame(const SharedFrame& frame);
+
+  const std::shared_ptr<Connection> connection_;
+  std::mutex mutex_;
+  ControlQueue queue_;
+  bool closed_ = false;
+  std::uint64_t membership_ = 0;  // even: in no session
+  std::size_t commands_ = 0;      // in flight
+  std::size_t command_bytes_ = 0;
+  SharedFrame waiting_;
+  std::uint32_t sequence_ = 0;      // of the last frame sent
+  std::uint32_t acknowledged_ = 0;  // as far as the client has taken them
+  std::uint32_t dropped_ = 0;
+};
+
+}  // namespace vat

@@ -1,0 +1,25 @@
+#include "server/session/method_table.h"
+
+#include <algorithm>
+
+namespace vat {
+
+const std::vector<Method>& all_methods() {
+  static const std::vector<Method> methods = [] {
+    std::vector<Method> all;
+    for (const auto group : {server_methods(), session_methods(), control_methods(),
+                             world_methods(), grab_methods(), frame_methods(), state_methods()}) {
+      all.insert(all.end(), group.begin(), group.end());
+    }
+    return all;
+  }();
+  return methods;
+}
+
+const Method* find_method(std::string_view name) {
+  const auto& methods = all_methods();
+  const auto found = std::ranges::find(methods, name, &Method::name);
+  return found == methods.end() ? nullptr : &*found;
+}
+
+}  // namespace vat

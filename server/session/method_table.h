@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "server/session/session_directory.h"
+
+namespace vat {
+
+/// A call whose parameters are read, to be made on the network's thread. A result is the answer at
+/// once; without one, whoever took the caller answers.
+using ServerAction = std::function<std::optional<RpcResult>(SessionDirectory&, Caller&)>;
+
+/// A method of PROTOCOL.md: a reader of its parameters that gives what is then to be done, in the
+/// server or in the session that the caller has joined. Readers only collect errors; an action is
+/// not used if there are any.
+struct Method {
+  using ForServer = ServerAction (*)(ObjectReader& params, Errors& errors);
+  using ForSession = SessionAction (*)(ObjectReader& params, Errors& errors);
+  std::string_view name;
+  std::variant<ForServer, ForSession> read;
+  bool takes_scene = false;  ///< its messages may be long
+};
+
+std::span<const Method> server_methods();
+std::span<const Method> session_methods();
+std::span<const Method> control_methods();
+std::span<const Method> world_methods();
+std::span<const Method> grab_methods();
+std::span<const Method> frame_methods();
+std::span<const Method> state_methods();
+
+/// All of them, in the order of PROTOCOL.md.
+const std::vector<Method>& all_methods();
+/// Null if there is none.
+const Method* find_method(std::string_view name);
+
+}  // namespace vat

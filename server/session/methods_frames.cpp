@@ -1,0 +1,53 @@
+// frames.*
+
+#include <limits>
+
+#include "core/limits.h"
+#include "server/session/method_table.h"
+
+namespace vat {
+namespace {
+
+SessionAction read_subscribe(ObjectReader& params, Errors&) {
+  Subscription subscription;
+  subscription.max_error = params.real("max_error", 0, kMaxLength, 0.0);
+  subscription.every = params.count("every", 1, kMaxFrameInterval, 1);
+  return [subscription](SessionCore&, Member& member) -> ActionResult {
+    member.subscription = subscription;
+    member.awaits_frame = true;
+    return Json::object();
+  };
+}
+
+SessionAction read_unsubscribe(ObjectReader&, Errors&) {
+  return [](SessionCore&, Member& member) -> ActionResult {
+    member.subscription.reset();
+    member.awaits_frame = false;
+    member.outbox->drop_waiting(member.membership);
+    return Json::object();
+  };
+}
+
+// Not a command of the session: the window opens at once, not at its next turn.
+ServerAction read_ack(ObjectReader& params, Errors&) {
+  const auto sequence = static_cast<std::uint32_t>(
+      params.count("sequence", 1, std::numeric_limits<std::uint32_t>::max()));
+  return [sequence](SessionDirectory&, Caller& caller) -> std::optional<RpcResult> {
+    if (caller.client()->acknowledge(sequence)) return Json::object();
+    return invalid_params({Error{"out_of_range", "/sequence", "must be of a frame that was sent"}});
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"frames.subscribe", read_subscribe},
+    {"frames.unsubscribe", read_unsubscribe},
+    {"frames.ack", read_ack},
+};
+
+}  // namespace
+
+std::span<const Method> frame_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

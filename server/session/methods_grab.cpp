@@ -1,0 +1,89 @@
+// grab.*: a grab belongs to the client that started it
+
+#include <limits>
+
+#include "core/limits.h"
+#include "server/session/method_table.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint64_t kMaxGrabId = 9'007'199'254'740'992;  // 2^53: what JSON numbers hold exactly
+
+Vec3 read_target(ObjectReader& params) {
+  return params.vector("target", -kMaxLength, kMaxLength);
+}
+
+std::uint64_t read_grab_id(ObjectReader& params) {
+  return params.count("grab", 0, kMaxGrabId);
+}
+
+ActionResult start(SessionCore& core, Member& member, BodyId body, Index particle,
+                   const Vec3& target) {
+  const std::size_t maximum = core.environment().limits.max_grabs_per_client;
+  if (member.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
+  const std::uint64_t grab = core.next_grab();
+  const Status started = core.run().simulation().grab_start(grab, body, particle, target);
+  if (!started) {
+    if (started.errors().front().code != "limit_reached") return refused(started.errors());
+    return limit_reached("grabs_per_session", kMaxGrabs);
+  }
+  member.grabs.emplace(grab, body);
+  return Json{{"grab", grab}};
+}
+
+/// Why the member may not use the grab, if so.
+std::optional<RpcError> refuse_grab(SessionCore& core, const Member& member, std::uint64_t grab) {
+  if (member.grabs.contains(grab)) return {};
+  if (core.members().holder_of(grab) != nullptr) {
+    return not_allowed("the grab belongs to another client");
+  }
+  return invalid_params({Error{"no_such_grab", "/grab", "must be a grab of this client"}});
+}
+
+SessionAction read_start(ObjectReader& params, Errors&) {
+  const auto body =
+      static_cast<BodyId>(params.count("body", 0, std::numeric_limits<BodyId>::max()));
+  const auto particle =
+      static_cast<Index>(params.count("particle", 0, std::numeric_limits<Index>::max()));
+  const Vec3 target = read_target(params);
+  return [body, particle, target](SessionCore& core, Member& member) {
+    return start(core, member, body, particle, target);
+  };
+}
+
+SessionAction read_move(ObjectReader& params, Errors&) {
+  const std::uint64_t grab = read_grab_id(params);
+  const Vec3 target = read_target(params);
+  return [grab, target](SessionCore& core, Member& member) -> ActionResult {
+    if (auto error = refuse_grab(core, member, grab)) return *std::move(error);
+    const Status moved = core.run().simulation().grab_move(grab, target);
+    if (!moved) return refused(moved.errors());
+    return Json::object();
+  };
+}
+
+SessionAction read_end(ObjectReader& params, Errors&) {
+  const std::uint64_t grab = read_grab_id(params);
+  return [grab](SessionCore& core, Member& member) -> ActionResult {
+    if (auto error = refuse_grab(core, member, grab)) return *std::move(error);
+    const Status ended = core.run().simulation().grab_end(grab);
+    if (!ended) return refused(ended.errors());
+    member.grabs.erase(grab);
+    return Json::object();
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"grab.start", read_start},
+    {"grab.move", read_move},
+    {"grab.end", read_end},
+};
+
+}  // namespace
+
+std::span<const Method> grab_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

@@ -1,0 +1,81 @@
+// server.*, scene.list
+
+#include <chrono>
+
+#include "core/limits.h"
+#include "server/session/method_table.h"
+
+namespace vat {
+namespace {
+
+double seconds_since_1970() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+Json describe_limits(const ServerLimits& limits) {
+  return {
+      {"connections", limits.max_connections},
+      {"sessions", limits.max_sessions},
+      {"clients_per_session", limits.max_clients_per_session},
+      {"particles", limits.max_particles},
+      {"particle_steps_per_tick", limits.max_particle_steps_per_tick},
+      {"message_bytes", limits.max_message_bytes},
+      {"scene_message_bytes", limits.max_scene_message_bytes},
+      {"message_depth", kMaxMessageDepth},
+      {"message_values", kMaxMessageValues},
+      {"commands_in_flight", limits.max_commands_in_flight},
+      {"command_bytes_in_flight", limits.max_bytes_in_flight},
+      {"grabs_per_client", limits.max_grabs_per_client},
+      {"grabs_per_session", kMaxGrabs},
+      {"applied_forces", kMaxAppliedForces},
+      {"bodies", kMaxBodies},
+      {"name_bytes", kMaxNameLength},
+      {"ticks_per_step", kMaxTicksPerStep},
+      {"frame_window", kFrameWindow},
+      {"control_queue_bytes", kMaxControlQueueBytes},
+  };
+}
+
+std::optional<RpcResult> info(const SessionDirectory& directory) {
+  Json methods = Json::array();
+  for (const Method& method : all_methods()) methods.push_back(method.name);
+  return Json{
+      {"name", "vat"},
+      {"version", directory.settings().version},
+      {"protocol", "vat.v1"},
+      {"time", seconds_since_1970()},
+      {"limits", describe_limits(directory.settings().limits)},
+      {"methods", std::move(methods)},
+  };
+}
+
+std::optional<RpcResult> list_scenes(const SessionDirectory& directory) {
+  Json scenes = Json::array();
+  for (const CatalogueEntry& entry : directory.catalogue().entries()) {
+    scenes.push_back(
+        {{"name", entry.name}, {"title", entry.title}, {"description", entry.description}});
+  }
+  return Json{{"scenes", std::move(scenes)}};
+}
+
+ServerAction read_info(ObjectReader&, Errors&) {
+  return [](SessionDirectory& directory, Caller&) { return info(directory); };
+}
+
+ServerAction read_list_scenes(ObjectReader&, Errors&) {
+  return [](SessionDirectory& directory, Caller&) { return list_scenes(directory); };
+}
+
+constexpr Method kMethods[] = {
+    {"server.info", read_info},
+    {"scene.list", read_list_scenes},
+};
+
+}  // namespace
+
+std::span<const Method> server_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

@@ -1,0 +1,82 @@
+// session.create, list, join, leave, close
+
+#include "core/limits.h"
+#include "server/session/method_table.h"
+
+namespace vat {
+namespace {
+
+template <class Error>
+std::optional<RpcResult> to_answer(std::optional<Error> error) {
+  if (!error) return {};
+  return RpcResult(*std::move(error));
+}
+
+std::string read_session_id(ObjectReader& params) {
+  return params.text("session", kMaxNameLength);
+}
+
+ServerAction read_create(ObjectReader& params, Errors&) {
+  std::string name = params.text("name", kMaxNameLength);
+  const Json* scene = params.member("scene", true);
+  if (scene == nullptr) return {};
+  return [name, scene = *scene](SessionDirectory& directory,
+                                Caller& caller) -> std::optional<RpcResult> {
+    directory.create_later(std::move(caller), name, scene);
+    return {};
+  };
+}
+
+std::optional<RpcResult> list_sessions(const SessionDirectory& directory) {
+  Json sessions = Json::array();
+  for (const auto& [id, summary] : directory.list()) {
+    sessions.push_back({{"session", id},
+                        {"name", summary.name},
+                        {"scene", summary.scene},
+                        {"clients", summary.clients},
+                        {"playing", summary.playing},
+                        {"tick", summary.tick},
+                        {"particles", summary.particles}});
+  }
+  return Json{{"sessions", std::move(sessions)}};
+}
+
+ServerAction read_list(ObjectReader&, Errors&) {
+  return [](SessionDirectory& directory, Caller&) { return list_sessions(directory); };
+}
+
+ServerAction read_join(ObjectReader& params, Errors&) {
+  std::optional<SessionId> session;
+  if (params.has("session")) session = read_session_id(params);
+  return [session](SessionDirectory& directory, Caller& caller) {
+    return to_answer(directory.join(caller, session));
+  };
+}
+
+ServerAction read_leave(ObjectReader&, Errors&) {
+  return [](SessionDirectory& directory, Caller& caller) {
+    return to_answer(directory.leave(caller));
+  };
+}
+
+ServerAction read_close(ObjectReader& params, Errors&) {
+  const SessionId session = read_session_id(params);
+  return [session](SessionDirectory& directory, Caller&) -> std::optional<RpcResult> {
+    if (auto error = directory.close(session, "closed by a client")) return *std::move(error);
+    return Json::object();
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"session.create", read_create, true}, {"session.list", read_list},
+    {"session.join", read_join},           {"session.leave", read_leave},
+    {"session.close", read_close},
+};
+
+}  // namespace
+
+std::span<const Method> session_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

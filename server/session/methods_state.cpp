@@ -1,0 +1,83 @@
+// state.query, session.hash
+
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/limits.h"
+#include "server/session/describe.h"
+#include "server/session/method_table.h"
+
+namespace vat {
+namespace {
+
+/// A body by id or by name.
+using BodyKey = std::variant<BodyId, std::string>;
+
+std::optional<BodyKey> read_key(const Json& value, const std::string& path, Errors& errors) {
+  if (value.is_string()) {
+    if (auto name = to_text(value, path, kMaxNameLength, errors)) return *std::move(name);
+    return {};
+  }
+  const auto id = to_count(value, path, 0, std::numeric_limits<BodyId>::max(), errors);
+  if (!id) return {};
+  return static_cast<BodyId>(*id);
+}
+
+std::vector<BodyKey> read_keys(const Json& list, const std::string& path, Errors& errors) {
+  std::vector<BodyKey> keys;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (auto key = read_key(list[i], pointer_to(path, i), errors)) keys.push_back(*std::move(key));
+  }
+  return keys;
+}
+
+std::optional<BodyView> find_body(const Simulation& simulation, const BodyKey& key) {
+  if (const auto* id = std::get_if<BodyId>(&key)) return simulation.find_body(*id);
+  const auto id = simulation.find_body(std::get<std::string>(key));
+  return id ? simulation.find_body(*id) : std::nullopt;
+}
+
+/// Without keys: all bodies.
+ActionResult query(const Simulation& simulation, const std::optional<std::vector<BodyKey>>& keys) {
+  Json bodies = Json::array();
+  if (!keys) {
+    for (const BodyView& body : simulation.bodies()) bodies.push_back(describe_state(body));
+  } else {
+    for (std::size_t i = 0; i < keys->size(); ++i) {
+      const auto body = find_body(simulation, (*keys)[i]);
+      if (!body) return no_such_body("there is no body as in " + pointer_to("/bodies", i));
+      bodies.push_back(describe_state(*body));
+    }
+  }
+  return Json{{"time", simulation.time()}, {"bodies", std::move(bodies)}};
+}
+
+SessionAction read_query(ObjectReader& params, Errors& errors) {
+  std::optional<std::vector<BodyKey>> keys;
+  if (const Json* list = params.array("bodies", kMaxBodies)) {
+    keys = read_keys(*list, params.path_of("bodies"), errors);
+  }
+  return [keys](SessionCore& core, Member&) { return query(core.run().simulation(), keys); };
+}
+
+SessionAction read_hash(ObjectReader&, Errors&) {
+  return [](SessionCore& core, Member&) -> ActionResult {
+    const Simulation& simulation = core.run().simulation();
+    return Json{{"hash", describe_hash(simulation.state_hash())}, {"time", simulation.time()}};
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"state.query", read_query},
+    {"session.hash", read_hash},
+};
+
+}  // namespace
+
+std::span<const Method> state_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

@@ -1,0 +1,101 @@
+// world.*: ranges are those of the core, which names them in its errors
+
+#include <limits>
+
+#include "core/limits.h"
+#include "protocol/scene_json.h"
+#include "server/session/method_table.h"
+#include "server/session/scene_loading.h"
+
+namespace vat {
+namespace {
+
+BodyId read_body_id(ObjectReader& params) {
+  return static_cast<BodyId>(params.count("body", 0, std::numeric_limits<BodyId>::max()));
+}
+
+ActionResult add_body(SessionCore& core, const Json& value) {
+  const Result<BodyDescription> body = read_body(value, "/body", refuse_mesh_file);
+  if (!body) return refused(body.errors());
+  Simulation& simulation = core.run().simulation();
+  const Snapshot before = simulation.snapshot();
+  const Result<BodyId> id = simulation.add_body(body.value());
+  if (!id) return refused(id.errors());
+  if (auto excess = find_excess(simulation, core.environment().limits)) {
+    simulation.restore(before);
+    return *std::move(excess);
+  }
+  core.bodies_changed();
+  return Json{{"body", id.value()}};
+}
+
+SessionAction read_add_body(ObjectReader& params, Errors&) {
+  const Json* body = params.member("body", true);
+  if (body == nullptr) return {};
+  return [body = *body](SessionCore& core, Member&) { return add_body(core, body); };
+}
+
+SessionAction read_remove_body(ObjectReader& params, Errors&) {
+  const BodyId body = read_body_id(params);
+  return [body](SessionCore& core, Member&) -> ActionResult {
+    const Status removed = core.run().simulation().remove_body(body);
+    if (!removed) return refused(removed.errors());
+    core.members().forget_grabs_of(body);
+    core.bodies_changed();
+    return Json::object();
+  };
+}
+
+SessionAction read_set_gravity(ObjectReader& params, Errors&) {
+  const Vec3 gravity = params.vector("gravity", kAnyMin, kAnyMax);
+  return [gravity](SessionCore& core, Member&) -> ActionResult {
+    const Status set = core.run().simulation().set_gravity(gravity);
+    if (!set) return refused(set.errors());
+    core.description_changed();
+    return Json::object();
+  };
+}
+
+ActionResult set_interface(SessionCore& core, const Json& value) {
+  const Result<InterfaceDescription> interface = read_interface(value, "/interface");
+  if (!interface) return refused(interface.errors());
+  const Status set = core.run().simulation().set_interface(interface.value());
+  if (!set) return refused(set.errors());
+  return Json::object();
+}
+
+SessionAction read_set_interface(ObjectReader& params, Errors&) {
+  const Json* interface = params.member("interface", true);
+  if (interface == nullptr) return {};
+  return [interface = *interface](SessionCore& core, Member&) {
+    return set_interface(core, interface);
+  };
+}
+
+SessionAction read_apply_force(ObjectReader& params, Errors&) {
+  const BodyId body = read_body_id(params);
+  const Vec3 force = params.vector("force", kAnyMin, kAnyMax);
+  const Real duration = params.real("duration", kAnyMin, kAnyMax);
+  return [body, force, duration](SessionCore& core, Member&) -> ActionResult {
+    const Status applied = core.run().simulation().apply_force(body, force, duration);
+    if (applied) return Json::object();
+    if (applied.errors().front().code == "limit_reached") {
+      return limit_reached("applied_forces", kMaxAppliedForces);
+    }
+    return refused(applied.errors());
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"world.add_body", read_add_body, true}, {"world.remove_body", read_remove_body},
+    {"world.set_gravity", read_set_gravity}, {"world.set_interface", read_set_interface},
+    {"world.apply_force", read_apply_force},
+};
+
+}  // namespace
+
+std::span<const Method> world_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

@@ -1,0 +1,139 @@
+#include "server/session/rpc_message.h"
+
+#include <utility>
+
+#include "protocol/printable.h"
+
+namespace vat {
+namespace {
+
+constexpr std::size_t kMaxIdBytes = 64;
+constexpr std::size_t kMaxMethodBytes = 64;
+
+bool is_id(const Json& value) {
+  if (value.is_number_integer()) return true;
+  return value.is_string() && value.get_ref<const std::string&>().size() <= kMaxIdBytes;
+}
+
+Json to_json(const Error& error) {
+  return {{"code", error.code}, {"path", error.path}, {"message", error.message}};
+}
+
+Json to_json(const RpcError& error) {
+  Json data = error.data;
+  data["kind"] = error.kind;
+  return {{"code", error.code}, {"message", error.message}, {"data", std::move(data)}};
+}
+
+std::string to_text(const Json& message) {
+  // Foreign text was checked to be UTF-8 where it came in; replacing is a second line of defence.
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+RpcError parse_failed(const Error& error) {
+  return {-32700, "parse_error", error.message, {{"reason", error.code}}};
+}
+
+RpcError invalid_request(std::string message) {
+  return {-32600, "invalid_request", std::move(message)};
+}
+
+RpcError method_not_found(std::string_view method) {
+  return {-32601, "method_not_found", "there is no method " + printable(method)};
+}
+
+RpcError invalid_params(const Errors& errors) {
+  VAT_CHECK(!errors.empty());
+  Json list = Json::array();
+  for (const Error& error : errors) list.push_back(to_json(error));
+  const Error& first = errors.front();
+  const std::string message =
+      first.path.empty() ? first.message : first.path + ": " + first.message;
+  return {-32602, "invalid_params", message, {{"path", first.path}, {"errors", std::move(list)}}};
+}
+
+RpcError internal_error() {
+  return {-32603, "internal_error", "a fault of the server; see its log"};
+}
+
+RpcError not_joined() {
+  return {1001, "not_joined", "this method needs a joined session"};
+}
+
+RpcError no_such_session(std::string_view session) {
+  return {1002, "no_such_session", "there is no session " + printable(session)};
+}
+
+RpcError no_such_body(std::string message) {
+  return {1003, "no_such_body", std::move(message)};
+}
+
+RpcError no_such_scene(std::string_view scene) {
+  return {1004, "no_such_scene", "the catalogue has no scene " + printable(scene)};
+}
+
+RpcError limit_reached(std::string_view limit, std::size_t maximum) {
+  return {1005,
+          "limit_reached",
+          "at most " + std::to_string(maximum) + " " + std::string(limit),
+          {{"limit", limit}, {"maximum", maximum}}};
+}
+
+RpcError not_allowed(std::string message) {
+  return {1006, "not_allowed", std::move(message)};
+}
+
+RpcError refused(const Errors& errors) {
+  VAT_CHECK(!errors.empty());
+  const Error& first = errors.front();
+  if (first.code == "no_such_body") return no_such_body(first.message);
+  return invalid_params(errors);
+}
+
+std::variant<RpcRequest, RpcError> read_request(Json message, std::optional<Json>& id) {
+  if (message.is_array()) return invalid_request("batches are refused");
+  if (!message.is_object()) return invalid_request("a request is an object");
+  if (const auto found = message.find("id"); found != message.end()) {
+    if (!is_id(*found)) {
+      return invalid_request("\"id\" must be an integer or a string of at most 64 bytes");
+    }
+    id = *found;
+  }
+  if (const auto version = message.find("jsonrpc"); version == message.end() || *version != "2.0") {
+    return invalid_request("\"jsonrpc\" must be \"2.0\"");
+  }
+  const auto method = message.find("method");
+  if (method == message.end() || !method->is_string() ||
+      method->get_ref<const std::string&>().size() > kMaxMethodBytes) {
+    return invalid_request("\"method\" must be a string of at most 64 bytes");
+  }
+  for (const auto& [key, value] : message.items()) {
+    if (key != "jsonrpc" && key != "id" && key != "method" && key != "params") {
+      return invalid_request("unknown member " + printable(key));
+    }
+  }
+  RpcRequest request{id, method->get<std::string>(), Json::object()};
+  if (const auto params = message.find("params"); params != message.end()) {
+    if (!params->is_object()) return invalid_request("\"params\" must be an object");
+    request.params = std::move(*params);
+  }
+  return request;
+}
+
+std::string write_reply(const Json& id, const RpcResult& result) {
+  Json message{{"jsonrpc", "2.0"}, {"id", id}};
+  if (const auto* error = std::get_if<RpcError>(&result)) {
+    message["error"] = to_json(*error);
+  } else {
+    message["result"] = std::get<Json>(result);
+  }
+  return to_text(message);
+}
+
+std::string write_event(std::string_view event, Json params) {
+  return to_text({{"jsonrpc", "2.0"}, {"method", event}, {"params", std::move(params)}});
+}
+
+}  // namespace vat

@@ -1,0 +1,263 @@
+#include "server/session/session.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace vat {
+namespace {
+
+// A turn of the inbox ends after so much, so that ticks and other sessions get theirs.
+constexpr std::size_t kCommandsPerTurn = 64;
+constexpr auto kTurnTime = std::chrono::milliseconds(10);
+constexpr auto kStatusInterval = std::chrono::milliseconds(500);
+
+}  // namespace
+
+Session::Session(std::string id, std::string name, Simulation simulation,
+                 const SessionEnvironment& environment, boost::asio::thread_pool& pool)
+    : id_(id),
+      strand_(boost::asio::make_strand(pool.get_executor())),
+      core_(std::move(id), std::move(name), std::move(simulation), environment),
+      tick_timer_(strand_),
+      status_timer_(strand_) {
+  summary_ = core_.summary();
+}
+
+void Session::start() {
+  schedule(&Session::status_turn);
+}
+
+void Session::close() {
+  schedule(&Session::close_turn);
+}
+
+void Session::join(Caller caller, std::uint64_t membership) {
+  put({std::move(caller), Join{membership}});
+}
+
+void Session::leave(Caller caller) {
+  put({std::move(caller), Leave{}});
+}
+
+void Session::post(Caller caller, SessionAction action) {
+  put({std::move(caller), std::move(action)});
+}
+
+SessionSummary Session::summary() const {
+  const std::lock_guard lock(mutex_);
+  return summary_;
+}
+
+void Session::put(Item item) {
+  std::unique_lock lock(mutex_);
+  if (inbox_closed_) {
+    lock.unlock();
+    item.caller.answer(no_such_session(id_));
+    return;
+  }
+  inbox_.push_back(std::move(item));
+  if (!std::exchange(inbox_scheduled_, true)) schedule(&Session::inbox_turn);
+}
+
+void Session::schedule(void (Session::*turn)()) {
+  boost::asio::post(strand_, [self = shared_from_this(), turn] { self->run_turn(turn); });
+}
+
+void Session::run_turn(void (Session::*turn)()) {
+  if (closed_) return;
+  try {
+    (this->*turn)();
+    end_turn();
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: paused by a fault of the server: {}", id_, error.what());
+    core_.set_playing(false);
+    period_ = {};
+    tick_timer_.cancel();
+  }
+}
+
+void Session::end_turn() {
+  if (closed_) return;
+  if (core_.take_interruption()) end_all_steps();
+  core_.announce();
+  follow_clock();
+  const std::lock_guard lock(mutex_);
+  summary_ = core_.summary();
+}
+
+void Session::inbox_turn() {
+  const auto end = SteadyClock::now() + kTurnTime;
+  std::optional<Item> item;
+  for (std::size_t i = 0; i < kCommandsPerTurn && SteadyClock::now() < end; ++i) {
+    if (!take_item(item)) return;
+    carry_out(*std::move(item));
+  }
+  schedule(&Session::inbox_turn);
+}
+
+bool Session::take_item(std::optional<Item>& item) {
+  const std::lock_guard lock(mutex_);
+  if (inbox_.empty()) {
+    inbox_scheduled_ = false;
+    return false;
+  }
+  item.emplace(std::move(inbox_.front()));
+  inbox_.pop_front();
+  return true;
+}
+
+void Session::carry_out(Item item) {
+  if (std::holds_alternative<Leave>(item.task)) {
+    carry_out_leave(std::move(item.caller));
+    return;
+  }
+  if (const auto job = find_step(item.caller.client()->id()); job != steps_.end()) {
+    job->deferred.push_back(std::move(item));
+  } else if (const auto* join = std::get_if<Join>(&item.task)) {
+    carry_out_join(std::move(item.caller), join->membership);
+  } else {
+    carry_out_action(std::move(item.caller), std::get<SessionAction>(item.task));
+  }
+}
+
+void Session::carry_out_join(Caller caller, std::uint64_t membership) {
+  core_.join(caller.client(), membership);
+  caller.answer(
+      Json{{"tick", core_.run().tick()}, {"session", id_}, {"description", core_.description()}});
+}
+
+void Session::carry_out_leave(Caller caller) {
+  const ConnectionId client = caller.client()->id();
+  for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
+  core_.leave(client);
+  caller.answer(Json::object());
+}
+
+void Session::carry_out_action(Caller caller, const SessionAction& action) {
+  Member* member = core_.members().find(caller.client()->id());
+  if (member == nullptr) {
+    caller.answer(not_joined());
+    return;
+  }
+  ActionResult result = act(*member, action);
+  if (core_.take_interruption()) end_all_steps();
+  if (const auto* run = std::get_if<RunTicks>(&result)) {
+    steps_.push_back({std::move(caller), run->count, {}});
+    schedule_step();
+  } else if (auto* error = std::get_if<RpcError>(&result)) {
+    caller.answer(std::move(*error));
+  } else {
+    Json& reply = std::get<Json>(result);
+    reply["tick"] = core_.run().tick();
+    caller.answer(std::move(reply));
+  }
+}
+
+ActionResult Session::act(Member& member, const SessionAction& action) {
+  try {
+    return action(core_, member);
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: a command failed: {}", id_, error.what());
+    return internal_error();
+  }
+}
+
+std::deque<Session::StepJob>::iterator Session::find_step(ConnectionId client) {
+  return std::ranges::find_if(
+      steps_, [&](const StepJob& job) { return job.caller.client()->id() == client; });
+}
+
+void Session::schedule_step() {
+  if (!std::exchange(step_scheduled_, true)) schedule(&Session::step_turn);
+}
+
+void Session::step_turn() {
+  step_scheduled_ = false;
+  if (steps_.empty()) return;
+  core_.tick(SteadyClock::now(), false);
+  if (core_.take_interruption()) {
+    end_all_steps();
+  } else if (--steps_.front().ticks_left == 0) {
+    end_step(steps_.begin());
+  }
+  if (!steps_.empty()) schedule_step();
+}
+
+void Session::end_step(std::deque<StepJob>::iterator job) {
+  StepJob ended = std::move(*job);
+  steps_.erase(job);
+  ended.caller.answer(Json{{"tick", core_.run().tick()}});
+  for (Item& item : ended.deferred) carry_out(std::move(item));
+}
+
+void Session::end_all_steps() {
+  // What was deferred may begin steps of its own, which stay.
+  for (std::size_t count = steps_.size(); count > 0 && !steps_.empty(); --count) {
+    end_step(steps_.begin());
+  }
+}
+
+void Session::tick_turn() {
+  const auto now = SteadyClock::now();
+  if (!core_.playing() || now < clock_.due()) return;  // a wait that was overtaken by a command
+  core_.tick(now, true);
+  clock_.tick_done(SteadyClock::now());
+  wait_for_tick();
+}
+
+void Session::follow_clock() {
+  const auto wanted = core_.playing() ? tick_period(core_.run().tick_seconds(), core_.speed())
+                                      : SteadyClock::duration::zero();
+  if (wanted == period_) return;
+  period_ = wanted;
+  if (period_ == SteadyClock::duration::zero()) {
+    tick_timer_.cancel();
+    return;
+  }
+  clock_.start(SteadyClock::now(), period_);
+  wait_for_tick();
+}
+
+void Session::wait_for_tick() {
+  tick_timer_.expires_at(clock_.due());
+  tick_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
+    if (!failure) self->run_turn(&Session::tick_turn);
+  });
+}
+
+void Session::status_turn() {
+  wait_for_status();  // first, so that a fault does not end the statuses
+  core_.announce_status();
+}
+
+void Session::wait_for_status() {
+  status_timer_.expires_after(kStatusInterval);
+  status_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
+    if (!failure) self->run_turn(&Session::status_turn);
+  });
+}
+
+void Session::close_turn() {
+  closed_ = true;
+  tick_timer_.cancel();
+  status_timer_.cancel();
+  std::deque<Item> items;
+  {
+    const std::lock_guard lock(mutex_);
+    inbox_closed_ = true;
+    items.swap(inbox_);
+  }
+  for (StepJob& job : steps_) {
+    job.caller.answer(no_such_session(id_));
+    for (Item& item : job.deferred) item.caller.answer(no_such_session(id_));
+  }
+  steps_.clear();
+  for (Item& item : items) item.caller.answer(no_such_session(id_));
+}
+
+}  // namespace vat

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "server/session/caller.h"
+#include "server/session/session_core.h"
+
+namespace vat {
+
+/// A session at work: an inbox that any thread may post to, and a strand on the shared pool where
+/// commands are applied, ticks are run in time, and statuses are sent. Everything posted by one
+/// client is carried out and answered in its order.
+///
+/// The strand's work comes in short turns (some commands, or one tick), so that a session waits for
+/// others at most as long as their turns take.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(std::string id, std::string name, Simulation simulation,
+          const SessionEnvironment& environment, boost::asio::thread_pool& pool);
+
+  void start();
+  /// Ends all work soon; commands that are not carried out yet are answered by no_such_session.
+  void close();
+
+  /// Answered with the description.
+  void join(Caller caller, std::uint64_t membership);
+  void leave(Caller caller);
+  void post(Caller caller, SessionAction action);
+
+  /// As of the last turn.
+  SessionSummary summary() const;
+
+ private:
+  struct Join {
+    std::uint64_t membership;
+  };
+  struct Leave {};
+  struct Item {
+    Caller caller;
+    std::variant<Join, Leave, SessionAction> task;
+  };
+  /// A control.step under way. The later commands of its client wait for its end.
+  struct StepJob {
+    Caller caller;
+    std::uint64_t ticks_left;
+    std::deque<Item> deferred;
+  };
+
+  void put(Item item);
+  /// Runs a turn on the strand; what it throws is logged, and pauses the session.
+  void schedule(void (Session::*turn)());
+  void run_turn(void (Session::*turn)());
+  void end_turn();
+
+  void inbox_turn();
+  bool take_item(std::optional<Item>& item);
+  void carry_out(Item item);
+  void carry_out_join(Caller caller, std::uint64_t membership);
+  void carry_out_leave(Caller caller);
+  void carry_out_action(Caller caller, const SessionAction& action);
+  ActionResult act(Member& member, const SessionAction& action);
+
+  void step_turn();
+  std::deque<StepJob>::iterator find_step(ConnectionId client);
+  void schedule_step();
+  /// Answers the job and carries out what was deferred.
+  void end_step(std::deque<StepJob>::iterator job);
+  void end_all_steps();
+
+  void tick_turn();
+  void follow_clock();
+  void wait_for_tick();
+  void status_turn();
+  void wait_for_status();
+  void close_turn();
+
+  const std::string id_;
+  boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
+
+  mutable std::mutex mutex_;  // guards what follows, as far as the summary
+  std::deque<Item> inbox_;
+  bool inbox_scheduled_ = false;
+  bool inbox_closed_ = false;
+  SessionSummary summary_;
+
+  // Used on the strand only.
+  SessionCore core_;
+  TickClock clock_;
+  SteadyClock::duration period_{};  // of the clock; zero: it stands still
+  boost::asio::steady_timer tick_timer_;
+  boost::asio::steady_timer status_timer_;
+  std::deque<StepJob> steps_;
+  bool step_scheduled_ = false;
+  bool closed_ = false;
+};
+
+}  // namespace vat

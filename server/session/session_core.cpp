@@ -1,0 +1,193 @@
+#include "server/session/session_core.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "server/session/describe.h"
+
+namespace vat {
+namespace {
+
+double wall_clock() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+bool is_due(const Member& member, std::uint64_t tick, bool new_tick) {
+  if (!member.subscription) return false;
+  return member.awaits_frame || (new_tick && tick % member.subscription->every == 0);
+}
+
+}  // namespace
+
+SessionCore::SessionCore(std::string id, std::string name, Simulation simulation,
+                         const SessionEnvironment& environment)
+    : id_(std::move(id)),
+      name_(std::move(name)),
+      environment_(environment),
+      run_(std::move(simulation)),
+      domain_(run_.simulation().scene().vat) {}
+
+void SessionCore::set_playing(bool playing) {
+  interrupt();
+  status_due_ = true;
+  if (playing != playing_) rate_ = {};
+  playing_ = playing;
+}
+
+void SessionCore::set_speed(double speed) {
+  speed_ = speed;
+  rate_ = {};
+  status_due_ = true;
+}
+
+void SessionCore::load(Simulation simulation) {
+  run_.load(std::move(simulation));
+  members_.forget_grabs();
+  interrupt();
+  rate_ = {};
+  domain_ = FrameDomain(run_.simulation().scene().vat);
+  description_due_ = status_due_ = true;
+  members_.start_epoch();
+}
+
+void SessionCore::reset() {
+  run_.reset();
+  members_.forget_grabs();
+  interrupt();
+  domain_ = FrameDomain(run_.simulation().scene().vat);
+  description_due_ = status_due_ = true;
+  members_.start_epoch();
+}
+
+void SessionCore::bodies_changed() {
+  run_.start_epoch();
+  description_due_ = status_due_ = true;
+  members_.start_epoch();
+}
+
+void SessionCore::interrupt() {
+  interrupted_ = true;
+}
+
+bool SessionCore::take_interruption() {
+  return std::exchange(interrupted_, false);
+}
+
+Member& SessionCore::join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t membership) {
+  leave(outbox->id());
+  status_due_ = true;
+  return members_.add(std::move(outbox), membership);
+}
+
+void SessionCore::leave(ConnectionId client) {
+  const Member* member = members_.find(client);
+  if (member == nullptr) return;
+  for (const auto& [grab, body] : member->grabs) {
+    const Status ended = run_.simulation().grab_end(grab);
+    if (!ended) spdlog::warn("session {}: grab {} was gone already", id_, grab);
+  }
+  members_.remove(client);
+  status_due_ = true;
+}
+
+void SessionCore::tick(SteadyClock::time_point now, bool timed) {
+  const AdvanceReport report = run_.advance();
+  tell_guard(report);
+  if (report.failed) {
+    spdlog::warn("session {}: paused by the guard at tick {}", id_, run_.tick());
+    set_playing(false);
+    return;
+  }
+  if (timed) rate_.tick_done(now, run_.tick_seconds());
+  send_frames(true);
+}
+
+void SessionCore::tell_guard(const AdvanceReport& report) {
+  for (const GuardEvent& event : report.events) {
+    members_.send_event(write_event("session.guard", describe_guard(event, run_.tick())));
+  }
+}
+
+void SessionCore::announce() {
+  if (std::exchange(description_due_, false)) {
+    members_.send_event(write_event("session.description", description()));
+  }
+  if (std::exchange(status_due_, false)) announce_status();
+  send_frames(false);
+}
+
+void SessionCore::announce_status() {
+  if (members_.size() > 0) members_.send_event(write_event("session.status", status()));
+}
+
+void SessionCore::send_frames(bool new_tick) {
+  std::vector<Member*> receivers;
+  for (auto& [id, member] : members_.all()) {
+    if (is_due(member, run_.tick(), new_tick)) receivers.push_back(&member);
+  }
+  if (receivers.empty()) return;
+  const PublishedState state = published();
+  domain_.include(state);
+  std::map<double, SharedFrame> encoded;  // by quantum: the origin is the same for all
+  for (Member* member : receivers) {
+    const FrameGrid grid = domain_.grid(member->subscription->max_error);
+    SharedFrame& frame = encoded[grid.quantum];
+    if (frame == nullptr) {
+      frame = std::make_shared<const std::vector<std::uint8_t>>(encode_key_frame(state, grid));
+    }
+    member->outbox->offer_frame(member->membership, frame);
+    member->awaits_frame = false;
+  }
+}
+
+PublishedState SessionCore::published() const {
+  PublishedState state = publish(run_.simulation());
+  state.header.playing = playing_;
+  state.header.slow = playing_ && rate_.slower_than(speed_);
+  state.header.epoch = run_.epoch();
+  state.header.tick = run_.tick();
+  state.header.published = wall_clock();
+  state.header.real_time_factor = static_cast<float>(rate_.rate());
+  return state;
+}
+
+Json SessionCore::status() const {
+  return {
+      {"tick", run_.tick()},
+      {"time", run_.simulation().time()},
+      {"playing", playing_},
+      {"speed", speed_},
+      {"real_time_factor", rate_.rate()},
+      {"clients", members_.size()},
+      {"particles", run_.simulation().particle_count()},
+  };
+}
+
+Json SessionCore::description() const {
+  const Scene& scene = run_.simulation().scene();
+  return {
+      {"session", id_},
+      {"epoch", run_.epoch()},
+      {"tick", run_.tick()},
+      {"name", name_},
+      {"scene", scene.name},
+      {"title", scene.title},
+      {"playing", playing_},
+      {"speed", speed_},
+      {"tick_seconds", run_.tick_seconds()},
+      {"gravity", to_json(scene.gravity)},
+      {"vat", describe_vat(scene.vat)},
+      {"bodies", describe_bodies(run_.simulation())},
+  };
+}
+
+SessionSummary SessionCore::summary() const {
+  return {name_,       run_.simulation().scene().name,    members_.size(), playing_,
+          run_.tick(), run_.simulation().particle_count()};
+}
+
+}  // namespace vat

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "protocol/scene_json.h"
+#include "server/limits.h"
+#include "server/session/frame_domain.h"
+#include "server/session/members.h"
+#include "server/session/rpc_message.h"
+#include "server/session/session_run.h"
+#include "server/session/tick_clock.h"
+
+namespace vat {
+
+/// What all sessions share.
+struct SessionEnvironment {
+  const Catalogue& catalogue;
+  const ServerLimits& limits;
+};
+
+/// A session as `session.list` tells it.
+struct SessionSummary {
+  std::string name;
+  std::string scene;
+  std::size_t clients = 0;
+  bool playing = false;
+  std::uint64_t tick = 0;
+  std::size_t particles = 0;
+};
+
+/// All that a session is but its threads: what is simulated, who takes part, and what they are
+/// told. Used by one thread at a time; has no clock of its own.
+///
+/// Commands change it and note what has to be told; announce() then tells all members, so that many
+/// commands at once make one description, one status and one frame.
+class SessionCore {
+ public:
+  SessionCore(std::string id, std::string name, Simulation simulation,
+              const SessionEnvironment& environment);
+
+  const SessionEnvironment& environment() const { return environment_; }
+  SessionRun& run() { return run_; }
+  const SessionRun& run() const { return run_; }
+  Members& members() { return members_; }
+
+  bool playing() const { return playing_; }
+  double speed() const { return speed_; }
+  void set_playing(bool playing);
+  void set_speed(double speed);
+  void load(Simulation simulation);
+  void reset();
+  /// The bodies have changed: a new epoch begins.
+  void bodies_changed();
+  /// What the description tells has changed, but not the bodies.
+  void description_changed() { description_due_ = true; }
+  std::uint64_t next_grab() { return ++last_grab_; }
+
+  Member& join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t membership);
+  /// Frees the client's grabs.
+  void leave(ConnectionId client);
+
+  /// Runs one tick and sends its frames. A guard that failed pauses the session. The rate is
+  /// measured where `timed`: ticks of control.step keep no pace.
+  void tick(SteadyClock::time_point now, bool timed);
+  /// Tells what is due.
+  void announce();
+  void announce_status();
+  /// True once after anything that ends the ticks of a control.step: another control command, a
+  /// change of scene, a failed guard.
+  bool take_interruption();
+
+  Json description() const;
+  SessionSummary summary() const;
+
+ private:
+  Json status() const;
+  void interrupt();
+  void tell_guard(const AdvanceReport& report);
+  /// To the subscribers whose turn this tick is, and to those that await a frame.
+  void send_frames(bool new_tick);
+  PublishedState published() const;
+
+  const std::string id_;
+  const std::string name_;
+  const SessionEnvironment& environment_;
+  SessionRun run_;
+  Members members_;
+  FrameDomain domain_;
+  RateMeter rate_;
+  bool playing_ = true;
+  double speed_ = 1;  // simulated seconds per second
+  std::uint64_t last_grab_ = 0;
+  bool description_due_ = false;
+  bool status_due_ = false;
+  bool interrupted_ = false;
+};
+
+/// Ticks that a command asks for before it is answered.
+struct RunTicks {
+  std::uint64_t count = 0;
+};
+
+/// A command's reply; a result gets its `tick` afterwards.
+using ActionResult = std::variant<Json, RpcError, RunTicks>;
+
+/// A command, its parameters read; run on the session's strand for a member of it.
+using SessionAction = std::function<ActionResult(SessionCore&, Member&)>;
+
+}  // namespace vat

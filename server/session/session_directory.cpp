@@ -1,0 +1,199 @@
+#include "server/session/session_directory.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <thread>
+
+#include "server/session/scene_loading.h"
+
+namespace vat {
+namespace {
+
+// Two at least: the system then shares even a single core between a long tick and a short one.
+std::size_t thread_count(std::size_t wanted) {
+  if (wanted > 0) return wanted;
+  return std::max<std::size_t>(2, std::thread::hardware_concurrency());
+}
+
+SessionId to_id(std::uint64_t number) {
+  return "s" + std::to_string(number);
+}
+
+}  // namespace
+
+SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings settings)
+    : catalogue_(catalogue),
+      settings_(std::move(settings)),
+      environment_{catalogue_, settings_.limits},
+      pool_(thread_count(settings_.threads)) {}
+
+SessionDirectory::~SessionDirectory() {
+  stop();
+}
+
+bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
+  const std::lock_guard lock(mutex_);
+  if (stopped_ || clients_.size() >= settings_.limits.max_connections) return false;
+  const ConnectionId id = connection->id();
+  clients_[id].outbox = std::make_shared<ClientOutbox>(std::move(connection));
+  return true;
+}
+
+void SessionDirectory::disconnect(ConnectionId id) {
+  const std::lock_guard lock(mutex_);
+  const auto client = clients_.find(id);
+  if (client == clients_.end()) return;
+  leave_session(client->second, Caller(client->second.outbox, {}));
+  clients_.erase(client);
+}
+
+std::shared_ptr<ClientOutbox> SessionDirectory::find_client(ConnectionId id) const {
+  const std::lock_guard lock(mutex_);
+  const auto client = clients_.find(id);
+  return client == clients_.end() ? nullptr : client->second.outbox;
+}
+
+std::optional<RpcError> SessionDirectory::refuse_session() const {
+  if (stopped_) return not_allowed("the server stops");
+  if (sessions_.size() < settings_.limits.max_sessions) return {};
+  return limit_reached("sessions", settings_.limits.max_sessions);
+}
+
+std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto error = refuse_session()) return *std::move(error);
+  }
+  auto simulation = make_simulation(scene, settings_.limits);  // takes long: without the lock
+  if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+
+  const std::lock_guard lock(mutex_);
+  if (auto error = refuse_session()) return *std::move(error);
+  const Sessions::key_type number = ++last_session_;
+  const auto session =
+      std::make_shared<Session>(to_id(number), std::move(name),
+                                std::get<Simulation>(std::move(simulation)), environment_, pool_);
+  sessions_.emplace(number, session);
+  session->start();
+  spdlog::info("session {} created: {}", to_id(number), scene.name);
+  return to_id(number);
+}
+
+void SessionDirectory::create_later(Caller caller, std::string name, Json scene) {
+  boost::asio::post(pool_, [this, caller = std::move(caller), name = std::move(name),
+                            value = std::move(scene)]() mutable {
+    try {
+      auto scene_read = read_client_scene(value, catalogue_);
+      if (auto* error = std::get_if<RpcError>(&scene_read)) {
+        caller.answer(std::move(*error));
+        return;
+      }
+      auto created = create(std::move(name), std::get<Scene>(scene_read));
+      if (auto* error = std::get_if<RpcError>(&created)) {
+        caller.answer(std::move(*error));
+      } else {
+        caller.answer(Json{{"session", std::get<SessionId>(created)}});
+      }
+    } catch (const std::exception& error) {
+      spdlog::error("session.create failed: {}", error.what());
+      caller.answer(internal_error());
+    }
+  });
+}
+
+std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::pair<SessionId, SessionSummary>> list;
+  for (const auto& [number, session] : sessions_) {
+    list.emplace_back(to_id(number), session->summary());
+    list.back().second.clients = client_count(number);
+  }
+  return list;
+}
+
+std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::optional<SessionId>& id) {
+  const std::lock_guard lock(mutex_);
+  const auto session = id ? find_session(*id) : sessions_.begin();
+  if (session == sessions_.end()) return no_such_session(id ? *id : "at all");
+  const auto found = clients_.find(caller.client()->id());
+  if (found == clients_.end()) return not_allowed("the connection is closed");
+  Client& client = found->second;
+  const std::size_t others =
+      client_count(session->first) - (client.session == session->first ? 1 : 0);
+  if (others >= settings_.limits.max_clients_per_session) {
+    return limit_reached("clients_per_session", settings_.limits.max_clients_per_session);
+  }
+  if (client.session != session->first) leave_session(client, Caller(client.outbox, {}));
+  client.session = session->first;
+  session->second->join(std::move(caller), client.outbox->join());
+  return {};
+}
+
+std::optional<RpcError> SessionDirectory::leave(Caller& caller) {
+  const std::lock_guard lock(mutex_);
+  const auto client = clients_.find(caller.client()->id());
+  if (client == clients_.end() || client->second.session == 0) return not_joined();
+  leave_session(client->second, std::move(caller));
+  return {};
+}
+
+std::optional<RpcError> SessionDirectory::post(Caller& caller, SessionAction action) {
+  const std::lock_guard lock(mutex_);
+  const auto client = clients_.find(caller.client()->id());
+  if (client == clients_.end() || client->second.session == 0) return not_joined();
+  sessions_.at(client->second.session)->post(std::move(caller), std::move(action));
+  return {};
+}
+
+std::optional<RpcError> SessionDirectory::close(const SessionId& id, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  const auto session = find_session(id);
+  if (session == sessions_.end()) return no_such_session(id);
+  close_session(session, reason);
+  return {};
+}
+
+void SessionDirectory::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    while (!sessions_.empty()) close_session(sessions_.begin(), "the server stops");
+  }
+  pool_.join();
+}
+
+SessionDirectory::Sessions::iterator SessionDirectory::find_session(const SessionId& id) {
+  return std::ranges::find_if(sessions_,
+                              [&](const auto& entry) { return to_id(entry.first) == id; });
+}
+
+std::size_t SessionDirectory::client_count(Sessions::key_type session) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      clients_, [&](const auto& entry) { return entry.second.session == session; }));
+}
+
+void SessionDirectory::leave_session(Client& client, Caller caller) {
+  if (client.session == 0) return;
+  client.outbox->leave();
+  sessions_.at(client.session)->leave(std::move(caller));
+  client.session = 0;
+}
+
+void SessionDirectory::close_session(Sessions::iterator session, const std::string& reason) {
+  const SessionId id = to_id(session->first);
+  const std::string event = write_event("session.closed", {{"session", id}, {"reason", reason}});
+  for (auto& [connection, client] : clients_) {
+    if (client.session != session->first) continue;
+    client.session = 0;
+    client.outbox->leave();
+    client.outbox->send(event);  // the last that it hears of the session
+  }
+  session->second->close();
+  sessions_.erase(session);
+  spdlog::info("session {} closed: {}", id, reason);
+}
+
+}  // namespace vat

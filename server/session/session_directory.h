@@ -1,0 +1,75 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "server/session/session.h"
+#include "server/session/session_server.h"
+
+namespace vat {
+
+/// The sessions, the clients and who is in which; owns the threads. Safe to use from any thread.
+class SessionDirectory {
+ public:
+  SessionDirectory(const Catalogue& catalogue, ServerSettings settings);
+  ~SessionDirectory();
+
+  const Catalogue& catalogue() const { return catalogue_; }
+  const ServerSettings& settings() const { return settings_; }
+
+  /// False if there are too many already.
+  bool connect(std::shared_ptr<Connection> connection);
+  void disconnect(ConnectionId id);
+  /// Null if it is not connected.
+  std::shared_ptr<ClientOutbox> find_client(ConnectionId id) const;
+
+  std::variant<SessionId, RpcError> create(std::string name, const Scene& scene);
+  /// Reads the scene and creates the session on a thread of the pool, and answers there.
+  void create_later(Caller caller, std::string name, Json scene);
+
+  std::vector<std::pair<SessionId, SessionSummary>> list() const;
+  /// Answered by the session, or by the error that is returned. Without an id: the first session.
+  std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id);
+  std::optional<RpcError> leave(Caller& caller);
+  /// Hands the action to the session that the caller is in.
+  std::optional<RpcError> post(Caller& caller, SessionAction action);
+  std::optional<RpcError> close(const SessionId& id, const std::string& reason);
+
+  void stop();
+
+ private:
+  using Sessions = std::map<std::uint64_t, std::shared_ptr<Session>>;  // by the number in the id
+  struct Client {
+    std::shared_ptr<ClientOutbox> outbox;
+    Sessions::key_type session = 0;  // 0: none
+  };
+
+  // With the mutex held.
+  Sessions::iterator find_session(const SessionId& id);
+  std::size_t client_count(Sessions::key_type session) const;
+  void leave_session(Client& client, Caller caller);
+  void close_session(Sessions::iterator session, const std::string& reason);
+  /// Why there can be no further session, if so.
+  std::optional<RpcError> refuse_session() const;
+
+  const Catalogue& catalogue_;
+  const ServerSettings settings_;
+  const SessionEnvironment environment_;
+  boost::asio::thread_pool pool_;  // outlives the sessions
+
+  mutable std::mutex mutex_;
+  std::map<ConnectionId, Client> clients_;
+  Sessions sessions_;
+  Sessions::key_type last_session_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace vat

@@ -1,0 +1,132 @@
+#include "server/session/session_server.h"
+
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <utility>
+
+#include "server/session/method_table.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint16_t kTooManyConnections = 1013;
+
+Errors to_errors(const RpcError& error) {
+  Errors errors;
+  if (const auto list = error.data.find("errors"); list != error.data.end()) {
+    for (const Json& entry : *list) {
+      errors.push_back({entry.at("code"), entry.at("path"), entry.at("message")});
+    }
+  }
+  if (errors.empty()) errors.push_back({error.kind, "", error.message});
+  return errors;
+}
+
+}  // namespace
+
+class SessionServer::Impl {
+ public:
+  Impl(const Catalogue& catalogue, ServerSettings settings)
+      : directory_(catalogue, std::move(settings)) {}
+
+  SessionDirectory& directory() { return directory_; }
+
+  /// Carries out a message. An error that is returned is for the id that was found, or for null.
+  void receive(const std::shared_ptr<ClientOutbox>& client, std::string_view message) {
+    std::optional<Json> id;
+    auto request = read(message, id);
+    if (auto* error = std::get_if<RpcError>(&request)) {
+      client->send(write_reply(id.value_or(nullptr), std::move(*error)));
+      return;
+    }
+    Caller caller(client, id);
+    if (auto result = call(caller, std::get<RpcRequest>(request), message.size())) {
+      caller.answer(*std::move(result));
+    }
+  }
+
+ private:
+  const ServerLimits& limits() const { return directory_.settings().limits; }
+
+  std::variant<RpcRequest, RpcError> read(std::string_view message, std::optional<Json>& id) const {
+    if (message.size() > limits().max_scene_message_bytes) {
+      return limit_reached("scene_message_bytes", limits().max_scene_message_bytes);
+    }
+    Result<Json> json = parse_json(message, {message.size(), kMaxMessageDepth, kMaxMessageValues});
+    if (!json) return parse_failed(json.errors().front());
+    return read_request(std::move(json).value(), id);
+  }
+
+  /// The answer, unless someone has taken the caller to answer later.
+  std::optional<RpcResult> call(Caller& caller, const RpcRequest& request, std::size_t bytes) {
+    const Method* method = find_method(request.method);
+    if (method == nullptr) return method_not_found(request.method);
+    if (!method->takes_scene && bytes > limits().max_message_bytes) {
+      return limit_reached("message_bytes", limits().max_message_bytes);
+    }
+    if (auto error =
+            caller.count(bytes, limits().max_commands_in_flight, limits().max_bytes_in_flight)) {
+      return *std::move(error);
+    }
+    Errors errors;
+    ObjectReader params(request.params, "", errors);
+    if (const auto* read = std::get_if<Method::ForServer>(&method->read)) {
+      const ServerAction action = (*read)(params, errors);
+      params.refuse_unknown();
+      if (!errors.empty()) return invalid_params(errors);
+      return action(directory_, caller);
+    }
+    SessionAction action = std::get<Method::ForSession>(method->read)(params, errors);
+    params.refuse_unknown();
+    if (!errors.empty()) return invalid_params(errors);
+    if (auto error = directory_.post(caller, std::move(action))) return *std::move(error);
+    return {};
+  }
+
+  SessionDirectory directory_;
+};
+
+SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings)
+    : impl_(std::make_unique<Impl>(catalogue, std::move(settings))) {}
+
+SessionServer::~SessionServer() = default;
+
+Result<SessionId> SessionServer::create_session(std::string name, const Scene& scene) {
+  auto created = impl_->directory().create(std::move(name), scene);
+  if (const auto* error = std::get_if<RpcError>(&created)) return to_errors(*error);
+  return std::get<SessionId>(std::move(created));
+}
+
+void SessionServer::stop() {
+  impl_->directory().stop();
+}
+
+void SessionServer::opened(std::shared_ptr<Connection> connection) {
+  if (!impl_->directory().connect(connection)) {
+    connection->close(kTooManyConnections, "too many connections");
+  }
+}
+
+void SessionServer::text_received(ConnectionId id, std::string_view message) {
+  const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id);
+  if (client == nullptr) return;
+  try {
+    impl_->receive(client, message);
+  } catch (const std::exception& error) {
+    spdlog::error("a message failed: {}", error.what());
+    client->send(write_reply(nullptr, internal_error()));
+  }
+}
+
+void SessionServer::binary_received(ConnectionId id, std::string_view) {
+  const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id);
+  if (client == nullptr) return;
+  client->send(write_reply(nullptr, invalid_request("binary messages are for frames from here")));
+}
+
+void SessionServer::closed(ConnectionId id) {
+  impl_->directory().disconnect(id);
+}
+
+}  // namespace vat
