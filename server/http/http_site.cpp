@@ -1,0 +1,85 @@
+#include "server/http/http_site.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/http/request_path.h"
+
+namespace vat {
+
+namespace {
+
+constexpr const char* kPlainText = "text/plain; charset=utf-8";
+
+/// Vite puts a hash of the content into the names of these.
+constexpr std::string_view kHashedFolder = "/assets/";
+
+/// The viewer loads its own files only, makes workers from its own bundles, sets styles from
+/// scripts, and opens a WebSocket to its server; 'self' does not cover ws: in every browser.
+constexpr const char* kContentSecurityPolicy =
+    "default-src 'self'; worker-src 'self' blob:; connect-src 'self' ws: wss:; "
+    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+    "object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
+
+constexpr const char* kNotBuilt = R"(<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<title>vat</title>
+<h1>The viewer has not been built</h1>
+<p>The server is running, but it found no viewer. Stop it and start it with <code>./vat serve</code>,
+which builds the viewer first.</p>
+</html>
+)";
+
+HttpResponse text(int status, std::string message) {
+  return {status, kPlainText, std::move(message), {}};
+}
+
+HttpResponse viewer_file(const StaticFiles& viewer, const std::string& path) {
+  const bool is_root = path == "/";
+  if (const StaticFiles::File* file = viewer.find(is_root ? "/index.html" : path)) {
+    const bool is_hashed = path.starts_with(kHashedFolder);
+    return {200,
+            file->content_type,
+            file->content,
+            {{"Cache-Control", is_hashed ? "public, max-age=31536000, immutable" : "no-cache"}}};
+  }
+  if (is_root) return {503, "text/html; charset=utf-8", kNotBuilt, {}};
+  return text(404, "Not found.\n");
+}
+
+HttpResponse answer(const StaticFiles& viewer, std::string_view method, std::string_view target) {
+  if (method != "GET" && method != "HEAD") {
+    HttpResponse response = text(405, "Only GET and HEAD are served here.\n");
+    response.headers.emplace_back("Allow", "GET, HEAD");
+    return response;
+  }
+  const std::optional<std::string> path = request_path(target);
+  if (!path) return text(400, "The path is malformed.\n");
+  if (*path == "/healthz") return {200, "application/json", "{\"status\":\"ok\"}\n", {}};
+  return viewer_file(viewer, *path);
+}
+
+void add_common_headers(HttpResponse& response) {
+  bool has_cache_control = false;
+  for (const auto& header : response.headers) has_cache_control |= header.first == "Cache-Control";
+  if (!has_cache_control) response.headers.emplace_back("Cache-Control", "no-store");
+  response.headers.emplace_back("Content-Security-Policy", kContentSecurityPolicy);
+  response.headers.emplace_back("X-Content-Type-Options", "nosniff");
+  response.headers.emplace_back("Referrer-Policy", "no-referrer");
+}
+
+}  // namespace
+
+HttpHandler make_http_site(StaticFiles viewer) {
+  return [files = std::make_shared<const StaticFiles>(std::move(viewer))](std::string_view method,
+                                                                          std::string_view target) {
+    HttpResponse response = answer(*files, method, target);
+    add_common_headers(response);
+    return response;
+  };
+}
+
+}  // namespace vat
