@@ -244,7 +244,10 @@ void add_options(CLI::App& command, Options& options) {
 void check_together(const Options& options) {
   namespace fs = std::filesystem;
   if (options.output.empty() || options.diagnostics.empty()) return;
-  if (fs::weakly_canonical(options.output) == fs::weakly_canonical(options.diagnostics)) {
+  const auto place = [](const std::string& name) {
+    return fs::weakly_canonical(fs::absolute(name));
+  };
+  if (place(options.output) == place(options.diagnostics)) {
     throw CLI::ValidationError("--diagnostics", "must not be the file of --output");
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
@@ -176,6 +177,71 @@ TEST(Output, FullDiskIsAnError) {
     EXPECT_THAT(result.err, AllOf(StartsWith(folder.file(name) + ": cannot be written: "),
                                   HasSubstr("No space left on device")));
   }
+}
+
+// As on a disk that fills up: some frames fit, the last does not.
+TEST(Output, DiskThatFillsUpIsAnErrorAndLeavesNoResult) {
+  for (const char* name : {"run.csv", "run.npy"}) {
+    const TemporaryFolder folder;
+    const ProgramResult result = run_vat_with_file_limit(
+        256, {"simulate", test_scene("mixed"), "--until", "0.4", "--output", folder.file(name)});
+    EXPECT_EQ(result.exit_code, 1) << name;
+    EXPECT_THAT(lines_of(result.err),
+                ElementsAre(folder.file(name) + ": cannot be written: File too large"));
+    EXPECT_THAT(folder.names(), ElementsAre(std::string(name) + ".part"));
+  }
+}
+
+TEST(Output, FullDiskForDiagnosticsIsAnError) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/full", folder.file("full.csv"));
+  const ProgramResult result = run_vat({"simulate", test_scene("pair"), "--until", "0.02",
+                                        "--diagnostics", folder.file("full.csv")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, StartsWith(folder.file("full.csv") + ": cannot be written: No space"));
+}
+
+TEST(Output, FolderInPlaceOfAFileIsAnError) {
+  const TemporaryFolder folder;
+  for (const char* name : {"run.csv", "run.npy", "run.vtk", "run.ply"}) {
+    std::filesystem::create_directory(folder.file(name));
+    const ProgramResult result =
+        run_vat({"simulate", test_scene("pair"), "--until", "0", "--output", folder.file(name)});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, StartsWith(folder.file(name) + ": cannot be created: Is a directory"));
+  }
+}
+
+TEST(Output, OldResultStaysUntilTheNewOneIsComplete) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.csv");
+  std::ofstream(file) << "old";
+  const ProgramResult failed =
+      run_vat({"simulate", test_scene("unstable"), "--until", "1", "--output", file});
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_EQ(read_file(file), "old");
+  const ProgramResult fine =
+      run_vat({"simulate", test_scene("pair"), "--until", "0", "--output", file});
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_EQ(read_csv(file).rows.size(), 2u);
+}
+
+TEST(Output, SceneWithoutBodiesHasNoRows) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("empty.json");
+  std::ofstream(scene) << R"({"format": "vat.scene/1", "materials": [], "bodies": []})";
+  for (const char* name : {"run.csv", "run.npy", "run.vtk", "run.ply"}) {
+    const ProgramResult result =
+        run_vat({"simulate", scene, "--until", "0", "--output", folder.file(name), "--diagnostics",
+                 folder.file("d.csv")});
+    ASSERT_EQ(result.exit_code, 0) << name << result.err;
+  }
+  EXPECT_TRUE(read_csv(folder.file("run.csv")).rows.empty());
+  EXPECT_THAT(read_npy(folder.file("run.npy")).shape, ElementsAre(1u, 0u, 6u));
+  EXPECT_TRUE(read_vtk(folder.file("run.vtk")).points.empty());
+  EXPECT_TRUE(read_ply(folder.file("run.ply")).empty());
+  const Table diagnostics = read_csv(folder.file("d.csv"));
+  EXPECT_EQ(diagnostics.number(0, "kinetic_energy"), 0);
 }
 
 TEST(Output, FullStandardOutputIsAnError) {

@@ -16,8 +16,8 @@ using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
 
-std::string hash_of(std::vector<std::string> options) {
-  std::vector<std::string> arguments = {"simulate", test_scene("mixed"), "--hash"};
+std::string hash_of(const std::string& scene, const std::vector<std::string>& options) {
+  std::vector<std::string> arguments = {"simulate", scene, "--hash"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const ProgramResult result = run_vat(arguments);
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -25,11 +25,29 @@ std::string hash_of(std::vector<std::string> options) {
   return result.out;
 }
 
+std::string hash_of(const std::vector<std::string>& options) {
+  return hash_of(test_scene("mixed"), options);
+}
+
 TEST(Simulate, HashDoesNotDependOnThreads) {
   const std::string one = hash_of({"--until", "0.2", "--threads", "1"});
   EXPECT_EQ(hash_of({"--until", "0.2", "--threads", "2"}), one);
   EXPECT_EQ(hash_of({"--until", "0.2", "--threads", "4"}), one);
   EXPECT_NE(hash_of({"--until", "0.22"}), one);
+}
+
+// The first moments of the scenes as they are shipped.
+TEST(Simulate, CatalogueScenesAreTheSameForAnyThreadCount) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(VAT_SOURCE_DIR "/protocol/scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    const std::string scene = entry.path();
+    const std::string one = hash_of(scene, {"--until", "0.1", "--threads", "1"});
+    EXPECT_EQ(hash_of(scene, {"--until", "0.1", "--threads", "2"}), one) << scene;
+    EXPECT_EQ(hash_of(scene, {"--until", "0.1", "--threads", "4"}), one) << scene;
+    ++count;
+  }
+  EXPECT_GE(count, 6u);
 }
 
 TEST(Simulate, HashDoesNotDependOnOutputs) {

@@ -1,11 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "tests/cli/program.h"
 
 namespace vat::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
@@ -15,6 +18,14 @@ struct WrongUse {
   std::vector<std::string> arguments;
   std::string named;  ///< what the message must name
 };
+
+/// The arguments, for the test's name; scenes by their file names.
+void PrintTo(const WrongUse& use, std::ostream* out) {
+  *out << "vat";
+  for (const std::string& argument : use.arguments) {
+    *out << ' ' << argument.substr(argument.rfind('/') + 1);
+  }
+}
 
 class WrongUsage : public testing::TestWithParam<WrongUse> {};
 
@@ -49,6 +60,16 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--integrator", "7"}), "--integrator"},
                     WrongUse{with_scene({"--output", "run.xyz"}), ".csv, .vtk, .ply or .npy"},
                     WrongUse{with_scene({"--output", "run"}), ".csv, .vtk, .ply or .npy"},
+                    WrongUse{with_scene({"--diagnostics", "run.txt"}), "must end in .csv"},
+                    WrongUse{with_scene({"--diagnostics", "scene.json"}), "must end in .csv"},
+                    WrongUse{with_scene({"--output", "a.csv", "--diagnostics", "./a.csv"}),
+                             "must not be the file of --output"},
+                    WrongUse{with_scene({"--threads", "99999999999999999999"}), "--threads"},
+                    WrongUse{with_scene({"--dt", "1e-400"}), "--dt"},
+                    WrongUse{with_scene({"--every", "inf"}), "--every"},
+                    WrongUse{with_scene({"another.json"}), "another.json"},
+                    WrongUse{with_scene({"--until"}), "--until"},
+                    WrongUse{{"bench", "--output", "bench.txt"}, "must end in .csv"},
                     WrongUse{{"bench", "--fast"}, "--fast"}));
 
 TEST(Usage, VersionIsPrinted) {
@@ -75,8 +96,17 @@ TEST(Usage, AllIntegratorsAreAccepted) {
   }
 }
 
+// The wish is within the options' ranges, and the step that follows from it is not.
+TEST(Usage, StepThatIsTooShortIsExplained) {
+  const ProgramResult result = run_vat(
+      {"simulate", test_scene("pair"), "--dt", "1e-7", "--every", "1.5e-7", "--until", "1.5e-6"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(lines_of(result.err),
+              ElementsAre(testing::StartsWith("the step is 7.5e-08 s instead of 1e-07 s"),
+                          testing::StartsWith("/numerics/step: must be")));
+}
+
 TEST(Usage, UnknownSceneListsTheCatalogue) {
-  const TemporaryFolder folder;
   for (const char* command : {"simulate", "validate", "bench"}) {
     const ProgramResult result = run_vat({command, "atlantis"});
     EXPECT_EQ(result.exit_code, 1);
