@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace vat::script {
+
+using Deadline = std::chrono::steady_clock::time_point;
+
+struct Message {
+  enum class Kind { text, binary, closed };
+  Kind kind = Kind::text;
+  std::string bytes;             ///< the message, or the reason given for closing
+  std::uint16_t close_code = 0;  ///< 0: the connection broke
+};
+
+/// One WebSocket connection as a script uses it.
+class Client {
+ public:
+  virtual ~Client() = default;
+  virtual void send_text(const std::string& text) = 0;
+  virtual void send_binary(const std::string& bytes) = 0;
+  virtual void close() = 0;
+  /// Leaves what arrives in the socket until it is called again with true.
+  virtual void read(bool wanted) = 0;
+  /// The next message, or nothing where none has come by the deadline. The last is `closed`.
+  virtual std::optional<Message> next(Deadline deadline) = 0;
+};
+
+struct ConnectRequest {
+  std::string path = "/ws";
+  std::string subprotocol = "vat.v1";  ///< "": none is asked for
+};
+
+/// An open connection, or the HTTP status of the refusal.
+struct Connected {
+  std::unique_ptr<Client> client;
+  unsigned http_status = 101;
+};
+using Connect = std::function<Connected(const ConnectRequest&)>;
+
+/// Connects to a server on this machine. Throws std::runtime_error where there is none.
+Connected connect_websocket(std::uint16_t port, const ConnectRequest& request, Deadline deadline);
+
+}  // namespace vat::script

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "tests/protocol/client.h"
+#include "tests/protocol/script.h"
+
+namespace vat::script {
+
+/// A script's line that was not met. The text names the line, what was expected and what came.
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Plays scripts. README.md in this folder lists the actions.
+///
+/// Beside what the lines ask for, every message that comes must be a JSON-RPC object or a valid
+/// frame, and a client's frames must be numbered without a gap, each of the epoch that the last
+/// description named.
+class Player {
+ public:
+  /// `patience`: how long a line waits for what it expects, where it does not say so itself.
+  Player(Connect connect, std::chrono::milliseconds patience)
+      : connect_(std::move(connect)), patience_(patience) {}
+
+  /// Throws Failure at the first line that is not met, and ScriptError for a mistake in a line.
+  void play(const std::vector<Line>& lines);
+
+ private:
+  /// A client and what it received and no line has asked for yet.
+  struct Peer {
+    std::unique_ptr<Client> client;
+    std::deque<Json> replies;
+    std::deque<Json> events;
+    std::deque<Json> frames;
+    std::optional<Message> closed;
+    std::uint64_t last_sequence = 0;
+    std::optional<std::uint64_t> epoch;  ///< of the last description
+  };
+  using Inbox = std::deque<Json> Peer::*;
+
+  void play_line(const Json& line);
+  void run_action(const std::string& action, const Json& line);
+  void repeat(const Json& line);
+  void connect(const Json& line);
+  void send(const Json& line);
+  void call(const Json& line);
+  void notify(const Json& line);
+  void expect_reply(const Json& line);
+  void wait_for(const Json& line, const char* action, Inbox inbox);
+  void expect_frame(const Json& line);
+  void expect_none(const Json& line);
+  void expect_close(const Json& line);
+
+  std::string name_of(const Json& name) const;
+  Peer& peer_of(const Json& line);
+  Deadline deadline_of(const Json& line) const;
+  /// Takes one message into the inboxes; false where none came by the deadline.
+  bool receive(Peer& peer, Deadline deadline);
+  void receive_text(Peer& peer, const std::string& text);
+  void receive_frame(Peer& peer, const std::string& bytes);
+  /// The first element of the inbox that `wanted` holds for, taken out of it.
+  template <class Wanted>
+  std::optional<Json> take(Peer& peer, Inbox inbox, Deadline deadline, Wanted&& wanted);
+  void require(const Json& pattern, const Json& value);
+
+  Connect connect_;
+  std::chrono::milliseconds patience_;
+  std::map<std::string, Peer> peers_;
+  Captures captures_;
+  std::int64_t last_id_ = 1'000'000;  ///< of `call`; scripts choose smaller ones
+};
+
+}  // namespace vat::script

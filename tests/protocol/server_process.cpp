@@ -1,0 +1,117 @@
+#include "tests/protocol/server_process.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <regex>
+#include <stdexcept>
+#include <thread>
+
+namespace vat::script {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr auto kStartTime = std::chrono::seconds(30);  // a sanitizer build on a busy machine
+constexpr auto kStopTime = std::chrono::seconds(10);
+
+}  // namespace
+
+ServerProcess::ServerProcess(const std::string& program,
+                             const std::vector<std::string>& arguments) {
+  start(program, arguments);
+  const auto deadline = steady_clock::now() + kStartTime;
+  const std::regex url("vat is at http://[^ /]*:([0-9]+)/.*");
+  std::smatch match;
+  try {
+    std::string line = read_line(deadline);
+    while (!std::regex_match(line, match, url)) line = read_line(deadline);
+  } catch (...) {
+    if (!reap()) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    close(output_);
+    throw;
+  }
+  port_ = static_cast<std::uint16_t>(std::stoul(match[1]));
+}
+
+ServerProcess::~ServerProcess() {
+  if (!reap()) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  close(output_);
+}
+
+void ServerProcess::start(const std::string& program, const std::vector<std::string>& arguments) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe for the server's output");
+  std::vector<std::string> words{program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_ = fork();
+  if (pid_ == 0) {
+    dup2(ends[1], STDOUT_FILENO);
+    close(ends[0]);
+    close(ends[1]);
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  close(ends[1]);
+  output_ = ends[0];
+  if (pid_ < 0) {
+    close(output_);
+    throw std::runtime_error("no process for the server");
+  }
+}
+
+std::string ServerProcess::read_line(steady_clock::time_point deadline) {
+  std::string line;
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now());
+    pollfd ready{output_, POLLIN, 0};
+    if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(left.count())) <= 0) {
+      throw std::runtime_error("the server did not tell its URL in time; last: " + line);
+    }
+    char byte = 0;
+    if (::read(output_, &byte, 1) != 1) {
+      throw std::runtime_error("the server ended before it told its URL; last: " + line);
+    }
+    if (byte == '\n') return line;
+    line += byte;
+  }
+}
+
+bool ServerProcess::reap() {
+  if (pid_ < 0) return true;
+  if (waitpid(pid_, &status_, WNOHANG) == 0) return false;
+  pid_ = -1;
+  return true;
+}
+
+bool ServerProcess::is_running() {
+  return !reap();
+}
+
+int ServerProcess::stop() {
+  if (!reap()) kill(pid_, SIGTERM);
+  const auto deadline = steady_clock::now() + kStopTime;
+  while (!reap()) {
+    if (steady_clock::now() > deadline) {
+      throw std::runtime_error("the server did not end ten seconds after SIGTERM");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  if (!WIFEXITED(status_)) {
+    throw std::runtime_error("the server was ended by signal " + std::to_string(WTERMSIG(status_)));
+  }
+  return WEXITSTATUS(status_);
+}
+
+}  // namespace vat::script

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vat::script {
+
+/// A running `vat serve`. Ends it when destroyed, in any case.
+class ServerProcess {
+ public:
+  /// Starts `program` with `arguments` and waits for the line that names its URL. Throws
+  /// std::runtime_error where it does not come.
+  ServerProcess(const std::string& program, const std::vector<std::string>& arguments);
+  ~ServerProcess();
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  bool is_running();
+  /// Sends SIGTERM and gives the exit status; throws where it does not end in ten seconds or ends
+  /// by a signal.
+  int stop();
+
+ private:
+  void start(const std::string& program, const std::vector<std::string>& arguments);
+  std::string read_line(std::chrono::steady_clock::time_point deadline);
+  /// Whether the process has ended; keeps its status.
+  bool reap();
+
+  int pid_ = -1;  ///< -1: there is none
+  int output_ = -1;
+  int status_ = 0;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace vat::script
