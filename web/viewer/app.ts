@@ -45,8 +45,6 @@ export class App {
   private clockOffset: number | undefined;
   /** Came in since the last drawing. */
   private newest: Frame | undefined;
-  /** The scene that the camera was set up for. */
-  private framedScene: string | undefined;
 
   start(): void {
     this.stage.scene.add(this.world.group, this.marker.group);
@@ -112,6 +110,8 @@ export class App {
   private describe(description: SessionDescription): void {
     const isEntry = this.canvas.dataset.joined !== 'true';
     this.grabber.release();
+    // A view that the user has chosen is kept while the scene stays.
+    if (description.scene !== this.description?.scene) this.stage.reframe();
     this.description = description;
     this.newest = undefined;
     this.world.describe(description);
@@ -119,6 +119,7 @@ export class App {
     this.playback.showPlaying(description.playing);
     this.playback.showSpeed(description.speed);
     this.canvas.dataset.scene = description.scene;
+    delete this.canvas.dataset.tick; // until a frame of this description is drawn
     if (isEntry) this.enter();
   }
 
@@ -160,17 +161,9 @@ export class App {
   private showFrame(frame: Frame): void {
     this.stream.acknowledge(frame.header.sequence);
     if (!this.world.show(frame)) return;
-    this.frameCamera();
+    this.stage.follow(this.world.bounds);
     this.counters.showFrame(frame.header, this.clockOffset);
     this.canvas.dataset.tick = String(frame.header.tick);
     this.stage.invalidate();
-  }
-
-  /** Points the camera at a new scene; a view that the user has chosen is kept otherwise. */
-  private frameCamera(): void {
-    if (this.framedScene === this.description?.scene) return;
-    this.framedScene = this.description?.scene;
-    this.world.fitGround();
-    this.stage.frame(this.world.bounds());
   }
 }

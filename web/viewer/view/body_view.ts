@@ -8,32 +8,25 @@ import {
   Quaternion,
   Vector3,
 } from 'three';
-import type { Box3, Ray, ShaderMaterial } from 'three';
+import type { Box3, Color, Ray, ShaderMaterial } from 'three';
 import { BodyKind } from '../../client/index';
 import type { BodyDescription, FrameHeader, GridBlock, PoseBlock } from '../../client/index';
 import { nearestSphere } from '../grab/pick';
 import type { Hit } from '../grab/pick';
+import { kLiquidLayer } from './liquid_pass';
 import { bodyColour } from './palette';
 import { shadowMaterial } from './shadow_material';
 import type { FloorUniforms } from './shadow_material';
-import { sphereDepthMaterial, sphereMaterial } from './sphere_material';
-import type { SphereLook } from './sphere_material';
+import { sphereMaterial } from './sphere_material';
+import { splatDepthMaterial, splatMaterial } from './splat_material';
 
-/** Draw order: shadows on the floor, solids, the liquid's depth, its colour. */
-const kOrder = { shadow: 1, solid: 2, liquidDepth: 3, liquid: 4 };
+/** Draw order: shadows on the floor, solids; of liquids the depth before the splats. */
+const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2 };
 
-/** Liquid spheres are drawn larger, so that they close up to one surface. */
-const kLiquidSwelling = 1.3;
+/** Of a particle's radius: splats overlap, so that a liquid closes up to one surface. */
+const kSplatSize = 2;
 
-function lookOf(description: BodyDescription, nthOfKind: number): SphereLook {
-  const isLiquid = description.kind === 'liquid';
-  return {
-    color: bodyColour(description.kind, nthOfKind),
-    radius: description.radius * (isLiquid ? kLiquidSwelling : 1),
-    gloss: isLiquid ? 1 : description.kind === 'rigid' ? 0.35 : 0.1,
-    opacity: isLiquid ? 0.86 : 1,
-  };
-}
+const kGloss = { deformable: 0.1, rigid: 0.35 };
 
 /** Two triangles for each instance; `center` is the instance's place. */
 function squares(centers: InstancedBufferAttribute): InstancedBufferGeometry {
@@ -69,14 +62,8 @@ export class BodyView {
     this.geometry = squares(this.centers);
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
-    const look = lookOf(description, nthOfKind);
-    this.add(shadowMaterial(look.radius, floor), kOrder.shadow);
-    if (look.opacity < 1) {
-      this.add(sphereDepthMaterial(look), kOrder.liquidDepth).transparent = true;
-      this.add(sphereMaterial(look), kOrder.liquid);
-    } else {
-      this.add(sphereMaterial(look), kOrder.solid);
-    }
+    this.add(shadowMaterial(description.radius, floor), kOrder.shadow);
+    this.addParticles(bodyColour(description.kind, nthOfKind));
   }
 
   /** Takes the block's positions as they are: no copy is made. */
@@ -125,13 +112,24 @@ export class BodyView {
     for (const material of this.materials) material.dispose();
   }
 
-  private add(material: ShaderMaterial, order: number): ShaderMaterial {
+  private addParticles(color: Color): void {
+    const { kind, radius } = this.description;
+    if (kind === 'liquid') {
+      const look = { color, radius: kSplatSize * radius };
+      this.add(splatDepthMaterial(look), kOrder.splatDepth, kLiquidLayer);
+      this.add(splatMaterial(look), kOrder.splat, kLiquidLayer);
+    } else {
+      this.add(sphereMaterial({ color, radius, gloss: kGloss[kind] }), kOrder.solid);
+    }
+  }
+
+  private add(material: ShaderMaterial, order: number, layer = 0): void {
     const mesh = new Mesh(this.geometry, material);
     mesh.frustumCulled = false; // the geometry's own bounds say nothing about its instances
     mesh.renderOrder = order;
+    mesh.layers.set(layer);
     this.group.add(mesh);
     this.materials.push(material);
-    return material;
   }
 
   private shown(): void {

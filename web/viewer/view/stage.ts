@@ -1,10 +1,13 @@
 import { Box3, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import type { Ray } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { fitBox } from './fit';
+import { LiquidPass } from './liquid_pass';
 import type { Theme } from './palette';
 
 /** From where the first camera looks at the middle of the scene; z is up. */
 const kFirstView = new Vector3(0.42, -1, 0.5).normalize();
+const kFirstMargin = 1.15;
 
 /** Renderer, camera and its controls. Draws when something has changed, at most once a frame. */
 export class Stage {
@@ -12,7 +15,10 @@ export class Stage {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
+  private readonly liquid = new LiquidPass();
   private stale = true;
+  /** What the first view shows; undefined once the user has turned it. */
+  private framed: Box3 | undefined = new Box3();
 
   /** `beforeDraw` runs once in each animation frame. */
   constructor(
@@ -21,12 +27,14 @@ export class Stage {
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.scene.add(this.liquid.surface);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = 0.495 * Math.PI; // the floor is not seen from below
     this.controls.addEventListener('change', () => this.invalidate());
+    this.controls.addEventListener('start', () => (this.framed = undefined));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.renderer.setAnimationLoop(() => this.draw());
   }
@@ -45,22 +53,16 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Puts the camera where the whole box is seen, whatever the shape of the window. */
-  frame(box: Box3): void {
-    const middle = box.getCenter(new Vector3());
-    this.camera.position.copy(middle).add(kFirstView);
-    this.camera.lookAt(middle);
-    this.camera.updateMatrixWorld();
-    const distance = this.distanceToSee(box);
-    this.camera.position.copy(middle).addScaledVector(kFirstView, distance);
-    this.camera.near = distance / 100;
-    this.camera.far = distance * 20;
-    this.camera.updateProjectionMatrix();
-    this.controls.target.copy(middle);
-    this.controls.minDistance = distance / 20;
-    this.controls.maxDistance = distance * 5;
-    this.controls.update();
-    this.invalidate();
+  /** Goes back to the first view, of what `follow` is given next. */
+  reframe(): void {
+    this.framed = new Box3();
+  }
+
+  /** Keeps the whole box in sight, until the user turns the view. */
+  follow(box: Box3): void {
+    if (!this.framed || box.isEmpty() || box.equals(this.framed)) return;
+    this.framed.copy(box);
+    this.showFramed();
   }
 
   /** The line from the eye through a point of the window. */
@@ -80,25 +82,18 @@ export class Stage {
     return this.camera.getWorldDirection(new Vector3());
   }
 
-  /** Least distance from the box's middle, along the first view, with every corner in sight. */
-  private distanceToSee(box: Box3): number {
-    const margin = 1.12;
-    const up = Math.tan((this.camera.fov * Math.PI) / 360) / margin;
-    const side = up * this.camera.aspect;
-    const middle = box.getCenter(new Vector3());
-    const [right, top, back] = [new Vector3(), new Vector3(), new Vector3()];
-    this.camera.matrixWorld.extractBasis(right, top, back);
-    let distance = 0;
-    for (let i = 0; i < 8; ++i) {
-      const corner = new Vector3(
-        i & 1 ? box.max.x : box.min.x,
-        i & 2 ? box.max.y : box.min.y,
-        i & 4 ? box.max.z : box.min.z,
-      ).sub(middle);
-      const needed = Math.max(Math.abs(corner.dot(right)) / side, Math.abs(corner.dot(top)) / up);
-      distance = Math.max(distance, needed + corner.dot(back));
-    }
-    return distance;
+  private showFramed(): void {
+    if (!this.framed || this.framed.isEmpty()) return;
+    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, kFirstMargin);
+    this.camera.position.copy(target).addScaledVector(kFirstView, distance);
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 20;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(target);
+    this.controls.minDistance = distance / 20;
+    this.controls.maxDistance = distance * 5;
+    this.controls.update();
+    this.invalidate();
   }
 
   private resize(): void {
@@ -107,6 +102,7 @@ export class Stage {
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
+    this.showFramed();
     this.invalidate();
   }
 
@@ -115,6 +111,7 @@ export class Stage {
     this.controls.update();
     if (!this.stale) return;
     this.stale = false;
+    this.liquid.draw(this.renderer, this.scene, this.camera);
     this.renderer.render(this.scene, this.camera);
   }
 }

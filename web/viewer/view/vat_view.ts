@@ -3,6 +3,7 @@ import { PlaneGeometry, Vector3 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import type { Box3 } from 'three';
 import type { Vector, VatDescription } from '../../client/index';
 import type { Theme } from './palette';
 
@@ -49,6 +50,12 @@ export class VatView {
   /** Moves the vat from its place at time 0. */
   moveTo(offset: Vector): void {
     this.group.position.set(...offset);
+  }
+
+  /** Makes the box hold the vat where it is now. */
+  expand(box: Box3): void {
+    this.group.updateMatrixWorld();
+    box.expandByObject(this.walls);
   }
 
   dispose(): void {

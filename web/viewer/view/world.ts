@@ -23,6 +23,8 @@ export class World {
   private bodies = new Map<number, BodyView>();
   private vat: VatView | undefined;
   private description: SessionDescription | undefined;
+  /** Where the vat has been or, without one, where the bodies were at first. */
+  private seen = new Box3();
 
   constructor(private look: Theme) {
     this.ground = new Ground(look);
@@ -44,12 +46,8 @@ export class World {
       this.vat = new VatView(description.vat, this.look);
       this.group.add(this.vat.group);
       this.moveVat([0, 0, 0]);
+      this.ground.fit(this.seen);
     }
-  }
-
-  /** Lays the ground below what is shown now. */
-  fitGround(): void {
-    this.ground.fit(this.bounds());
   }
 
   /** Returns false for a frame of another epoch, which this world cannot show. */
@@ -60,16 +58,13 @@ export class World {
       else if (isGrid(block)) this.bodies.get(block.body)?.showGrid(block, frame.header);
       else this.bodies.get(block.body)?.showPose(block);
     }
+    if (this.seen.isEmpty()) this.settle();
     return true;
   }
 
-  /** What a first camera should see: the vat or, without one, the bodies as they are. */
-  bounds(): Box3 {
-    const vat = this.description?.vat;
-    if (vat) return new Box3(new Vector3(...vat.min), new Vector3(...vat.max));
-    const box = new Box3();
-    for (const view of this.bodies.values()) view.expand(box);
-    return box;
+  /** What a camera should see; the slides of a vat are known only once they were seen. */
+  get bounds(): Box3 {
+    return this.seen;
   }
 
   pick(ray: Ray): Picked | undefined {
@@ -102,6 +97,7 @@ export class World {
     const vat = this.description?.vat;
     if (!vat || !this.vat) return;
     this.vat.moveTo(offset);
+    this.vat.expand(this.seen);
     const [x, y, z] = offset;
     this.floor.floor_z.value = vat.min[2] + z;
     this.floor.reach.value = 0.6 * (vat.max[2] - vat.min[2]);
@@ -113,7 +109,14 @@ export class World {
     );
   }
 
+  /** Without a vat the bodies say, as they are now, where to look and where the ground is. */
+  private settle(): void {
+    for (const view of this.bodies.values()) view.expand(this.seen);
+    if (!this.seen.isEmpty()) this.ground.fit(this.seen);
+  }
+
   private clear(): void {
+    this.seen.makeEmpty();
     for (const view of this.bodies.values()) view.dispose();
     this.bodies = new Map();
     this.vat?.dispose();

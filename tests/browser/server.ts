@@ -1,0 +1,56 @@
+import { spawn } from 'node:child_process';
+import type { ChildProcess } from 'node:child_process';
+import { once } from 'node:events';
+import { createInterface } from 'node:readline';
+
+const kStartMs = 60_000;
+
+function program(): string {
+  const path = process.env.VAT_PROGRAM;
+  if (!path) throw new Error('VAT_PROGRAM must be the path of the built program `vat`');
+  return path;
+}
+
+/** The real server, as a user starts it. */
+export class Server {
+  private process: ChildProcess | undefined;
+  private port = 0;
+
+  get url(): string {
+    return `http://127.0.0.1:${this.port}/`;
+  }
+
+  /** Resolves once it listens: on any free port at first, later on the same again. */
+  async start(): Promise<void> {
+    const child = spawn(program(), ['serve', '--port', String(this.port)], {
+      stdio: ['ignore', 'pipe', 'inherit'],
+    });
+    this.process = child;
+    this.port = await announcedPort(child);
+  }
+
+  /** Ends it as a crash would: nobody is told. */
+  async kill(): Promise<void> {
+    const child = this.process;
+    if (!child || child.exitCode !== null || child.signalCode !== null) return;
+    const exited = once(child, 'exit');
+    child.kill('SIGKILL');
+    await exited;
+  }
+}
+
+async function announcedPort(child: ChildProcess): Promise<number> {
+  if (!child.stdout) throw new Error('the output of the server is not piped');
+  const lines = createInterface({ input: child.stdout });
+  const timer = setTimeout(() => child.kill('SIGKILL'), kStartMs);
+  try {
+    for await (const line of lines) {
+      const port = /http:\/\/127\.0\.0\.1:(\d+)\//.exec(line)?.[1];
+      if (port) return Number(port);
+    }
+  } finally {
+    clearTimeout(timer);
+    child.stdout.resume(); // later output is read and forgotten
+  }
+  throw new Error('the server ended without saying where it is');
+}

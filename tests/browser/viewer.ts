@@ -1,0 +1,170 @@
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+import type { Browser, ConsoleMessage, Page, Request } from 'playwright-core';
+
+const kFlags = [
+  '--headless',
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+  '--use-gl=angle',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+];
+
+/** Software rendering on a slow, busy machine still meets this. */
+const kDeadlineMs = 120_000;
+
+/** A step of one colour channel below this may come from rounding. */
+const kSeenStep = 12;
+
+function chromiumPath(): string {
+  const path = process.env.CHROMIUM ?? '/usr/bin/chromium';
+  if (!existsSync(path)) throw new Error(`no browser at ${path}; set CHROMIUM`);
+  return path;
+}
+
+/** The page in a browser with a profile of its own, as a user sees and works it. */
+export class Viewer {
+  /** What the page did wrong: errors on its console, requests that failed or left its server. */
+  readonly problems: string[] = [];
+  /** While the server is away on purpose, connections may fail. */
+  serverIsAway = false;
+
+  private constructor(
+    private readonly browser: Browser,
+    readonly page: Page,
+    private readonly url: string,
+  ) {
+    page.on('console', (message) => this.noteConsole(message));
+    page.on('pageerror', (error) => this.problems.push(`uncaught ${error.message}`));
+    page.on('request', (request) => this.noteRequest(request));
+    page.on('requestfailed', (request) => this.problems.push(`no answer for ${request.url()}`));
+    page.on('response', (response) => {
+      if (!response.ok()) this.problems.push(`${response.status()} for ${response.url()}`);
+    });
+  }
+
+  static async open(url: string): Promise<Viewer> {
+    const browser = await chromium.launch({
+      executablePath: chromiumPath(),
+      args: kFlags,
+      timeout: kDeadlineMs,
+    });
+    const page = await browser.newPage({ viewport: { width: 1000, height: 640 } });
+    page.setDefaultTimeout(kDeadlineMs);
+    const viewer = new Viewer(browser, page, url);
+    await page.goto(url);
+    return viewer;
+  }
+
+  async close(): Promise<void> {
+    await this.browser.close();
+  }
+
+  /** Waits for an element that matches; the page says its state in data attributes. */
+  async until(selector: string): Promise<void> {
+    await this.page.waitForSelector(selector, { state: 'attached' });
+  }
+
+  /** Waits until the picture shows a tick in this range. */
+  async untilTick(least: number, most = Infinity): Promise<void> {
+    await this.page.waitForFunction(
+      ([low, high]) => {
+        const tick = document.getElementById('view')?.dataset.tick;
+        return tick !== undefined && Number(tick) >= low && Number(tick) <= high;
+      },
+      [least, most] as const,
+    );
+  }
+
+  /** Waits for the picture of this scene. */
+  async untilScene(scene: string): Promise<void> {
+    await this.until(`#view[data-joined="true"][data-scene="${scene}"]`);
+  }
+
+  /** A value that the canvas says about itself. */
+  async said(name: string): Promise<string | undefined> {
+    return this.page.locator('#view').evaluate((view, key) => view.dataset[key], name);
+  }
+
+  async tick(): Promise<number> {
+    return Number(await this.said('tick'));
+  }
+
+  /** A picture of the canvas, as a data address. */
+  async picture(): Promise<string> {
+    const png = await this.page.locator('#view').screenshot({ timeout: kDeadlineMs });
+    return `data:image/png;base64,${png.toString('base64')}`;
+  }
+
+  /** How many pixels of two pictures can be told apart. */
+  async difference(first: string, second: string): Promise<number> {
+    const page = await this.browser.newPage(); // outside of the viewer's content policy
+    try {
+      return await page.evaluate(countDifferences, [first, second, kSeenStep] as const);
+    } finally {
+      await page.close();
+    }
+  }
+
+  /**
+   * Looks for a point of the canvas under which there is a particle, from the top down, and leaves
+   * the pointer there.
+   */
+  async findParticle(): Promise<{ x: number; y: number }> {
+    const box = await this.page.locator('#view').boundingBox();
+    if (!box) throw new Error('the canvas is not shown');
+    for (let row = 2; row < 18; ++row) {
+      for (let column = 2; column < 18; ++column) {
+        const point = { x: box.x + (column * box.width) / 20, y: box.y + (row * box.height) / 20 };
+        await this.page.mouse.move(point.x, point.y);
+        if ((await this.said('pointer')) === 'particle') return point;
+      }
+    }
+    throw new Error('no particle is seen');
+  }
+
+  private noteConsole(message: ConsoleMessage): void {
+    if (message.type() !== 'error') return;
+    const isLostLine = this.serverIsAway && message.text().startsWith('WebSocket connection to');
+    if (!isLostLine) this.problems.push(`console: ${message.text()}`);
+  }
+
+  private noteRequest(request: Request): void {
+    const { protocol, origin } = new URL(request.url());
+    const isLocal = protocol === 'blob:' || protocol === 'data:';
+    if (!isLocal && `${origin}/` !== this.url) this.problems.push(`asked for ${request.url()}`);
+  }
+}
+
+/** Runs in the browser. */
+async function countDifferences([first, second, step]: readonly [
+  string,
+  string,
+  number,
+]): Promise<number> {
+  const pixels = await Promise.all(
+    [first, second].map(async (address) => {
+      const image = new Image();
+      image.src = address;
+      await image.decode();
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext('2d');
+      if (!context) throw new Error('the browser cannot draw');
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, image.width, image.height).data;
+    }),
+  );
+  const [a, b] = pixels;
+  if (!a || !b || a.length !== b.length) throw new Error('the pictures differ in size');
+  let count = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    const isSeen = [0, 1, 2].some((channel) => Math.abs(a[i + channel]! - b[i + channel]!) >= step);
+    if (isSeen) ++count;
+  }
+  return count;
+}

@@ -1,0 +1,64 @@
+import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 'three';
+import type { Color } from 'three';
+import { kImpostorHit, kImpostorVertexShader } from './impostor';
+
+/** Of the splat's radius: how far below the surface of the nearest splat others still count. */
+const kLayer = 0.6;
+
+const kDepth = /* glsl */ `
+    if (inside <= 0.65) discard; // the faint rim must not hide what is behind
+    vec3 point = (along - radius * (0.6 * sqrt(inside) - ${kLayer})) * ray;
+    gl_FragDepth = depth_of(point);
+    shape = tints = vec4(0.0);
+  }
+`;
+
+/** Each splat is a lens; normal, depth and colour of lenses that overlap are blended. */
+const kSplat = /* glsl */ `
+    if (inside <= 0.0) discard;
+    vec3 point = (along - 0.6 * radius * sqrt(inside)) * ray;
+    gl_FragDepth = depth_of(point);
+    vec3 bulge = -miss / radius;
+    float weight = inside * inside * inside;
+    shape = weight * vec4(0.9 * bulge.xy, point.z, 1.0);
+    tints = weight * vec4(color * (1.0 + 0.1 * tint), 1.0);
+  }
+`;
+
+const kOutputs = /* glsl */ `
+  layout(location = 0) out vec4 shape;
+  layout(location = 1) out vec4 tints;
+`;
+
+export interface SplatLook {
+  color: Color;
+  /** World radius at which a splat ends [m]. */
+  radius: number;
+}
+
+function splatShader({ color, radius }: SplatLook, body: string): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: kImpostorVertexShader,
+    fragmentShader: kOutputs + kImpostorHit + body,
+    uniforms: { color: { value: color }, radius: { value: radius } },
+  });
+}
+
+/** Writes depths only: just below the surface that the splats are to form. */
+export function splatDepthMaterial(look: SplatLook): ShaderMaterial {
+  const material = splatShader(look, kDepth);
+  material.colorWrite = false;
+  return material;
+}
+
+/** Adds up what makes the surface: LiquidPass divides by the weights. */
+export function splatMaterial(look: SplatLook): ShaderMaterial {
+  const material = splatShader(look, kSplat);
+  material.depthWrite = false;
+  material.blending = CustomBlending;
+  material.blendEquation = AddEquation;
+  material.blendSrc = OneFactor;
+  material.blendDst = OneFactor;
+  return material;
+}
