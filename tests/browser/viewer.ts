@@ -1,6 +1,6 @@
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
-import type { Browser, ConsoleMessage, Page, Request } from 'playwright-core';
+import type { Browser, BrowserContextOptions, ConsoleMessage, Page, Request } from 'playwright-core';
 
 const kFlags = [
   '--headless',
@@ -27,6 +27,12 @@ function chromiumPath(): string {
   return path;
 }
 
+/** How the browser shows the page, where that is not as usual. */
+export type Look = Pick<
+  BrowserContextOptions,
+  'viewport' | 'colorScheme' | 'hasTouch' | 'isMobile' | 'deviceScaleFactor'
+>;
+
 /** The page in a browser with a profile of its own, as a user sees and works it. */
 export class Viewer {
   /** What the page did wrong: errors on its console, requests that failed or left its server. */
@@ -48,13 +54,13 @@ export class Viewer {
     });
   }
 
-  static async open(url: string): Promise<Viewer> {
+  static async open(url: string, look: Look = {}): Promise<Viewer> {
     const browser = await chromium.launch({
       executablePath: chromiumPath(),
       args: kFlags,
       timeout: kDeadlineMs,
     });
-    const page = await browser.newPage({ viewport: { width: 1000, height: 640 } });
+    const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
     page.setDefaultTimeout(kDeadlineMs);
     const viewer = new Viewer(browser, page, url);
     await page.goto(url);
