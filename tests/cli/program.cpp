@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,13 +53,6 @@ std::vector<std::string> vat_words(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-ProgramResult run_vat_to(const std::string& out_name, const std::vector<std::string>& arguments) {
-  const TemporaryFolder folder;
-  const std::string err = folder.file("err");
-  const int exit_code = wait_for(start(vat_words(arguments), out_name, err));
-  return {exit_code, "", read_file(err)};
-}
-
 ProgramResult run_vat(const std::vector<std::string>& arguments) {
   return RunningProgram(arguments).finish();
 }
@@ -72,6 +66,23 @@ ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>
   const TemporaryFolder folder;
   const int exit_code = wait_for(start(words, folder.file("out"), folder.file("err")));
   return {exit_code, read_file(folder.file("out")), read_file(folder.file("err"))};
+}
+
+// Open for writing too, so that neither this nor the program waits for the other end.
+Pipe::Pipe(const std::string& path) {
+  if (mkfifo(path.c_str(), 0600) == 0) descriptor_ = open(path.c_str(), O_RDWR | O_NONBLOCK);
+  if (descriptor_ < 0) throw std::runtime_error("no pipe at " + path);
+}
+
+Pipe::~Pipe() {
+  close(descriptor_);
+}
+
+std::string Pipe::content() const {
+  std::string bytes(65536, '\0');
+  const ssize_t count = read(descriptor_, bytes.data(), bytes.size());
+  bytes.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
+  return bytes;
 }
 
 RunningProgram::RunningProgram(const std::vector<std::string>& arguments)

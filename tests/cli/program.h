@@ -14,10 +14,8 @@ struct ProgramResult {
 /// Runs the built program to its end.
 ProgramResult run_vat(const std::vector<std::string>& arguments);
 
-/// The same with standard output to a file or device of this name; `out` stays empty.
-ProgramResult run_vat_to(const std::string& out_name, const std::vector<std::string>& arguments);
-
-/// The same where no file may grow beyond `blocks` of 512 bytes, as on a disk that fills up.
+/// The same where no file, standard output and error included, may grow beyond `blocks` of
+/// 512 bytes, as on a disk that fills up.
 ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>& arguments);
 
 /// Path of one of the scenes beside these tests.
@@ -43,6 +41,21 @@ class TemporaryFolder {
 
  private:
   std::string path_;
+};
+
+/// A named pipe, made in a folder of the test's own and held open for reading.
+class Pipe {
+ public:
+  explicit Pipe(const std::string& path);
+  ~Pipe();
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  /// What was written to it and not yet read; at most the 64 KiB that a pipe holds.
+  std::string content() const;
+
+ private:
+  int descriptor_ = -1;
 };
 
 /// The built program at work; ended by force if it still is when this goes.
