@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "tests/support/scenes.h"
+
+namespace vat::test {
+
+inline constexpr Real kBlockSpacing = 0.05;  // [m]
+
+/// Two materials, "a" and "b", of which any body kind can be made. All springs and contacts have a
+/// ratio of damping to stiffness of 2 ms: explicit Euler is stable for steps below that ratio.
+inline Scene make_two_material_scene(IntegratorId integrator, Real step, Real viscosity = 0) {
+  Scene scene = make_scene(integrator, step);
+  for (const char* name : {"a", "b"}) {
+    scene.materials.push_back(make_liquid(name, 1000, {100, viscosity, 2 * kBlockSpacing}));
+    scene.materials.back().self_contact = SpringConstants{500, 1};
+  }
+  scene.default_interface = {500, 1};
+  return scene;
+}
+
+/// n^3 particles of 0.125 kg about `center`; a deformable one has springs to its near neighbours.
+inline BodyDescription make_block(std::string name, BodyKind kind, std::string material, int n,
+                                  const Vec3& center, const Vec3& velocity) {
+  std::vector<Vec3> points = make_lattice(n, n, n, kBlockSpacing);
+  BodyDescription body = make_body(std::move(name), kind, std::move(material),
+                                   make_particles(points, 0.125), kBlockSpacing / 2);
+  body.position = center;
+  body.velocity = velocity;
+  if (kind == BodyKind::deformable) {
+    body.springs = join_near(points, 1.5 * kBlockSpacing, {2000, 4});
+  }
+  if (kind == BodyKind::rigid) body.angular_velocity = {1, -2, 3};
+  return body;
+}
+
+}  // namespace vat::test
