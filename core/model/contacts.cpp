@@ -101,8 +101,7 @@ void find_exclusions(Model& model) {
   model.exclusion_begin.push_back(0);
   for (std::vector<Index>& of_particle : excluded) {
     std::ranges::sort(of_particle);
-    const auto repeated = std::ranges::unique(of_particle);
-    of_particle.erase(repeated.begin(), repeated.end());
+    of_particle.erase(std::unique(of_particle.begin(), of_particle.end()), of_particle.end());
     model.exclusions.insert(model.exclusions.end(), of_particle.begin(), of_particle.end());
     model.exclusion_begin.push_back(static_cast<Index>(model.exclusions.size()));
   }
