@@ -32,7 +32,10 @@ class WebSocketClient final : public Client {
   void send_text(const std::string& text) override { send({Message::Kind::text, text, 0}); }
   void send_binary(const std::string& bytes) override { send({Message::Kind::binary, bytes, 0}); }
   void close() override {
-    stream_.async_close(websocket::close_code::normal, [](error_code) {});
+    closing_ = true;  // from here the library itself reads on, up to the answer
+    stream_.async_close(websocket::close_code::normal, [this](error_code failure) {
+      ended(failure ? failure : error_code(websocket::error::closed));
+    });
   }
   void read(bool wanted) override {
     read_wanted_ = wanted;
@@ -53,6 +56,7 @@ class WebSocketClient final : public Client {
   void start_write();
   void start_read();
   void read_ended(error_code failure);
+  void ended(error_code failure);
 
   asio::io_context context_;
   websocket::stream<beast::tcp_stream> stream_;
@@ -62,6 +66,7 @@ class WebSocketClient final : public Client {
   bool writing_ = false;
   bool reading_ = false;
   bool read_wanted_ = true;
+  bool closing_ = false;
   bool closed_ = false;
 };
 
@@ -132,16 +137,20 @@ void WebSocketClient::start_read() {
 void WebSocketClient::read_ended(error_code failure) {
   reading_ = false;
   if (failure) {
-    closed_ = true;
-    const std::uint16_t code = failure == websocket::error::closed ? stream_.reason().code : 0;
-    const std::string reason(stream_.reason().reason.data(), stream_.reason().reason.size());
-    received_.push_back({Message::Kind::closed, code == 0 ? failure.message() : reason, code});
+    if (!closing_) ended(failure);
     return;
   }
   received_.push_back({stream_.got_binary() ? Message::Kind::binary : Message::Kind::text,
                        beast::buffers_to_string(buffer_.data()), 0});
   buffer_.consume(buffer_.size());
   start_read();
+}
+
+void WebSocketClient::ended(error_code failure) {
+  closed_ = true;
+  const std::uint16_t code = failure == websocket::error::closed ? stream_.reason().code : 0;
+  const std::string reason(stream_.reason().reason.data(), stream_.reason().reason.size());
+  received_.push_back({Message::Kind::closed, code == 0 ? failure.message() : reason, code});
 }
 
 }  // namespace

@@ -11,14 +11,17 @@ using namespace vat::script;
 struct Options {
   std::string program;
   std::string scenes;
+  std::string scene;
   std::string script;
   std::string heading;  ///< of the exchange, where the script is a Markdown document
   double patience = 20;
+  std::vector<std::pair<std::string, std::string>> captures;
 };
 
 /// The server's arguments: a script may begin with {"server": [arguments]}.
 std::vector<std::string> server_arguments(const Options& options, std::vector<Line>& lines) {
-  std::vector<std::string> arguments{"serve", "--port", "0", "--scenes", options.scenes};
+  std::vector<std::string> arguments{"serve", "--port", "0", "--scenes", options.scenes,
+                                     "--scene", options.scene};
   if (lines.front().action.contains("server")) {
     for (const Json& word : lines.front().action["server"]) arguments.push_back(word);
     lines.erase(lines.begin());
@@ -40,6 +43,7 @@ void play(const Options& options) {
                                    std::chrono::steady_clock::now() + patience);
         },
         patience);
+    for (const auto& [name, text] : options.captures) player.set('$' + name, text);
     if (is_document) lines.insert(lines.begin(), {"connect", {{"connect", "a"}}});
     player.play(lines);
     if (!server.is_running()) throw Failure("the server has ended");
@@ -56,6 +60,8 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("--program", options.program, "the vat program")->required();
   app.add_option("--scenes", options.scenes, "the catalogue's folder")->required();
+  app.add_option("--scene", options.scene, "the first session's scene")->required();
+  app.add_option("--set", options.captures, "a text for the script's \"$NAME\": NAME TEXT");
   app.add_option("--heading", options.heading, "play the exchange under this heading");
   app.add_option("--patience", options.patience, "seconds that a line waits");
   app.add_option("script", options.script, "a .jsonl script, or a Markdown document")->required();

@@ -116,17 +116,15 @@ class Matcher {
   std::optional<std::string> match_tests(const Json& pattern, const Json& value,
                                          const std::string& path) {
     for (const auto& [test, operand] : pattern.items()) {
+      if (test == "$capture") continue;
       if (auto reason = match_test(test, operand, value, path)) return reason;
     }
+    if (pattern.contains("$capture")) captures_[pattern["$capture"].get<std::string>()] = value;
     return {};
   }
 
   std::optional<std::string> match_test(const std::string& test, const Json& operand,
                                         const Json& value, const std::string& path) {
-    if (test == "$capture") {
-      captures_[operand.get<std::string>()] = value;
-      return {};
-    }
     if (test == "$has") return match_any_element(operand, value, path);
     if (test == "$each") return match_each_element(operand, value, path);
     if (holds(test, substitute(operand, captures_), value)) return {};

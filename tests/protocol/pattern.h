@@ -32,7 +32,8 @@ Json substitute(const Json& value, const Captures& captures);
 ///   $contains: a text with this part              $size: a text or list of this length
 ///   $has: a list with a matching element          $each: a list of matching elements only
 ///   $absent: true where there must be no such member
-///   $capture: keeps the value under a name, whether or not there is one
+///   $capture: keeps the value under a name in place of an earlier one, once all tests beside it
+///   hold
 std::optional<std::string> mismatch(const Json& pattern, const Json& value, Captures& captures);
 
 }  // namespace vat::script

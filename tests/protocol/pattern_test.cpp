@@ -80,6 +80,15 @@ TEST(Pattern, AbsentMembers) {
   EXPECT_FALSE(matches(R"({"a": {"$absent": true}})", R"({"a": null})"));
 }
 
+TEST(Pattern, ACaptureIsReplacedWhereTheTestsBesideItHold) {
+  Captures captures{{"$t", 5}};
+  const Json next = Json::parse(R"({"$capture": "$t", "$eq": {"$add": ["$t", 1]}})");
+  EXPECT_TRUE(mismatch(next, 7, captures));
+  EXPECT_EQ(captures.at("$t"), 5);
+  EXPECT_FALSE(mismatch(next, 6, captures));
+  EXPECT_EQ(captures.at("$t"), 6);
+}
+
 TEST(Pattern, ANameCapturesOnceAndComparesAfterThat) {
   Captures captures;
   EXPECT_FALSE(mismatch(Json::parse(R"(["$t", "$t", "$any", "$any"])"), {5, 5, 1, 2}, captures));

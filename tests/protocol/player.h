@@ -24,6 +24,9 @@ class Player {
   Player(Connect connect, std::chrono::milliseconds patience)
       : connect_(std::move(connect)), patience_(patience) {}
 
+  /// Makes a capture beforehand.
+  void set(const std::string& name, Json value) { captures_[name] = std::move(value); }
+
   /// Throws Failure at the first line that is not met, and ScriptError for a mistake in a line.
   void play(const std::vector<Line>& lines);
 
