@@ -1,0 +1,179 @@
+#include "core/step/guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/force_probe.h"
+#include "tests/support/mixed_scenes.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real kStep = 1e-3;
+
+/// Eight particles of each kind, far apart.
+Scene make_three_kinds() {
+  Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
+  scene.bodies = {make_block("liquid", BodyKind::liquid, "a", 2, {0, 0, 0.5}, Vec3::Zero()),
+                  make_block("deformable", BodyKind::deformable, "a", 2, {1, 0, 0.5}, Vec3::Zero()),
+                  make_block("rigid", BodyKind::rigid, "a", 2, {2, 0, 0.5}, Vec3::Zero())};
+  return scene;
+}
+
+/// The fault of the scene's first state after `spoil` has changed it.
+template <class Spoil>
+std::optional<Fault> fault_after(const Spoil& spoil) {
+  const Scene scene = make_three_kinds();
+  ForceProbe probe(scene);
+  spoil(probe.state().now);
+  return find_fault(probe.model(), probe.state().now, guard_bounds(probe.model(), kStep));
+}
+
+void expect_fault(const std::optional<Fault>& fault, GuardEvent::Cause cause, Index body,
+                  Index particle) {
+  ASSERT_TRUE(fault.has_value());
+  EXPECT_EQ(fault->cause, cause) << to_string(fault->cause);
+  EXPECT_EQ(fault->body, body);
+  EXPECT_EQ(fault->particle, particle);
+}
+
+TEST(Guard, FindsNothingInASoundState) {
+  EXPECT_FALSE(fault_after([](Configuration&) {}).has_value());
+}
+
+TEST(Guard, NamesTheParticleThatIsNotFinite) {
+  using enum GuardEvent::Cause;
+  expect_fault(fault_after([](Configuration& at) { at.position[3].y() = kNan; }), non_finite, 0, 3);
+  expect_fault(fault_after([](Configuration& at) {
+                 at.velocity[9].x() = -std::numeric_limits<Real>::infinity();
+               }),
+               non_finite, 1, 1);
+}
+
+TEST(Guard, NamesTheRigidBodyThatIsNotFinite) {
+  using enum GuardEvent::Cause;
+  const auto expect = [](const auto& spoil) {
+    expect_fault(fault_after([&](Configuration& at) { spoil(at.rigid[0]); }), non_finite, 2, 0);
+  };
+  expect([](RigidState& rigid) { rigid.center_of_mass.z() = kNan; });
+  expect([](RigidState& rigid) { rigid.momentum.x() = kNan; });
+  expect([](RigidState& rigid) { rigid.angular_momentum.y() = kNan; });
+  expect([](RigidState& rigid) { rigid.orientation.w() = kNan; });
+}
+
+TEST(Guard, FindsWhatLeavesTheDomain) {
+  using enum GuardEvent::Cause;
+  expect_fault(fault_after([](Configuration& at) { at.position[8].x() = -1.1e6; }), outside_domain,
+               1, 0);
+  expect_fault(fault_after([](Configuration& at) { at.rigid[0].center_of_mass.z() = 1.1e6; }),
+               outside_domain, 2, 0);
+}
+
+TEST(Guard, TheDomainOfAVatIsTwiceItsLongestSideAroundIt) {
+  Scene scene = make_three_kinds();
+  scene.vat = Vat{{-1, -1, 0}, {3, 1, 1}, true, SlideMotion{{1, 0, 0}, 0.5, 1}};
+  const ForceProbe closed(scene);
+  const GuardBounds bounds = guard_bounds(closed.model(), kStep);
+  EXPECT_EQ(bounds.min, Vec3(-9.5, -9.5, -8.5));
+  EXPECT_EQ(bounds.max, Vec3(11.5, 9.5, 9.5));
+  scene.vat->lid = false;
+  const ForceProbe open(scene);
+  EXPECT_EQ(guard_bounds(open.model(), kStep).max, Vec3(11.5, 9.5, 401));
+}
+
+// Touching particles notice one another at 0.05 m, walls at 0.025 m.
+TEST(Guard, NothingMayPassInOneStepWhatItWouldNotNotice) {
+  using enum GuardEvent::Cause;
+  Scene scene = make_three_kinds();
+  const ForceProbe free(scene);
+  EXPECT_DOUBLE_EQ(guard_bounds(free.model(), kStep).max_speed, 0.05 / kStep);
+  scene.vat = Vat{{-1, -1, 0}, {3, 1, 1}, true, {}};
+  const ForceProbe inside(scene);
+  EXPECT_DOUBLE_EQ(guard_bounds(inside.model(), kStep).max_speed, 0.025 / kStep);
+  const auto with_speed = [](Real speed) {
+    return fault_after([=](Configuration& at) { at.velocity[2] = {0, speed, 0}; });
+  };
+  EXPECT_FALSE(with_speed(49.9).has_value());
+  expect_fault(with_speed(50.1), too_fast, 0, 2);
+  expect_fault(fault_after([](Configuration& at) {
+                 at.rigid[0].momentum = {0, 50.1, 0};
+               }),
+               too_fast, 2, 0);
+}
+
+/// A mass on a spring of frequency `omega_dt` / step: velocity Verlet is stable below 2.
+Scene make_oscillator(Real omega_dt, Real step = kStep, Real stretch = 0.1) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {make_material("m")};
+  ParticleShape shape = make_particles({{0, 0, 0}, {1 + stretch, 0, 0}}, 1);
+  shape.fixed = {0};
+  BodyDescription body = make_body("oscillator", BodyKind::deformable, "m", shape, 0.01);
+  const Real omega = omega_dt / kStep;
+  body.springs = {{0, 1, {omega * omega, 0}, 1.0}};
+  scene.bodies = {body};
+  return scene;
+}
+
+TEST(Guard, RepeatsAnUnstableStepWithHalfItsLength) {
+  Simulation simulation = make_simulation(make_oscillator(3));
+  const AdvanceReport report = simulation.advance(40);
+  EXPECT_FALSE(report.failed);
+  ASSERT_EQ(report.events.size(), 1U);
+  const GuardEvent& event = report.events[0];
+  EXPECT_EQ(event.cause, GuardEvent::Cause::too_fast);
+  EXPECT_EQ(event.body, simulation.bodies()[0].id);
+  EXPECT_EQ(event.particle, 1U);
+  EXPECT_EQ(event.step, kStep);
+  EXPECT_TRUE(event.recovered);
+  EXPECT_GT(event.time, 0);
+  EXPECT_LT(event.time, 0.04);
+  EXPECT_EQ(report.steps, std::llround(event.time / kStep) + 80U);
+  EXPECT_DOUBLE_EQ(simulation.time(), 0.04);
+
+  Simulation half = make_simulation(make_oscillator(3, kStep / 2));
+  half.advance(80);
+  EXPECT_EQ(position_of(simulation, 0, 1), position_of(half, 0, 1));
+  EXPECT_EQ(velocity_of(simulation, 0, 1), velocity_of(half, 0, 1));
+}
+
+TEST(Guard, HalvesThreeTimes) {
+  Simulation simulation = make_simulation(make_oscillator(15));
+  const AdvanceReport report = simulation.advance(40);
+  EXPECT_FALSE(report.failed);
+  ASSERT_EQ(report.events.size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(report.events[n].step, std::ldexp(kStep, -static_cast<int>(n)));
+  }
+  EXPECT_LT(std::abs(position_of(simulation, 0, 1).x() - 1), 0.3);
+}
+
+TEST(Guard, KeepsTheLastGoodStateWhereHalvingIsNoHelp) {
+  Simulation simulation = make_simulation(make_oscillator(100));
+  const std::uint64_t good = simulation.state_hash();
+  const AdvanceReport report = simulation.advance(40);
+  EXPECT_TRUE(report.failed);
+  ASSERT_EQ(report.events.size(), 4U);
+  for (const GuardEvent& event : report.events) EXPECT_FALSE(event.recovered);
+  EXPECT_EQ(simulation.state_hash(), good);
+  EXPECT_EQ(simulation.time(), 0);
+  // The way out is open: what made the state bad can be taken away.
+  ASSERT_TRUE(simulation.remove_body(simulation.bodies()[0].id).ok());
+  EXPECT_TRUE(simulation.advance(40).events.empty());
+}
+
+TEST(Guard, GoesBackToTheStartOfTheCall) {
+  Simulation simulation = make_simulation(make_oscillator(20, kStep, 1e-6));
+  ASSERT_FALSE(simulation.advance(1).failed);
+  const std::uint64_t good = simulation.state_hash();
+  EXPECT_TRUE(simulation.advance(40).failed);
+  EXPECT_EQ(simulation.state_hash(), good);
+  EXPECT_EQ(simulation.time(), kStep);
+}
+
+}  // namespace
+}  // namespace vat

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/shaken_vat.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr std::uint32_t kSteps = 25;
+
+/// A grab and a timed force, so that what users do is part of what a snapshot holds.
+Simulation make_busy(IntegratorId integrator = IntegratorId::velocity_verlet) {
+  Simulation simulation = make_simulation(make_shaken_vat(integrator));
+  const std::vector<BodyView> bodies = simulation.bodies();
+  EXPECT_TRUE(simulation.grab_start(7, bodies[1].id, 5, {0.1, 0.1, 0.4}).ok());
+  EXPECT_TRUE(simulation.apply_force(bodies[2].id, {5, 0, -3}, 0.04).ok());
+  return simulation;
+}
+
+std::uint64_t hash_after(Simulation& simulation, std::uint32_t steps) {
+  EXPECT_TRUE(simulation.advance(steps).events.empty());
+  return simulation.state_hash();
+}
+
+BodyDescription make_newcomer() {
+  return make_block("newcomer", BodyKind::liquid, "b", 3, {0.05, 0, 0.6}, Vec3::Zero());
+}
+
+TEST(Snapshot, GoesOnWithTheSameBits) {
+  for (const IntegratorId integrator : kIntegrators) {
+    Simulation simulation = make_busy(integrator);
+    hash_after(simulation, kSteps);
+    const Snapshot snapshot = simulation.snapshot();
+    const std::uint64_t there = simulation.state_hash();
+    const std::uint64_t later = hash_after(simulation, kSteps);
+    EXPECT_NE(later, there);
+    for (int n = 0; n < 2; ++n) {
+      simulation.restore(snapshot);
+      EXPECT_EQ(simulation.state_hash(), there) << to_string(integrator);
+      EXPECT_EQ(hash_after(simulation, kSteps), later) << to_string(integrator);
+    }
+  }
+}
+
+TEST(Snapshot, TakingOneChangesNothing) {
+  Simulation watched = make_busy();
+  Simulation alone = make_busy();
+  for (std::uint32_t n = 0; n < kSteps; ++n) {
+    watched.snapshot();
+    watched.advance(1);
+  }
+  EXPECT_EQ(watched.state_hash(), hash_after(alone, kSteps));
+}
+
+TEST(Snapshot, BringsBackARemovedBody) {
+  Simulation simulation = make_busy();
+  hash_after(simulation, kSteps);
+  const Snapshot snapshot = simulation.snapshot();
+  const std::uint64_t later = hash_after(simulation, kSteps);
+  simulation.restore(snapshot);
+  const BodyId jelly = simulation.find_body("jelly").value();
+  ASSERT_TRUE(simulation.remove_body(jelly).ok());
+  EXPECT_NE(hash_after(simulation, kSteps), later);
+  simulation.restore(snapshot);
+  EXPECT_EQ(simulation.find_body("jelly"), jelly);
+  EXPECT_EQ(hash_after(simulation, kSteps), later);
+}
+
+TEST(Snapshot, ForgetsABodyAddedSince) {
+  Simulation simulation = make_busy();
+  const Snapshot snapshot = simulation.snapshot();
+  const std::uint64_t later = hash_after(simulation, kSteps);
+  simulation.restore(snapshot);
+  const BodyId first = simulation.add_body(make_newcomer()).value();
+  const std::uint64_t with_newcomer = hash_after(simulation, kSteps);
+  simulation.restore(snapshot);
+  EXPECT_FALSE(simulation.find_body(first).has_value());
+  EXPECT_EQ(hash_after(simulation, kSteps), later);
+  simulation.restore(snapshot);
+  EXPECT_EQ(simulation.add_body(make_newcomer()).value(), first);
+  EXPECT_EQ(hash_after(simulation, kSteps), with_newcomer);
+}
+
+TEST(Snapshot, TakenAfterCommandsHoldsThem) {
+  Simulation simulation = make_busy();
+  hash_after(simulation, kSteps);
+  ASSERT_TRUE(simulation.remove_body(simulation.find_body("crate").value()).ok());
+  ASSERT_TRUE(simulation.add_body(make_newcomer()).ok());
+  ASSERT_TRUE(simulation.set_gravity({1, 0, -5}).ok());
+  ASSERT_TRUE(simulation.set_interface({{"a", "b"}, {900, 0.2}, 0.07}).ok());
+  ASSERT_TRUE(simulation.grab_move(7, {0, 0, 0.5}).ok());
+  const Snapshot snapshot = simulation.snapshot();
+  const std::uint64_t later = hash_after(simulation, kSteps);
+  ASSERT_TRUE(simulation.set_gravity(Vec3::Zero()).ok());
+  ASSERT_TRUE(simulation.set_interface({{"a", "b"}, {10, 0}, {}}).ok());
+  ASSERT_TRUE(simulation.grab_end(7).ok());
+  simulation.restore(snapshot);
+  EXPECT_EQ(simulation.scene().gravity, Vec3(1, 0, -5));
+  EXPECT_EQ(hash_after(simulation, kSteps), later);
+}
+
+TEST(Snapshot, OutlivesTheChangesAndItsCopies) {
+  Simulation simulation = make_busy();
+  const std::uint64_t start = simulation.state_hash();
+  Snapshot kept = simulation.snapshot();
+  {
+    const Snapshot copy = kept;
+    hash_after(simulation, kSteps);
+    kept = simulation.snapshot();
+    simulation.restore(copy);
+  }
+  EXPECT_EQ(simulation.state_hash(), start);
+  simulation.restore(kept);
+  EXPECT_NE(simulation.state_hash(), start);
+}
+
+}  // namespace
+}  // namespace vat
