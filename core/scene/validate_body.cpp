@@ -59,13 +59,12 @@ bool check_sizes(const BodyDescription& body, const std::string& path, RangeChec
   return fine;
 }
 
-bool check_springs(const BodyDescription& body, std::size_t particles, const std::string& path,
+void check_springs(const BodyDescription& body, std::size_t particles, const std::string& path,
                    RangeCheck& check) {
   if (!body.springs.empty() && body.kind != BodyKind::deformable) {
     check.add("not_allowed", path + "/springs", "only a deformable body has springs");
-    return false;
+    return;
   }
-  bool fine = true;
   for (std::size_t s = 0; s < body.springs.size(); ++s) {
     const SpringDescription& spring = body.springs[s];
     const std::string at = path + "/springs/" + std::to_string(s);
@@ -73,12 +72,10 @@ bool check_springs(const BodyDescription& body, std::size_t particles, const std
       check.add("out_of_range", at + "/particles",
                 "must be two different numbers below the number of particles, " +
                     std::to_string(particles));
-      fine = false;
     }
     check_constants(spring.constants, at, check);
     if (spring.rest_length) check.real(*spring.rest_length, 0, kMaxLength, at + "/rest_length");
   }
-  return fine;
 }
 
 std::size_t lattice_spring_count(const BodyDescription& body, const Material& material,
@@ -133,7 +130,7 @@ BodySize check_body(const Scene& scene, const BodyDescription& body, const std::
       }
     }
   }
-  if (can_sample) can_sample = check_springs(body, size.particles, path, own_check);
+  if (can_sample) check_springs(body, size.particles, path, own_check);
   size.springs += body.springs.size();
   if (own.empty() && scene.vat && size.particles <= kMaxParticles && size.springs <= kMaxSprings) {
     check_inside_vat(*scene.vat, body, *material, path, own_check);
