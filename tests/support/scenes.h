@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -98,7 +100,7 @@ inline Simulation make_simulation(const Scene& scene, TaskRunner* runner = nullp
 /// this may need.
 inline void advance_to(Simulation& simulation, Real time) {
   const Real steps = (time - simulation.time()) / simulation.step_size();
-  const AdvanceReport report = simulation.advance(static_cast<std::uint32_t>(steps + 0.5));
+  const AdvanceReport report = simulation.advance(static_cast<std::uint32_t>(std::lround(steps)));
   if (!report.events.empty()) throw std::runtime_error("the guard stopped a step");
 }
 
