@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Proves that a fresh clone works on a bare Debian 12 machine: makes one in a folder (debootstrap,
-# chroot), clones this checkout's HEAD into it, runs `./vat serve` twice and `./vat test` once,
-# and prints how long each took. Needs root and debootstrap.
+# chroot), clones this checkout's HEAD into it, runs `./vat serve` and `./vat test` twice each, and
+# prints how long each took. Needs root and debootstrap.
 #
-# From the environment: MIRROR (a Debian mirror), PORT (8080), CPUS (as for taskset: "0-1"),
-# BASE (an earlier debootstrap folder to copy, in place of a new one). Proxies, extra
+# From the environment: MIRROR (a Debian mirror), PORT (8080), CPUS (as for taskset: "0-1"), BASE
+# (an earlier debootstrap folder to copy, in place of a new one), LOGIN (root, or the name of a
+# user to make, who has sudo without a password). Proxies, extra
 # certificates (NODE_EXTRA_CA_CERTS) and npm's registry are those of this machine.
 set -euo pipefail
 
@@ -12,6 +13,7 @@ repository=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/..
 mirror=${MIRROR:-http://deb.debian.org/debian}
 port=${PORT:-8080}
 cpus=${CPUS:-0-$(($(nproc) - 1))}
+login=${LOGIN:-root}
 work=$(mktemp -d /var/tmp/vat-clean-machine.XXXXXX)
 machine=$work/machine
 checkout="/srv/a folder/vat"
@@ -54,16 +56,25 @@ give_network() {
   fi
 }
 
+make_user() {
+  [[ $login != root ]] || return 0
+  chroot "$machine" sh -c "apt-get update && apt-get install --yes --no-install-recommends sudo &&
+    useradd --create-home $login" >"$work/user.log" 2>&1 || { cat "$work/user.log" && fail "user"; }
+  printf '%s ALL=(ALL) NOPASSWD: ALL\n' "$login" >"$machine/etc/sudoers.d/$login"
+  chroot "$machine" chown -R "$login" "$checkout"
+}
+
 # Runs a command in the checkout, with the environment of a fresh log-in and no more.
 inside() {
-  local environment=(HOME=/root TERM=dumb LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin) name
+  local environment=(TERM=dumb LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin) name
+  environment+=("HOME=$(chroot "$machine" sh -c "echo ~$login")")
   for name in http_proxy https_proxy no_proxy npm_config_registry; do
     [[ -z ${!name:-} ]] || environment+=("$name=${!name}")
   done
   [[ -z ${NODE_EXTRA_CA_CERTS:-} ]] ||
     environment+=(NODE_EXTRA_CA_CERTS=/etc/network-certificates.pem)
   # shellcheck disable=SC2016 # expanded by the inner shell
-  exec taskset -c "$cpus" env -i "${environment[@]}" chroot "$machine" \
+  exec taskset -c "$cpus" env -i "${environment[@]}" chroot --userspec="$login" "$machine" \
     bash -c 'cd "$1" && shift && exec "$@"' bash "$checkout" "$@"
 }
 
@@ -94,7 +105,8 @@ main() {
   make_machine
   give_network
   git clone --quiet --no-local "$repository" "$machine$checkout"
-  say "bare Debian $(cat "$machine/etc/debian_version"), processors $cpus"
+  make_user
+  say "bare Debian $(cat "$machine/etc/debian_version"), processors $cpus, as $login"
   serve_once
   say "./vat serve from nothing: the page after $seconds s"
   sed 's/^/    /' "$work/serve.log"
