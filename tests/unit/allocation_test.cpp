@@ -1,0 +1,34 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/shaken_vat.h"
+#include "tests/unit/allocation_counter.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+TEST(Allocation, IsCounted) {
+  const std::size_t before = allocation_count();
+  const std::vector<int> numbers(1000);
+  EXPECT_EQ(allocation_count(), before + 1);
+  EXPECT_EQ(numbers.back(), 0);
+}
+
+// Once every buffer has the size that the scene needs: the bodies rest on one another.
+TEST(Allocation, NoneInASteadyStep) {
+  for (const IntegratorId integrator : kIntegrators) {
+    Scene scene = make_shaken_vat(integrator);
+    scene.vat->motion.reset();
+    Simulation simulation = make_simulation(scene);
+    ASSERT_TRUE(simulation.grab_start(1, simulation.bodies()[2].id, 0, {0, 0, 0.3}).ok());
+    ASSERT_TRUE(simulation.advance(2000).events.empty());
+    const std::size_t before = allocation_count();
+    const AdvanceReport report = simulation.advance(200);
+    EXPECT_EQ(allocation_count(), before) << to_string(integrator);
+    EXPECT_EQ(report.steps, 200U);
+  }
+}
+
+}  // namespace
+}  // namespace vat
