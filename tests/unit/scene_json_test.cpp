@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "core/simulation.h"
 #include "tests/unit/scene_json_cases.h"
 
@@ -78,6 +81,19 @@ TEST(SceneJson, DefaultsOfTheParts) {
   rod.spacing = 0.1;
   rod.position = {0.5, 0.5, 0.5};
   EXPECT_EQ(bits_of(read.value()), bits_of(expected));
+}
+
+TEST(SceneJson, EveryMemberIsInTheDocument) {
+  std::ifstream file(VAT_SOURCE_DIR "/protocol/SCENE.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::set<std::string> members{"file", "scale"};  // the full scene may hold either form of a mesh
+  for (const Pointer& pointer : pointers_in(full_document())) {
+    if (full_document()[pointer.parent_pointer()].is_object()) members.insert(pointer.back());
+  }
+  EXPECT_GT(members.size(), 40U);
+  for (const std::string& member : members) {
+    EXPECT_THAT(text, HasSubstr('`' + member + '`'));
+  }
 }
 
 /// The members without which a part of the full scene cannot be read; all others may be left out.
