@@ -20,10 +20,8 @@ ServerAction read_create(ObjectReader& params, Errors&) {
   std::string name = params.text("name", kMaxNameLength);
   const Json* scene = params.member("scene", true);
   if (scene == nullptr) return {};
-  return [name, scene = *scene](SessionDirectory& directory,
-                                Caller& caller) -> std::optional<RpcResult> {
-    directory.create_later(std::move(caller), name, scene);
-    return {};
+  return [name, scene = *scene](SessionDirectory& directory, Caller& caller) {
+    return to_answer(directory.create_later(caller, name, scene));
   };
 }
 

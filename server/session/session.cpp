@@ -25,7 +25,7 @@ Session::Session(std::string id, std::string name, Simulation simulation,
       core_(std::move(id), std::move(name), std::move(simulation), environment),
       tick_timer_(strand_),
       status_timer_(strand_) {
-  summary_ = core_.summary();
+  update_summary();
 }
 
 void Session::start() {
@@ -86,8 +86,13 @@ void Session::end_turn() {
   if (core_.take_interruption()) end_all_steps();
   core_.announce();
   follow_clock();
+  update_summary();
+}
+
+void Session::update_summary() {
+  SessionSummary summary = core_.summary();
   const std::lock_guard lock(mutex_);
-  summary_ = core_.summary();
+  summary_ = std::move(summary);
 }
 
 void Session::inbox_turn() {
@@ -146,6 +151,7 @@ void Session::carry_out_action(Caller caller, const SessionAction& action) {
   }
   ActionResult result = act(*member, action);
   if (core_.take_interruption()) end_all_steps();
+  update_summary();  // before the answer: who has it finds in session.list what was done
   if (const auto* run = std::get_if<RunTicks>(&result)) {
     steps_.push_back({std::move(caller), run->count, {}});
     schedule_step();
@@ -191,6 +197,7 @@ void Session::step_turn() {
 void Session::end_step(std::deque<StepJob>::iterator job) {
   StepJob ended = std::move(*job);
   steps_.erase(job);
+  update_summary();
   ended.caller.answer(Json{{"tick", core_.run().tick()}});
   for (Item& item : ended.deferred) carry_out(std::move(item));
 }

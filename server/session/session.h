@@ -35,7 +35,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void leave(Caller caller);
   void post(Caller caller, SessionAction action);
 
-  /// As of the last turn.
+  /// As of the last answer or turn.
   SessionSummary summary() const;
 
  private:
@@ -59,6 +59,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void schedule(void (Session::*turn)());
   void run_turn(void (Session::*turn)());
   void end_turn();
+  void update_summary();
 
   void inbox_turn();
   bool take_item(std::optional<Item>& item);

@@ -28,7 +28,8 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
     : catalogue_(catalogue),
       settings_(std::move(settings)),
       environment_{catalogue_, settings_.limits},
-      pool_(thread_count(settings_.threads)) {}
+      pool_(thread_count(settings_.threads)),
+      creations_(boost::asio::make_strand(pool_)) {}
 
 SessionDirectory::~SessionDirectory() {
   stop();
@@ -57,21 +58,23 @@ std::shared_ptr<ClientOutbox> SessionDirectory::find_client(ConnectionId id) con
 }
 
 std::optional<RpcError> SessionDirectory::refuse_session() const {
+  const std::lock_guard lock(mutex_);
+  return refuse_session_locked();
+}
+
+std::optional<RpcError> SessionDirectory::refuse_session_locked() const {
   if (stopped_) return not_allowed("the server stops");
   if (sessions_.size() < settings_.limits.max_sessions) return {};
   return limit_reached("sessions", settings_.limits.max_sessions);
 }
 
 std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (auto error = refuse_session()) return *std::move(error);
-  }
-  auto simulation = make_simulation(scene, settings_.limits);  // takes long: without the lock
+  if (auto error = refuse_session()) return *std::move(error);
+  auto simulation = make_simulation(scene, settings_.limits);  // without the lock
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
 
   const std::lock_guard lock(mutex_);
-  if (auto error = refuse_session()) return *std::move(error);
+  if (auto error = refuse_session_locked()) return *std::move(error);  // it took long
   const Sessions::key_type number = ++last_session_;
   const auto session =
       std::make_shared<Session>(to_id(number), std::move(name),
@@ -82,26 +85,29 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   return to_id(number);
 }
 
-void SessionDirectory::create_later(Caller caller, std::string name, Json scene) {
-  boost::asio::post(pool_, [this, caller = std::move(caller), name = std::move(name),
-                            value = std::move(scene)]() mutable {
+std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::string name,
+                                                       Json scene) {
+  const std::lock_guard lock(mutex_);
+  if (auto error = refuse_session_locked()) return error;
+  boost::asio::post(creations_, [this, caller = std::move(caller), name = std::move(name),
+                                 scene = std::move(scene)]() mutable {
     try {
-      auto scene_read = read_client_scene(value, catalogue_);
-      if (auto* error = std::get_if<RpcError>(&scene_read)) {
-        caller.answer(std::move(*error));
-        return;
-      }
-      auto created = create(std::move(name), std::get<Scene>(scene_read));
-      if (auto* error = std::get_if<RpcError>(&created)) {
-        caller.answer(std::move(*error));
-      } else {
-        caller.answer(Json{{"session", std::get<SessionId>(created)}});
-      }
+      caller.answer(create_from(scene, std::move(name)));
     } catch (const std::exception& error) {
       spdlog::error("session.create failed: {}", error.what());
       caller.answer(internal_error());
     }
   });
+  return {};
+}
+
+RpcResult SessionDirectory::create_from(const Json& scene, std::string name) {
+  if (auto error = refuse_session()) return *std::move(error);  // others were before it
+  auto read = read_client_scene(scene, catalogue_);
+  if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
+  auto created = create(std::move(name), std::get<Scene>(read));
+  if (auto* error = std::get_if<RpcError>(&created)) return std::move(*error);
+  return Json{{"session", std::get<SessionId>(created)}};
 }
 
 std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const {

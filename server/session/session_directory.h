@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <cstddef>
 #include <map>
@@ -32,8 +33,9 @@ class SessionDirectory {
   std::shared_ptr<ClientOutbox> find_client(ConnectionId id) const;
 
   std::variant<SessionId, RpcError> create(std::string name, const Scene& scene);
-  /// Reads the scene and creates the session on a thread of the pool, and answers there.
-  void create_later(Caller caller, std::string name, Json scene);
+  /// Reads the scene and creates the session on a thread of the pool, one at a time, and answers
+  /// there; or gives the error at once.
+  std::optional<RpcError> create_later(Caller& caller, std::string name, Json scene);
 
   std::vector<std::pair<SessionId, SessionSummary>> list() const;
   /// Answered by the session, or by the error that is returned. Without an id: the first session.
@@ -52,18 +54,23 @@ class SessionDirectory {
     Sessions::key_type session = 0;  // 0: none
   };
 
+  RpcResult create_from(const Json& scene, std::string name);
+  /// Why there can be no further session, if so.
+  std::optional<RpcError> refuse_session() const;
+
   // With the mutex held.
   Sessions::iterator find_session(const SessionId& id);
   std::size_t client_count(Sessions::key_type session) const;
   void leave_session(Client& client, Caller caller);
   void close_session(Sessions::iterator session, const std::string& reason);
-  /// Why there can be no further session, if so.
-  std::optional<RpcError> refuse_session() const;
+  std::optional<RpcError> refuse_session_locked() const;
 
   const Catalogue& catalogue_;
   const ServerSettings settings_;
   const SessionEnvironment environment_;
   boost::asio::thread_pool pool_;  // outlives the sessions
+  // Creations come one after the other: they take one thread from the sessions at most.
+  boost::asio::strand<boost::asio::thread_pool::executor_type> creations_;
 
   mutable std::mutex mutex_;
   std::map<ConnectionId, Client> clients_;

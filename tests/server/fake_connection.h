@@ -1,0 +1,130 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/frame_codec.h"
+#include "protocol/json_reader.h"
+#include "server/net/transport.h"
+
+namespace vat::test {
+
+/// A connection without a network: keeps what is sent to it. Its socket takes everything at once
+/// unless it is stalled.
+class FakeConnection final : public Connection {
+ public:
+  /// How long a test waits for what must come, before it fails.
+  static constexpr std::chrono::seconds kPatience{30};
+
+  explicit FakeConnection(ConnectionId id) : id_(id) {}
+
+  ConnectionId id() const override { return id_; }
+  void send_text(std::string message) override {
+    if (failing_) throw std::runtime_error("no memory for this message");
+    change([&] {
+      add_queued(message.size());
+      texts_.push_back(Json::parse(message));
+    });
+  }
+  void send_binary(std::shared_ptr<const std::string> bytes) override {
+    change([&] {
+      add_queued(bytes->size());
+      frames_.push_back(decode(*bytes));
+    });
+  }
+  std::size_t queued_bytes() const override {
+    const std::lock_guard lock(mutex_);
+    return queued_;
+  }
+  void close(std::uint16_t code, std::string_view) override {
+    change([&] { close_code_ = code; });
+  }
+
+  /// The peer reads nothing more (or all again).
+  void stall(bool stalled) {
+    const std::lock_guard lock(mutex_);
+    stalled_ = stalled;
+    if (!stalled) queued_ = 0;
+  }
+  /// Each text that is sent throws.
+  void fail(bool failing) { failing_ = failing; }
+
+  std::vector<Json> texts() const {
+    const std::lock_guard lock(mutex_);
+    return texts_;
+  }
+  std::vector<Frame> frames() const {
+    const std::lock_guard lock(mutex_);
+    return frames_;
+  }
+  std::size_t queued() const { return queued_bytes(); }
+  std::optional<std::uint16_t> close_code() const {
+    const std::lock_guard lock(mutex_);
+    return close_code_;
+  }
+
+  /// The first text from position `from` on that fits, once it is there.
+  Json wait_text(const std::function<bool(const Json&)>& fits, std::size_t from = 0) {
+    std::unique_lock lock(mutex_);
+    std::size_t next = from;
+    const bool found = changed_.wait_for(lock, kPatience, [&] {
+      while (next < texts_.size() && !fits(texts_[next])) ++next;
+      return next < texts_.size();
+    });
+    if (!found) throw std::runtime_error("a message that must come did not come");
+    return texts_[next];
+  }
+  /// Waits for that many frames.
+  void wait_frames(std::size_t count) {
+    wait([&] { return frames_.size() >= count; });
+  }
+  void wait_closed() {
+    wait([&] { return close_code_.has_value(); });
+  }
+
+ private:
+  static Frame decode(const std::string& bytes) {
+    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    Result<Frame> frame = decode_frame({data, bytes.size()});
+    if (!frame) throw std::runtime_error("a frame is damaged: " + frame.errors().front().message);
+    return std::move(frame).value();
+  }
+  void add_queued(std::size_t bytes) {
+    if (stalled_) queued_ += bytes;
+  }
+  void change(const std::function<void()>& change_it) {
+    {
+      const std::lock_guard lock(mutex_);
+      change_it();
+    }
+    changed_.notify_all();
+  }
+  void wait(const std::function<bool()>& condition) {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, kPatience, condition)) {
+      throw std::runtime_error("what must come did not come");
+    }
+  }
+
+  const ConnectionId id_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Json> texts_;
+  std::vector<Frame> frames_;
+  std::size_t queued_ = 0;
+  bool stalled_ = false;
+  std::atomic<bool> failing_ = false;
+  std::optional<std::uint16_t> close_code_;
+};
+
+}  // namespace vat::test

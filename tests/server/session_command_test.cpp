@@ -1,0 +1,136 @@
+// Commands take effect at the tick that their reply names and in the order in which they were sent:
+// the session ends in the bits of a simulation that is given the same commands at these ticks.
+
+#include "tests/server/session_fixture.h"
+
+namespace vat::test {
+namespace {
+
+class SessionCommands : public SessionTest {
+ protected:
+  Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
+
+  std::uint64_t tick_of(const std::string& method, const Json& params = nullptr) {
+    return client->result(method, params).at("tick");
+  }
+};
+
+TEST_F(SessionCommands, AFreshSessionHasTheBitsOfTheScene) {
+  EXPECT_EQ(hash(), hash_of(reference));
+  EXPECT_EQ(tick_of("control.step", {{"ticks", 7}}), 7u);
+  advance_ticks(reference, 7);
+  EXPECT_EQ(hash(), hash_of(reference));
+  EXPECT_EQ(client->result("session.hash").at("time"), reference.time());
+}
+
+TEST_F(SessionCommands, OfAPausedSessionTakeEffectBetweenItsSteps) {
+  EXPECT_EQ(tick_of("control.step", {{"ticks", 3}}), 3u);
+  EXPECT_EQ(tick_of("world.set_gravity", {{"gravity", {1, 0, -5}}}), 3u);
+  EXPECT_EQ(tick_of("control.step", {{"ticks", 2}}), 5u);
+  EXPECT_EQ(tick_of("world.apply_force", {{"body", 3}, {"force", {20, 0, 0}}, {"duration", 0.05}}),
+            5u);
+  EXPECT_EQ(tick_of("world.remove_body", {{"body", 2}}), 5u);
+  EXPECT_EQ(tick_of("control.step", {{"ticks", 4}}), 9u);
+
+  advance_ticks(reference, 3);
+  ASSERT_TRUE(reference.set_gravity(Vec3(1, 0, -5)));
+  advance_ticks(reference, 2);
+  ASSERT_TRUE(reference.apply_force(3, Vec3(20, 0, 0), 0.05));
+  ASSERT_TRUE(reference.remove_body(2));
+  advance_ticks(reference, 4);
+  EXPECT_EQ(hash(), hash_of(reference));
+}
+
+TEST_F(SessionCommands, OfAPlayingSessionTakeEffectAtTheTickOfTheirReply) {
+  client->result("control.set_speed", {{"speed", 4}});
+  client->result("frames.subscribe");
+  client->result("control.play");
+  std::vector<std::uint64_t> ticks;
+  for (int i = 0; i < 5; ++i) {
+    ticks.push_back(tick_of("world.set_gravity", {{"gravity", {i, 0, -9}}}));
+    client->wait_frame([&](const Frame& frame) { return frame.header.tick > ticks.back() + 1; });
+  }
+  const std::uint64_t end = tick_of("control.pause");
+
+  std::uint64_t now = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ASSERT_GE(ticks[i], now);
+    advance_ticks(reference, ticks[i] - now);
+    now = ticks[i];
+    ASSERT_TRUE(reference.set_gravity(Vec3(static_cast<Real>(i), 0, -9)));
+  }
+  advance_ticks(reference, end - now);
+  EXPECT_EQ(hash(), hash_of(reference));
+  EXPECT_EQ(tick(), end);
+  EXPECT_GT(end, 0u);
+}
+
+TEST_F(SessionCommands, AreAnsweredInTheirOrder) {
+  std::vector<int> ids;
+  for (int i = 0; i < 50; ++i) {
+    ids.push_back(client->send("world.set_gravity", {{"gravity", {0, 0, -i}}}));
+    ids.push_back(client->send("control.step"));
+    ids.push_back(client->send("state.query", {{"bodies", {3}}}));
+  }
+  client->wait_reply(ids.back());
+  std::vector<int> answered;
+  for (const Json& text : client->connection->texts()) {
+    if (text.contains("result") && text.at("id") >= ids.front()) answered.push_back(text.at("id"));
+  }
+  EXPECT_EQ(answered, ids);
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(reference.set_gravity(Vec3(0, 0, -i)));
+    advance_ticks(reference, 1);
+    const Json reply = client->wait_reply(ids[static_cast<std::size_t>(3 * i + 2)]);
+    EXPECT_EQ(reply.at("result").at("tick"), i + 1);
+  }
+  EXPECT_EQ(hash(), hash_of(reference));
+}
+
+TEST_F(SessionCommands, ManyWaitForALongStepInTheirOrder) {
+  const int step = client->send("control.step", {{"ticks", 100}});
+  const int gravity = client->send("world.set_gravity", {{"gravity", {0, 0, 0}}});
+  const int query = client->send("session.hash");
+  EXPECT_EQ(client->wait_reply(step).at("result").at("tick"), 100);
+  EXPECT_EQ(client->wait_reply(gravity).at("result").at("tick"), 100);
+  advance_ticks(reference, 100);
+  EXPECT_EQ(client->wait_reply(query).at("result").at("hash"), [&] {
+    EXPECT_TRUE(reference.set_gravity(Vec3::Zero()));
+    return hash_of(reference);
+  }());
+}
+
+TEST_F(SessionCommands, BodiesComeAndGoWithANewEpoch) {
+  const Json before = client->result("session.join").at("description");
+  const Json body = Json::parse(R"({"name":"second ball","kind":"rigid","material":"wood",
+      "spacing":0.1,"shape":{"type":"sphere","radius":0.12},"position":[0.3,0.7,0.7]})");
+  const Json added = client->result("world.add_body", {{"body", body}});
+  EXPECT_EQ(added.at("body"), 4);
+  Json description = client->wait_event("session.description");
+  EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
+  EXPECT_EQ(description.at("bodies").size(), 4u);
+  EXPECT_EQ(description.at("bodies").at(3).at("name"), "second ball");
+  client->mark();
+  client->result("world.remove_body", {{"body", 4}});
+  description = client->wait_event("session.description");
+  EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 2);
+  EXPECT_EQ(description.at("bodies"), before.at("bodies"));
+}
+
+TEST_F(SessionCommands, GravityAndInterfacesAreOfTheSceneFromThenOn) {
+  client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
+  EXPECT_EQ(client->wait_event("session.description").at("gravity"), Json({0, 0, -1}));
+  client->result("world.set_interface",
+                 {{"interface", {{"materials", {"wood", "vat"}}, {"stiffness", 5000}}}});
+  client->result("control.step", {{"ticks", 40}});
+  InterfaceDescription interface;
+  interface.materials = {"wood", "vat"};
+  interface.constants.stiffness = 5000;
+  ASSERT_TRUE(reference.set_gravity(Vec3(0, 0, -1)));
+  ASSERT_TRUE(reference.set_interface(interface));
+  advance_ticks(reference, 40);
+  EXPECT_EQ(hash(), hash_of(reference));
+}
+
+}  // namespace
+}  // namespace vat::test

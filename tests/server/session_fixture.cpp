@@ -1,0 +1,177 @@
+#include "tests/server/session_fixture.h"
+
+#include <utility>
+
+#include "core/simulation.h"
+#include "server/session/describe.h"
+#include "tests/server/static_files_folder.h"
+
+namespace vat::test {
+namespace {
+
+Catalogue make_catalogue() {
+  const TemporaryFolder folder;
+  folder.write("mixed.json", mixed_scene_text());
+  folder.write("unstable.json", unstable_scene_text());
+  Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
+  return std::move(catalogue).value();
+}
+
+ServerSettings make_settings(const ServerLimits& limits) {
+  ServerSettings settings;
+  settings.limits = limits;
+  settings.version = "1.2.3";
+  settings.threads = 2;
+  return settings;
+}
+
+Json make_request(std::string_view method, const Json& params) {
+  Json request{{"jsonrpc", "2.0"}, {"method", method}};
+  if (!params.is_null()) request["params"] = params;
+  return request;
+}
+
+}  // namespace
+
+const std::string& mixed_scene_text() {
+  static const std::string text = R"({
+    "format": "vat.scene/1", "name": "mixed", "title": "Mixed", "description": "All kinds",
+    "materials": [
+      {"name": "water", "density": 1000,
+       "liquid": {"stiffness": 50, "viscosity": 1, "support_radius": 0.2}},
+      {"name": "rubber", "density": 500, "springs": {"structural": {"stiffness": 500, "damping": 1}}},
+      {"name": "wood", "density": 600}],
+    "default_interface": {"stiffness": 1000, "damping": 1},
+    "vat": {"min": [0, 0, 0], "max": [1, 1, 1], "lid": true},
+    "numerics": {"integrator": "velocity_verlet", "step": 0.002, "tick": 0.02},
+    "bodies": [
+      {"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.1,
+       "shape": {"type": "box", "center": [0.5, 0.5, 0.2], "size": [0.5, 0.5, 0.3]}},
+      {"name": "cube", "kind": "deformable", "material": "rubber", "spacing": 0.1,
+       "shape": {"type": "box", "center": [0.3, 0.3, 0.6], "size": [0.2, 0.2, 0.2]}},
+      {"name": "ball", "kind": "rigid", "material": "wood", "spacing": 0.1,
+       "shape": {"type": "sphere", "radius": 0.15}, "position": [0.7, 0.7, 0.7]}]})";
+  return text;
+}
+
+const std::string& unstable_scene_text() {
+  static const std::string text = R"({
+    "format": "vat.scene/1", "name": "unstable", "title": "Unstable",
+    "materials": [{"name": "steel", "density": 1000}],
+    "numerics": {"integrator": "explicit_euler", "step": 0.1, "tick": 0.1},
+    "bodies": [
+      {"name": "pair", "kind": "deformable", "material": "steel", "radius": 0.1,
+       "shape": {"type": "particles", "positions": [[0, 0, 0], [1, 0, 0]], "masses": [1, 1]},
+       "springs": [{"particles": [0, 1], "stiffness": 1e9, "damping": 0, "rest_length": 0.5}]}]})";
+  return text;
+}
+
+Scene to_scene(const std::string& text) {
+  const auto no_meshes = [](const std::string&) -> Result<std::string> {
+    return Error{"no_mesh", "", "there are no meshes"};
+  };
+  return read_scene_text(text, no_meshes).value();
+}
+
+TestClient::TestClient(SessionServer& server, ConnectionId id)
+    : connection(std::make_shared<FakeConnection>(id)), server_(server) {
+  server_.opened(connection);
+}
+
+void TestClient::disconnect() {
+  if (std::exchange(connected_, false)) server_.closed(connection->id());
+}
+
+int TestClient::send(std::string_view method, const Json& params) {
+  Json request = make_request(method, params);
+  request["id"] = ++last_id_;
+  send_raw(request.dump());
+  return last_id_;
+}
+
+void TestClient::notify(std::string_view method, const Json& params) {
+  send_raw(make_request(method, params).dump());
+}
+
+Json TestClient::wait_reply(int id) {
+  return connection->wait_text(
+      [id](const Json& text) { return text.contains("id") && text.at("id") == id; });
+}
+
+Json TestClient::call(std::string_view method, const Json& params) {
+  return wait_reply(send(method, params));
+}
+
+Json TestClient::result(std::string_view method, const Json& params) {
+  const Json reply = call(method, params);
+  EXPECT_TRUE(reply.contains("result")) << method << " " << params << ": " << reply;
+  return reply.value("result", Json());
+}
+
+Json TestClient::error(std::string_view method, const Json& params) {
+  const Json reply = call(method, params);
+  EXPECT_TRUE(reply.contains("error")) << method << " " << params << ": " << reply;
+  return reply.value("error", Json());
+}
+
+Json TestClient::wait_event(std::string_view event, const std::function<bool(const Json&)>& fits) {
+  const auto fits_text = [&](const Json& text) {
+    return text.value("method", "") == event && (!fits || fits(text.at("params")));
+  };
+  return connection->wait_text(fits_text, mark_).at("params");
+}
+
+Frame TestClient::wait_frame(const std::function<bool(const Frame&)>& fits) {
+  for (;; ++seen_frames_) {
+    connection->wait_frames(seen_frames_ + 1);
+    const Frame frame = connection->frames()[seen_frames_];
+    notify("frames.ack", {{"sequence", frame.header.sequence}});
+    if (fits(frame)) return frame;
+  }
+}
+
+std::vector<Json> TestClient::events(std::string_view event) const {
+  const std::vector<Json> texts = connection->texts();
+  std::vector<Json> params;
+  for (std::size_t i = mark_; i < texts.size(); ++i) {
+    if (texts[i].value("method", "") == event) params.push_back(texts[i].at("params"));
+  }
+  return params;
+}
+
+SessionTest::SessionTest(const ServerLimits& limits)
+    : catalogue(make_catalogue()), server(catalogue, make_settings(limits)) {
+  if (!server.create_session("first", to_scene(mixed_scene_text()))) {
+    throw std::runtime_error("the first session was refused");
+  }
+  client = join();
+  client->result("control.pause");
+  client->result("control.reset");
+  client->wait_event("session.description", [](const Json& d) { return d.at("epoch") == 2; });
+  client->wait_event("session.status", [](const Json& s) { return s.at("tick") == 0; });
+  client->mark();
+}
+
+std::unique_ptr<TestClient> SessionTest::connect() {
+  return std::make_unique<TestClient>(server, ++last_connection_);
+}
+
+std::unique_ptr<TestClient> SessionTest::join(const std::string& session) {
+  auto joined = connect();
+  joined->result("session.join", {{"session", session}});
+  return joined;
+}
+
+void advance_ticks(Simulation& simulation, std::uint64_t ticks) {
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    if (simulation.advance(simulation.steps_per_tick()).failed) {
+      throw std::runtime_error("the simulation is unstable");
+    }
+  }
+}
+
+std::string hash_of(const Simulation& simulation) {
+  return describe_hash(simulation.state_hash());
+}
+
+}  // namespace vat::test

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/session/session_server.h"
+#include "tests/server/fake_connection.h"
+
+namespace vat::test {
+
+/// A scene of about a hundred particles with a vat: the liquid `pool` (body 1), the deformable
+/// `cube` (2) and the rigid `ball` (3). Ten steps a tick of 0.02 s.
+const std::string& mixed_scene_text();
+/// Two particles on a spring so stiff that no step of the guard holds it.
+const std::string& unstable_scene_text();
+Scene to_scene(const std::string& text);
+
+/// One client of a SessionServer, which must outlive it.
+class TestClient {
+ public:
+  TestClient(SessionServer& server, ConnectionId id);
+  ~TestClient() { disconnect(); }
+  TestClient(const TestClient&) = delete;
+  TestClient& operator=(const TestClient&) = delete;
+
+  void disconnect();
+
+  /// Sends a request; its id.
+  int send(std::string_view method, const Json& params = nullptr);
+  void notify(std::string_view method, const Json& params = nullptr);
+  void send_raw(std::string_view text) { server_.text_received(connection->id(), text); }
+
+  /// The reply to a request that was sent.
+  Json wait_reply(int id);
+  /// Sends and waits: the whole reply, its `result`, or its `error`. The last two fail the test,
+  /// and return null, where the reply is of the other sort.
+  Json call(std::string_view method, const Json& params = nullptr);
+  Json result(std::string_view method, const Json& params = nullptr);
+  Json error(std::string_view method, const Json& params = nullptr);
+
+  /// The params of the first event since mark() that fits.
+  Json wait_event(std::string_view event, const std::function<bool(const Json&)>& fits = {});
+  /// The first frame that fits; acknowledges all frames until then.
+  Frame wait_frame(const std::function<bool(const Frame&)>& fits);
+  /// The params of all events since mark().
+  std::vector<Json> events(std::string_view event) const;
+  /// Events before this are not looked at again.
+  void mark() { mark_ = connection->texts().size(); }
+
+  const std::shared_ptr<FakeConnection> connection;
+
+ private:
+  SessionServer& server_;
+  int last_id_ = 0;
+  std::size_t mark_ = 0;
+  std::size_t seen_frames_ = 0;
+  bool connected_ = true;
+};
+
+/// A server with one session of mixed_scene_text() (`s1`), paused at tick 0, and one client in it.
+class SessionTest : public testing::Test {
+ protected:
+  explicit SessionTest(const ServerLimits& limits = {});
+
+  /// Connects a further client.
+  std::unique_ptr<TestClient> connect();
+  /// Connects one that has joined `session`.
+  std::unique_ptr<TestClient> join(const std::string& session = "s1");
+  std::string hash() { return client->result("session.hash").at("hash"); }
+  std::uint64_t tick() { return client->result("session.hash").at("tick"); }
+
+  const Catalogue catalogue;
+  SessionServer server;
+  std::unique_ptr<TestClient> client;
+
+ private:
+  ConnectionId last_connection_ = 0;
+};
+
+/// Steps a simulation by ticks, as a session does.
+void advance_ticks(Simulation& simulation, std::uint64_t ticks);
+/// As in a reply to session.hash.
+std::string hash_of(const Simulation& simulation);
+
+}  // namespace vat::test
