@@ -20,8 +20,8 @@ struct Options {
 
 /// The server's arguments: a script may begin with {"server": [arguments]}.
 std::vector<std::string> server_arguments(const Options& options, std::vector<Line>& lines) {
-  std::vector<std::string> arguments{"serve", "--port", "0", "--scenes", options.scenes,
-                                     "--scene", options.scene};
+  std::vector<std::string> arguments{"serve",        "--port",  "0",          "--scenes",
+                                     options.scenes, "--scene", options.scene};
   if (lines.front().action.contains("server")) {
     for (const Json& word : lines.front().action["server"]) arguments.push_back(word);
     lines.erase(lines.begin());
