@@ -1,4 +1,4 @@
-"""readme_scene.py README PROGRAM: the scene that README.md shows is valid and runs."""
+"""shown_scene.py DOCUMENT PROGRAM: the one scene that a document shows is valid and runs."""
 
 import re
 import subprocess
@@ -7,12 +7,12 @@ import tempfile
 
 
 def main():
-    readme, program = sys.argv[1:]
-    with open(readme, encoding="utf-8") as file:
+    document, program = sys.argv[1:]
+    with open(document, encoding="utf-8") as file:
         blocks = re.findall(r"```json\n(.*?)```", file.read(), re.DOTALL)
     scenes = [block for block in blocks if '"vat.scene/1"' in block]
     if len(scenes) != 1:
-        print(f"{len(scenes)} scenes in {readme}, not 1")
+        print(f"{len(scenes)} scenes in {document}, not 1")
         return 1
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
         file.write(scenes[0])
