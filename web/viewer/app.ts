@@ -8,6 +8,7 @@ import { describeGuard, Notices } from './panel/notices';
 import { Playback } from './panel/playback';
 import { Scenes } from './panel/scenes';
 import { now } from './stream/clock';
+import { NewestFrame } from './stream/newest_frame';
 import { Stream, streamUrl } from './stream/stream';
 import type { Report } from './stream/stream';
 import { HeldMarker } from './view/held_marker';
@@ -43,8 +44,7 @@ export class App {
   });
   private description: SessionDescription | undefined;
   private clockOffset: number | undefined;
-  /** Came in since the last drawing. */
-  private newest: Frame | undefined;
+  private readonly newest = new NewestFrame((sequence) => this.stream.acknowledge(sequence));
 
   start(): void {
     this.stage.scene.add(this.world.group, this.marker.group);
@@ -63,7 +63,7 @@ export class App {
     switch (report.type) {
       case 'state':
         this.connection.show(report.state);
-        if (report.state.name !== 'open') this.enable(false);
+        if (report.state.name !== 'open') this.leave();
         break;
       case 'description':
         this.describe(report.description);
@@ -73,7 +73,7 @@ export class App {
         break;
       case 'frame':
         this.counters.addFrame(report.bytes);
-        this.newest = report.frame;
+        this.newest.put(report.frame);
         break;
       case 'clock':
         this.clockOffset = report.offset;
@@ -98,7 +98,7 @@ export class App {
         );
         break;
       case 'session.closed':
-        this.enable(false);
+        this.leave();
         this.notices.add('warning', `The session was closed: ${params.reason}`);
         break;
       case 'session.description': // comes as a report of its own
@@ -113,7 +113,7 @@ export class App {
     // A view that the user has chosen is kept while the scene stays.
     if (description.scene !== this.description?.scene) this.stage.reframe();
     this.description = description;
-    this.newest = undefined;
+    this.newest.take(); // of what was there before
     this.world.describe(description);
     this.scenes.describe(description);
     this.playback.showPlaying(description.playing);
@@ -129,6 +129,11 @@ export class App {
       ({ scenes }) => this.scenes.list(scenes),
       (error: unknown) => this.refuse(error),
     );
+  }
+
+  private leave(): void {
+    this.newest.forget();
+    this.enable(false);
   }
 
   private enable(enabled: boolean): void {
@@ -152,14 +157,12 @@ export class App {
   }
 
   private showNewest(): void {
-    const frame = this.newest;
-    this.newest = undefined;
+    const frame = this.newest.take();
     if (frame) this.showFrame(frame);
     this.grabber.update();
   }
 
   private showFrame(frame: Frame): void {
-    this.stream.acknowledge(frame.header.sequence);
     if (!this.world.show(frame)) return;
     this.stage.follow(this.world.bounds);
     this.counters.showFrame(frame.header, this.clockOffset);
