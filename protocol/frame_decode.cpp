@@ -130,7 +130,7 @@ Status read_block(ByteReader& in, bool first, FrameBlock& block) {
     return frame_error("bad_block", "the vat's block must be the first");
   }
   if (encoding == kGridEncoding) return read_grid_positions(in, particles, block);
-  if (const Status position = read_position(in, block); !position) return position;
+  if (Status position = read_position(in, block); !position) return position;
   return encoding == kPoseEncoding ? read_orientation(in, block) : Status{};
 }
 

@@ -188,15 +188,16 @@ bool ObjectReader::boolean(std::string_view key, std::optional<bool> fallback) {
 }
 
 std::string ObjectReader::text(std::string_view key, std::size_t max_bytes,
-                               std::optional<std::string> fallback) {
+                               const std::optional<std::string>& fallback) {
   const Json* value = member(key, !fallback);
   if (value == nullptr) return fallback.value_or("");
   const auto text = to_text(*value, path_of(key), max_bytes, *errors_);
   return text ? *text : fallback.value_or("");
 }
 
-Vec3 ObjectReader::vector(std::string_view key, Real min, Real max, std::optional<Vec3> fallback) {
-  const Vec3 otherwise = fallback.value_or(Vec3::Constant(std::clamp(Real{0}, min, max)));
+Vec3 ObjectReader::vector(std::string_view key, Real min, Real max,
+                          const std::optional<Vec3>& fallback) {
+  Vec3 otherwise = fallback.value_or(Vec3::Constant(std::clamp(Real{0}, min, max)));
   const Json* value = member(key, !fallback);
   if (value == nullptr) return otherwise;
   return to_vector(*value, path_of(key), min, max, *errors_).value_or(otherwise);

@@ -78,8 +78,8 @@ class ObjectReader {
   bool boolean(std::string_view key, std::optional<bool> fallback = {});
   /// UTF-8 text of at most `max_bytes` bytes without control characters.
   std::string text(std::string_view key, std::size_t max_bytes,
-                   std::optional<std::string> fallback = {});
-  Vec3 vector(std::string_view key, Real min, Real max, std::optional<Vec3> fallback = {});
+                   const std::optional<std::string>& fallback = {});
+  Vec3 vector(std::string_view key, Real min, Real max, const std::optional<Vec3>& fallback = {});
   /// The position of the member's text in `names`.
   std::size_t choice(std::string_view key, std::initializer_list<std::string_view> names,
                      std::optional<std::size_t> fallback = {});
