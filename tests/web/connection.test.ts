@@ -150,6 +150,51 @@ describe('states', () => {
   });
 });
 
+describe('a line that does not open', () => {
+  const refused = 'the server refuses vat.v1; it may have changed, reload the page';
+
+  async function breakWithProbe(probe: () => Promise<boolean>): Promise<void> {
+    connection = new Connection(
+      { url: kUrl, socket: FakeSocket, retryDelayMs: () => 100, probe },
+      { onState: (state) => states.push(state) },
+    );
+    connection.open();
+    FakeSocket.newest.break();
+    await vi.advanceTimersByTimeAsync(30);
+  }
+  const after = (ms: number, answer: boolean) => (): Promise<boolean> =>
+    new Promise((resolve) => setTimeout(resolve, ms, answer));
+
+  it('is refused where the server answers otherwise, and is tried again as planned', async () => {
+    await breakWithProbe(after(30, true));
+    expect(states.at(-1)).toEqual({ name: 'waiting', reason: refused, retryMs: 70 });
+    await vi.advanceTimersByTimeAsync(69);
+    expect(FakeSocket.made).toHaveLength(1);
+    await vi.advanceTimersByTimeAsync(1);
+    expect(FakeSocket.made).toHaveLength(2);
+  });
+
+  it('leads to nobody where the server does not answer at all', async () => {
+    await breakWithProbe(after(10, false));
+    expect(states.map(({ name }) => name)).toEqual(['connecting', 'waiting']);
+    expect(states.at(-1)).toMatchObject({ reason: 'the server cannot be reached' });
+  });
+
+  it('is not talked about once the next attempt has begun', async () => {
+    await breakWithProbe(after(150, true));
+    await vi.advanceTimersByTimeAsync(200);
+    expect(states.map(({ name }) => name)).toEqual(['connecting', 'waiting', 'connecting']);
+  });
+
+  it('is not asked about once it was open', async () => {
+    const probe = vi.fn(after(0, true));
+    connection = new Connection({ url: kUrl, socket: FakeSocket, probe }, {});
+    openLine().break();
+    await vi.advanceTimersByTimeAsync(10);
+    expect(probe).not.toHaveBeenCalled();
+  });
+});
+
 describe('default delay before a retry', () => {
   afterEach(() => vi.restoreAllMocks());
 

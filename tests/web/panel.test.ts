@@ -4,7 +4,7 @@ import * as format from '../../web/viewer/panel/format';
 import { FrameMeter } from '../../web/viewer/panel/frame_meter';
 import { describeGuard } from '../../web/viewer/panel/notices';
 import { sliderSpeed } from '../../web/viewer/panel/playback';
-import { streamUrl } from '../../web/viewer/stream/stream';
+import { chosenSession, streamUrl } from '../../web/viewer/stream/stream';
 import { roundLength } from '../../web/viewer/view/ground';
 
 describe('numbers in words', () => {
@@ -88,6 +88,11 @@ it.each([
   ['http://host:8080/index.html?x', 'ws://host:8080/ws'],
   ['https://host/', 'wss://host/ws'],
 ])('the stream of %s is %s', (page, url) => expect(streamUrl(page)).toBe(url));
+
+it.each([
+  ['http://host/', undefined],
+  ['http://host/?session=s2', 's2'],
+])('the session of %s is %s', (page, session) => expect(chosenSession(page)).toBe(session));
 
 it.each([
   [0.12, 0.1],

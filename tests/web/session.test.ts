@@ -14,14 +14,11 @@ let faults: string[];
 let seconds: number;
 let session: Session;
 
-beforeEach(() => {
-  vi.useFakeTimers();
-  FakeSocket.forget();
-  [descriptions, frames, offsets, states, faults] = [[], [], [], [], []];
-  seconds = 50;
-  session = new Session(
+function newSession(chosen?: string): Session {
+  return new Session(
     {
       url: 'ws://server/ws',
+      session: chosen,
       socket: FakeSocket,
       now: () => seconds,
       timeoutMs: 1000,
@@ -36,6 +33,14 @@ beforeEach(() => {
       onFault: (message) => faults.push(message),
     },
   );
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  FakeSocket.forget();
+  [descriptions, frames, offsets, states, faults] = [[], [], [], [], []];
+  seconds = 50;
+  session = newSession();
 });
 
 afterEach(() => {
@@ -61,6 +66,16 @@ describe('entering', () => {
     expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
     expect(offsets).toEqual([1000]);
     expect(descriptions).toEqual([kDescription]);
+  });
+
+  it.each([
+    [undefined, undefined],
+    ['s7', { session: 's7' }],
+  ])('joins session %s', async (chosen, params) => {
+    session = newSession(chosen);
+    session.open();
+    const socket = await enter();
+    expect(socket.sent.find(({ method }) => method === 'session.join')?.params).toEqual(params);
   });
 
   it('does the same again after a break', async () => {

@@ -25,6 +25,11 @@ export interface ConnectionOptions {
   url: string;
   /** The browser's `WebSocket` or that of the `ws` package. */
   socket: SocketConstructor;
+  /**
+   * Whether the server answers plain HTTP. Browsers do not say why a line did not open; with this
+   * a server that refuses it is told from one that is away.
+   */
+  probe?: () => Promise<boolean>;
   /** How long a request, or opening the line, may take. */
   timeoutMs?: number;
   /** Delay before the n-th attempt in a row to reconnect, n from 1. */
@@ -36,6 +41,8 @@ export function defaultRetryDelayMs(attempt: number): number {
   return Math.min(500 * 2 ** (attempt - 1), 8000) * (1 + Math.random() / 4);
 }
 
+const kRefused = `the server refuses ${kSubprotocol}; it may have changed, reload the page`;
+
 /** A line to the server that comes back by itself when it breaks. */
 export class Connection {
   private readonly timeoutMs: number;
@@ -45,6 +52,7 @@ export class Connection {
   private isOpen = false;
   /** To connect since the server last sent something unasked: replies may be refusals to join. */
   private attempts = 0;
+  private retryMs = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
@@ -64,7 +72,7 @@ export class Connection {
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => this.handleOpen();
     socket.onmessage = (event: { data: unknown }) => this.handleMessage(event.data);
-    socket.onclose = (event: SocketClose) => this.retryLater(describeClose(event));
+    socket.onclose = (event: SocketClose) => this.handleClose(event);
     socket.onerror = () => undefined; // a close event with the reason always follows
     this.socket = socket;
     this.timer = setTimeout(() => this.retryLater('the server does not answer'), this.timeoutMs);
@@ -106,6 +114,22 @@ export class Connection {
     this.handlers.onState?.({ name: 'open' });
   }
 
+  private handleClose(event: SocketClose): void {
+    const wasOpen = this.isOpen;
+    this.retryLater(describeClose(event));
+    if (!wasOpen) void this.explainRefusal();
+  }
+
+  /** Corrects the reason for waiting if the server is there. */
+  private async explainRefusal(): Promise<void> {
+    const { timer } = this;
+    const start = Date.now();
+    const isThere = await this.options.probe?.();
+    if (!isThere || this.timer !== timer) return; // the next attempt has begun already
+    const retryMs = Math.max(0, this.retryMs - (Date.now() - start));
+    this.handlers.onState?.({ name: 'waiting', reason: kRefused, retryMs });
+  }
+
   private handleMessage(data: unknown): void {
     if (data instanceof ArrayBuffer) {
       this.attempts = 0;
@@ -142,9 +166,9 @@ export class Connection {
 
   private retryLater(reason: string): void {
     this.drop(reason);
-    const retryMs = this.retryDelayMs(++this.attempts);
-    this.timer = setTimeout(() => this.open(), retryMs);
-    this.handlers.onState?.({ name: 'waiting', reason, retryMs });
+    this.retryMs = this.retryDelayMs(++this.attempts);
+    this.timer = setTimeout(() => this.open(), this.retryMs);
+    this.handlers.onState?.({ name: 'waiting', reason, retryMs: this.retryMs });
   }
 
   private drop(reason = 'the connection was closed'): void {

@@ -20,13 +20,15 @@ export interface SessionHandlers {
 }
 
 export interface SessionOptions extends ConnectionOptions {
+  /** The session to join; by default the server's first. */
+  session?: string | undefined;
   /** Our clock [s]. */
   now: () => number;
   /** Time between two round trips that measure the clock and prove that the line lives. */
   clockPeriodMs?: number;
 }
 
-/** One client in the server's first session: joins, subscribes, and does so again after a break. */
+/** One client in a session: joins, subscribes, and does so again after a break. */
 export class Session {
   private readonly connection: Connection;
   private clock = new ClockOffset();
@@ -69,9 +71,13 @@ export class Session {
 
   private async enter(): Promise<void> {
     try {
+      const { session } = this.options;
       this.clock = new ClockOffset();
       await this.measureClock();
-      const { description } = await this.request('session.join', {});
+      const { description } = await this.request(
+        'session.join',
+        session === undefined ? {} : { session },
+      );
       this.handlers.onDescription?.(description);
       await this.request('frames.subscribe', {});
     } catch (error) {

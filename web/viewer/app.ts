@@ -4,12 +4,14 @@ import { Grabber } from './grab/grabber';
 import { ConnectionLine } from './panel/connection_line';
 import { Counters } from './panel/counters';
 import { element } from './panel/elements';
+import { Hint } from './panel/hint';
 import { describeGuard, Notices } from './panel/notices';
+import { showObstacle } from './panel/obstacle';
 import { Playback } from './panel/playback';
 import { Scenes } from './panel/scenes';
 import { now } from './stream/clock';
 import { NewestFrame } from './stream/newest_frame';
-import { Stream, streamUrl } from './stream/stream';
+import { Stream } from './stream/stream';
 import type { Report } from './stream/stream';
 import { HeldMarker } from './view/held_marker';
 import { theme } from './view/palette';
@@ -19,7 +21,7 @@ import { World } from './view/world';
 /** Joins the stream from the server, the drawn world and the panel. */
 export class App {
   private readonly canvas = element('view', HTMLCanvasElement);
-  private readonly stream = new Stream(streamUrl(location.href), (report) => this.handle(report));
+  private readonly stream = new Stream(location.href, (report) => this.handle(report));
   private readonly darkness = window.matchMedia('(prefers-color-scheme: dark)');
   private readonly world = new World(theme(this.darkness.matches));
   private readonly marker = new HeldMarker();
@@ -34,6 +36,7 @@ export class App {
   private readonly connection = new ConnectionLine(() => this.stream.open());
   private readonly counters = new Counters(now);
   private readonly notices = new Notices();
+  private readonly hint = new Hint();
   private readonly scenes = new Scenes((scene) => this.command('scene.load', { scene }));
   private readonly playback = new Playback({
     play: () => this.command('control.play', {}),
@@ -49,8 +52,20 @@ export class App {
   start(): void {
     this.stage.scene.add(this.world.group, this.marker.group);
     this.paint();
+    this.watchContext();
     this.darkness.addEventListener('change', () => this.paint());
     this.stream.open();
+  }
+
+  /** Browsers take the graphics away from pages, for instance when the machine sleeps. */
+  private watchContext(): void {
+    this.canvas.addEventListener('webglcontextlost', () =>
+      showObstacle('The browser has stopped the drawing. It goes on when the browser allows it.'),
+    );
+    this.canvas.addEventListener('webglcontextrestored', () => {
+      showObstacle(undefined);
+      this.stage.invalidate();
+    });
   }
 
   private paint(): void {
@@ -125,6 +140,7 @@ export class App {
 
   private enter(): void {
     this.enable(true);
+    this.hint.begin();
     this.stream.request('scene.list', {}).then(
       ({ scenes }) => this.scenes.list(scenes),
       (error: unknown) => this.refuse(error),
@@ -133,6 +149,7 @@ export class App {
 
   private leave(): void {
     this.newest.forget();
+    this.counters.clearRates();
     this.enable(false);
   }
 

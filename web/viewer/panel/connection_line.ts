@@ -1,7 +1,7 @@
 import type { ConnectionState } from '../../client/index';
 import { element, onPress } from './elements';
 
-/** The connection's state in words, with a count-down to the next attempt. */
+/** The connection's state in words, and a button with a count-down to the next attempt. */
 export class ConnectionLine {
   private readonly line = element('connection', HTMLElement);
   private readonly text = element('connection-text', HTMLElement);
@@ -16,15 +16,16 @@ export class ConnectionLine {
     window.clearInterval(this.countdown);
     this.line.dataset.state = state.name;
     this.retry.hidden = state.name !== 'waiting';
-    if (state.name === 'waiting') this.countDown(state.reason, state.retryMs);
-    else this.text.textContent = words(state);
+    this.text.textContent = words(state);
+    if (state.name === 'waiting') this.countDown(state.retryMs);
   }
 
-  private countDown(reason: string, retryMs: number): void {
+  /** On the button: a text that is read out must not change every second. */
+  private countDown(retryMs: number): void {
     const end = performance.now() + retryMs;
     const show = (): void => {
       const seconds = Math.max(1, Math.ceil((end - performance.now()) / 1000));
-      this.text.textContent = `Not connected: ${reason}. Next try in ${seconds} s.`;
+      this.retry.textContent = `Try now (${seconds} s)`;
     };
     show();
     this.countdown = window.setInterval(show, 250);
@@ -37,7 +38,9 @@ function words(state: ConnectionState): string {
       return 'Connecting …';
     case 'open':
       return 'Connected';
-    default:
+    case 'waiting':
+      return `Not connected: ${state.reason}`;
+    case 'closed':
       return 'Not connected';
   }
 }

@@ -53,6 +53,12 @@ export class Counters {
         : Math.max(0, this.now() + clockOffset - header.published);
   }
 
+  /** Without a line to the server, nothing is known of the frames to come. */
+  clearRates(): void {
+    this.age = undefined;
+    this.lastBytes = 0;
+  }
+
   showStatus(status: SessionStatus): void {
     this.showTick(status.tick, status.time);
     write(this.particles, status.particles, formatCount(status.particles));
@@ -65,13 +71,14 @@ export class Counters {
 
   private showRate(factor: number, slow: boolean): void {
     this.rate.dataset.slow = String(slow);
-    write(this.rate, factor, formatFactor(factor) + (slow ? ', slower than set' : ''));
+    write(this.rate, factor, (slow ? 'slow, ' : '') + formatFactor(factor));
   }
 
   private writeRates(): void {
     const bytesPerSecond = this.meter.bytesPerSecond(this.now());
     write(this.frameBytes, this.lastBytes, formatBytes(this.lastBytes));
     write(this.byteRate, bytesPerSecond, `${formatBytes(bytesPerSecond)}/s`);
-    if (this.age !== undefined) write(this.frameAge, this.age, formatMilliseconds(this.age));
+    if (this.age === undefined) this.frameAge.textContent = '–';
+    else write(this.frameAge, this.age, formatMilliseconds(this.age));
   }
 }

@@ -6,7 +6,9 @@ const kMostShown = 4;
 
 type Level = 'warning' | 'error';
 
-/** Messages that stay until they are dismissed; the newest first, a few at most. */
+const kWarningMs = 15_000;
+
+/** Messages over the scene, the newest first, a few at most; errors stay until dismissed. */
 export class Notices {
   private readonly list = element('notices', HTMLOListElement);
 
@@ -19,21 +21,13 @@ export class Notices {
     dismiss.type = 'button';
     dismiss.ariaLabel = 'Dismiss';
     dismiss.textContent = '×';
-    onPress(dismiss, () => {
-      item.remove();
-      this.update();
-    });
+    onPress(dismiss, () => item.remove());
     const words = document.createElement('span');
     words.textContent = text;
     item.append(words, dismiss);
     this.list.prepend(item);
-    this.update();
-  }
-
-  private update(): void {
     while (this.list.children.length > kMostShown) this.list.lastElementChild?.remove();
-    const section = this.list.parentElement;
-    if (section) section.hidden = this.list.children.length === 0;
+    if (level === 'warning') window.setTimeout(() => item.remove(), kWarningMs);
   }
 }
 

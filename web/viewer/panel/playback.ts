@@ -45,7 +45,12 @@ export class Playback {
   showSpeed(speed: number): void {
     if (this.dragging) return;
     this.slider.value = String(Math.log2(speed));
+    this.writeSpeed(speed);
+  }
+
+  private writeSpeed(speed: number): void {
     this.speedText.value = formatFactor(speed);
+    this.slider.ariaValueText = `${speed.toFixed(2)} times real time`; // its value is a logarithm
   }
 
   private toggle(): void {
@@ -55,7 +60,7 @@ export class Playback {
 
   private dragSpeed(): void {
     this.dragging = true;
-    this.speedText.value = formatFactor(sliderSpeed(this.slider.valueAsNumber));
+    this.writeSpeed(sliderSpeed(this.slider.valueAsNumber));
   }
 
   private finishSpeed(): void {
@@ -65,7 +70,8 @@ export class Playback {
   }
 
   private handleKey(event: KeyboardEvent): void {
-    const { key, target, repeat } = event;
+    const { target, repeat } = event;
+    const key = event.key.toLowerCase(); // Caps Lock makes no difference
     const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
     if (!this.enabled || !isPlain || isControl(target, key)) return;
     if (key === ' ' && !repeat) this.toggle();

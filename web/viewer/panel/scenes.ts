@@ -1,6 +1,7 @@
 import type { BodyKindName, SceneEntry, SessionDescription } from '../../client/index';
 import { element } from './elements';
 import { formatCount } from './format';
+import { bodyColour } from '../view/palette';
 
 const kKindWords: Readonly<Record<BodyKindName, string>> = {
   liquid: 'liquid',
@@ -50,16 +51,27 @@ export class Scenes {
   }
 
   private explainColours({ bodies }: SessionDescription): void {
-    const counts = new Map<BodyKindName, number>();
-    for (const { kind, particles } of bodies) {
-      counts.set(kind, (counts.get(kind) ?? 0) + particles);
-    }
-    const items = [...counts].map(([kind, count]) => {
+    const kinds = [...new Set(bodies.map(({ kind }) => kind))];
+    const items = kinds.map((kind) => {
+      const ofKind = bodies.filter((body) => body.kind === kind);
+      const count = ofKind.reduce((sum, { particles }) => sum + particles, 0);
       const item = document.createElement('li');
-      item.dataset.kind = kind;
-      item.textContent = `${kKindWords[kind]} ${formatCount(count)}`;
+      item.append(...swatches(kind, ofKind.length), `${kKindWords[kind]} ${formatCount(count)}`);
       return item;
     });
     this.legend.replaceChildren(...items);
   }
+}
+
+/** A dot for each colour that the bodies of a kind have. */
+function swatches(kind: BodyKindName, bodies: number): HTMLElement[] {
+  const colours = Array.from(
+    { length: bodies },
+    (_, n) => `#${bodyColour(kind, n).getHexString()}`,
+  );
+  return [...new Set(colours)].map((colour) => {
+    const dot = document.createElement('i');
+    dot.style.background = colour;
+    return dot;
+  });
 }

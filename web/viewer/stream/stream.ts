@@ -21,7 +21,8 @@ export class Stream {
   private lastKey = 0;
 
   constructor(
-    private readonly url: string,
+    /** The address of this page. */
+    private readonly page: string,
     private readonly onReport: (report: Report) => void,
   ) {
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.handle(data);
@@ -29,7 +30,7 @@ export class Stream {
 
   /** Connects now; also cuts short the wait before the next attempt. */
   open(): void {
-    this.post({ type: 'open', url: this.url });
+    this.post({ type: 'open', url: streamUrl(this.page), session: chosenSession(this.page) });
   }
 
   readonly request: Request = (method, params) => {
@@ -64,6 +65,11 @@ export class Stream {
     this.waiting.delete(key);
     return waiting;
   }
+}
+
+/** The session that the page's address names with `?session=`. */
+export function chosenSession(page: string): string | undefined {
+  return new URL(page).searchParams.get('session') ?? undefined;
 }
 
 /** The server's WebSocket beside this page. */

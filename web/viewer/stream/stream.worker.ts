@@ -10,10 +10,19 @@ function post(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
 }
 
-function open(url: string): void {
+/** Whether the server that this page came from answers at all. */
+async function probe(): Promise<boolean> {
+  try {
+    return (await fetch('/healthz', { cache: 'no-store' })).ok;
+  } catch {
+    return false; // fetch throws where nobody answers
+  }
+}
+
+function open(url: string, chosen: string | undefined): void {
   session?.close();
   session = new Session(
-    { url, socket: WebSocket, now },
+    { url, session: chosen, socket: WebSocket, now, probe },
     {
       onState: (state) => post({ type: 'state', state }),
       onDescription: (description) => post({ type: 'description', description }),
@@ -51,7 +60,7 @@ function refusalOf({ kind, message, code, data }: RequestError): Refusal {
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   switch (data.type) {
     case 'open':
-      open(data.url);
+      open(data.url, data.session);
       break;
     case 'request':
       void request(data.key, data.method, data.params);

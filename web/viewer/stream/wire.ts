@@ -9,7 +9,7 @@ import type {
 
 /** Messages between the page and the worker that holds the connection. */
 export type ToWorker =
-  | { type: 'open'; url: string }
+  | { type: 'open'; url: string; session: string | undefined }
   | { type: 'request'; key: number; method: MethodName; params: object }
   | { type: 'acknowledge'; sequence: number };
 
