@@ -185,7 +185,7 @@ TEST(RemoveBody, LeavesTheOthersWhereTheyAre) {
 
 TEST(RemoveBody, EndsWhatActedOnItAndNeverUsesItsIdAgain) {
   Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
-  const BodyId id = simulation.find_body("jelly").value();
+  const BodyId id = simulation.find_body("crate").value();  // the greatest so far
   ASSERT_TRUE(simulation.grab_start(1, id, 0, Vec3::Zero()).ok());
   ASSERT_TRUE(simulation.apply_force(id, {1, 0, 0}, 1).ok());
   ASSERT_TRUE(simulation.remove_body(id).ok());
@@ -193,7 +193,7 @@ TEST(RemoveBody, EndsWhatActedOnItAndNeverUsesItsIdAgain) {
   EXPECT_EQ(errors_of(simulation.grab_move(1, Vec3::Zero())), "no_such_grab /grab");
   EXPECT_TRUE(simulation.advance(5).events.empty());
   const BodyDescription again =
-      make_block("jelly", BodyKind::deformable, "b", 2, {0, 0, 0.7}, Vec3::Zero());
+      make_block("crate", BodyKind::rigid, "b", 2, {0, 0, 0.7}, Vec3::Zero());
   EXPECT_GT(simulation.add_body(again).value(), id);
 }
 
