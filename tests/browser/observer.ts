@@ -3,6 +3,9 @@ import { Session } from '../../web/client/index';
 import type {
   BodyState,
   Event,
+  MethodName,
+  Params,
+  Result,
   SessionDescription,
   SessionStatus,
   SocketConstructor,
@@ -42,6 +45,10 @@ export class Observer {
 
   leave(): void {
     this.session.close();
+  }
+
+  request<M extends MethodName>(method: M, params: Params<M>): Promise<Result<M>> {
+    return this.session.request(method, params);
   }
 
   async tick(): Promise<number> {

@@ -54,7 +54,9 @@ export class Viewer {
     page.on('console', (message) => this.noteConsole(message));
     page.on('pageerror', (error) => this.problems.push(`uncaught ${error.message}`));
     page.on('request', (request) => this.noteRequest(request));
-    page.on('requestfailed', (request) => this.problems.push(`no answer for ${request.url()}`));
+    page.on('requestfailed', (request) => {
+      if (!this.serverIsAway) this.problems.push(`no answer for ${request.url()}`);
+    });
     page.on('response', (response) => {
       if (!response.ok()) this.problems.push(`${response.status()} for ${response.url()}`);
     });
@@ -68,6 +70,7 @@ export class Viewer {
     });
     const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
     page.setDefaultTimeout(kDeadlineMs);
+    await page.addInitScript(addBrake);
     const viewer = new Viewer(browser, page, url);
     await page.goto(url);
     return viewer;
@@ -75,6 +78,11 @@ export class Viewer {
 
   async close(): Promise<void> {
     await this.browser.close();
+  }
+
+  /** Keeps the page from drawing, as browsers do with a tab in the background, or lets it again. */
+  async brake(on: boolean): Promise<void> {
+    await this.page.evaluate((value) => window.brake(value), on);
   }
 
   /** Waits for an element that matches; the page says its state in data attributes. */
@@ -142,8 +150,7 @@ export class Viewer {
 
   private noteConsole(message: ConsoleMessage): void {
     if (message.type() !== 'error') return;
-    const isLostLine = this.serverIsAway && message.text().startsWith('WebSocket connection to');
-    if (!isLostLine) this.problems.push(`console: ${message.text()}`);
+    if (!this.serverIsAway) this.problems.push(`console: ${message.text()}`);
   }
 
   private noteRequest(request: Request): void {
@@ -151,6 +158,24 @@ export class Viewer {
     const isLocal = protocol === 'blob:' || protocol === 'data:';
     if (!isLocal && `${origin}/` !== this.url) this.problems.push(`asked for ${request.url()}`);
   }
+}
+
+declare global {
+  interface Window {
+    brake(on: boolean): void;
+  }
+}
+
+/** Runs in the browser, before the page's own scripts. */
+function addBrake(): void {
+  const draw = window.requestAnimationFrame.bind(window);
+  const held: FrameRequestCallback[] = [];
+  let isOn = false;
+  window.requestAnimationFrame = (callback) => (isOn ? -held.push(callback) : draw(callback));
+  window.brake = (on) => {
+    isOn = on;
+    if (!on) held.splice(0).forEach((callback) => draw(callback));
+  };
 }
 
 /** Runs in the browser. */
