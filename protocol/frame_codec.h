@@ -66,9 +66,9 @@ struct PublishedState {
 };
 PublishedState publish(const Simulation& simulation);
 
-/// Bytes of a key frame. A position inside the grid is sent with an error of at most quantum / 2 per
-/// axis; one outside is moved to the nearest grid position. `sequence` and `dropped` may be patched
-/// in afterwards by patch_client, so that clients share one encoding.
+/// Bytes of a key frame. A position inside the grid is sent with an error of at most quantum / 2
+/// per axis; one outside is moved to the nearest grid position. `sequence` and `dropped` may be
+/// patched in afterwards by patch_client, so that clients share one encoding.
 std::vector<std::uint8_t> encode_key_frame(const PublishedState& state, const FrameGrid& grid);
 void patch_client(std::span<std::uint8_t> frame, std::uint32_t sequence, std::uint32_t dropped);
 

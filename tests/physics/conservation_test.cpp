@@ -146,8 +146,8 @@ TEST(Conservation, ExplicitEulerGainsAngularMomentumAsTheorySays) {
         const std::vector<MovingMass> after = moving_masses(simulation);
         Vec3 gain = Vec3::Zero();
         for (std::size_t i = 0; i < before.size(); ++i) {
-          gain += simulation.step_size() * before[i].mass *
-                  before[i].velocity.cross(after[i].velocity);
+          gain +=
+              simulation.step_size() * before[i].mass * before[i].velocity.cross(after[i].velocity);
         }
         greatest_gain = std::max(greatest_gain, gain.norm() / motion);
         const Vec3 momentum = totals_of(simulation.diagnostics()).angular_momentum;
