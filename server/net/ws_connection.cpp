@@ -54,8 +54,8 @@ void WsConnection::send_binary(std::shared_ptr<const std::string> bytes) {
 
 void WsConnection::send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode) {
   if (!open_) return;
-  auto message = std::make_shared<WsMessage>(
-      opcode, payload, std::make_shared<QueuedBytes>(queued_bytes_, payload->size()));
+  auto queued = std::make_shared<QueuedBytes>(queued_bytes_, payload->size());
+  auto message = std::make_shared<WsMessage>(opcode, std::move(payload), std::move(queued));
   boost::asio::post(*io_, [stream = stream_, message = std::move(message)] {
     // A stream that is no longer open refuses the message, which is then dropped as promised.
     if (const auto alive = stream.lock()) alive->send(message);

@@ -5,7 +5,7 @@
 namespace vat {
 
 const std::vector<Method>& all_methods() {
-  static const std::vector<Method> methods = [] {
+  static const std::vector<Method> kMethods = [] {
     std::vector<Method> all;
     for (const auto group : {server_methods(), session_methods(), control_methods(),
                              world_methods(), grab_methods(), frame_methods(), state_methods()}) {
@@ -13,7 +13,7 @@ const std::vector<Method>& all_methods() {
     }
     return all;
   }();
-  return methods;
+  return kMethods;
 }
 
 const Method* find_method(std::string_view name) {
