@@ -8,6 +8,7 @@ TEXT_ENDINGS = (
     ".cpp", ".h", ".ts", ".js", ".css", ".html", ".py", ".sh", ".cmake", ".md", ".json", ".jsonl",
     ".yaml", ".txt",
 )
+RAW_FOLDER = "tests/fuzz/corpus/"  # bytes as a fuzzer gives them, whatever they are called
 TEXT_NAMES = {
     "vat", "run", "Dockerfile", "LICENSE", ".clang-format", ".clang-tidy", ".editorconfig",
     ".gitignore", ".dockerignore", ".npmrc",
@@ -44,7 +45,8 @@ def read_tree(root):
             full = os.path.join(folder, name)
             path = os.path.relpath(full, root).replace(os.sep, "/")
             paths.add(path)
-            if name.endswith(TEXT_ENDINGS) or name in TEXT_NAMES:
+            is_text = name.endswith(TEXT_ENDINGS) or name in TEXT_NAMES
+            if is_text and not path.startswith(RAW_FOLDER):
                 with open(full, encoding="utf-8") as file:
                     files[path] = file.read()
     return Tree(files, paths)
