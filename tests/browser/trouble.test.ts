@@ -52,6 +52,55 @@ it('follows a scene that another client loads, also while it does not draw', asy
   expect(await page.page.title()).toContain('stack');
 });
 
+it('names a scene from outside of the catalogue', async () => {
+  const page = await open();
+  observer = await Observer.join(server.url);
+  await page.untilTick(1);
+  const scene = {
+    format: 'vat.scene/1',
+    name: 'mine',
+    title: 'My scene',
+    materials: [],
+    bodies: [],
+  };
+  await observer.request('scene.load', { scene });
+  await page.untilScene('mine');
+  expect(await page.page.locator('#scene option:checked').textContent()).toBe('My scene');
+  await observer.request('scene.load', { scene: 'rigid-stack' });
+  await page.untilScene('rigid-stack');
+  expect(await page.page.locator('#scene').textContent()).not.toContain('My scene');
+});
+
+it('shows what the server refuses', async () => {
+  const page = await open();
+  await page.untilTick(1);
+  await page.page.evaluate(() => {
+    const picker = document.getElementById('scene') as HTMLSelectElement;
+    picker.append(new Option('Gone', 'gone'));
+  });
+  await page.page.selectOption('#scene', 'gone');
+  await page.until('#notices li[data-level="error"]');
+  expect(await page.page.textContent('#notices')).toContain('gone');
+  expect(await page.page.inputValue('#scene')).not.toBe('gone');
+});
+
+it('leaves keys to the picker while a scene is picked, and takes them elsewhere', async () => {
+  const page = await open();
+  observer = await Observer.join(server.url);
+  await page.untilTick(1);
+  await observer.request('control.pause', {});
+  const tick = await observer.tick();
+  await page.page.focus('#scene');
+  await page.page.keyboard.press('s');
+  await page.page.keyboard.press('r');
+  await page.page.focus('#speed');
+  await page.page.keyboard.press('ArrowRight');
+  await expect.poll(async () => (await observer!.nextStatus()).speed).toBeGreaterThan(1);
+  expect(await observer.tick()).toBe(tick); // the keys before would have come first
+  await page.page.keyboard.press('S');
+  await page.untilTick(tick + 1);
+});
+
 it('says that its session was closed, and goes to the one that is left', async () => {
   const page = await open();
   observer = await Observer.join(server.url);

@@ -73,14 +73,20 @@ describe('what the guard did', () => {
 describe('sliderSpeed', () => {
   it.each([
     [0, 1],
-    [0.01, 1],
+    [0.1, 1.05],
     [-1, 0.5],
     [2, 4],
     [5, 4],
-    [-4.32, 0.05],
+    [-4.4, 0.05],
     [-9, 0.05],
   ])('position %d is speed %d', (position, speed) => {
     expect(sliderSpeed(position)).toBeCloseTo(speed, 12);
+  });
+
+  it('does not push the slider from its place', () => {
+    for (let tenth = -43; tenth <= 20; ++tenth) {
+      expect(Math.round(10 * Math.log2(sliderSpeed(tenth / 10)))).toBe(tenth);
+    }
   });
 });
 

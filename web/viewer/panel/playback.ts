@@ -66,7 +66,6 @@ export class Playback {
   private finishSpeed(): void {
     this.dragging = false;
     this.actions.setSpeed(sliderSpeed(this.slider.valueAsNumber));
-    this.slider.blur();
   }
 
   private handleKey(event: KeyboardEvent): void {
@@ -88,9 +87,12 @@ function isControl(target: EventTarget | null, key: string): boolean {
   return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
 }
 
-/** The slider is logarithmic, and gives way to round numbers: 1 × can be hit again. */
+/**
+ * The slider is logarithmic, in tenths of a doubling, and the speed is rounded less than that: a
+ * slider set to the speed that it gave stays where it is.
+ */
 export function sliderSpeed(position: number): number {
   const speed = 2 ** position;
-  const step = speed < 1 ? 0.01 : 0.05;
+  const step = speed < 0.2 ? 0.001 : speed < 1 ? 0.01 : 0.05;
   return Math.min(Math.max(Math.round(speed / step) * step, 0.05), 4);
 }

@@ -14,13 +14,18 @@ export class Scenes {
   private readonly picker = element('scene', HTMLSelectElement);
   private readonly text = element('scene-text', HTMLElement);
   private readonly legend = element('legend', HTMLElement);
+  private readonly stranger = new Option('', '');
   private entries: SceneEntry[] = [];
   private current: SessionDescription | undefined;
 
   constructor(load: (scene: string) => void) {
+    this.stranger.disabled = true;
+    let byKeyboard = false;
+    this.picker.addEventListener('keydown', () => (byKeyboard = true));
+    this.picker.addEventListener('pointerdown', () => (byKeyboard = false));
     this.picker.addEventListener('change', () => {
       load(this.picker.value);
-      this.picker.blur();
+      if (!byKeyboard) this.picker.blur(); // so that the keys play, step and reset again
     });
   }
 
@@ -42,12 +47,19 @@ export class Scenes {
   describe(description: SessionDescription): void {
     this.current = description;
     const entry = this.entries.find(({ name }) => name === description.scene);
-    // A scene that is not of the catalogue leaves the picker empty.
-    this.picker.value = entry?.name ?? '';
     const title = description.title || description.scene;
+    this.showStranger(entry ? undefined : title);
+    this.picker.value = entry?.name ?? '';
     document.title = `${title} – vat`;
-    this.text.textContent = entry?.description ?? title;
+    this.text.textContent = entry?.description ?? 'A scene from outside of the catalogue.';
     this.explainColours(description);
+  }
+
+  /** A scene that is not of the catalogue is named in the picker, but cannot be picked. */
+  private showStranger(title: string | undefined): void {
+    this.stranger.textContent = title ?? '';
+    if (title === undefined) this.stranger.remove();
+    else this.picker.prepend(this.stranger);
   }
 
   private explainColours({ bodies }: SessionDescription): void {
