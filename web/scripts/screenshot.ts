@@ -18,6 +18,7 @@ try {
   try {
     await viewer.untilScene(kScene);
     await viewer.untilTick(kTick);
+    await viewer.until('#rate[data-slow="false"]'); // this machine may have been busy
     await viewer.page.screenshot({ path: kPicture });
   } finally {
     await viewer.close();
