@@ -1,42 +1,46 @@
 #include "server/session/frame_domain.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace vat {
+namespace {
+
+using Box = Eigen::AlignedBox<Real, 3>;
+
+constexpr Real kSlack = 0.25;        // on each side, of the width there
+constexpr Real kGreatestExcess = 4;  // of the widest side
+
+Real width(const Box& box) {
+  return box.sizes().maxCoeff();
+}
+
+Box with_slack(const Box& box) {
+  const Vec3 slack = kSlack * box.sizes();
+  return {box.min() - slack, box.max() + slack};
+}
+
+}  // namespace
 
 FrameDomain::FrameDomain(const std::optional<Vat>& vat) {
   if (!vat) return;
-  include(vat->min, vat->max);
-  if (!vat->motion) return;
-  const Vec3 reach = vat->motion->axis.normalized() * vat->motion->stroke;
-  include(vat->min + reach, vat->max + reach);
+  vat_ = Box(vat->min, vat->max);
+  if (vat->motion) {
+    vat_.extend(vat_.translated(vat->motion->axis.normalized() * vat->motion->stroke));
+  }
+  box_ = vat_;
 }
 
 void FrameDomain::include(const PublishedState& state) {
-  constexpr Real kFar = std::numeric_limits<Real>::infinity();
-  Vec3 min = Vec3::Constant(kFar);
-  Vec3 max = Vec3::Constant(-kFar);
+  Box needed = vat_;
   for (const PublishedState::Body& body : state.bodies) {
-    for (const Vec3& position : body.positions) {
-      min = min.cwiseMin(position);
-      max = max.cwiseMax(position);
-    }
+    for (const Vec3& position : body.positions) needed.extend(position);
   }
-  if ((min.array() > max.array()).any()) return;  // no particles
-  if (!empty_ && (min.array() >= min_.array()).all() && (max.array() <= max_.array()).all()) return;
-  const Vec3 slack = 0.25 * (max - min);
-  include(min - slack, max + slack);
-}
-
-void FrameDomain::include(const Vec3& min, const Vec3& max) {
-  min_ = empty_ ? min : Vec3(min_.cwiseMin(min));
-  max_ = empty_ ? max : Vec3(max_.cwiseMax(max));
-  empty_ = false;
+  if (needed.isEmpty()) return;
+  if (!box_.contains(needed)) box_.extend(with_slack(needed));
+  if (width(box_) > kGreatestExcess * width(needed)) box_ = with_slack(needed);
 }
 
 FrameGrid FrameDomain::grid(double max_error) const {
-  return make_frame_grid(min_, max_, max_error);
+  if (box_.isEmpty()) return make_frame_grid(Vec3::Zero(), Vec3::Zero(), max_error);
+  return make_frame_grid(box_.min(), box_.max(), max_error);
 }
 
 }  // namespace vat

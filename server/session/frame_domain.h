@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 
 #include "core/scene/scene.h"
@@ -8,8 +9,9 @@
 namespace vat {
 
 /// The box that the frame grids of one epoch cover: the vat over its whole motion, and all
-/// particles that have been sent. It only grows, with slack, so that the grid seldom changes and a
-/// particle at rest does not flicker between grid positions.
+/// particles of the last state. It has slack, so that the grid seldom changes and a particle at
+/// rest does not flicker between grid positions; but it is at most four times as wide as what it
+/// has to cover, so that neither a drop that once flew far nor a long fall makes all others coarse.
 class FrameDomain {
  public:
   FrameDomain() = default;
@@ -18,11 +20,10 @@ class FrameDomain {
   FrameGrid grid(double max_error) const;
 
  private:
-  void include(const Vec3& min, const Vec3& max);
+  using Box = Eigen::AlignedBox<Real, 3>;
 
-  bool empty_ = true;
-  Vec3 min_ = Vec3::Zero();
-  Vec3 max_ = Vec3::Zero();
+  Box vat_;
+  Box box_;
 };
 
 }  // namespace vat

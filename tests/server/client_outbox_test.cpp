@@ -1,0 +1,176 @@
+#include "server/session/client_outbox.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "protocol/frame_codec.h"
+#include "server/limits.h"
+#include "tests/server/fake_connection.h"
+
+namespace vat::test {
+namespace {
+
+SharedFrame make_frame(std::uint64_t tick) {
+  PublishedState state;
+  state.header.tick = tick;
+  return std::make_shared<const std::vector<std::uint8_t>>(
+      encode_key_frame(state, make_frame_grid(Vec3::Zero(), Vec3::Ones(), 0)));
+}
+
+std::string make_text(std::size_t bytes) {
+  return "\"" + std::string(bytes - 2, 'x') + "\"";
+}
+
+class Outbox : public testing::Test {
+ protected:
+  void offer(std::uint64_t first, std::uint64_t last) {
+    for (std::uint64_t tick = first; tick <= last; ++tick) {
+      outbox.offer_frame(membership, make_frame(tick));
+    }
+  }
+  FrameHeader last_frame() const { return connection->frames().back().header; }
+  std::size_t frame_count() const { return connection->frames().size(); }
+
+  const std::shared_ptr<FakeConnection> connection = std::make_shared<FakeConnection>(1);
+  ClientOutbox outbox{connection};
+  std::uint64_t membership = outbox.join();
+};
+
+TEST_F(Outbox, SendsThreeFramesAndKeepsTheNewest) {
+  offer(1, 50);
+  ASSERT_EQ(frame_count(), 3u);
+  EXPECT_EQ(last_frame().tick, 3u);
+  EXPECT_EQ(last_frame().sequence, 3u);
+  EXPECT_EQ(last_frame().dropped, 0u);
+
+  EXPECT_TRUE(outbox.acknowledge(1));
+  ASSERT_EQ(frame_count(), 4u);
+  EXPECT_EQ(last_frame().tick, 50u) << "the newest wins";
+  EXPECT_EQ(last_frame().sequence, 4u);
+  EXPECT_EQ(last_frame().dropped, 46u) << "4 to 49";
+
+  EXPECT_TRUE(outbox.acknowledge(2));
+  EXPECT_EQ(frame_count(), 4u) << "nothing waits";
+  offer(51, 51);
+  EXPECT_EQ(last_frame().tick, 51u);
+}
+
+TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
+  offer(1, 3);
+  EXPECT_TRUE(outbox.acknowledge(3));
+  offer(4, 10);
+  EXPECT_EQ(frame_count(), 6u);
+  EXPECT_TRUE(outbox.acknowledge(2)) << "late, and of no effect";
+  EXPECT_EQ(frame_count(), 6u);
+}
+
+TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
+  EXPECT_FALSE(outbox.acknowledge(0));
+  EXPECT_FALSE(outbox.acknowledge(1));
+  offer(1, 5);
+  EXPECT_FALSE(outbox.acknowledge(4));
+  EXPECT_FALSE(outbox.acknowledge(0xffffffff));
+  EXPECT_EQ(frame_count(), 3u) << "the window is still full";
+}
+
+TEST_F(Outbox, ADroppedFrameIsCounted) {
+  offer(1, 4);
+  outbox.drop_waiting(membership);
+  EXPECT_TRUE(outbox.acknowledge(3));
+  EXPECT_EQ(frame_count(), 3u);
+  offer(5, 5);
+  EXPECT_EQ(last_frame().dropped, 1u);
+}
+
+TEST_F(Outbox, FramesInFlightDoNotCountAfterAJoin) {
+  offer(1, 4);
+  membership = outbox.join();
+  offer(10, 12);
+  ASSERT_EQ(frame_count(), 6u);
+  EXPECT_EQ(last_frame().tick, 12u);
+  EXPECT_EQ(last_frame().sequence, 6u) << "sequences go on";
+}
+
+TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
+  const std::uint64_t old = membership;
+  offer(1, 4);
+  outbox.leave();
+  outbox.send_event(old, R"("left")");
+  outbox.offer_frame(old, make_frame(5));
+  EXPECT_TRUE(outbox.acknowledge(3));
+  EXPECT_EQ(frame_count(), 3u);
+  membership = outbox.join();
+  outbox.send_event(old, R"("late")");
+  outbox.offer_frame(old, make_frame(6));
+  outbox.drop_waiting(old);
+  EXPECT_EQ(frame_count(), 3u);
+  EXPECT_TRUE(connection->texts().empty());
+  outbox.send_event(membership, R"("new")");
+  EXPECT_EQ(connection->texts(), std::vector<Json>{"new"});
+}
+
+TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
+  connection->stall(true);
+  const std::string event = make_text(1024);
+  for (int i = 0; i < 1024; ++i) outbox.send_event(membership, event);
+  EXPECT_FALSE(connection->close_code().has_value()) << "1 MiB is allowed";
+  outbox.send("1");
+  EXPECT_EQ(connection->close_code(), 4008);
+  const std::size_t queued = connection->queued();
+  EXPECT_LE(queued, kMaxControlQueueBytes);
+  for (int i = 0; i < 1000; ++i) {
+    outbox.send(event);
+    offer(1, 1);
+  }
+  EXPECT_EQ(connection->queued(), queued) << "it grows no more";
+  EXPECT_EQ(frame_count(), 0u);
+}
+
+TEST_F(Outbox, FramesDoNotCountForTheControlQueue) {
+  connection->stall(true);
+  PublishedState state;
+  state.bodies.push_back({1, BodyKind::liquid, std::vector<Vec3>(200'000, Vec3::Zero())});
+  const auto frame = std::make_shared<const std::vector<std::uint8_t>>(
+      encode_key_frame(state, make_frame_grid(Vec3::Zero(), Vec3::Ones(), 0)));
+  for (int i = 0; i < 20; ++i) outbox.offer_frame(membership, frame);
+  EXPECT_EQ(frame_count(), kFrameWindow);
+  EXPECT_EQ(connection->queued(), kFrameWindow * frame->size());
+  outbox.send("1");
+  EXPECT_FALSE(connection->close_code().has_value());
+}
+
+TEST_F(Outbox, WhatTheSocketHasTakenIsQueuedNoLonger) {
+  const std::string event = make_text(500'000);
+  for (int i = 0; i < 20; ++i) {
+    connection->stall(true);
+    outbox.send_event(membership, event);
+    outbox.send_event(membership, event);
+    connection->stall(false);  // takes both
+  }
+  EXPECT_FALSE(connection->close_code().has_value());
+}
+
+TEST_F(Outbox, TwoMessagesMayBeLongerThanTheQueue) {
+  connection->stall(true);
+  outbox.send(make_text(3 * kMaxControlQueueBytes));
+  outbox.send(make_text(kMaxControlQueueBytes));
+  outbox.send(make_text(kMaxControlQueueBytes + 1));
+  EXPECT_FALSE(connection->close_code().has_value());
+  outbox.send(make_text(kMaxControlQueueBytes + 1));
+  EXPECT_EQ(connection->close_code(), 4008);
+}
+
+TEST_F(Outbox, CommandsInFlightAreBounded) {
+  EXPECT_TRUE(outbox.begin_command(10, 2, 100));
+  EXPECT_FALSE(outbox.begin_command(91, 2, 100)) << "too many bytes";
+  EXPECT_TRUE(outbox.begin_command(90, 2, 100));
+  EXPECT_FALSE(outbox.begin_command(0, 2, 100)) << "too many commands";
+  outbox.end_command(10);
+  EXPECT_FALSE(outbox.begin_command(11, 2, 100));
+  EXPECT_TRUE(outbox.begin_command(10, 2, 100));
+}
+
+}  // namespace
+}  // namespace vat::test

@@ -1,0 +1,153 @@
+// Frames and events: who gets which, how old, and at whose cost.
+
+#include "tests/server/session_fixture.h"
+
+namespace vat::test {
+namespace {
+
+class SessionFrames : public SessionTest {
+ protected:
+  /// Frames once the session has carried out all that was sent.
+  std::vector<Frame> frames(TestClient& reader) {
+    reader.result("session.hash");
+    return reader.connection->frames();
+  }
+};
+
+TEST_F(SessionFrames, ASubscriberGetsThePresentStateAtOnce) {
+  client->result("control.step", {{"ticks", 2}});
+  client->result("frames.subscribe");
+  const Frame frame = client->wait_frame([](const Frame&) { return true; });
+  EXPECT_EQ(frame.header.tick, 2u);
+  EXPECT_EQ(frame.header.sequence, 1u);
+  EXPECT_DOUBLE_EQ(frame.header.time, 0.04);
+  EXPECT_EQ(frame.header.epoch, 2u);
+  ASSERT_EQ(frame.blocks.size(), 4u);
+  EXPECT_EQ(frame.blocks[0].kind, FrameBlock::Kind::vat);
+  EXPECT_EQ(frame.blocks[3].body, 3u);
+}
+
+TEST_F(SessionFrames, AnErrorBoundIsKept) {
+  client->result("frames.subscribe", {{"max_error", 1e-3}});
+  const Frame frame = client->wait_frame([](const Frame&) { return true; });
+  EXPECT_DOUBLE_EQ(frame.header.quantum, 2e-3);
+  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
+  const Json& positions = state.at("bodies").at(0).at("positions");
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double sent = frame.header.origin[axis] +
+                          frame.header.quantum * frame.blocks[1].grid_positions[3 * i + axis];
+      EXPECT_NEAR(sent, positions[i][axis].get<double>(), 1e-3 * (1 + 1e-9));
+    }
+  }
+}
+
+TEST_F(SessionFrames, OnlyEachSoManiethTickIsSent) {
+  const auto other = join();
+  client->result("frames.subscribe", {{"every", 5}});
+  other->result("frames.subscribe", {{"every", 1}});
+  std::vector<std::uint64_t> ticks;
+  std::size_t all = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::uint64_t tick = client->result("control.step").at("tick");
+    other->wait_frame([&](const Frame& frame) { return frame.header.tick == tick; });
+    ++all;
+    for (const Frame& frame : frames(*client)) {
+      if (ticks.empty() || frame.header.sequence > ticks.size()) {
+        ticks.push_back(frame.header.tick);
+        client->notify("frames.ack", {{"sequence", frame.header.sequence}});
+      }
+    }
+  }
+  EXPECT_EQ(ticks, (std::vector<std::uint64_t>{0, 5, 10, 15, 20}));
+  EXPECT_EQ(all, 20u);
+}
+
+TEST_F(SessionFrames, AnUnsubscribedClientGetsNone) {
+  client->result("frames.subscribe");
+  client->wait_frame([](const Frame&) { return true; });
+  client->result("frames.unsubscribe");
+  client->result("control.step", {{"ticks", 5}});
+  EXPECT_EQ(frames(*client).size(), 1u);
+  client->result("frames.subscribe");
+  const Frame frame = client->wait_frame([](const Frame& f) { return f.header.tick == 5; });
+  EXPECT_EQ(frame.header.sequence, 2u);
+}
+
+TEST_F(SessionFrames, ASlowClientGetsTheNewestAndHindersNobody) {
+  const auto slow = join();
+  slow->result("frames.subscribe");
+  client->result("frames.subscribe");
+  for (int i = 1; i <= 100; ++i) {
+    const std::uint64_t tick = client->result("control.step").at("tick");
+    const Frame frame = client->wait_frame([&](const Frame& f) { return f.header.tick == tick; });
+    EXPECT_EQ(frame.header.dropped, 0u);
+  }
+  ASSERT_EQ(frames(*slow).size(), 3u) << "the window";
+  slow->notify("frames.ack", {{"sequence", 3}});
+  const std::vector<Frame> all = frames(*slow);
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all.back().header.tick, 100u);
+  // The first three are those of ticks 0, 1 and 2; 3 to 99 went.
+  EXPECT_EQ(all.back().header.dropped, 97u);
+}
+
+TEST_F(SessionFrames, AClientThatReadsNothingIsClosedAndTheOthersGoOn) {
+  const auto dead = join();
+  dead->result("frames.subscribe");
+  dead->connection->stall(true);
+  const std::string title(4000, 't');
+  Json scene = Json::parse(mixed_scene_text());
+  scene["title"] = title;
+  for (int i = 0; i < 400 && !dead->connection->close_code(); ++i) {
+    client->result("scene.load", {{"scene", scene}});  // a description for all
+  }
+  dead->connection->wait_closed();
+  EXPECT_EQ(dead->connection->close_code(), 4008);
+  EXPECT_LE(dead->connection->queued(), std::size_t{2} << 20) << "control queue and three frames";
+  dead->disconnect();
+  EXPECT_EQ(client->result("control.step", {{"ticks", 2}}).at("tick"), 2);
+  EXPECT_FALSE(client->connection->close_code().has_value());
+}
+
+TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
+  client->result("frames.subscribe");
+  for (int i = 0; i < 10; ++i) {
+    client->result("control.step", {{"ticks", 10}});  // the window fills, one frame waits
+    client->mark();
+    client->result("control.reset");
+    const Json description = client->wait_event("session.description");
+    const std::size_t before = client->connection->frames().size();
+    client->notify("frames.ack",
+                   {{"sequence", client->connection->frames().back().header.sequence}});
+    client->result("session.hash");
+    const auto all = client->connection->frames();
+    for (std::size_t f = before; f < all.size(); ++f) {
+      EXPECT_EQ(all[f].header.epoch, description.at("epoch"));
+    }
+    EXPECT_EQ(all.back().header.epoch, description.at("epoch")) << "and one has come";
+    EXPECT_EQ(all.back().header.tick, 0u);
+  }
+}
+
+TEST_F(SessionFrames, ManyChangesAtOnceMakeFewDescriptions) {
+  std::vector<int> ids;
+  for (int i = 0; i < 40; ++i) ids.push_back(client->send("control.reset"));
+  client->wait_reply(ids.back());
+  client->result("session.hash");
+  client->wait_event("session.description", [](const Json& d) { return d.at("epoch") == 42; });
+  EXPECT_LE(client->events("session.description").size(), 40u);
+}
+
+TEST_F(SessionFrames, StatusesComeWithoutChangesToo) {
+  const Json status = client->wait_event("session.status");
+  EXPECT_EQ(status.at("clients"), 1);
+  EXPECT_EQ(status.at("playing"), false);
+  EXPECT_EQ(status.at("tick"), 0);
+  EXPECT_EQ(status.at("time"), 0);
+  EXPECT_EQ(status.at("speed"), 1);
+  EXPECT_GT(status.at("particles"), 0);
+}
+
+}  // namespace
+}  // namespace vat::test

@@ -1,0 +1,150 @@
+// grab.*: a grab belongs to the client that started it and ends with it.
+
+#include "core/limits.h"
+#include "tests/server/session_fixture.h"
+
+namespace vat::test {
+namespace {
+
+constexpr BodyId kBall = 3;
+
+class SessionGrabs : public SessionTest {
+ protected:
+  std::uint64_t start(TestClient& owner, BodyId body = kBall) {
+    return owner.result("grab.start", {{"body", body}, {"particle", 0}, {"target", kTarget}})
+        .at("grab");
+  }
+  /// Height of the ball's centre of mass.
+  double height() {
+    const Json state = client->result("state.query", {{"bodies", {"ball"}}});
+    return state.at("bodies").at(0).at("center_of_mass").at(2);
+  }
+  /// What the simulation does with the same commands.
+  Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
+
+  const Json kTarget = {0.5, 0.5, 0.9};
+  const Vec3 target{0.5, 0.5, 0.9};
+};
+
+TEST_F(SessionGrabs, HoldMoveAndEnd) {
+  const std::uint64_t grab = start(*client);
+  client->result("control.step", {{"ticks", 50}});
+  const double held = height();
+  client->result("grab.move", {{"grab", grab}, {"target", {0.5, 0.5, 0.7}}});
+  client->result("control.step", {{"ticks", 50}});
+  EXPECT_LT(height(), held - 0.1);
+  client->result("grab.end", {{"grab", grab}});
+  client->result("control.step", {{"ticks", 20}});
+
+  ASSERT_TRUE(reference.grab_start(1, kBall, 0, target));
+  advance_ticks(reference, 50);
+  ASSERT_TRUE(reference.grab_move(1, Vec3(0.5, 0.5, 0.7)));
+  advance_ticks(reference, 50);
+  ASSERT_TRUE(reference.grab_end(1));
+  advance_ticks(reference, 20);
+  EXPECT_EQ(hash(), hash_of(reference));
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "it has ended";
+}
+
+TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
+  const auto other = join();
+  const std::uint64_t grab = start(*client);
+  const std::string before = hash();
+  const Json moved = other->error("grab.move", {{"grab", grab}, {"target", {0, 0, 0}}});
+  EXPECT_EQ(moved.at("code"), 1006);
+  EXPECT_EQ(moved.at("data").at("kind"), "not_allowed");
+  EXPECT_EQ(other->error("grab.end", {{"grab", grab}}).at("code"), 1006);
+  EXPECT_EQ(hash(), before);
+  client->result("grab.end", {{"grab", grab}});
+}
+
+TEST_F(SessionGrabs, HaveIdsOfTheirOwn) {
+  const auto other = join();
+  EXPECT_NE(start(*client), start(*other));
+}
+
+TEST_F(SessionGrabs, EndWhenTheirClientDisconnects) {
+  auto other = join();
+  start(*other);
+  client->result("control.step", {{"ticks", 5}});
+  other->disconnect();
+  client->result("control.step", {{"ticks", 5}});
+  ASSERT_TRUE(reference.grab_start(1, kBall, 0, target));
+  advance_ticks(reference, 5);
+  ASSERT_TRUE(reference.grab_end(1));
+  advance_ticks(reference, 5);
+  EXPECT_EQ(hash(), hash_of(reference));
+}
+
+TEST_F(SessionGrabs, EndWhenTheirClientLeavesOrJoinsAnotherSession) {
+  const auto other = join();
+  const std::uint64_t first = start(*other);
+  other->result("session.leave");
+  other->result("session.join");
+  EXPECT_EQ(other->error("grab.end", {{"grab", first}}).at("code"), -32602);
+  const std::uint64_t second = start(*other);
+  other->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  other->result("session.join", {{"session", "s2"}});
+  EXPECT_EQ(client->error("grab.end", {{"grab", second}}).at("code"), -32602) << "nobody has it";
+  other->result("session.join", {{"session", "s1"}});
+  const std::uint64_t third = start(*other);
+  other->result("session.join", {{"session", "s1"}});
+  EXPECT_EQ(other->error("grab.end", {{"grab", third}}).at("code"), -32602)
+      << "joining again is a fresh start";
+  client->result("control.step", {{"ticks", 5}});
+  advance_ticks(reference, 5);
+  EXPECT_EQ(hash(), hash_of(reference)) << "the ball is free";
+}
+
+TEST_F(SessionGrabs, EndWithTheirBodyOrScene) {
+  const std::uint64_t cube = start(*client, 2);
+  const std::uint64_t ball = start(*client);
+  client->result("world.remove_body", {{"body", 2}});
+  EXPECT_EQ(client->error("grab.end", {{"grab", cube}}).at("code"), -32602);
+  client->result("grab.move", {{"grab", ball}, {"target", {0.5, 0.5, 0.5}}});
+  client->result("control.reset");
+  EXPECT_EQ(client->error("grab.end", {{"grab", ball}}).at("code"), -32602);
+  const std::uint64_t again = start(*client);
+  client->result("scene.load", {{"scene", "mixed"}});
+  EXPECT_EQ(client->error("grab.end", {{"grab", again}}).at("code"), -32602);
+  client->result("control.step", {{"ticks", 3}});
+}
+
+TEST_F(SessionGrabs, OfAClientAreAtMostTen) {
+  for (int i = 0; i < 10; ++i) start(*client);
+  const Json error =
+      client->error("grab.start", {{"body", kBall}, {"particle", 0}, {"target", kTarget}});
+  EXPECT_EQ(error.at("data").at("limit"), "grabs_per_client");
+  EXPECT_EQ(error.at("data").at("maximum"), 10);
+  const auto other = join();
+  start(*other);
+}
+
+TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
+  std::vector<std::unique_ptr<TestClient>> clients;
+  for (std::size_t i = 0; i < kMaxGrabs; ++i) {
+    if (i % 10 == 0) clients.push_back(join());
+    start(*clients.back());
+  }
+  const auto params = Json{{"body", kBall}, {"particle", 0}, {"target", kTarget}};
+  const Json error = client->error("grab.start", params);
+  EXPECT_EQ(error.at("data").at("limit"), "grabs_per_session");
+  EXPECT_EQ(error.at("data").at("maximum"), kMaxGrabs);
+  clients.front()->disconnect();
+  start(*client);
+}
+
+TEST_F(SessionGrabs, ForcesOfASessionAreBoundedToo) {
+  const Json force = {{"body", kBall}, {"force", {0, 0, 0.01}}, {"duration", 0.01}};
+  for (std::size_t i = 0; i < kMaxAppliedForces; ++i) client->result("world.apply_force", force);
+  const std::string before = hash();
+  const Json error = client->error("world.apply_force", force);
+  EXPECT_EQ(error.at("data").at("limit"), "applied_forces");
+  EXPECT_EQ(error.at("data").at("maximum"), kMaxAppliedForces);
+  EXPECT_EQ(hash(), before);
+  client->result("control.step");  // they end
+  client->result("world.apply_force", force);
+}
+
+}  // namespace
+}  // namespace vat::test
