@@ -111,7 +111,9 @@ export class Viewer {
     return this.page.locator('#view').evaluate((view, key) => view.dataset[key], name);
   }
 
+  /** The tick that the picture shows; waits for the first picture of a scene. */
   async tick(): Promise<number> {
+    await this.until('#view[data-tick]');
     return Number(await this.said('tick'));
   }
 
