@@ -8,18 +8,36 @@
 /// clients and messages in server/limits.h.
 namespace vat {
 
-inline constexpr std::size_t kMaxParticles = 1'000'000;  // memory: about 1 kB each with its pairs
+inline constexpr std::size_t kMaxParticles = 1'000'000;  // memory: up to 2 kB each with its pairs
 inline constexpr std::size_t kMaxSprings = 4'000'000;    // 13 per particle of a lattice, and slack
 inline constexpr std::size_t kMaxBodies = 4096;          // the frame's per-body blocks stay small
 inline constexpr std::size_t kMaxMaterials = 64;         // the interface table is quadratic in it
 inline constexpr std::size_t kMaxNameLength = 64;        // names are shown to other users
 inline constexpr std::size_t kMaxTextLength = 4096;      // title and description
 inline constexpr std::size_t kMaxMeshTriangles = 200'000;    // memory and time to check it
-inline constexpr std::size_t kMaxMeshWork = 20'000'000;      // triangle and lattice column pairs
-inline constexpr std::size_t kMaxLatticePoints = 8'000'000;  // of a shape's bounding box
-inline constexpr std::size_t kMaxStepsPerTick = 10'000;      // a tick must end
-inline constexpr std::size_t kMaxGrabs = 64;                 // one a user
-inline constexpr std::size_t kMaxAppliedForces = 256;        // pending timed forces
+inline constexpr std::size_t kMaxMeshWork = 20'000'000;      // pairs of triangle and lattice column
+inline constexpr std::size_t kMaxLatticePoints = 8'000'000;  // of all shapes' bounding boxes
+inline constexpr std::size_t kMaxSceneTriangles = 1'000'000;  // of all meshes, time to check them
+inline constexpr std::size_t kMaxStepsPerTick = 10'000;       // a tick must end
+inline constexpr std::size_t kMaxGrabs = 64;                  // one a user
+inline constexpr std::size_t kMaxAppliedForces = 256;         // pending timed forces
+
+// Lengths over the spacing of sampled bodies: beyond them a particle has over 2000 neighbours, and
+// sums over so many are no better than over a hundred.
+inline constexpr Real kMaxReachInSpacings = 8;   // support radius, contact threshold
+inline constexpr Real kMaxRadiusInSpacings = 4;  // particle radius: two of them make the reach
+
+/// Entries in the neighbour lists of `particles` liquid particles, a pair counting twice: 256 each,
+/// 1 kB, or 16 million where that is more. Beyond them a step fails.
+constexpr std::size_t max_pairs(std::size_t particles) {
+  const std::size_t by_particle = 256 * particles;
+  return by_particle > 16'000'000 ? by_particle : 16'000'000;
+}
+/// The same for a scene at its start, and of contacts: it must have room to be compressed.
+constexpr std::size_t max_start_pairs(std::size_t particles) {
+  return max_pairs(particles) / 2;
+}
+inline constexpr std::size_t kMaxSearch = 1'000'000'000;  // particles tried for one list of pairs
 
 inline constexpr Real kMinLength = 1e-6;       // [m] spacing, radius, extent
 inline constexpr Real kMaxLength = 1e6;        // [m] coordinates and extents

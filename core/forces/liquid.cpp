@@ -1,9 +1,12 @@
 #include "core/forces/liquid.h"
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
+#include <limits>
+#include <span>
 
 #include "core/forces/pair_direction.h"
+#include "core/limits.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -23,23 +26,37 @@ Real greatest_support(const Model& model) {
   return support;
 }
 
+/// Makes room for `wanted` slots; by quarters, since a vector by itself would double.
+void make_room(std::vector<Index>& slots, std::size_t wanted) {
+  if (slots.size() >= wanted) return;
+  const std::size_t size = std::max(wanted, slots.size() + slots.size() / 4);
+  slots.reserve(size);
+  slots.resize(size);
+}
+
 /// Slots nearer to slot `self` than `support`, appended to `found` from `count` on; the new count.
 /// Every candidate is written and only a neighbour advances the count: no branch to mispredict.
 std::size_t find_neighbours(const CellSortedPoints& points, Index self, Real support,
                             std::vector<Index>& found, std::size_t count) {
+  constexpr Index kChunk = 1024;  // room for candidates at a time: a crowded cell may hold them all
   const Real x = points.x[self];
   const Real y = points.y[self];
   const Real z = points.z[self];
   const Real support2 = support * support;
   points.grid.for_each_run({x, y, z}, support, [&](Index begin, Index end) {
-    if (found.size() < count + (end - begin)) found.resize(2 * count + (end - begin));
-    Index* const out = found.data();
-    for (Index slot = begin; slot < end; ++slot) {
-      const Real dx = points.x[slot] - x;
-      const Real dy = points.y[slot] - y;
-      const Real dz = points.z[slot] - z;
-      out[count] = slot;
-      count += static_cast<std::size_t>((dx * dx + dy * dy + dz * dz < support2) & (slot != self));
+    while (begin < end) {
+      const Index stop = std::min(end, begin + kChunk);
+      make_room(found, count + (stop - begin));
+      Index* const out = found.data();
+      for (Index slot = begin; slot < stop; ++slot) {
+        const Real dx = points.x[slot] - x;
+        const Real dy = points.y[slot] - y;
+        const Real dz = points.z[slot] - z;
+        out[count] = slot;
+        count +=
+            static_cast<std::size_t>((dx * dx + dy * dy + dz * dz < support2) & (slot != self));
+      }
+      begin = stop;
     }
   });
   return count;
@@ -63,38 +80,63 @@ void sort_liquid(StepContext& c) {
   c.work.liquid.build(points.first(c.model.liquid_count), greatest_support(c.model));
 }
 
-void compute_liquid_density(StepContext& c) {
+namespace {
+
+/// rho_i = sum_j m_j W(x_i - x_j, h), the particle itself included.                   Boldt eq. 10
+Real sum_density(const Model& model, const CellSortedPoints& points, Index self,
+                 std::span<const Index> neighbours) {
+  const std::span<const Index> order = points.grid.order();
+  const Poly6& kernel = liquid_of(model, order[self]).density_kernel;
+  Real density = model.mass[order[self]] * kernel.value(0);
+  for (const Index slot : neighbours) {
+    const Real dx = points.x[slot] - points.x[self];
+    const Real dy = points.y[slot] - points.y[self];
+    const Real dz = points.z[slot] - points.z[self];
+    density += model.mass[order[slot]] * kernel.value(dx * dx + dy * dy + dz * dz);
+  }
+  return density;
+}
+
+/// Fills one block's pairs and densities. Once the blocks together have found more than `most`, the
+/// rest get no neighbours.
+void fill_block(StepContext& c, std::size_t begin, std::size_t end,
+                std::atomic<std::size_t>& pair_count, std::size_t most) {
   const CellSortedPoints& points = c.work.liquid;
   const std::span<const Index> order = points.grid.order();
-  c.work.density.resize(c.model.liquid_count);
-  c.work.liquid_pairs.resize((order.size() + kBlockSize - 1) / kBlockSize);
-  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
-    PairBlock& pairs = c.work.liquid_pairs[begin / kBlockSize];
-    std::size_t count = 0;
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto self = static_cast<Index>(s);
-      const Index i = order[self];
-      const LiquidModel& liquid = liquid_of(c.model, i);
-      const std::size_t first = count;
-      pairs.begin[s - begin] = static_cast<Index>(first);
-      count = find_neighbours(points, self, liquid.support_radius, pairs.slots, count);
+  PairBlock& pairs = c.work.liquid_pairs[begin / kBlockSize];
+  std::size_t count = 0;
+  for (std::size_t s = begin; s < end; ++s) {
+    const auto self = static_cast<Index>(s);
+    const std::size_t first = count;
+    pairs.begin[s - begin] = static_cast<Index>(first);
+    if (pair_count.load(std::memory_order_relaxed) <= most) {
+      const Real support = liquid_of(c.model, order[self]).support_radius;
+      count = find_neighbours(points, self, support, pairs.slots, count);
       if (c.model.liquids_touch) {
         count = keep_material(c.model, order, self, pairs.slots, first, count);
       }
-      // rho_i = sum_j m_j W(x_i - x_j, h), the particle itself included.           Boldt eq. 10
-      Real density = c.model.mass[i] * liquid.density_kernel.value(0);
-      for (std::size_t k = first; k < count; ++k) {
-        const Index slot = pairs.slots[k];
-        const Real dx = points.x[slot] - points.x[self];
-        const Real dy = points.y[slot] - points.y[self];
-        const Real dz = points.z[slot] - points.z[self];
-        density +=
-            c.model.mass[order[slot]] * liquid.density_kernel.value(dx * dx + dy * dy + dz * dz);
-      }
-      c.work.density[i] = density;
+      pair_count.fetch_add(count - first, std::memory_order_relaxed);
     }
-    pairs.begin[end - begin] = static_cast<Index>(count);
+    c.work.density[order[self]] = sum_density(
+        c.model, points, self, std::span<const Index>(pairs.slots).subspan(first, count - first));
+  }
+  pairs.begin[end - begin] = static_cast<Index>(count);
+}
+
+}  // namespace
+
+void compute_liquid_density(StepContext& c) {
+  const std::size_t slots = c.work.liquid.grid.order().size();
+  c.work.density.resize(c.model.liquid_count);
+  c.work.liquid_pairs.resize((slots + kBlockSize - 1) / kBlockSize);
+  const std::size_t most = max_pairs(c.model.liquid_count);
+  std::atomic<std::size_t> pair_count = 0;
+  for_blocks(c.runner, slots, [&](std::size_t begin, std::size_t end) {
+    fill_block(c, begin, end, pair_count, most);
   });
+  c.work.too_many_pairs = pair_count > most;
+  // One particle is enough for the guard to see; which blocks were cut off depends on threads.
+  if (c.work.too_many_pairs) c.work.density[0] = std::numeric_limits<Real>::quiet_NaN();
 }
 
 void compute_liquid_pressure(StepContext& c) {
@@ -110,15 +152,18 @@ void compute_liquid_pressure(StepContext& c) {
 
 namespace {
 
+template <bool viscous>
 void fill_records(StepContext& c) {
   const std::span<const Index> order = c.work.liquid.grid.order();
   c.work.liquid_records.resize(order.size());
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const Index i = order[slot];
-      c.work.liquid_records[slot] = {c.configuration.position[i],
-                                     c.model.mass[i] / c.work.density[i],
-                                     c.configuration.velocity[i], c.work.pressure[i]};
+      LiquidRecord& record = c.work.liquid_records[slot];
+      record.position = c.configuration.position[i];
+      record.volume = c.model.mass[i] / c.work.density[i];
+      if constexpr (viscous) record.velocity = c.configuration.velocity[i];
+      record.pressure = c.work.pressure[i];
     }
   });
 }
@@ -142,7 +187,7 @@ Vec3 liquid_pair_force(const LiquidModel& liquid, const LiquidRecord& i, const L
 
 template <bool viscous>
 void add_liquid_forces(StepContext& c) {
-  fill_records(c);
+  fill_records<viscous>(c);
   const std::span<const Index> order = c.work.liquid.grid.order();
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = c.work.liquid_pairs[begin / kBlockSize];

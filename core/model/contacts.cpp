@@ -3,35 +3,25 @@
 #include <algorithm>
 
 #include "core/neighbours/uniform_grid.h"
+#include "core/scene/interface_table.h"
 
 namespace vat {
 namespace {
 
-ContactLaw make_law(const SpringConstants& constants, Real threshold) {
-  return {constants.stiffness, constants.damping, threshold};
-}
-
 void fill_laws(Model& model) {
   const Scene& scene = model.scene;
-  const std::size_t count = scene.materials.size();
-  model.contact_laws.assign(count * count, make_law(scene.default_interface, 0));
-  model.wall_laws.assign(count, make_law(scene.default_interface, 0));
-  const auto index_of = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::ranges::find(scene.materials, name, &Material::name) -
-                                    scene.materials.begin());
+  const InterfaceTable table(scene.materials, scene.interfaces);
+  const auto law = [&](std::optional<std::size_t> interface) -> ContactLaw {
+    if (!interface) return {scene.default_interface.stiffness, scene.default_interface.damping, 0};
+    const InterfaceDescription& found = scene.interfaces[*interface];
+    return {found.constants.stiffness, found.constants.damping, found.threshold.value_or(0)};
   };
-  for (const InterfaceDescription& interface : scene.interfaces) {
-    const ContactLaw law = make_law(interface.constants, interface.threshold.value_or(0));
-    const auto& [first, second] = interface.materials;
-    if (first == kVatMaterial || second == kVatMaterial) {
-      model.wall_laws[index_of(first == kVatMaterial ? second : first)] = law;
-    } else {
-      model.contact_laws[index_of(first) * count + index_of(second)] = law;
-      model.contact_laws[index_of(second) * count + index_of(first)] = law;
+  for (std::size_t a = 0; a < scene.materials.size(); ++a) {
+    for (std::size_t b = 0; b < scene.materials.size(); ++b) {
+      model.contact_laws.push_back(law(table.between(a, b)));
     }
-  }
-  for (const Material& material : scene.materials) {
-    model.self_contacts.push_back(material.self_contact);
+    model.wall_laws.push_back(law(table.with_walls(a)));
+    model.self_contacts.push_back(scene.materials[a].self_contact);
   }
 }
 

@@ -29,7 +29,6 @@ void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size) {
   while (cells_along(0) * cells_along(1) * cells_along(2) > most_cells) cell_size *= 2;
 
   origin_ = low;
-  cell_size_ = cell_size;
   inverse_cell_size_ = 1 / cell_size;
   for (int axis = 0; axis < 3; ++axis) {
     count_[static_cast<std::size_t>(axis)] = static_cast<Index>(cells_along(axis));

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/support/check.h"
 #include "core/types.h"
 
 namespace vat {
@@ -19,7 +20,6 @@ class UniformGrid {
 
   /// Slot -> index of the point; slots of a cell are contiguous.
   std::span<const Index> order() const { return order_; }
-  Real cell_size() const { return cell_size_; }
 
   /// Calls f(begin, end) for runs of slots that together hold, each once, every point closer to
   /// `p` than `radius` (and others).
@@ -36,6 +36,7 @@ class UniformGrid {
     }
     for (Index z = low[2]; z <= high[2]; ++z) {
       for (Index y = low[1]; y <= high[1]; ++y) {
+        VAT_ASSERT(low[0] <= high[0] && high[0] < count_[0] && y < count_[1] && z < count_[2]);
         const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + y) * count_[0];
         const Index begin = cell_begin_[row + low[0]];
         const Index end = cell_begin_[row + high[0] + 1];
@@ -55,7 +56,6 @@ class UniformGrid {
   void choose_cells(std::span<const Vec3> points, Real cell_size);
 
   Vec3 origin_ = Vec3::Zero();
-  Real cell_size_ = 1;
   Real inverse_cell_size_ = 1;
   std::array<Index, 3> count_{1, 1, 1};
   std::vector<Index> cell_begin_;  // per cell, and one past the last

@@ -125,16 +125,8 @@ Lattice make_lattice(const Shape& shape, Real spacing) {
   return lattice;
 }
 
-const char* lattice_excess(const Shape& shape, const Lattice& lattice) {
-  if (lattice.point_count() > static_cast<Real>(kMaxLatticePoints)) {
-    return "is too small for the shape's bounding box: at most 8000000 lattice points";
-  }
-  const auto* mesh = std::get_if<MeshShape>(&shape);
-  if (mesh != nullptr &&
-      crossing_work(*mesh, lines_of(lattice)) > static_cast<Real>(kMaxMeshWork)) {
-    return "is too small for the mesh: its triangles may cover at most 20000000 lattice columns";
-  }
-  return nullptr;
+Real lattice_work(const MeshShape& mesh, const Lattice& lattice) {
+  return crossing_work(mesh, lines_of(lattice));
 }
 
 std::vector<LatticePoint> fill_lattice(const Shape& shape, const Lattice& lattice) {

@@ -17,9 +17,8 @@ struct Lattice {
 };
 Lattice make_lattice(const Shape& shape, Real spacing);
 
-/// Why the shape cannot be filled with this lattice within the limits of core/limits.h; null if it
-/// can. To be asked before fill_lattice().
-const char* lattice_excess(const Shape& shape, const Lattice& lattice);
+/// Pairs of a triangle and a column of the lattice that fill_lattice() has to try.
+Real lattice_work(const MeshShape& mesh, const Lattice& lattice);
 
 /// The lattice points inside the shape, x fastest.
 struct LatticePoint {

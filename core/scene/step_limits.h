@@ -5,6 +5,7 @@
 
 #include "core/scene/sampling.h"
 #include "core/scene/scene.h"
+#include "core/scene/stable_step.h"
 
 namespace vat {
 
@@ -15,15 +16,17 @@ struct StepLimit {
   Real step = 0;       ///< [s]; 0: no step is stable with this integrator
 };
 
-/// Greatest omega dt of an undamped oscillator: 2 for symplectic Euler and velocity Verlet, 2 sqrt
-/// 2 for RK4, and 0 for explicit Euler and Heun, whose oscillations grow at any step.
-Real undamped_limit(IntegratorId integrator);
-
-/// The limits of the scene's springs (by body), contacts (by pair of materials in use), speed of
-/// sound and viscosity (by liquid body), for its integrator. `samples` are the scene's bodies.
-/// Bounds: springs omega^2 <= 2 max_i (sum_j k_ij) / m_i; one contact omega^2 = k / mu of the
-/// lightest pair; sound c dt / h <= 0.96 and viscosity nu dt / h^2 <= 0.126 on a cubic lattice of
-/// the corrected [MCG03] forces under velocity Verlet, scaled by undamped_limit().
+/// The limits of the scene's springs, sound and viscosity (by body) and of its contacts (by
+/// interface, the default one included, and by self-contact), for its integrator. `samples` are the
+/// scene's bodies. Each is the step that is stable for upper bounds of frequency and damping:
+///
+/// - springs: omega^2 <= 2 max_i lambda_max(sum_j k_ij n n^T) / m_i at the start, and the same of
+///   the damping constants;
+/// - sound: c dt / h <= 0.96 and viscosity: nu dt / h^2 <= 0.126, the limits of the corrected
+///   [MCG03] forces on a cubic lattice under velocity Verlet, as omega dt = 2 and rate dt = 2;
+/// - contacts: omega^2 = k (n_a / m_a + n_b / m_b) where n contacts act at once on the mass m: on a
+///   rigid body as many as its flattest side has particles. How many particles of a lattice one
+///   particle reaches is an estimate, and the springs or sound within the bodies are left out.
 std::vector<StepLimit> find_step_limits(const Scene& scene,
                                         const std::vector<SampledBody>& samples);
 

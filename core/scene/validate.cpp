@@ -7,7 +7,10 @@
 #include <utility>
 
 #include "core/limits.h"
+#include "core/scene/interface_table.h"
+#include "core/scene/pair_limits.h"
 #include "core/scene/validate_parts.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -66,22 +69,6 @@ bool is_known(const Scene& scene, const std::string& material) {
          std::ranges::find(scene.materials, material, &Material::name) != scene.materials.end();
 }
 
-void check_interface(const Scene& scene, const InterfaceDescription& interface,
-                     const std::string& path, RangeCheck& check) {
-  for (std::size_t side = 0; side < 2; ++side) {
-    if (is_known(scene, interface.materials[side])) continue;
-    check.add("unknown_name", path + "/materials/" + std::to_string(side),
-              "must be \"vat\" or the name of one of the scene's materials");
-  }
-  if (interface.materials[0] == kVatMaterial && interface.materials[1] == kVatMaterial) {
-    check.add("unknown_name", path + "/materials", "must name at least one of the materials");
-  }
-  check_constants(interface.constants, path, check);
-  if (interface.threshold) {
-    check.real(*interface.threshold, kMinLength, kMaxLength, path + "/threshold");
-  }
-}
-
 void check_interfaces(const Scene& scene, RangeCheck& check) {
   check_constants(scene.default_interface, "/default_interface", check);
   std::set<std::pair<std::string, std::string>> pairs;
@@ -130,42 +117,78 @@ void check_numerics(const Numerics& numerics, RangeCheck& check) {
   }
 }
 
-struct Totals {
-  std::size_t particles = 0;
-  std::size_t springs = 0;
-  void add(const BodySize& size) {
-    particles += size.particles;
-    springs += size.springs;
-  }
-};
+bool joins(const InterfaceDescription& interface, const std::string& material) {
+  return interface.materials[0] == material || interface.materials[1] == material;
+}
 
-void check_totals(const Totals& totals, const std::string& path, RangeCheck& check) {
-  if (totals.particles > kMaxParticles) {
-    check.add("too_many", path, "at most " + std::to_string(kMaxParticles) + " particles in all");
+/// The threshold against the coarsest of the sampled bodies that meet by it; explicit particles may
+/// lie as they like.
+void check_threshold(const Scene& scene, const InterfaceDescription& interface,
+                     const std::string& path, RangeCheck& check) {
+  if (!check.real(*interface.threshold, kMinLength, kMaxLength, path)) return;
+  Real spacing = 0;
+  for (const BodyDescription& body : scene.bodies) {
+    if (!joins(interface, body.material)) continue;
+    if (std::holds_alternative<ParticleShape>(body.shape)) return;
+    spacing = std::max(spacing, body.spacing);
   }
-  if (totals.springs > kMaxSprings) {
-    check.add("too_many", path, "at most " + std::to_string(kMaxSprings) + " springs in all");
+  if (spacing > 0) {
+    check.real(*interface.threshold, kMinLength, kMaxReachInSpacings * spacing, path);
   }
 }
 
-void check_bodies(const Scene& scene, RangeCheck& check) {
+void check_bodies(const Scene& scene, RangeCheck& check, std::vector<SampledBody>& samples) {
   if (scene.bodies.size() > kMaxBodies) {
     check.add("too_many", "/bodies", "at most " + std::to_string(kMaxBodies) + " bodies");
     return;
   }
-  Totals totals;
+  Allowance allowance;
   std::set<std::string> names;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const std::string path = element("/bodies", b);
-    totals.add(check_body(scene, scene.bodies[b], path, check));
+    auto sample = check_body(scene, Vec3::Zero(), scene.bodies[b], path, allowance, check);
+    if (sample) samples.push_back(std::move(*sample));
     if (!names.insert(scene.bodies[b].name).second) {
       check.add("duplicate", path + "/name", "must not be the name of an earlier body");
     }
   }
-  check_totals(totals, "/bodies", check);
+  allowance.check_totals("/bodies", check);
+}
+
+Present present_of(const std::vector<SampledBody>& samples) {
+  Present present;
+  for (const SampledBody& sample : samples) {
+    present.bodies.push_back({sample.positions, sample.radii, sample.springs.size()});
+  }
+  return present;
+}
+
+std::vector<PairBody> pair_bodies(const Scene& scene, const Present& present) {
+  VAT_CHECK(present.bodies.size() == scene.bodies.size());
+  std::vector<PairBody> pairs;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    pairs.push_back({&scene.bodies[b], present.bodies[b].positions, present.bodies[b].radii});
+  }
+  return pairs;
 }
 
 }  // namespace
+
+void check_interface(const Scene& scene, const InterfaceDescription& interface,
+                     const std::string& path, RangeCheck& check) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (is_known(scene, interface.materials[side])) continue;
+    check.add("unknown_name", path + "/materials/" + std::to_string(side),
+              "must be \"vat\" or the name of one of the scene's materials");
+  }
+  if (interface.materials[0] == kVatMaterial && interface.materials[1] == kVatMaterial) {
+    check.add("unknown_name", path + "/materials", "must name at least one of the materials");
+  }
+  check_constants(interface.constants, path, check);
+  if (interface.threshold) {
+    check_threshold(scene, interface, path + "/threshold", check);
+  }
+}
 
 Errors find_errors(const Scene& scene) {
   Errors errors;
@@ -178,11 +201,17 @@ Errors find_errors(const Scene& scene) {
   check_interfaces(scene, check);
   if (scene.vat) check_vat(*scene.vat, check);
   check_numerics(scene.numerics, check);
-  check_bodies(scene, check);
+  std::vector<SampledBody> samples;
+  check_bodies(scene, check, samples);
+  if (errors.empty()) {
+    check_pairs(scene.materials, scene.interfaces, pair_bodies(scene, present_of(samples)),
+                "/bodies", check);
+  }
   return errors;
 }
 
-Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path) {
+Errors find_body_errors(const Scene& scene, const Present& present, const BodyDescription& body,
+                        const std::string& path) {
   Errors errors;
   RangeCheck check(errors);
   if (scene.bodies.size() >= kMaxBodies) {
@@ -192,12 +221,38 @@ Errors find_body_errors(const Scene& scene, const BodyDescription& body, const s
   if (std::ranges::find(scene.bodies, body.name, &BodyDescription::name) != scene.bodies.end()) {
     check.add("duplicate", path + "/name", "must not be the name of another body");
   }
-  Totals totals;
-  totals.add(check_body(scene, body, path, check));
-  for (const BodyDescription& present : scene.bodies) {
-    totals.add(check_body(scene, present, path, check));
+  Allowance allowance;
+  for (const PresentBody& other : present.bodies) {
+    allowance.take_particles(other.positions.size());
+    allowance.take_springs(other.springs);
   }
-  check_totals(totals, path, check);
+  const auto sample = check_body(scene, present.vat_offset, body, path, allowance, check);
+  allowance.check_totals(path, check);
+  if (!errors.empty()) return errors;
+  std::vector<PairBody> pairs = pair_bodies(scene, present);
+  pairs.push_back({&body, sample->positions, sample->radii});
+  check_pairs(scene.materials, scene.interfaces, pairs, path, check);
+  return errors;
+}
+
+Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path) {
+  std::vector<SampledBody> samples;
+  for (const BodyDescription& other : scene.bodies) {
+    samples.push_back(
+        sample_body(other, scene.materials[material_index(scene.materials, other.material)]));
+  }
+  return find_body_errors(scene, present_of(samples), body, path);
+}
+
+Errors find_interface_errors(const Scene& scene, const Present& present,
+                             const InterfaceDescription& interface, const std::string& path) {
+  Errors errors;
+  RangeCheck check(errors);
+  check_interface(scene, interface, path, check);
+  if (!errors.empty()) return errors;
+  std::vector<InterfaceDescription> interfaces = scene.interfaces;
+  interfaces.push_back(interface);  // the last of a pair of materials counts
+  check_pairs(scene.materials, interfaces, pair_bodies(scene, present), path, check);
   return errors;
 }
 

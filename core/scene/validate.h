@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,15 +18,39 @@ struct Warning {
 /// Every error of the scene at once; empty where it is valid. Checks each value's range (named in
 /// the message), references by name, that each body's material has what its kind needs, that shapes
 /// sample to at least one and at most kMaxParticles particles, mesh closedness, that the tick is a
-/// whole number of steps, and the limits of core/limits.h.
+/// whole number of steps, and the limits of core/limits.h. What must be sampled to be checked is
+/// bounded: once the bodies exceed a limit together, the rest are not sampled. Pairs of particles
+/// are counted where nothing else is wrong.
 Errors find_errors(const Scene& scene);
 
-/// The errors of one body to be added to a scene without errors; paths start with `path`.
+/// One of the scene's bodies as it is now.
+struct PresentBody {
+  std::span<const Vec3> positions;  ///< [m]
+  std::span<const Real> radii;      ///< [m] as many
+  std::size_t springs = 0;
+};
+
+/// What became of a scene without errors: its bodies in their order, and how far the vat has moved.
+struct Present {
+  std::vector<PresentBody> bodies;
+  Vec3 vat_offset = Vec3::Zero();  ///< [m]
+};
+
+/// The errors of one body to be added; paths start with `path`. Only the body itself is sampled.
+Errors find_body_errors(const Scene& scene, const Present& present, const BodyDescription& body,
+                        const std::string& path);
+/// The same at time 0, with every body of the scene where it starts.
 Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path);
 
+/// The errors of an interface that is added or that replaces the one of the same materials; paths
+/// start with `path`. Samples nothing.
+Errors find_interface_errors(const Scene& scene, const Present& present,
+                             const InterfaceDescription& interface, const std::string& path);
+
 /// Things that are allowed and likely to disappoint: bodies that overlap one another or the walls
-/// at the start, spacing against support radius, and stiffness, viscosity and speed of sound
-/// against the step. The scene must be without errors.
+/// at the start, spacing against support radius, motion that is too fast for the step, and
+/// stiffness, damping, viscosity and speed of sound against the step. The scene must be without
+/// errors.
 std::vector<Warning> find_warnings(const Scene& scene);
 
 }  // namespace vat

@@ -2,8 +2,6 @@
 #include <cmath>
 
 #include "core/limits.h"
-#include "core/scene/lattice.h"
-#include "core/scene/sampling.h"
 #include "core/scene/validate_parts.h"
 
 namespace vat {
@@ -38,25 +36,51 @@ void check_motion(const BodyDescription& body, const std::string& path, RangeChe
   }
 }
 
+/// What the shape's particles say one by one is not also said for the whole body.
+bool check_lists(const BodyDescription& body, const ParticleShape& particles,
+                 const std::string& path, RangeCheck& check) {
+  bool fine = true;
+  const auto need_one = [&](bool listed, bool given, const std::string& name, const char* lists) {
+    if (listed && given) {
+      check.add("not_allowed", path + name,
+                std::string("must be left out, since the shape lists the particles' ") + lists);
+    } else if (!listed && !given && body.spacing == 0) {
+      check.add("missing", path + name,
+                std::string("must be given, or a spacing, or the particles' ") + lists);
+    } else {
+      return;
+    }
+    fine = false;
+  };
+  need_one(!particles.masses.empty(), body.mass.has_value(), "/mass", "masses");
+  need_one(!particles.radii.empty(), body.radius.has_value(), "/radius", "radii");
+  return fine;
+}
+
 /// Spacing, mass and radius: given where nothing else tells them, and in range.
 bool check_sizes(const BodyDescription& body, const std::string& path, RangeCheck& check) {
   bool fine = true;
   if (body.mass) fine &= check.real(*body.mass, kMinMass, kMaxMass, path + "/mass");
   if (body.radius) fine &= check.real(*body.radius, kMinLength, kMaxLength, path + "/radius");
   const auto* particles = std::get_if<ParticleShape>(&body.shape);
-  const bool has_spacing = body.spacing != 0;
-  if (particles == nullptr || has_spacing) {
-    return check.real(body.spacing, kMinLength, kMaxLength, path + "/spacing") && fine;
+  if (particles == nullptr || body.spacing != 0) {
+    fine &= check.real(body.spacing, kMinLength, kMaxLength, path + "/spacing");
   }
-  if (particles->masses.empty() && !body.mass) {
-    check.add("missing", path + "/mass", "must be given, or a spacing, or the particles' masses");
-    fine = false;
-  }
-  if (particles->radii.empty() && !body.radius) {
-    check.add("missing", path + "/radius", "must be given, or a spacing, or the particles' radii");
-    fine = false;
-  }
+  if (particles != nullptr) fine &= check_lists(body, *particles, path, check);
   return fine;
+}
+
+/// A sampled body's reach against its spacing: what neighbours it will have.
+void check_ratios(const BodyDescription& body, const Material& material, const std::string& path,
+                  RangeCheck& check) {
+  if (std::holds_alternative<ParticleShape>(body.shape)) return;
+  if (body.kind == BodyKind::liquid) {
+    check.real(body.spacing, material.liquid->support_radius / kMaxReachInSpacings, kMaxLength,
+               path + "/spacing");
+  }
+  if (body.radius) {
+    check.real(*body.radius, kMinLength, kMaxRadiusInSpacings * body.spacing, path + "/radius");
+  }
 }
 
 void check_springs(const BodyDescription& body, std::size_t particles, const std::string& path,
@@ -87,58 +111,128 @@ std::size_t lattice_spring_count(const BodyDescription& body, const Material& ma
   return each * points.size();  // an upper bound: a limit that is easy to explain
 }
 
-void check_inside_vat(const Vat& vat, const BodyDescription& body, const Material& material,
+void check_inside_vat(const Vat& vat, const Vec3& offset, const SampledBody& sample,
                       const std::string& path, RangeCheck& check) {
-  for (const Vec3& position : sample_body(body, material).positions) {
-    const bool above_floor = (position.array() > vat.min.array()).all();
-    const bool between_sides = position.x() < vat.max.x() && position.y() < vat.max.y();
-    const bool below_lid = !vat.lid || position.z() < vat.max.z();
+  for (const Vec3& position : sample.positions) {
+    const Vec3 p = position - offset;
+    const bool above_floor = (p.array() > vat.min.array()).all();
+    const bool between_sides = p.x() < vat.max.x() && p.y() < vat.max.y();
+    const bool below_lid = !vat.lid || p.z() < vat.max.z();
     if (above_floor && between_sides && below_lid) continue;
     check.add("outside_vat", path, "must start inside the vat, with every particle's centre");
     return;
   }
 }
 
+struct BodySize {
+  std::size_t particles = 0;
+  std::size_t lattice_springs = 0;
+};
+
+/// The size of a body whose shape and spacing are valid; none where it cannot be sampled.
+std::optional<BodySize> measure_lattice(const BodyDescription& body, const Material& material,
+                                        const std::string& path, Allowance& allowance,
+                                        RangeCheck& check) {
+  if (allowance.is_exceeded()) return {};
+  const Lattice lattice = make_lattice(body.shape, body.spacing);
+  if (const char* excess = allowance.take_lattice(body.shape, lattice)) {
+    check.add("too_many", path + "/spacing", excess);
+    return {};
+  }
+  const std::vector<LatticePoint> points = fill_lattice(body.shape, lattice);
+  if (points.empty()) {
+    check.add("no_particles", path + "/spacing",
+              "is too large: no lattice point lies inside the shape");
+    return {};
+  }
+  return BodySize{points.size(), lattice_spring_count(body, material, points)};
+}
+
+std::optional<BodySize> measure_body(const BodyDescription& body, const Material* material,
+                                     const std::string& path, Allowance& allowance,
+                                     RangeCheck& check) {
+  bool can_sample = check_sizes(body, path, check);
+  const auto* mesh = std::get_if<MeshShape>(&body.shape);
+  if (const char* excess = mesh == nullptr ? nullptr : allowance.take_mesh(*mesh)) {
+    check.add("too_many", path + "/shape", excess);
+    return {};
+  }
+  can_sample &= check_shape(body, path + "/shape", check);
+  if (!can_sample) return {};
+  if (const auto* particles = std::get_if<ParticleShape>(&body.shape)) {
+    return BodySize{particles->positions.size(), 0};
+  }
+  if (material == nullptr) return {};
+  return measure_lattice(body, *material, path, allowance, check);
+}
+
 }  // namespace
 
-BodySize check_body(const Scene& scene, const BodyDescription& body, const std::string& path,
-                    RangeCheck& check) {
+std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,
+                                      const BodyDescription& body, const std::string& path,
+                                      Allowance& allowance, RangeCheck& check) {
   check.text(body.name, kMaxNameLength, false, path + "/name");
   Errors own;
   RangeCheck own_check(own);
   const Material* material = check_material(scene, body, path, own_check);
   check_motion(body, path, own_check);
-  bool can_sample = check_sizes(body, path, own_check);
-  can_sample &= check_shape(body, path + "/shape", own_check);
-
-  BodySize size;
-  if (const auto* particles = std::get_if<ParticleShape>(&body.shape)) {
-    size.particles = particles->positions.size();
-  } else if (can_sample && material != nullptr) {
-    const Lattice lattice = make_lattice(body.shape, body.spacing);
-    if (const char* excess = lattice_excess(body.shape, lattice)) {
-      own_check.add("too_many", path + "/spacing", excess);
-      can_sample = false;
-    } else {
-      const std::vector<LatticePoint> points = fill_lattice(body.shape, lattice);
-      size.particles = points.size();
-      size.springs = lattice_spring_count(body, *material, points);
-      if (points.empty()) {
-        own_check.add("no_particles", path + "/spacing",
-                      "is too large: no lattice point lies inside the shape");
-        can_sample = false;
-      }
-    }
+  if (const auto size = measure_body(body, material, path, allowance, own_check)) {
+    check_springs(body, size->particles, path, own_check);
+    allowance.take_particles(size->particles);
+    allowance.take_springs(size->lattice_springs + body.springs.size());
   }
-  if (can_sample) check_springs(body, size.particles, path, own_check);
-  size.springs += body.springs.size();
-  if (own.empty() && scene.vat && size.particles <= kMaxParticles && size.springs <= kMaxSprings) {
-    check_inside_vat(*scene.vat, body, *material, path, own_check);
+  if (own.empty()) check_ratios(body, *material, path, own_check);
+  std::optional<SampledBody> sample;
+  if (own.empty() && !allowance.is_exceeded()) {
+    sample = sample_body(body, *material);
+    if (scene.vat) check_inside_vat(*scene.vat, vat_offset, *sample, path, own_check);
   }
+  if (!own.empty()) sample.reset();
   for (Error& error : own) {
     check.add(std::move(error.code), std::move(error.path), std::move(error.message));
   }
-  return own.empty() ? size : BodySize{};
+  return sample;
+}
+
+const char* Allowance::take_mesh(const MeshShape& mesh) {
+  triangles_ += mesh.triangles.size();
+  if (triangles_ <= kMaxSceneTriangles) return nullptr;
+  exceeded_ = true;
+  return "the scene's meshes may have at most 1000000 triangles in all";
+}
+
+const char* Allowance::take_lattice(const Shape& shape, const Lattice& lattice) {
+  lattice_points_ += lattice.point_count();
+  if (const auto* mesh = std::get_if<MeshShape>(&shape)) mesh_work_ += lattice_work(*mesh, lattice);
+  exceeded_ = true;
+  if (lattice_points_ > static_cast<Real>(kMaxLatticePoints)) {
+    return "is too small: the shapes' bounding boxes may hold at most 8000000 lattice points in "
+           "all";
+  }
+  if (mesh_work_ > static_cast<Real>(kMaxMeshWork)) {
+    return "is too small: the meshes' triangles may cover at most 20000000 lattice columns in all";
+  }
+  exceeded_ = false;
+  return nullptr;
+}
+
+void Allowance::take_particles(std::size_t count) {
+  particles_ += count;
+  exceeded_ |= particles_ > kMaxParticles;
+}
+
+void Allowance::take_springs(std::size_t count) {
+  springs_ += count;
+  exceeded_ |= springs_ > kMaxSprings;
+}
+
+void Allowance::check_totals(const std::string& path, RangeCheck& check) const {
+  if (particles_ > kMaxParticles) {
+    check.add("too_many", path, "at most " + std::to_string(kMaxParticles) + " particles in all");
+  }
+  if (springs_ > kMaxSprings) {
+    check.add("too_many", path, "at most " + std::to_string(kMaxSprings) + " springs in all");
+  }
 }
 
 }  // namespace vat

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "core/scene/lattice.h"
 #include "core/scene/range_check.h"
+#include "core/scene/sampling.h"
 #include "core/scene/scene.h"
 
 /// The checks of validate.cpp for the parts of a scene, one by one. Paths are JSON pointers.
@@ -10,15 +13,41 @@ namespace vat {
 
 void check_constants(const SpringConstants& constants, const std::string& path, RangeCheck& check);
 
-/// Particles and springs that a body will have; zero where it has errors.
-struct BodySize {
-  std::size_t particles = 0;
-  std::size_t springs = 0;
+/// Values, names, and the threshold against the spacing of the bodies that it joins.
+void check_interface(const Scene& scene, const InterfaceDescription& interface,
+                     const std::string& path, RangeCheck& check);
+
+/// What may be spent on a scene's bodies. A body that does not fit is not sampled, nor is any after
+/// it: one excess is enough to refuse the scene.
+class Allowance {
+ public:
+  bool is_exceeded() const { return exceeded_; }
+  std::size_t particles() const { return particles_; }
+  std::size_t springs() const { return springs_; }
+
+  /// Why the mesh cannot be looked at; null if it can.
+  const char* take_mesh(const MeshShape& mesh);
+  /// Why the lattice cannot be filled; null if it can.
+  const char* take_lattice(const Shape& shape, const Lattice& lattice);
+  void take_particles(std::size_t count);
+  void take_springs(std::size_t count);
+  /// Adds an error where there are too many particles or springs.
+  void check_totals(const std::string& path, RangeCheck& check) const;
+
+ private:
+  bool exceeded_ = false;
+  std::size_t particles_ = 0;
+  std::size_t springs_ = 0;
+  std::size_t triangles_ = 0;
+  Real lattice_points_ = 0;
+  Real mesh_work_ = 0;
 };
 
-/// Everything about a body but its name's uniqueness and the scene's totals.
-BodySize check_body(const Scene& scene, const BodyDescription& body, const std::string& path,
-                    RangeCheck& check);
+/// Everything about a body but its name's uniqueness and what depends on other bodies. The body's
+/// particles, where it was sampled and has no errors.
+std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,
+                                      const BodyDescription& body, const std::string& path,
+                                      Allowance& allowance, RangeCheck& check);
 
 /// Ranges of the shape's own values, and for meshes whether they can be filled. True where the
 /// shape can be sampled.

@@ -1,11 +1,12 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "core/limits.h"
 #include "core/neighbours/uniform_grid.h"
+#include "core/scene/interface_table.h"
 #include "core/scene/sampling.h"
 #include "core/scene/step_limits.h"
 #include "core/scene/validate.h"
@@ -56,8 +57,10 @@ std::map<BodyPair, std::size_t> count_overlaps(const Start& start) {
   const Real reach = 2 * std::ranges::max(start.radii);
   UniformGrid grid;
   grid.build(start.positions, reach);
-  for (Index i = 0; i < start.positions.size(); ++i) {
+  std::size_t tried = 0;
+  for (Index i = 0; i < start.positions.size() && tried <= kMaxSearch; ++i) {
     grid.for_each_run(start.positions[i], reach, [&](Index begin, Index end) {
+      tried += end - begin;
       for (Index slot = begin; slot < end; ++slot) {
         const Index j = grid.order()[slot];
         if (start.body[j] >= start.body[i]) continue;
@@ -138,6 +141,70 @@ void warn_of_steps(const Scene& scene, const Start& start, std::vector<Warning>&
   }
 }
 
+/// The rotation of a rigid body is integrated step by step: beyond half a radian it is not
+/// followed.
+void warn_of_rotation(const Scene& scene, std::vector<Warning>& warnings) {
+  constexpr Real kMostTurn = 0.5;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyDescription& body = scene.bodies[b];
+    if (body.kind != BodyKind::rigid) continue;
+    const Real turn = body.angular_velocity.norm() * scene.numerics.step;
+    if (turn <= kMostTurn) continue;
+    warnings.push_back({"turns_too_fast", body_path(b) + "/angular_velocity",
+                        "turns by " + number(turn) + " radians in a step: up to " +
+                            number(kMostTurn) + " are followed well"});
+  }
+}
+
+/// Least radius of the bodies of each material, and how many bodies there are.
+struct Partners {
+  std::size_t count = 0;
+  Real least_radius = kMaxLength;
+};
+
+/// The least distance at which a particle of the body meets a wall or another body.
+Real least_notice(const Scene& scene, const InterfaceTable& table,
+                  const std::vector<Partners>& partners, const BodyDescription& body, Real radius) {
+  const std::size_t material = material_index(scene.materials, body.material);
+  Real least = std::numeric_limits<Real>::infinity();
+  const auto notice = [&](std::optional<std::size_t> interface, Real touching) {
+    const bool listed = interface.has_value();
+    const auto& law = listed ? scene.interfaces[*interface].constants : scene.default_interface;
+    if (law.stiffness == 0) return;
+    least = std::min(least,
+                     listed ? scene.interfaces[*interface].threshold.value_or(touching) : touching);
+  };
+  for (std::size_t other = 0; other < partners.size(); ++other) {
+    const bool is_same = other == material;
+    if (is_same && body.kind == BodyKind::liquid) continue;
+    if (partners[other].count <= (is_same ? 1U : 0U)) continue;
+    notice(table.between(material, other), radius + partners[other].least_radius);
+  }
+  if (scene.vat) notice(table.with_walls(material), radius);
+  return least;
+}
+
+void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
+  const InterfaceTable table(scene.materials, scene.interfaces);
+  std::vector<Partners> partners(scene.materials.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    Partners& same = partners[material_index(scene.materials, scene.bodies[b].material)];
+    ++same.count;
+    same.least_radius = std::min(same.least_radius, std::ranges::min(start.bodies[b].radii));
+  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SampledBody& sample = start.bodies[b];
+    const Real notice =
+        least_notice(scene, table, partners, scene.bodies[b], std::ranges::min(sample.radii));
+    Real speed = 0;
+    for (const Vec3& velocity : sample.velocities) speed = std::max(speed, velocity.norm());
+    if (speed * scene.numerics.step <= notice) continue;
+    warnings.push_back({"too_fast", body_path(b) + "/velocity",
+                        "starts with " + number(speed) + " m/s: in a step it goes further than " +
+                            number(notice) + " m, at which it meets others"});
+  }
+}
+
 }  // namespace
 
 std::vector<Warning> find_warnings(const Scene& scene) {
@@ -147,6 +214,8 @@ std::vector<Warning> find_warnings(const Scene& scene) {
   warn_of_walls(scene, start, warnings);
   warn_of_support(scene, warnings);
   warn_of_loose_particles(scene, start, warnings);
+  warn_of_rotation(scene, warnings);
+  warn_of_speed(scene, start, warnings);
   warn_of_steps(scene, start, warnings);
   return warnings;
 }

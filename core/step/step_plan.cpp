@@ -36,14 +36,16 @@ bool any_viscosity(const Model& model) {
 
 void add_liquid_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
-  plan.add("sort_liquid", {position, velocity}, {liquid_cells}, &sort_liquid);
+  plan.add("sort_liquid", {position}, {liquid_cells}, &sort_liquid);
   plan.add("liquid_density", {liquid_cells}, {liquid_pairs, density}, &compute_liquid_density);
   plan.add("liquid_pressure", {density}, {pressure}, &compute_liquid_pressure);
   if (any_viscosity(model)) {
-    plan.add("liquid_forces", {liquid_cells, liquid_pairs, density, pressure, velocity}, {force},
+    plan.add("liquid_forces",
+             {position, velocity, liquid_cells, liquid_pairs, density, pressure, force}, {force},
              &add_liquid_forces<true>);
   } else {
-    plan.add("liquid_forces_inviscid", {liquid_cells, liquid_pairs, density, pressure}, {force},
+    plan.add("liquid_forces_inviscid",
+             {position, liquid_cells, liquid_pairs, density, pressure, force}, {force},
              &add_liquid_forces<false>);
   }
 }
@@ -52,9 +54,10 @@ void add_contact_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   plan.add("sort_solids", {position}, {solid_cells}, &sort_solids);
   if (model.liquid_count > 0) {
-    plan.add("contacts", {position, velocity, solid_cells, liquid_cells}, {force}, &add_contacts);
+    plan.add("contacts", {position, velocity, solid_cells, liquid_cells, force}, {force},
+             &add_contacts);
   } else {
-    plan.add("contacts", {position, velocity, solid_cells}, {force}, &add_contacts);
+    plan.add("contacts", {position, velocity, solid_cells, force}, {force}, &add_contacts);
   }
 }
 
@@ -81,9 +84,9 @@ StepPlan make_step_plan(const Model& model) {
   if (model.liquid_count > 0) add_liquid_stages(model, plan);
   if (model.contact_reach > 0) add_contact_stages(model, plan);
   if (!model.spring_ends.empty()) {
-    plan.add("springs", {position, velocity}, {force}, &add_spring_forces);
+    plan.add("springs", {position, velocity, force}, {force}, &add_spring_forces);
   }
-  if (model.scene.vat) plan.add("walls", {position, velocity}, {force}, &add_wall_forces);
+  if (model.scene.vat) plan.add("walls", {position, velocity, force}, {force}, &add_wall_forces);
   if (!model.rigid_bodies.empty()) {
     plan.add("gather_rigid_forces", {position, rigid_state, force}, {rigid_force},
              &gather_rigid_forces);

@@ -117,7 +117,7 @@ TEST(StepPlan, AsTextNamesStagesAndColumns) {
   const test::ForceProbe probe(scene_of({make_spring_body()}));
   EXPECT_EQ(to_text(probe.model().plan),
             "external_forces\n  reads  position velocity\n  writes force\n"
-            "springs\n  reads  position velocity\n  writes force\n");
+            "springs\n  reads  position velocity force\n  writes force\n");
 }
 
 TEST(StepPlan, OfASimulationFollowsItsBodies) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/limits.h"
+#include "core/scene/validate_parts.h"
 #include "core/simulation.h"
 #include "tests/unit/mesh_shapes.h"
 
@@ -152,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"/interfaces/1/stiffness", "out_of_range",
                             [](Scene& s) { s.interfaces[1].constants.stiffness = 1e13; }},
                     Mistake{"/interfaces/0/threshold", "out_of_range",
+                            [](Scene& s) { s.interfaces[0].threshold = 8.1 * 0.05; }},
+                    Mistake{"/interfaces/0/threshold", "out_of_range",
                             [](Scene& s) { s.interfaces[0].threshold = 0; }}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -166,6 +169,15 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/bodies/2/spacing", "too_many", [](Scene& s) { s.bodies[2].spacing = 1e-5; }},
         Mistake{"/bodies/2/mass", "out_of_range", [](Scene& s) { s.bodies[2].mass = 0; }},
         Mistake{"/bodies/2/radius", "out_of_range", [](Scene& s) { s.bodies[2].radius = -1; }},
+        Mistake{"/bodies/0/spacing", "out_of_range",
+                [](Scene& s) { s.materials[0].liquid->support_radius = 8.1 * 0.05; }},
+        Mistake{"/bodies/1/radius", "out_of_range",
+                [](Scene& s) { s.bodies[1].radius = 4.1 * 0.05; }},
+        Mistake{"/bodies/1/material", "unknown_name",
+                [](Scene& s) {
+                  s.bodies[1].material = "x";
+                  s.bodies[1].springs = {{0, 1, {1, 0}, {}}};
+                }},
         Mistake{"/bodies/2/orientation", "out_of_range",
                 [](Scene& s) { s.bodies[2].orientation = Quat(0, 0, 0, 0); }},
         Mistake{"/bodies/2/velocity", "out_of_range",
@@ -234,6 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Scene& s) {
                   particles(s).fixed = {1, 1};
                 }},
+        Mistake{"/bodies/3/mass", "not_allowed", [](Scene& s) { s.bodies[3].mass = 2; }},
+        Mistake{"/bodies/3/radius", "not_allowed", [](Scene& s) { s.bodies[3].radius = 0.01; }},
         Mistake{"/bodies/3/mass", "missing", [](Scene& s) { particles(s).masses.clear(); }},
         Mistake{"/bodies/3/radius", "missing", [](Scene& s) { particles(s).radii.clear(); }},
         Mistake{"/bodies/3/springs/0/particles", "out_of_range",
@@ -277,6 +291,94 @@ TEST(Validate, LimitsTheTotals) {
   EXPECT_THAT(codes(), testing::ElementsAre("too_many/bodies"));  // 12 x 80^3 springs
 }
 
+/// More particles in one place than may all be neighbours of one another.
+ParticleShape crowd() {
+  constexpr Real kDistance = 0.01;
+  ParticleShape shape;
+  for (int i = 0; i < 15 * 15 * 15; ++i) {
+    shape.positions.push_back(kDistance * Vec3(i % 15, i / 15 % 15, i / 225));
+  }
+  return shape;
+}
+
+Scene crowded_scene(BodyKind kind, Real radius) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "m";
+  scene.materials[0].liquid = LiquidConstants{1, 1, 0.02};
+  scene.bodies.resize(1);
+  scene.bodies[0] = {"crowd", kind, "m", crowd(), 0};
+  scene.bodies[0].mass = 1;
+  scene.bodies[0].radius = radius;
+  return scene;
+}
+
+std::vector<std::string> codes_of(const Errors& errors) {
+  std::vector<std::string> found;
+  for (const Error& error : errors) found.push_back(error.code + error.path);
+  return found;
+}
+
+TEST(Validate, LimitsTheNeighboursOfALiquid) {
+  Scene scene = crowded_scene(BodyKind::liquid, 0.005);
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::IsEmpty());
+  scene.materials[0].liquid->support_radius = 100;
+  const Errors errors = find_errors(scene);  // 3375^2 neighbours
+  EXPECT_THAT(codes_of(errors), testing::ElementsAre("too_many/bodies"));
+  EXPECT_THAT(errors[0].message, testing::HasSubstr("support radius of \"m\""));
+}
+
+TEST(Validate, LimitsTheNeighboursWithinABody) {
+  Scene scene = crowded_scene(BodyKind::deformable, 100);
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::IsEmpty());  // they do not collide
+  scene.materials[0].self_contact = SpringConstants{1, 0};
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::ElementsAre("too_many/bodies"));
+  scene.bodies[0].radius = 0.005;
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::IsEmpty());
+}
+
+TEST(Validate, LimitsTheNeighboursOfOtherBodies) {
+  Scene scene = crowded_scene(BodyKind::rigid, 0.005);
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[1].name = "another";
+  scene.bodies[1].position = {0.15, 0, 0};
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::IsEmpty());
+  scene.interfaces = {{{"m", "m"}, {1, 0}, 1.0}};
+  const Errors errors = find_errors(scene);
+  EXPECT_THAT(codes_of(errors), testing::ElementsAre("too_many/bodies"));
+  EXPECT_THAT(errors[0].message, testing::HasSubstr("threshold of \"crowd\" and \"another\""));
+  scene.interfaces.clear();
+  scene.bodies[1].radius = 1;
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::ElementsAre("too_many/bodies"));
+}
+
+TEST(Validate, LimitsTheLatticesTogetherAndStopsAtTheFirstExcess) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.materials[0].name = "m";
+  // Few particles in a large box: 1.7 m along a diagonal, 170^3 lattice points.
+  const CylinderShape rod{{0, 0, 0}, {1, 1, 1}, 0.01, 1.7 * std::sqrt(3.0)};
+  for (int i = 0; i < 100; ++i) {
+    scene.bodies.push_back({"rod " + std::to_string(i), BodyKind::rigid, "m", rod, 0.01});
+  }
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::ElementsAre("too_many/bodies/1/spacing"));
+  scene.bodies.resize(1);
+  EXPECT_THAT(codes_of(find_errors(scene)), testing::IsEmpty());
+}
+
+TEST(Validate, LimitsTheTrianglesOfAllMeshes) {
+  MeshShape mesh;
+  mesh.triangles.resize(kMaxMeshTriangles);
+  Allowance allowance;
+  for (std::size_t taken = kMaxMeshTriangles; taken <= kMaxSceneTriangles;
+       taken += kMaxMeshTriangles) {
+    EXPECT_EQ(allowance.take_mesh(mesh), nullptr);
+  }
+  EXPECT_FALSE(allowance.is_exceeded());
+  EXPECT_NE(allowance.take_mesh(mesh), nullptr);
+  EXPECT_TRUE(allowance.is_exceeded());
+}
+
 TEST(Validate, ChecksABodyToBeAdded) {
   Scene scene = valid_scene();
   BodyDescription body = scene.bodies[2];
@@ -287,6 +389,59 @@ TEST(Validate, ChecksABodyToBeAdded) {
   const Errors errors = find_body_errors(scene, body, "/body");
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].path, "/body/material");
+}
+
+TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
+  Scene scene = valid_scene();
+  const std::vector<Vec3> far = {{0.9, 0.9, 0.9}};
+  const std::vector<Real> radius = {0.01};
+  Present present;
+  present.bodies.assign(scene.bodies.size(), {far, radius, 0});
+  scene.bodies[0].spacing = 1e-5;  // could not be sampled
+  BodyDescription body = scene.bodies[2];
+  body.name = "another ball";
+  EXPECT_THAT(codes_of(find_body_errors(scene, present, body, "/body")), testing::IsEmpty());
+  present.bodies[1].springs = kMaxSprings;
+  EXPECT_THAT(codes_of(find_body_errors(scene, present, body, "/body")), testing::IsEmpty());
+  present.bodies[1].springs = kMaxSprings + 1;
+  EXPECT_THAT(codes_of(find_body_errors(scene, present, body, "/body")),
+              testing::ElementsAre("too_many/body"));
+}
+
+TEST(Validate, AddsABodyWhereTheVatIsNow) {
+  Scene scene = valid_scene();
+  scene.bodies.clear();
+  BodyDescription body = valid_scene().bodies[2];  // 0.4 to 0.6 m of 0 to 1 m
+  Present present;
+  const auto codes = [&] { return codes_of(find_body_errors(scene, present, body, "/body")); };
+  EXPECT_THAT(codes(), testing::IsEmpty());
+  present.vat_offset = {0.5, 0, 0};
+  EXPECT_THAT(codes(), testing::ElementsAre("outside_vat/body"));
+  body.position = {0.8, 0, 0};  // beyond the wall at time 0
+  EXPECT_THAT(codes(), testing::IsEmpty());
+}
+
+TEST(Validate, ChecksAnInterfaceAlone) {
+  const Scene scene = crowded_scene(BodyKind::rigid, 0.005);
+  Scene two = scene;
+  two.bodies.push_back(scene.bodies[0]);
+  const std::vector<Vec3>& points = std::get<ParticleShape>(scene.bodies[0].shape).positions;
+  const std::vector<Real> radii(points.size(), 0.005);
+  Present present;
+  present.bodies.assign(2, {points, radii, 0});
+  InterfaceDescription interface { {"m", "m"}, {1, 0}, 0.01 };
+  const auto codes = [&] {
+    return codes_of(find_interface_errors(two, present, interface, "/interface"));
+  };
+  EXPECT_THAT(codes(), testing::IsEmpty());
+  interface.constants.damping = -1;
+  EXPECT_THAT(codes(), testing::ElementsAre("out_of_range/interface/damping"));
+  interface.constants.damping = 0;
+  interface.materials[1] = "x";
+  EXPECT_THAT(codes(), testing::ElementsAre("unknown_name/interface/materials/1"));
+  interface.materials[1] = "m";
+  interface.threshold = 1;
+  EXPECT_THAT(codes(), testing::ElementsAre("too_many/interface"));
 }
 
 }  // namespace

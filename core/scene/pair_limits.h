@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/scene/range_check.h"
+#include "core/scene/scene.h"
+
+namespace vat {
+
+/// A body of the scene for the count of pairs.
+struct PairBody {
+  const BodyDescription* description = nullptr;
+  std::span<const Vec3> positions;  ///< [m]
+  std::span<const Real> radii;      ///< [m]
+};
+
+/// Adds an error where particles reach so many others that time and memory are lost on pairs: more
+/// than max_start_pairs() of them, or more than kMaxSearch tries to find them. Liquid particles
+/// reach others of their material within its support radius; where bodies can touch, all particles
+/// reach others within the greatest distance at which any two of the scene do. Errors are at
+/// `path`.
+void check_pairs(const std::vector<Material>& materials,
+                 const std::vector<InterfaceDescription>& interfaces,
+                 const std::vector<PairBody>& bodies, const std::string& path, RangeCheck& check);
+
+}  // namespace vat

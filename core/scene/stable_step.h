@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace vat {
+
+/// An upper bound of the oscillations x'' + rate x' + omega2 x = 0 of part of a scene.
+struct Oscillation {
+  Real omega2 = 0;  ///< [1/s^2]
+  Real rate = 0;    ///< damping by mass [1/s]
+};
+inline Oscillation operator+(const Oscillation& a, const Oscillation& b) {
+  return {a.omega2 + b.omega2, a.rate + b.rate};
+}
+
+/// The step [s] up to which the integrator does not let the oscillation grow: infinite where
+/// nothing oscillates, 0 where it grows at any step (undamped, with explicit Euler or Heun).
+/// Symplectic Euler and velocity Verlet take the damping at the velocity half a step before, so
+/// both need (omega dt)^2 + 2 rate dt <= 4; of the others it is where their stability polynomial
+/// leaves the unit circle.
+Real stable_step(IntegratorId integrator, const Oscillation& oscillation);
+
+}  // namespace vat
