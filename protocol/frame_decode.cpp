@@ -26,7 +26,9 @@ bool all_finite(const Values& values) {
 bool is_unit(const std::array<float, 4>& q) {
   constexpr double kTolerance = 1e-3;  // far above rounding, far below a wrong rotation
   double square = 0;
-  for (const double component : q) square += component * component;
+  for (const float component : q) {
+    square += static_cast<double>(component) * static_cast<double>(component);
+  }
   return std::abs(square - 1) <= kTolerance;
 }
 

@@ -1,0 +1,18 @@
+#include "core/limits.h"
+#include "protocol/obj_mesh.h"
+#include "tests/fuzz/target.h"
+
+/// An `.obj` text. A mesh that is taken has vertices in range and triangles of its own vertices.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace vat;
+  const Result<MeshShape> mesh = read_obj(std::string(fuzz::to_text(data, size)), "fuzz.obj", 0.5);
+  if (!mesh) return 0;
+  VAT_CHECK(!mesh.value().triangles.empty() && mesh.value().triangles.size() <= kMaxMeshTriangles);
+  for (const Vec3& vertex : mesh.value().vertices) {
+    VAT_CHECK((vertex.array().abs() <= kMaxLength).all());
+  }
+  for (const auto& triangle : mesh.value().triangles) {
+    for (const Index corner : triangle) VAT_CHECK(corner < mesh.value().vertices.size());
+  }
+  return 0;
+}
