@@ -24,6 +24,7 @@ namespace {
 
 pid_t start(std::vector<std::string> words, const std::string& out, const std::string& err) {
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -59,7 +59,7 @@ std::vector<double> read_values(std::istream& stream, std::size_t count) {
 void expect_words(std::istream& stream, const std::string& words) {
   std::istringstream expected(words);
   for (std::string word, found; expected >> word;) {
-    require(stream >> found && found == word, "'" + found + "' is not '" + word + "'");
+    require(stream >> found && found == word, "expected " + word);
   }
 }
 

@@ -82,7 +82,8 @@ TEST(Simulate, SpringSwingsAtItsFrequency) {
   const double dt = 1e-3;
   for (std::size_t row = 0; row < table.rows.size(); row += 2) {
     const double time = table.number(row, "time");
-    EXPECT_NEAR(time, 0.1 * static_cast<double>(row / 2), 1e-12);
+    const std::size_t output = row / 2;
+    EXPECT_NEAR(time, 0.1 * static_cast<double>(output), 1e-12);
     const double distance = table.number(row + 1, "x") - table.number(row, "x");
     const double bound = 0.1 * (time * w + 1) * w * w * dt * dt / 12;
     EXPECT_NEAR(distance, 1 + 0.1 * std::cos(w * time), bound) << "t = " << time;
