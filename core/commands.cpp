@@ -1,8 +1,10 @@
 // The commands of Simulation: what users change while it runs.
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "core/limits.h"
 #include "core/model/compile.h"
@@ -13,9 +15,10 @@
 namespace vat {
 namespace {
 
-constexpr Real kGrabFrequency = 2 * std::numbers::pi * 2;  // [rad/s] follows a hand, never stiff
+constexpr Real kGrabFrequency = 2 * std::numbers::pi * 2;  // [rad/s] follows a hand
 constexpr Real kGrabMaxAcceleration = 200;                 // [m/s^2]
 constexpr Real kGrabReach = 3;                             // [particle diameters] held around it
+constexpr Real kGrabMaxDampingRatio = 0.5;  // of the held momentum in a step; 2 is unstable
 
 Error no_such_body() {
   return {"no_such_body", "/body", "there is no body with this id"};
@@ -23,8 +26,9 @@ Error no_such_body() {
 
 Status check_vector(const Vec3& value, Real limit, const std::string& path) {
   if (value.allFinite() && value.cwiseAbs().maxCoeff() <= limit) return {};
-  return Error{"out_of_range", path,
-               "must be three finite numbers of magnitude at most " + std::to_string(limit)};
+  std::ostringstream message;
+  message << "must be three finite numbers of magnitude at most " << limit;
+  return Error{"out_of_range", path, message.str()};
 }
 
 /// Copies the state of a body from one model's columns to another's.
@@ -41,33 +45,39 @@ void carry_over(const ModelBody& from, const Configuration& source, const ModelB
 
 }  // namespace
 
+namespace {
+
+/// Those of `controls` whose bodies stay, bound to the places of their bodies in `model`.
+Controls rebind(Controls controls, const Model& model) {
+  const auto bind = [&](auto& control) {
+    const auto found = std::ranges::find(model.bodies, control.body_id, &ModelBody::id);
+    control.body = static_cast<Index>(found - model.bodies.begin());
+    return found != model.bodies.end();
+  };
+  std::erase_if(controls.grabs, [&](Grab& grab) { return !bind(grab); });
+  std::erase_if(controls.applied_forces, [&](AppliedForce& applied) { return !bind(applied); });
+  return controls;
+}
+
+}  // namespace
+
 void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
   std::vector<std::shared_ptr<const SampledBody>> samples;
   for (const BodyId id : ids) {
     const ModelBody* known = find(id);
     samples.push_back(known == nullptr ? nullptr : known->sample);
   }
-  const State old_state = std::move(state);
   auto new_model = compile(std::move(scene), ids, std::move(samples));
   State new_state = initial_state(*new_model);
   for (const ModelBody& body : new_model->bodies) {
     const ModelBody* known = find(body.id);
-    if (known != nullptr) carry_over(*known, old_state.now, body, new_state.now);
+    if (known != nullptr) carry_over(*known, state.now, body, new_state.now);
   }
-  new_state.step_count = old_state.step_count;
-  state = std::move(new_state);
-  model = std::move(new_model);
-  work = {};
-  measured = {};
-  for (std::size_t b = 0; b < model->bodies.size(); ++b) {
-    const auto index = static_cast<Index>(b);
-    for (Grab& grab : controls.grabs) {
-      if (grab.body_id == model->bodies[b].id) grab.body = index;
-    }
-    for (AppliedForce& applied : controls.applied_forces) {
-      if (applied.body_id == model->bodies[b].id) applied.body = index;
-    }
-  }
+  new_state.step_count = state.step_count;
+  Controls new_controls = rebind(controls, *new_model);
+  GuardBounds new_bounds = guard_bounds(*new_model);
+  adopt({std::move(new_model), std::move(new_state), std::move(new_controls)},
+        std::move(new_bounds));
 }
 
 namespace {
@@ -100,19 +110,16 @@ Status Simulation::remove_body(BodyId id) {
   std::vector<BodyId> ids = ids_of(*impl_->model);
   scene.bodies.erase(scene.bodies.begin() + index);
   ids.erase(ids.begin() + index);
-  std::erase_if(impl_->controls.grabs, [&](const Grab& grab) { return grab.body_id == id; });
-  std::erase_if(impl_->controls.applied_forces,
-                [&](const AppliedForce& applied) { return applied.body_id == id; });
   impl_->recompile(std::move(scene), ids);
   return {};
 }
 
 Status Simulation::set_gravity(const Vec3& gravity) {
   if (Status status = check_vector(gravity, kMaxGravity, "/gravity"); !status) return status;
-  Scene scene = impl_->model->scene;
-  scene.gravity = gravity;
-  impl_->controls.gravity = gravity;
-  impl_->recompile(std::move(scene), ids_of(*impl_->model));
+  auto model = std::make_shared<Model>(*impl_->model);
+  model->scene.gravity = gravity;
+  impl_->model = std::move(model);
+  impl_->state.forces_current = false;
   return {};
 }
 
@@ -142,7 +149,7 @@ Status Simulation::set_interface(const InterfaceDescription& interface) {
 Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
-  if (Status status = check_vector(force, kMaxMass, "/force"); !status) return status;
+  if (Status status = check_vector(force, kMaxForce, "/force"); !status) return status;
   if (!(duration > 0 && duration <= kMaxForceTime)) {
     return Error{"out_of_range", "/duration", "must be above 0 and at most 3600 seconds"};
   }
@@ -150,9 +157,12 @@ Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
     return Error{"limit_reached", "",
                  "at most " + std::to_string(kMaxAppliedForces) + " applied forces at once"};
   }
-  impl_->controls.applied_forces.push_back({id,
-                                            static_cast<Index>(body - impl_->model->bodies.data()),
-                                            force / body->mass, impl_->time() + duration});
+  // Rounding must not add a step to a duration of whole steps.
+  const Real steps = std::max(Real{1}, std::ceil(duration / impl_->step_size() - 1e-6));
+  const Vec3 acceleration = force * (duration / (steps * impl_->step_size() * body->mass));
+  impl_->controls.applied_forces.push_back(
+      {id, static_cast<Index>(body - impl_->model->bodies.data()), acceleration,
+       impl_->state.step_count + static_cast<std::uint64_t>(steps)});
   impl_->state.forces_current = false;
   return {};
 }
@@ -173,13 +183,31 @@ std::vector<Index> held_particles(const Model& model, const ModelBody& body,
   return held;
 }
 
-/// Constants of a critically damped spring for the mass that it must move.
-void tune_grab(const Model& model, const ModelBody& body, Grab& grab) {
-  Real mass = body.mass;
-  if (body.kind == BodyKind::liquid) {
-    mass = 0;
-    for (const Index i : grab.held) mass += model.mass[body.particles.begin + i];
-  }
+/// The least mass that the held particles show to a force on them: of a rigid body, of its point.
+Real felt_mass(const Model& model, const ModelBody& body, const Configuration& at,
+               const Grab& grab) {
+  if (body.kind != BodyKind::rigid) return grab.held_mass;
+  const RigidModel& rigid = model.rigid_bodies[body.rigid];
+  const Mat3 r = at.rigid[body.rigid].orientation.toRotationMatrix();
+  const Vec3 arm =
+      r * model.local_position[body.particles.begin + grab.particle - model.free_count];
+  Mat3 cross;
+  cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+  // Acceleration of the point for a force on it.
+  const Mat3 mobility = rigid.inverse_mass * Mat3::Identity() -
+                        cross * r * rigid.inverse_inertia * r.transpose() * cross;
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(mobility, Eigen::EigenvaluesOnly);
+  return 1 / solver.eigenvalues().maxCoeff();
+}
+
+/// Constants of a critically damped spring that moves the whole body, or of a liquid what is held.
+/// The held particles are fewer: the damping must not turn them round within a step.
+void tune_grab(const Model& model, const ModelBody& body, const Configuration& at, Grab& grab) {
+  for (const Index i : grab.held) grab.held_mass += model.mass[body.particles.begin + i];
+  const Real most = kGrabMaxDampingRatio * felt_mass(model, body, at, grab) /
+                    (2 * kGrabFrequency * model.scene.numerics.step);
+  const Real wanted = body.kind == BodyKind::liquid ? grab.held_mass : body.mass;
+  const Real mass = std::min(wanted, most);
   grab.stiffness = mass * kGrabFrequency * kGrabFrequency;
   grab.damping = 2 * mass * kGrabFrequency;
   grab.max_force = mass * kGrabMaxAcceleration;
@@ -208,7 +236,7 @@ Status Simulation::grab_start(std::uint64_t id, BodyId body_id, Index particle,
   grab.particle = particle;
   grab.held = held_particles(*impl_->model, *body, impl_->state.now, particle);
   grab.target = target;
-  tune_grab(*impl_->model, *body, grab);
+  tune_grab(*impl_->model, *body, impl_->state.now, grab);
   grabs.push_back(std::move(grab));
   impl_->state.forces_current = false;
   return {};

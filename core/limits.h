@@ -44,6 +44,7 @@ inline constexpr Real kMaxLength = 1e6;        // [m] coordinates and extents
 inline constexpr Real kMaxSpeed = 1e4;         // [m/s] also the guard's bound
 inline constexpr Real kMinMass = 1e-12;        // [kg]
 inline constexpr Real kMaxMass = 1e12;         // [kg]
+inline constexpr Real kMaxForce = 1e12;        // [N] of an applied force
 inline constexpr Real kMaxStiffness = 1e12;    // [N/m], [m^2/s^2]
 inline constexpr Real kMaxDamping = 1e12;      // [N s/m]
 inline constexpr Real kMinDensity = 1e-6;      // [kg/m^3]

@@ -8,7 +8,6 @@
 #include "core/rigid/rigid_motion.h"
 #include "core/scene/validate.h"
 #include "core/simulation_impl.h"
-#include "core/step/guard.h"
 #include "core/step/measure.h"
 #include "core/support/hash.h"
 
@@ -52,59 +51,16 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
   std::vector<BodyId> ids;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(impl.next_id++);
   impl.model = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
-  impl.controls.gravity = scene.gravity;
+  impl.bounds = guard_bounds(*impl.model);
   impl.state = initial_state(*impl.model);
   return simulation;
 }
 
-namespace {
-
-constexpr int kMaxHalvings = 3;
-
-/// Takes `steps` nominal steps, each in `pieces` equal parts; the fault that stopped it, if any.
-std::optional<Fault> take_steps(const ForceModel& force_model, State& state, std::uint32_t steps,
-                                std::uint32_t pieces, IntegratorScratch& scratch,
-                                std::uint64_t& taken) {
-  const Numerics& numerics = force_model.model.scene.numerics;
-  const Real dt = numerics.step / pieces;
-  const GuardBounds bounds = guard_bounds(force_model.model, dt);
-  for (std::uint32_t s = 0; s < steps; ++s) {
-    const Real start = static_cast<Real>(state.step_count) * numerics.step;
-    for (std::uint32_t piece = 0; piece < pieces; ++piece) {
-      take_step(numerics.integrator, force_model, state, start + piece * dt, dt, scratch);
-      ++taken;
-      if (auto fault = find_fault(force_model.model, state.now, bounds)) return fault;
-    }
-    ++state.step_count;
-  }
-  return {};
-}
-
-}  // namespace
-
-AdvanceReport Simulation::advance(std::uint32_t steps) {
-  Impl& impl = *impl_;
-  const ForceModel force_model{*impl.model, impl.controls, impl.work, impl.runner, impl.observer};
-  AdvanceReport report;
-  impl.backup = impl.state;
-  for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
-    const std::uint32_t pieces = 1u << halvings;
-    const auto fault =
-        take_steps(force_model, impl.state, steps, pieces, impl.scratch, report.steps);
-    if (!fault) break;
-    const Real dt = impl.step_size() / pieces;
-    report.events.push_back({fault->cause, impl.time() + dt, impl.model->bodies[fault->body].id,
-                             fault->particle, dt, true});
-    impl.state = impl.backup;
-    report.failed = halvings == kMaxHalvings;
-  }
-  if (report.failed) {
-    for (GuardEvent& event : report.events) event.recovered = false;
-  }
-  std::erase_if(impl.controls.applied_forces,
-                [&](const AppliedForce& applied) { return applied.until <= impl.time(); });
-  impl.pose_rigid_particles();
-  return report;
+void Simulation::Impl::adopt(Content content, GuardBounds content_bounds) noexcept {
+  static_cast<Content&>(*this) = std::move(content);
+  bounds = std::move(content_bounds);
+  work = {};
+  measured = {};
 }
 
 Real Simulation::time() const {
@@ -184,23 +140,53 @@ Vec3 Simulation::vat_offset() const {
   return vat ? vat_motion(*vat, impl_->time()).offset : Vec3(Vec3::Zero());
 }
 
-std::uint64_t Simulation::state_hash() const {
-  const Impl& impl = *impl_;
-  StateHash hash;
-  hash.add(impl.state.step_count);
-  for (Index i = 0; i < impl.model->free_count; ++i) hash.add(impl.state.now.position[i]);
-  for (Index i = 0; i < impl.model->free_count; ++i) hash.add(impl.state.now.velocity[i]);
-  for (const RigidState& rigid : impl.state.now.rigid) {
+namespace {
+
+void add_state(const Model& model, const State& state, StateHash& hash) {
+  hash.add(state.step_count);
+  for (Index i = 0; i < model.free_count; ++i) hash.add(state.now.position[i]);
+  for (Index i = 0; i < model.free_count; ++i) hash.add(state.now.velocity[i]);
+  for (const RigidState& rigid : state.now.rigid) {
     hash.add(rigid.center_of_mass);
     hash.add(rigid.orientation);
     hash.add(rigid.momentum);
     hash.add(rigid.angular_momentum);
   }
+  hash.add(std::uint64_t{state.forces_current});
+  if (!state.forces_current) return;
+  for (Index i = 0; i < model.free_count; ++i) hash.add(state.forces.particle[i]);
+  for (const Vec3& force : state.forces.rigid_force) hash.add(force);
+  for (const Vec3& torque : state.forces.rigid_torque) hash.add(torque);
+}
+
+void add_controls(const Controls& controls, StateHash& hash) {
+  for (const Grab& grab : controls.grabs) {
+    hash.add(std::uint64_t{grab.body});
+    hash.add(std::uint64_t{grab.particle});
+    hash.add(grab.target);
+    hash.add(grab.stiffness);
+    for (const Index held : grab.held) hash.add(std::uint64_t{held});
+  }
+  for (const AppliedForce& applied : controls.applied_forces) {
+    hash.add(std::uint64_t{applied.body});
+    hash.add(applied.acceleration);
+    hash.add(applied.end_step);
+  }
+}
+
+}  // namespace
+
+std::uint64_t Simulation::state_hash() const {
+  StateHash hash;
+  add_state(*impl_->model, impl_->state, hash);
+  hash.add(impl_->model->scene.gravity);
+  add_controls(impl_->controls, hash);
   return hash.value();
 }
 
 Diagnostics Simulation::diagnostics() const {
-  const ForceModel force_model{*impl_->model, impl_->controls, impl_->measured, impl_->runner};
+  const ForceModel force_model{*impl_->model, impl_->controls, impl_->measured,
+                               impl_->runner, nullptr,         impl_->state.step_count};
   return measure(force_model, impl_->state.now, impl_->time());
 }
 
@@ -230,9 +216,7 @@ Snapshot Simulation::snapshot() const {
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  static_cast<Snapshot::Content&>(*impl_) = *snapshot.content_;
-  impl_->work = {};
-  impl_->measured = {};
+  impl_->adopt(*snapshot.content_, guard_bounds(*snapshot.content_->model));
 }
 
 Snapshot::Snapshot(std::shared_ptr<const Content> content) : content_(std::move(content)) {}

@@ -44,23 +44,29 @@ struct LiquidFields {
   std::vector<Real> pressure;  ///< [Pa]
 };
 
-/// What the guard saw. A step that ends with a non-finite value, outside the domain or above
-/// kMaxSpeed is undone, and the steps are repeated with half the length, up to three halvings.
+/// What the guard saw. A step that ends with a non-finite value, outside the domain or too fast
+/// (see core/step/guard.h) is undone and repeated in two, four and at last eight parts.
 struct GuardEvent {
   enum class Cause { non_finite, outside_domain, too_fast };
   Cause cause;
-  Real time;  ///< [s] end of the failed step
+  Real time;  ///< [s] end of the failed step, or part of one
   BodyId body;
   Index particle;  ///< within the body
-  Real step;       ///< [s] length of the failed step
-  bool recovered;  ///< false: the state is the last good one and the simulation should pause
+  Real step;       ///< [s] length of the failed step, or part of one
+  bool recovered;  ///< false: no number of parts helped, and the simulation should pause
 };
 const char* to_string(GuardEvent::Cause cause);
 
 struct AdvanceReport {
-  std::uint64_t steps = 0;  ///< steps taken, retries included
-  bool failed = false;      ///< the state is the one before the call
+  /// Of an unstable scene every step may have events; the first of a call, and its last, are kept.
+  static constexpr std::size_t kMaxEvents = 16;
+
+  std::uint64_t steps = 0;         ///< steps taken, parts and undone ones included
+  std::uint64_t undone_steps = 0;  ///< each had an event
+  bool failed = false;             ///< the state is the one before the call
   std::vector<GuardEvent> events;
+
+  void add(const GuardEvent& event);
 };
 
 /// Told when each stage of the step begins and ends; for profiles. The core has no clock.
@@ -85,7 +91,7 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Takes `steps` steps of step_size(), guarded as a whole: see GuardEvent.
+  /// Takes `steps` steps of step_size(), each of them guarded: see GuardEvent.
   AdvanceReport advance(std::uint32_t steps);
 
   Real time() const;       ///< [s]
@@ -103,7 +109,8 @@ class Simulation {
   /// Fails for a body that is not liquid.
   Result<LiquidFields> liquid_fields(BodyId id) const;
 
-  /// 64-bit hash of all that is integrated: equal states, equal hashes.
+  /// 64-bit hash of all that the next steps start from: the state, with the forces that are kept
+  /// from the last step, gravity, grabs and applied forces. Equal futures for one scene.
   std::uint64_t state_hash() const;
   Snapshot snapshot() const;
   /// Goes back to a snapshot taken from this simulation, bodies and commands in force included.
@@ -121,7 +128,8 @@ class Simulation {
   Status set_gravity(const Vec3& gravity);
   /// Adds or replaces one interface.
   Status set_interface(const InterfaceDescription& interface);
-  /// A force [N] on the whole body, in equal accelerations, for `duration` seconds.
+  /// A force [N] on the whole body, in equal accelerations, for `duration` seconds rounded up to
+  /// whole steps; weakened as much, so that the impulse is force times duration.
   Status apply_force(BodyId id, const Vec3& force, Real duration);
 
   /// Ties a particle to a target by a critically damped spring. A deformable or liquid body is held

@@ -3,6 +3,7 @@
 #include "core/integrators/integrator.h"
 #include "core/simulation.h"
 #include "core/step/controls.h"
+#include "core/step/guard.h"
 
 namespace vat {
 
@@ -11,25 +12,37 @@ struct Snapshot::Content {
   std::shared_ptr<const Model> model;
   State state;
   Controls controls;
-  BodyId next_id = 1;
 };
 
 struct Simulation::Impl : Snapshot::Content {
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
+  BodyId next_id = 1;  ///< not in snapshots: an id is never used again
+  GuardBounds bounds;  ///< of the model
   Workspace work;
   IntegratorScratch scratch;
-  State backup;                ///< start of the advance() in progress
+  State call_start;            ///< of the advance() in progress
+  Configuration step_start;    ///< of its present step
   mutable Workspace measured;  ///< scratch of read-only questions
 
   Real step_size() const { return model->scene.numerics.step; }
   Real time() const { return static_cast<Real>(state.step_count) * step_size(); }
   const ModelBody* find(BodyId id) const;
 
-  /// Compiles `scene` and carries over the state of the bodies whose ids stay.
+  /// Takes over what belongs together. Does not fail.
+  void adopt(Content content, GuardBounds content_bounds) noexcept;
+  /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
+  /// of them. Changes nothing where it fails.
   void recompile(Scene scene, const std::vector<BodyId>& ids);
   /// Rigid particles to their poses, for views.
   void pose_rigid_particles();
+
+  bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
+  /// One nominal step, in as many parts as it takes; false where none helped.
+  bool take_guarded_step(const ForceModel& force_model, AdvanceReport& report);
+  /// One nominal step in equal parts, up to the first fault.
+  std::optional<GuardEvent> take_step_in(std::uint32_t pieces, const ForceModel& force_model,
+                                         AdvanceReport& report);
 };
 
 }  // namespace vat

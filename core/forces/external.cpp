@@ -6,7 +6,7 @@ namespace vat {
 namespace {
 
 void add_applied_force(const AppliedForce& applied, StepContext& c) {
-  if (c.time >= applied.until) return;
+  if (c.step >= applied.end_step) return;
   const IndexRange particles = c.model.bodies[applied.body].particles;
   for (Index i = particles.begin; i < particles.end; ++i) {
     c.forces.particle[i] += c.model.mass[i] * applied.acceleration;
@@ -20,14 +20,15 @@ void add_grab(const Grab& grab, StepContext& c) {
                grab.damping * c.configuration.velocity[held];
   const Real size = force.norm();
   if (size > grab.max_force) force *= grab.max_force / size;
-  force /= static_cast<Real>(grab.held.size());
-  for (const Index i : grab.held) c.forces.particle[first + i] += force;
+  for (const Index i : grab.held) {
+    c.forces.particle[first + i] += (c.model.mass[first + i] / grab.held_mass) * force;
+  }
 }
 
 }  // namespace
 
 void set_external_forces(StepContext& c) {
-  const Vec3 gravity = c.controls.gravity;
+  const Vec3 gravity = c.model.scene.gravity;
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
   });

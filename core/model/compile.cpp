@@ -1,6 +1,8 @@
 #include "core/model/compile.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 
 #include "core/model/contacts.h"
 #include "core/rigid/mass_properties.h"
@@ -82,6 +84,18 @@ void add_springs(Model& model) {
   }
 }
 
+void set_inertia(RigidModel& rigid, const Mat3& inertia) {
+  rigid.inertia = inertia;
+  rigid.inverse_inertia = inertia.inverse();
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);  // moments in ascending order
+  Mat3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0) axes = -axes;
+  rigid.principal_axes = Quat(axes).normalized();
+  rigid.inverse_moments = solver.eigenvalues().cwiseInverse();
+  const Vec3& w = rigid.inverse_moments;
+  rigid.splitting = w[0] - w[1] < w[1] - w[2] ? std::array{0, 1, 2} : std::array{1, 2, 0};
+}
+
 void add_rigid_bodies(Model& model) {
   model.local_position.resize(model.particle_count - model.free_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -95,8 +109,7 @@ void add_rigid_bodies(Model& model) {
     rigid.inverse_mass = 1 / properties.mass;
     const Mat3 to_body =
         model.scene.bodies[b].orientation.normalized().toRotationMatrix().transpose();
-    rigid.inertia = to_body * properties.inertia * to_body.transpose();
-    rigid.inverse_inertia = rigid.inertia.inverse();
+    set_inertia(rigid, to_body * properties.inertia * to_body.transpose());
     model.rigid_bodies.push_back(rigid);
     for (Index i = 0; i < body.particles.size(); ++i) {
       model.local_position[body.particles.begin - model.free_count + i] =

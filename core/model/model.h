@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,8 +66,11 @@ struct RigidModel {
   Index body = 0;  ///< index into Model::bodies
   IndexRange particles;
   Real inverse_mass = 0;
-  Mat3 inertia;          ///< I_body about the centre of mass, in body axes [kg m^2]
-  Mat3 inverse_inertia;  ///< in body axes
+  Mat3 inertia;                  ///< I_body about the centre of mass, in body axes [kg m^2]
+  Mat3 inverse_inertia;          ///< in body axes
+  Quat principal_axes;           ///< principal to body axes
+  Vec3 inverse_moments;          ///< about the principal axes [1 / (kg m^2)]
+  std::array<int, 3> splitting;  ///< principal axes: two with the closest moments, and the third
 };
 
 /// A compiled scene: constant while it is stepped. Particles are ordered liquid, deformable, rigid,

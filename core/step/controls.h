@@ -18,19 +18,20 @@ struct Grab {
   Real stiffness = 0;  ///< [N/m]
   Real damping = 0;    ///< [N s/m]
   Real max_force = 0;  ///< [N]
+  Real held_mass = 0;  ///< [kg]
 };
 
-/// The same acceleration for every particle of a body until a time.
+/// The same acceleration for every particle of a body, constant over whole steps so that its
+/// impulse is the same with every integrator.
 struct AppliedForce {
   BodyId body_id = 0;
   Index body = 0;  ///< index into Model::bodies
   Vec3 acceleration = Vec3::Zero();
-  Real until = 0;  ///< [s]
+  std::uint64_t end_step = 0;  ///< the first nominal step without it
 };
 
 /// What users do to a simulation beyond its scene.
 struct Controls {
-  Vec3 gravity = Vec3::Zero();
   std::vector<Grab> grabs;
   std::vector<AppliedForce> applied_forces;
 };

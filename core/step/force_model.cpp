@@ -3,7 +3,7 @@
 namespace vat {
 
 void ForceModel::evaluate(Configuration& configuration, Real time, Forces& forces) const {
-  StepContext context{model, controls, time, configuration, forces, work, runner};
+  StepContext context{model, controls, time, step, configuration, forces, work, runner};
   for (const Stage& stage : model.plan.stages) {
     if (observer != nullptr) observer->stage_begins(stage.name);
     stage.run(context);

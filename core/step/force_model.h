@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/simulation.h"
 #include "core/step/workspace.h"
 
@@ -12,6 +14,7 @@ struct ForceModel {
   Workspace& work;
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
+  std::uint64_t step = 0;  ///< the nominal step being taken
 
   /// Forces at `configuration` and `time`; also moves rigid particles to their poses.
   void evaluate(Configuration& configuration, Real time, Forces& forces) const;

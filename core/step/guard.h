@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/simulation.h"
 #include "core/state/state.h"
@@ -16,18 +17,22 @@ struct Fault {
 
 /// Bounds that a sane state keeps.
 struct GuardBounds {
-  Vec3 min;        ///< of positions [m]
-  Vec3 max;        ///< of positions [m]
-  Real max_speed;  ///< [m/s]
+  Vec3 min;  ///< of positions [m]
+  Vec3 max;  ///< of positions [m]
+  /// By body: how far its particles may move in one step, the least distance at which one of them
+  /// notices a wall or a particle of another body [m]. Further, it could pass through unnoticed.
+  std::vector<Real> travel;
+  /// By rigid body: from the centre of mass to the furthest particle [m].
+  std::vector<Real> extent;
 };
 
-/// With a vat: its box and twice its longest side around it, a hundred times above an open top.
-/// Where particles can collide or meet walls, none may travel further in one step of `dt` than the
-/// distance at which they notice.
-GuardBounds guard_bounds(const Model& model, Real dt);
+/// The domain is, with a vat, its box and twice its longest side around it, a hundred times above
+/// an open top.
+GuardBounds guard_bounds(const Model& model);
 
-/// The first free particle or rigid body that is non-finite, out of bounds or too fast.
+/// The first particle or rigid body that is non-finite, out of bounds, or too fast for steps of
+/// `dt`: above kMaxSpeed, above its travel, or, of rigid bodies, turning by more than a radian.
 std::optional<Fault> find_fault(const Model& model, const Configuration& configuration,
-                                const GuardBounds& bounds);
+                                const GuardBounds& bounds, Real dt);
 
 }  // namespace vat

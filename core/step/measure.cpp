@@ -132,7 +132,7 @@ Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) 
   }
   result.kinetic_energy = kinetic_energy(model, at);
   for (Index i = 0; i < model.particle_count; ++i) {
-    result.gravitational_energy -= model.mass[i] * force_model.controls.gravity.dot(at.position[i]);
+    result.gravitational_energy -= model.mass[i] * model.scene.gravity.dot(at.position[i]);
   }
   result.elastic_energy = elastic_energy(model, at);
   if (model.contact_reach > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/neighbours/uniform_grid.h"
@@ -52,7 +53,8 @@ struct Workspace {
 struct StepContext {
   const Model& model;
   const Controls& controls;
-  Real time;  ///< [s]
+  Real time;           ///< [s]
+  std::uint64_t step;  ///< the nominal step being taken
   Configuration& configuration;
   Forces& forces;
   Workspace& work;

@@ -9,7 +9,7 @@
 namespace vat {
 
 /// FNV-1a over 64-bit words: the offset basis and prime are the published 64-bit ones, the input
-/// unit is a word in place of a byte. -0.0 and 0.0 differ, so equal hashes mean equal bits.
+/// unit is a word in place of a byte. It sees bits: -0.0 and 0.0 differ.
 class StateHash {
  public:
   void add(std::uint64_t word) {

@@ -16,7 +16,6 @@ class ForceProbe {
     for (std::size_t b = 0; b < ids.size(); ++b) ids[b] = static_cast<BodyId>(b + 1);
     model_ = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
     state_ = initial_state(*model_);
-    controls_.gravity = scene.gravity;
     evaluate();
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/limits.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
@@ -31,7 +32,7 @@ std::optional<Fault> fault_after(const Spoil& spoil) {
   const Scene scene = make_three_kinds();
   ForceProbe probe(scene);
   spoil(probe.state().now);
-  return find_fault(probe.model(), probe.state().now, guard_bounds(probe.model(), kStep));
+  return find_fault(probe.model(), probe.state().now, guard_bounds(probe.model()), kStep);
 }
 
 void expect_fault(const std::optional<Fault>& fault, GuardEvent::Cause cause, Index body,
@@ -78,12 +79,12 @@ TEST(Guard, TheDomainOfAVatIsTwiceItsLongestSideAroundIt) {
   Scene scene = make_three_kinds();
   scene.vat = Vat{{-1, -1, 0}, {3, 1, 1}, true, SlideMotion{{1, 0, 0}, 0.5, 1}};
   const ForceProbe closed(scene);
-  const GuardBounds bounds = guard_bounds(closed.model(), kStep);
+  const GuardBounds bounds = guard_bounds(closed.model());
   EXPECT_EQ(bounds.min, Vec3(-9.5, -9.5, -8.5));
   EXPECT_EQ(bounds.max, Vec3(11.5, 9.5, 9.5));
   scene.vat->lid = false;
   const ForceProbe open(scene);
-  EXPECT_EQ(guard_bounds(open.model(), kStep).max, Vec3(11.5, 9.5, 401));
+  EXPECT_EQ(guard_bounds(open.model()).max, Vec3(11.5, 9.5, 401));
 }
 
 // Touching particles notice one another at 0.05 m, walls at 0.025 m.
@@ -91,10 +92,10 @@ TEST(Guard, NothingMayPassInOneStepWhatItWouldNotNotice) {
   using enum GuardEvent::Cause;
   Scene scene = make_three_kinds();
   const ForceProbe free(scene);
-  EXPECT_DOUBLE_EQ(guard_bounds(free.model(), kStep).max_speed, 0.05 / kStep);
+  EXPECT_EQ(guard_bounds(free.model()).travel, std::vector<Real>(3, 0.05));
   scene.vat = Vat{{-1, -1, 0}, {3, 1, 1}, true, {}};
   const ForceProbe inside(scene);
-  EXPECT_DOUBLE_EQ(guard_bounds(inside.model(), kStep).max_speed, 0.025 / kStep);
+  EXPECT_EQ(guard_bounds(inside.model()).travel, std::vector<Real>(3, 0.025));
   const auto with_speed = [](Real speed) {
     return fault_after([=](Configuration& at) { at.velocity[2] = {0, speed, 0}; });
   };
@@ -119,37 +120,50 @@ Scene make_oscillator(Real omega_dt, Real step = kStep, Real stretch = 0.1) {
   return scene;
 }
 
-TEST(Guard, RepeatsAnUnstableStepWithHalfItsLength) {
+TEST(Guard, NoticesAnUnstableOscillator) {
   Simulation simulation = make_simulation(make_oscillator(3));
   const AdvanceReport report = simulation.advance(40);
-  EXPECT_FALSE(report.failed);
-  ASSERT_EQ(report.events.size(), 1U);
+  ASSERT_FALSE(report.events.empty());
   const GuardEvent& event = report.events[0];
   EXPECT_EQ(event.cause, GuardEvent::Cause::too_fast);
   EXPECT_EQ(event.body, simulation.bodies()[0].id);
   EXPECT_EQ(event.particle, 1U);
   EXPECT_EQ(event.step, kStep);
-  EXPECT_TRUE(event.recovered);
-  EXPECT_GT(event.time, 0);
-  EXPECT_LT(event.time, 0.04);
-  EXPECT_EQ(report.steps, std::llround(event.time / kStep) + 80U);
-  EXPECT_DOUBLE_EQ(simulation.time(), 0.04);
-
-  Simulation half = make_simulation(make_oscillator(3, kStep / 2));
-  half.advance(80);
-  EXPECT_EQ(position_of(simulation, 0, 1), position_of(half, 0, 1));
-  EXPECT_EQ(velocity_of(simulation, 0, 1), velocity_of(half, 0, 1));
+  EXPECT_LE(velocity_of(simulation, 0, 1).norm(), kMaxSpeed);
 }
 
-TEST(Guard, HalvesThreeTimes) {
-  Simulation simulation = make_simulation(make_oscillator(15));
-  const AdvanceReport report = simulation.advance(40);
-  EXPECT_FALSE(report.failed);
-  ASSERT_EQ(report.events.size(), 3U);
-  for (std::size_t n = 0; n < 3; ++n) {
-    EXPECT_EQ(report.events[n].step, std::ldexp(kStep, -static_cast<int>(n)));
+/// A particle at 50 m/s passes in a step the 0.05 m at which another would notice it.
+Scene make_flight(Real speed, Real step = kStep) {
+  Scene scene = make_two_material_scene(IntegratorId::explicit_euler, step);
+  scene.gravity = {0, 0, -9.81};
+  scene.bodies = {make_block("fast", BodyKind::liquid, "a", 1, {0, 0, 0}, {speed, 0, 0}),
+                  make_block("other", BodyKind::rigid, "b", 1, {9, 9, 9}, Vec3::Zero())};
+  return scene;
+}
+
+TEST(Guard, RepeatsAStepInTwoFourAndEightParts) {
+  for (const auto& [speed, halvings] :
+       {std::pair(60.0, 1U), std::pair(150.0, 2U), std::pair(300.0, 3U)}) {
+    Simulation simulation = make_simulation(make_flight(speed));
+    const AdvanceReport report = simulation.advance(1);
+    EXPECT_FALSE(report.failed);
+    ASSERT_EQ(report.events.size(), halvings);
+    Real step = kStep;
+    for (const GuardEvent& event : report.events) {
+      EXPECT_EQ(event.cause, GuardEvent::Cause::too_fast);
+      EXPECT_EQ(event.step, step);
+      EXPECT_EQ(event.time, step);
+      EXPECT_TRUE(event.recovered);
+      step /= 2;
+    }
+    EXPECT_EQ(report.steps, halvings + (1U << halvings));
+    EXPECT_EQ(simulation.time(), kStep);
+
+    Simulation fine = make_simulation(make_flight(speed, step));
+    fine.advance(1U << halvings);
+    EXPECT_EQ(position_of(simulation, 0), position_of(fine, 0));
+    EXPECT_EQ(velocity_of(simulation, 0), velocity_of(fine, 0));
   }
-  EXPECT_LT(std::abs(position_of(simulation, 0, 1).x() - 1), 0.3);
 }
 
 TEST(Guard, KeepsTheLastGoodStateWhereHalvingIsNoHelp) {
