@@ -14,51 +14,65 @@ namespace {
 /// The bodies' particles one after the other.
 struct Particles {
   std::vector<Vec3> positions;
-  std::vector<std::uint8_t> is_liquid;
   std::vector<std::uint8_t> material;  // kMaxMaterials is 64
 };
 
 Particles gather(const std::vector<Material>& materials, const std::vector<PairBody>& bodies,
-                 bool liquid_only) {
+                 bool liquid) {
   Particles all;
   for (const PairBody& body : bodies) {
-    const bool is_liquid = body.description->kind == BodyKind::liquid;
-    if (liquid_only && !is_liquid) continue;
+    if ((body.description->kind == BodyKind::liquid) != liquid) continue;
     const auto material =
         static_cast<std::uint8_t>(material_index(materials, body.description->material));
     all.positions.insert(all.positions.end(), body.positions.begin(), body.positions.end());
-    all.is_liquid.insert(all.is_liquid.end(), body.positions.size(), is_liquid);
     all.material.insert(all.material.end(), body.positions.size(), material);
   }
   return all;
 }
 
-/// Whether more than max_start_pairs() of particles count, or more than kMaxSearch are tried.
-/// `counts(i, j, r2)` tells whether j is one that i reaches.
-template <class Counts>
-bool too_many(const std::vector<Vec3>& points, Real reach, Counts&& counts) {
-  const std::size_t most = max_start_pairs(points.size());
-  std::size_t pairs = 0;
-  std::size_t tried = 0;
-  UniformGrid grid;
-  grid.build(points, reach);
-  for (Index i = 0; i < points.size() && pairs <= most && tried <= kMaxSearch; ++i) {
-    grid.for_each_run(points[i], reach, [&](Index begin, Index end) {
-      tried += end - begin;
-      for (Index slot = begin; slot < end; ++slot) {
-        const Index j = grid.order()[slot];
-        if (j != i && counts(i, j, (points[i] - points[j]).squaredNorm())) ++pairs;
-      }
-    });
+/// Counts neighbours as the step searches for them, up to the limits.
+class NeighbourCount {
+ public:
+  explicit NeighbourCount(std::size_t particles) : most_(max_start_pairs(particles)) {}
+
+  bool is_exceeded() const { return found_ > most_ || tried_ > kMaxSearch; }
+
+  /// Adds those of `others` that each of `particles` has within `reach`, itself included. They
+  /// count where `counts(material, other material, distance^2)`.
+  template <class Counts>
+  void add(const Particles& particles, const Particles& others, Real reach, Counts&& counts) {
+    if (particles.positions.empty() || others.positions.empty()) return;
+    UniformGrid grid;
+    grid.build(others.positions, reach);
+    Particles sorted;  // near in space, near in memory
+    for (const Index i : grid.order()) {
+      sorted.positions.push_back(others.positions[i]);
+      sorted.material.push_back(others.material[i]);
+    }
+    for (std::size_t i = 0; i < particles.positions.size() && !is_exceeded(); ++i) {
+      const Vec3& p = particles.positions[i];
+      grid.for_each_run(p, reach, [&](Index begin, Index end) {
+        tried_ += end - begin;
+        for (Index j = begin; j < end; ++j) {
+          const Real r2 = (p - sorted.positions[j]).squaredNorm();
+          found_ += counts(particles.material[i], sorted.material[j], r2) ? 1 : 0;
+        }
+      });
+    }
   }
-  return pairs > most || tried > kMaxSearch;
-}
+
+ private:
+  std::size_t most_;
+  std::size_t found_ = 0;
+  std::size_t tried_ = 0;
+};
 
 std::string too_many_text(const std::string& what, Real reach, std::size_t particles) {
-  char text[120];
+  char text[200];
   std::snprintf(text, sizeof text,
-                " of %.4g m gives the %zu particles too many neighbours: at most %zu in all", reach,
-                particles, max_start_pairs(particles));
+                " of %.4g m gives the %zu particles too many neighbours: at most %zu in all, found "
+                "among at most %zu in the cells of that size around them",
+                reach, particles, max_start_pairs(particles), kMaxSearch);
   return what + text;
 }
 
@@ -74,12 +88,13 @@ void check_liquid(const std::vector<Material>& materials, const std::vector<Pair
     if (support2[m] > support2[widest]) widest = m;
   }
   const Real reach = materials[widest].liquid->support_radius;
-  const auto counts = [&](Index i, Index j, Real r2) {
-    return all.material[i] == all.material[j] && r2 < support2[all.material[i]];
-  };
-  if (too_many(all.positions, reach, counts)) {
+  NeighbourCount count(all.positions.size());
+  count.add(all, all, reach, [&](std::size_t own, std::size_t other, Real r2) {
+    return own == other && r2 < support2[own];
+  });
+  if (count.is_exceeded()) {
     check.add("too_many", path,
-              too_many_text("the support radius of \"" + materials[widest].name + "\"", reach,
+              too_many_text("the support radius of \"" + materials[widest].name + '"', reach,
                             all.positions.size()));
   }
 }
@@ -135,16 +150,21 @@ void check_contacts(const std::vector<Material>& materials,
                     RangeCheck& check) {
   const ContactReach reach = find_reach(materials, interfaces, bodies);
   if (reach.distance == 0) return;
-  const Particles all = gather(materials, bodies, false);
-  const auto counts = [&](Index i, Index j, Real r2) {
-    if (all.is_liquid[i] && all.is_liquid[j]) {
-      return reach.liquids_touch && all.material[i] != all.material[j] &&
-             r2 < reach.distance * reach.distance;
-    }
-    return r2 < reach.distance * reach.distance;
-  };
-  if (too_many(all.positions, reach.distance, counts)) {
-    check.add("too_many", path, too_many_text(reach.cause, reach.distance, all.positions.size()));
+  const Particles solids = gather(materials, bodies, false);
+  const Particles liquids = gather(materials, bodies, true);
+  const std::size_t particles = solids.positions.size() + liquids.positions.size();
+  const Real reach2 = reach.distance * reach.distance;
+  NeighbourCount count(particles);
+  const auto within = [&](std::size_t, std::size_t, Real r2) { return r2 < reach2; };
+  count.add(solids, solids, reach.distance, within);
+  count.add(liquids, solids, reach.distance, within);
+  if (reach.liquids_touch) {
+    count.add(liquids, liquids, reach.distance, [&](std::size_t own, std::size_t other, Real r2) {
+      return own != other && r2 < reach2;
+    });
+  }
+  if (count.is_exceeded()) {
+    check.add("too_many", path, too_many_text(reach.cause, reach.distance, particles));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/scene/lattice.h"
+#include "core/scene/validate_parts.h"
 #include "tests/unit/mesh_shapes.h"
 
 namespace vat {
@@ -59,7 +60,7 @@ TEST(Mesh, IsClosedWithRepeatedVertices) {
 /// The points of a lattice in `mesh`, which must have a bounding box of n cells a side.
 std::vector<LatticePoint> fill(const MeshShape& mesh, Real spacing) {
   const Lattice lattice = make_lattice(mesh, spacing);
-  EXPECT_EQ(lattice_excess(mesh, lattice), nullptr);
+  EXPECT_EQ(Allowance().take_lattice(mesh, lattice), nullptr);
   return fill_lattice(mesh, lattice);
 }
 
@@ -124,8 +125,15 @@ TEST(Mesh, CrossingsOfALineCancelOut) {
 TEST(Mesh, TooMuchWorkIsRefusedBeforeItIsDone) {
   MeshShape mesh = box_mesh({0, 0, 0}, {1, 1, 0.001});
   for (int i = 0; i < 20; ++i) mesh = joined(mesh, box_mesh({0, 0, 0}, {1, 1, 0.001}));
-  EXPECT_NE(lattice_excess(mesh, make_lattice(mesh, 0.001)), nullptr);
-  EXPECT_EQ(lattice_excess(mesh, make_lattice(mesh, 0.01)), nullptr);
+  const Lattice fine = make_lattice(mesh, 0.001);
+  EXPECT_NE(Allowance().take_lattice(mesh, fine), nullptr);
+  EXPECT_EQ(Allowance().take_lattice(mesh, make_lattice(mesh, 0.01)), nullptr);
+  // A seventh of it is not too much, but twice that is.
+  MeshShape part = mesh;
+  part.triangles.resize(mesh.triangles.size() / 7);
+  Allowance allowance;
+  EXPECT_EQ(allowance.take_lattice(part, fine), nullptr);
+  EXPECT_NE(allowance.take_lattice(part, fine), nullptr);
 }
 
 }  // namespace
