@@ -185,7 +185,7 @@ TEST(Oscillator, EnergyAtTheStartIsHalfKStretchSquared) {
 // hundred. The others gain (1 + z^2)^n (explicit Euler), n z^4/4 (Heun) or lose n z^6/72 (RK4).
 TEST(Oscillator, EnergyErrorsAreThoseOfTheory) {
   constexpr Real kStep = 0.01;
-  constexpr Real z = kOmega * kStep;
+  const Real z = kOmega * kStep;
   EXPECT_NEAR(energy_error(IntegratorId::velocity_verlet, kStep, 100), z * z / 4, 0.01 * z * z);
   EXPECT_NEAR(energy_error(IntegratorId::velocity_verlet, kStep, 10000), z * z / 4, 0.01 * z * z);
   EXPECT_LT(energy_error(IntegratorId::symplectic_euler, kStep, 10000), 1.1 * z / 2);

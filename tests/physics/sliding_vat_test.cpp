@@ -80,7 +80,7 @@ TEST(SlidingVat, ObservedOrderIsThatOfEachMethod) {
   for (const auto& [integrator, order] :
        {std::pair(IntegratorId::explicit_euler, 1), std::pair(IntegratorId::symplectic_euler, 1),
         std::pair(IntegratorId::heun, 2), std::pair(IntegratorId::runge_kutta_4, 4)}) {
-    const auto error = [&](Real step) {
+    const auto error = [integrator = integrator](Real step) {
       Scene scene = make_pressed_particle(BodyKind::rigid, integrator);
       scene.numerics.step = scene.numerics.tick = step;
       Simulation simulation = make_simulation(scene);

@@ -10,7 +10,7 @@ namespace {
 
 /// Actions and the members that may stand beside them.
 const std::map<std::string, std::set<std::string>>& known_actions() {
-  static const std::map<std::string, std::set<std::string>> actions{
+  static const std::map<std::string, std::set<std::string>> kActions{
       {"connect", {"path", "subprotocol", "refused"}},
       {"send", {}},
       {"send_text", {}},
@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>>& known_actions() {
       {"close", {}},
       {"read", {}},
       {"repeat", {"do"}}};
-  return actions;
+  return kActions;
 }
 
 /// The line's one action; every other member must belong to it.

@@ -1,10 +1,10 @@
 #include "tests/protocol/server_process.h"
 
 #include <poll.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <regex>
 #include <stdexcept>
 #include <thread>
@@ -53,6 +53,7 @@ void ServerProcess::start(const std::string& program, const std::vector<std::str
   std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_ = fork();
