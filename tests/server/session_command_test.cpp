@@ -81,7 +81,7 @@ TEST_F(SessionCommands, AreAnsweredInTheirOrder) {
   for (int i = 0; i < 50; ++i) {
     ASSERT_TRUE(reference.set_gravity(Vec3(0, 0, -i)));
     advance_ticks(reference, 1);
-    const Json reply = client->wait_reply(ids[static_cast<std::size_t>(3 * i + 2)]);
+    const Json reply = client->wait_reply(ids[3 * static_cast<std::size_t>(i) + 2]);
     EXPECT_EQ(reply.at("result").at("tick"), i + 1);
   }
   EXPECT_EQ(hash(), hash_of(reference));
