@@ -44,9 +44,9 @@ struct Workspace {
   std::vector<LiquidRecord> liquid_records;  ///< by slot
   std::vector<PairBlock> liquid_pairs;
   bool too_many_pairs = false;  ///< above max_pairs(): the lists are not whole, a density is a NaN
-  std::vector<Real> density;   ///< by liquid particle [kg/m^3]
-  std::vector<Real> pressure;  ///< by liquid particle [Pa]
-  CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
+  std::vector<Real> density;    ///< by liquid particle [kg/m^3]
+  std::vector<Real> pressure;   ///< by liquid particle [Pa]
+  CellSortedPoints solids;      ///< deformable and rigid particles; index 0 is the first of them
 };
 
 /// What a stage sees.
