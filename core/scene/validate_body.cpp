@@ -202,17 +202,24 @@ const char* Allowance::take_mesh(const MeshShape& mesh) {
 }
 
 const char* Allowance::take_lattice(const Shape& shape, const Lattice& lattice) {
-  lattice_points_ += lattice.point_count();
-  if (const auto* mesh = std::get_if<MeshShape>(&shape)) mesh_work_ += lattice_work(*mesh, lattice);
-  exceeded_ = true;
-  if (lattice_points_ > static_cast<Real>(kMaxLatticePoints)) {
+  const auto* mesh = std::get_if<MeshShape>(&shape);
+  const Real points = lattice.point_count();
+  const Real work = mesh == nullptr ? 0 : lattice_work(*mesh, lattice);
+  const bool is_too_fine = points > static_cast<Real>(kMaxLatticePoints);
+  const bool is_too_much = work > static_cast<Real>(kMaxMeshWork);
+  if (!is_too_fine && !is_too_much) {
+    lattice_points_ += points;
+    mesh_work_ += work;
+  }
+  if (is_too_fine || lattice_points_ > static_cast<Real>(kMaxLatticePoints)) {
+    exceeded_ |= !is_too_fine;
     return "is too small: the shapes' bounding boxes may hold at most 8000000 lattice points in "
            "all";
   }
-  if (mesh_work_ > static_cast<Real>(kMaxMeshWork)) {
+  if (is_too_much || mesh_work_ > static_cast<Real>(kMaxMeshWork)) {
+    exceeded_ |= !is_too_much;
     return "is too small: the meshes' triangles may cover at most 20000000 lattice columns in all";
   }
-  exceeded_ = false;
   return nullptr;
 }
 

@@ -17,8 +17,9 @@ void check_constants(const SpringConstants& constants, const std::string& path, 
 void check_interface(const Scene& scene, const InterfaceDescription& interface,
                      const std::string& path, RangeCheck& check);
 
-/// What may be spent on a scene's bodies. A body that does not fit is not sampled, nor is any after
-/// it: one excess is enough to refuse the scene.
+/// What may be spent on a scene's bodies. A body that is too much by itself is not sampled; one
+/// that is too much together with those before it ends the sampling, since one excess is enough to
+/// refuse the scene.
 class Allowance {
  public:
   bool is_exceeded() const { return exceeded_; }
