@@ -34,7 +34,7 @@ Json make_request(std::string_view method, const Json& params) {
 }  // namespace
 
 const std::string& mixed_scene_text() {
-  static const std::string text = R"({
+  static const std::string kText = R"({
     "format": "vat.scene/1", "name": "mixed", "title": "Mixed", "description": "All kinds",
     "materials": [
       {"name": "water", "density": 1000,
@@ -51,11 +51,11 @@ const std::string& mixed_scene_text() {
        "shape": {"type": "box", "center": [0.3, 0.3, 0.6], "size": [0.2, 0.2, 0.2]}},
       {"name": "ball", "kind": "rigid", "material": "wood", "spacing": 0.1,
        "shape": {"type": "sphere", "radius": 0.15}, "position": [0.7, 0.7, 0.7]}]})";
-  return text;
+  return kText;
 }
 
 const std::string& unstable_scene_text() {
-  static const std::string text = R"({
+  static const std::string kText = R"({
     "format": "vat.scene/1", "name": "unstable", "title": "Unstable",
     "materials": [{"name": "steel", "density": 1000}],
     "numerics": {"integrator": "explicit_euler", "step": 0.1, "tick": 0.1},
@@ -63,7 +63,7 @@ const std::string& unstable_scene_text() {
       {"name": "pair", "kind": "deformable", "material": "steel", "radius": 0.1,
        "shape": {"type": "particles", "positions": [[0, 0, 0], [1, 0, 0]], "masses": [1, 1]},
        "springs": [{"particles": [0, 1], "stiffness": 1e9, "damping": 0, "rest_length": 0.5}]}]})";
-  return text;
+  return kText;
 }
 
 Scene to_scene(const std::string& text) {

@@ -13,12 +13,12 @@ struct BadParams {
 };
 
 const std::vector<BadParams>& bad_params() {
-  static const std::string too_long(65, 'n');
-  static const std::vector<BadParams> cases = {
+  static const std::string kTooLong(65, 'n');
+  static const std::vector<BadParams> kCases = {
       {"session.create", R"({"scene":"mixed"})", "/name", "must be given"},
       {"session.create", R"({"name":"n"})", "/scene", "must be given"},
       {"session.create", R"({"name":7,"scene":"mixed"})", "/name", "text of at most 64 bytes"},
-      {"session.create", R"({"name":")" + too_long + R"(","scene":"mixed"})", "/name",
+      {"session.create", R"({"name":")" + kTooLong + R"(","scene":"mixed"})", "/name",
        "text of at most 64 bytes"},
       {"session.create", R"({"name":"a\u0007b","scene":"mixed"})", "/name", "control characters"},
       {"session.create", R"({"name":"n","scene":7})", "/scene", "must be an object"},
@@ -101,7 +101,7 @@ const std::vector<BadParams>& bad_params() {
       {"state.query", R"({"bodies":["ball",-1]})", "/bodies/1", "from 0 to 4294967295"},
       {"session.hash", R"({"x":1})", "/x", "not a known"},
   };
-  return cases;
+  return kCases;
 }
 
 class BadParameters : public SessionTest {

@@ -23,7 +23,7 @@ std::string many_values(std::size_t count) {
 }
 
 const std::vector<BadText>& bad_texts() {
-  static const std::vector<BadText> texts = {
+  static const std::vector<BadText> kTexts = {
       {"Nothing", "", -32700, nullptr},
       {"NotJson", "hello", -32700, nullptr},
       {"HalfAnObject", R"({"jsonrpc":"2.0","id":1)", -32700, nullptr},
@@ -68,7 +68,7 @@ const std::vector<BadText>& bad_texts() {
       {"UnknownParameter", R"({"jsonrpc":"2.0","id":1,"method":"server.info","params":{"x":1}})",
        -32602, 1},
   };
-  return texts;
+  return kTexts;
 }
 
 class BadRequests : public SessionTest, public testing::WithParamInterface<BadText> {};

@@ -12,7 +12,6 @@ namespace vat::test {
 namespace {
 
 namespace asio = boost::asio;
-using asio::ip::tcp;
 using boost::system::error_code;
 
 }  // namespace
