@@ -3,6 +3,7 @@
 #include <ostream>
 #include <string>
 
+#include "core/scene/scene.h"
 #include "core/support/result.h"
 
 namespace vat {
@@ -15,6 +16,9 @@ inline constexpr int kExitSignal = 128;  ///< plus the number of the signal that
 
 /// One line per error: "PATH: message". An error about the whole input bears the input's name.
 void print_errors(std::ostream& out, const std::string& input, const Errors& errors);
+
+/// Prints what find_warnings() says about the scene to stderr.
+void print_warnings(const std::string& input, const Scene& scene);
 
 /// Prints the errors to stderr; returns kExitFailed.
 int fail(const std::string& input, const Errors& errors);

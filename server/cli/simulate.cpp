@@ -195,6 +195,7 @@ int simulate(const Options& options) {
   Simulation& simulation = created.value();
   if (options.plan) std::cout << simulation.plan_text();
   if (options.only_plan()) return kExitOk;
+  print_warnings(options.scene, scene.value());  // of the step and integrator in use
 
   StageProfile profile;
   if (options.profile) simulation.set_observer(&profile);

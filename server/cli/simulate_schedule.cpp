@@ -12,6 +12,10 @@ namespace {
 
 constexpr Real kWholeTolerance = 1e-9;  // relative; far above round-off, far below any real misfit
 
+// How far a step is shortened to meet the end of the run: beyond, the end is moved instead.
+constexpr Real kMostShortening = 10;
+constexpr Real kMostTries = 100'000;
+
 bool is_whole(Real interval, Real step) {
   const Real count = std::round(interval / step);
   return std::abs(count * step - interval) <= kWholeTolerance * interval;
@@ -30,14 +34,31 @@ std::uint64_t Schedule::output_count() const {
   return 1 + multiples + (total_steps % steps_per_output != 0 ? 1 : 0);
 }
 
+namespace {
+
+/// The longest step up to the wanted one that `every` and, if it can be had, `until` are whole
+/// numbers of.
+Real fitted_step(Real wanted_step, Real every, Real until) {
+  const Real fewest = is_whole(every, wanted_step) ? std::round(every / wanted_step)
+                                                   : std::ceil(every / wanted_step);
+  const Real longest = is_whole(every, wanted_step) ? wanted_step : every / fewest;
+  if (is_whole(until, longest)) return longest;
+  const Real most = std::min(kMostShortening * fewest, fewest + kMostTries);
+  for (Real steps = fewest + 1; steps <= most; ++steps) {
+    if (is_whole(until, every / steps)) return every / steps;
+  }
+  return longest;
+}
+
+}  // namespace
+
 Schedule make_schedule(Real wanted_step, Real every, Real until) {
   Schedule schedule;
-  schedule.step = wanted_step;
-  if (!is_whole(every, wanted_step)) {
-    schedule.step = every / std::ceil(every / wanted_step);
+  schedule.step = fitted_step(wanted_step, every, until);
+  if (schedule.step != wanted_step) {
     schedule.notices.push_back("the step is " + seconds(schedule.step) + " instead of " +
-                               seconds(wanted_step) + ", a whole part of the output interval " +
-                               seconds(every));
+                               seconds(wanted_step) +
+                               ": output interval and end must be whole numbers of steps");
   }
   schedule.steps_per_output = static_cast<std::uint64_t>(std::round(every / schedule.step));
   schedule.total_steps = static_cast<std::uint64_t>(std::round(until / schedule.step));

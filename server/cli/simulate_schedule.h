@@ -19,9 +19,10 @@ struct Schedule {
   std::uint64_t output_count() const;
 };
 
-/// The step is the wanted one if the output interval is a whole number of it (to 1e-9, and then it
-/// is not touched, so that the result does not depend on the interval); otherwise it is shortened
-/// until it is. The end is rounded to whole steps. All in [s]; `until` may be 0.
+/// The step is the wanted one if the output interval and the end are whole numbers of it (to 1e-9,
+/// and then it is not touched, so that the result does not depend on the interval); otherwise it is
+/// shortened until they are. Where that takes less than a tenth of it, the end is rounded to whole
+/// steps instead. All in [s]; `until` may be 0.
 Schedule make_schedule(Real wanted_step, Real every, Real until);
 
 /// The scene's numerics with another step; the tick is changed only where it has to be to remain a

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "core/scene/validate.h"
 #include "core/simulation.h"
 #include "server/cli/command.h"
 #include "server/cli/scene_argument.h"
@@ -33,10 +32,7 @@ int validate(const Options& options) {
   if (!scene) return fail(options.scene, scene.errors());
   const Result<Simulation> simulation = Simulation::create(scene.value());
   if (!simulation) return fail(options.scene, simulation.errors());
-  for (const Warning& warning : find_warnings(scene.value())) {
-    std::cerr << "warning: " << (warning.path.empty() ? options.scene : warning.path) << ": "
-              << warning.message << '\n';
-  }
+  print_warnings(options.scene, scene.value());
   print_summary(options.scene, simulation.value());
   return kExitOk;
 }

@@ -27,6 +27,18 @@ TEST(Schedule, NeverLengthensTheStep) {
   }
 }
 
+TEST(Schedule, ShortensTheStepUntilItMeetsTheEndToo) {
+  struct Case {
+    Real every, until, step;
+  };
+  for (const Case& c : {Case{0.3, 1, 0.1 / 100}, Case{0.02, 0.0505, 0.0005},
+                        Case{0.007, 0.01, 0.001}, Case{0.0104, 0.02, 0.0008}}) {
+    const Schedule schedule = make_schedule(1e-3, c.every, c.until);
+    EXPECT_DOUBLE_EQ(schedule.step, c.step) << c.every << ' ' << c.until;
+    EXPECT_DOUBLE_EQ(schedule.step * static_cast<Real>(schedule.total_steps), c.until);
+  }
+}
+
 TEST(Schedule, CountsTheOutputAtTheEndOnce) {
   EXPECT_EQ(make_schedule(0.1, 0.2, 0).output_count(), 1u);
   EXPECT_EQ(make_schedule(0.1, 0.2, 0.1).output_count(), 2u);

@@ -15,6 +15,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
+using testing::StartsWith;
 
 std::string hash_of(const std::string& scene, const std::vector<std::string>& options) {
   std::vector<std::string> arguments = {"simulate", scene, "--hash"};
@@ -117,10 +118,27 @@ TEST(Simulate, ShortensTheStepToFitTheOutputInterval) {
   EXPECT_EQ(read_csv(file).rows.size(), 5u);
 }
 
-TEST(Simulate, RoundsTheEndToWholeSteps) {
-  const ProgramResult result = run_vat({"simulate", test_scene("pair"), "--until", "0.0104"});
+TEST(Simulate, ShortensTheStepToMeetTheEnd) {
+  const ProgramResult result =
+      run_vat({"simulate", test_scene("pair"), "--dt", "0.003", "--until", "0.05"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("the run ends at 0.01 s instead of 0.0104 s"));
+  EXPECT_THAT(result.err, HasSubstr("the step is 0.0025 s instead of 0.003 s"));
+  EXPECT_THAT(lines_of(result.err).back(), StartsWith("0.05 s simulated in 20 steps"));
+}
+
+TEST(Simulate, RoundsAnOddEndToWholeSteps) {
+  const ProgramResult result = run_vat({"simulate", test_scene("pair"), "--until", "0.0100007"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the run ends at 0.01 s instead of 0.0100007 s"));
+}
+
+TEST(Simulate, WarnsOfTheIntegratorInUse) {
+  const auto first_line = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"simulate", test_scene("pair"), "--until", "0"});
+    return lines_of(run_vat(arguments).err).front();
+  };
+  EXPECT_THAT(first_line({}), HasSubstr("s simulated"));
+  EXPECT_THAT(first_line({"--integrator", "heun"}), StartsWith("warning: /numerics/step: "));
 }
 
 TEST(Simulate, PlanAloneDoesNotRun) {
@@ -164,9 +182,9 @@ TEST(Simulate, GuardFailureNamesBodyAndKeepsThePartialFile) {
                folder.file("run.csv"), "--diagnostics", folder.file("d.csv")});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_THAT(lines_of(result.err),
-              ElementsAre(MatchesRegex("/bodies/1: a step failed \\(.*\\) at particle [01] of body "
-                                       "'wild', at t = [0-9.e-]+ s with a step of .*")));
+  EXPECT_THAT(lines_of(result.err).back(),
+              MatchesRegex("/bodies/1: a step failed \\(.*\\) at particle [01] of body "
+                           "'wild', at t = [0-9.e-]+ s with a step of .*"));
   EXPECT_THAT(folder.names(), ElementsAre("d.csv.part", "run.csv.part"));
   EXPECT_EQ(read_csv(folder.file("run.csv.part")).rows.size() % 3, 0u);
 }
