@@ -100,7 +100,12 @@ void Session::inbox_turn() {
   std::optional<Item> item;
   for (std::size_t i = 0; i < kCommandsPerTurn && SteadyClock::now() < end; ++i) {
     if (!take_item(item)) return;
-    carry_out(*std::move(item));
+    try {
+      carry_out(*std::move(item));
+    } catch (...) {
+      schedule(&Session::inbox_turn);  // for the commands that are left
+      throw;
+    }
   }
   schedule(&Session::inbox_turn);
 }

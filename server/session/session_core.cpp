@@ -113,10 +113,15 @@ void SessionCore::tell_guard(const AdvanceReport& report) {
 }
 
 void SessionCore::announce() {
-  if (std::exchange(description_due_, false)) {
+  // What fails stays due.
+  if (description_due_) {
     members_.send_event(write_event("session.description", description()));
+    description_due_ = false;
   }
-  if (std::exchange(status_due_, false)) announce_status();
+  if (status_due_) {
+    announce_status();
+    status_due_ = false;
+  }
   send_frames(false);
 }
 

@@ -32,17 +32,22 @@ class SessionServer::Impl {
 
   SessionDirectory& directory() { return directory_; }
 
-  /// Carries out a message. An error that is returned is for the id that was found, or for null.
+  /// Carries out a message. An error is answered to the id that was found, or to null.
   void receive(const std::shared_ptr<ClientOutbox>& client, std::string_view message) {
     std::optional<Json> id;
-    auto request = read(message, id);
-    if (auto* error = std::get_if<RpcError>(&request)) {
-      client->send(write_reply(id.value_or(nullptr), std::move(*error)));
-      return;
-    }
-    Caller caller(client, id);
-    if (auto result = call(caller, std::get<RpcRequest>(request), message.size())) {
-      caller.answer(*std::move(result));
+    try {
+      auto request = read(message, id);
+      if (auto* error = std::get_if<RpcError>(&request)) {
+        client->send(write_reply(id.value_or(nullptr), std::move(*error)));
+        return;
+      }
+      Caller caller(client, id);
+      if (auto result = call(caller, std::get<RpcRequest>(request), message.size())) {
+        caller.answer(*std::move(result));
+      }
+    } catch (const std::exception& error) {
+      spdlog::error("a message failed: {}", error.what());
+      client->send(write_reply(id.value_or(nullptr), internal_error()));
     }
   }
 
@@ -110,13 +115,7 @@ void SessionServer::opened(std::shared_ptr<Connection> connection) {
 
 void SessionServer::text_received(ConnectionId id, std::string_view message) {
   const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id);
-  if (client == nullptr) return;
-  try {
-    impl_->receive(client, message);
-  } catch (const std::exception& error) {
-    spdlog::error("a message failed: {}", error.what());
-    client->send(write_reply(nullptr, internal_error()));
-  }
+  if (client != nullptr) impl_->receive(client, message);
 }
 
 void SessionServer::binary_received(ConnectionId id, std::string_view) {

@@ -30,7 +30,9 @@ class FakeConnection final : public Connection {
 
   ConnectionId id() const override { return id_; }
   void send_text(std::string message) override {
-    if (failing_) throw std::runtime_error("no memory for this message");
+    const bool is_reply = message.find(R"("id":)") != std::string::npos;
+    if (failing_ || (is_reply && fail_next_reply_.exchange(false)))
+      throw std::runtime_error("no memory for this message");
     change([&] {
       add_queued(message.size());
       texts_.push_back(Json::parse(message));
@@ -58,6 +60,8 @@ class FakeConnection final : public Connection {
   }
   /// Each text that is sent throws.
   void fail(bool failing) { failing_ = failing; }
+  /// The next reply does.
+  void fail_next_reply() { fail_next_reply_ = true; }
 
   std::vector<Json> texts() const {
     const std::lock_guard lock(mutex_);
@@ -124,6 +128,7 @@ class FakeConnection final : public Connection {
   std::size_t queued_ = 0;
   bool stalled_ = false;
   std::atomic<bool> failing_ = false;
+  std::atomic<bool> fail_next_reply_ = false;
   std::optional<std::uint16_t> close_code_;
 };
 

@@ -79,7 +79,7 @@ const std::vector<BadParams>& bad_params() {
        "above 0 and at most 3600"},
       {"world.apply_force", R"({"body":3,"force":[0,"a",1],"duration":1})", "/force/1", "finite"},
       {"world.apply_force", R"({"body":3,"force":[0,0,1e300],"duration":1})", "/force",
-       "at most 1000000000000"},
+       "at most 1e+12"},
       {"grab.start", R"({"body":3,"particle":0})", "/target", "must be given"},
       {"grab.start", R"({"body":3,"particle":-1,"target":[0,0,0]})", "/particle", "from 0"},
       {"grab.start", R"({"body":3,"particle":100000,"target":[0,0,0]})", "/particle",
