@@ -73,7 +73,7 @@ class Transport {
   /// Returns the port that is listened on.
   virtual std::uint16_t start() = 0;
   /// Stops listening, closes every connection with 1001, waits for the closing handshakes at most
-  /// two seconds, and joins the thread.
+  /// one second, and joins the thread.
   virtual void stop() = 0;
 };
 

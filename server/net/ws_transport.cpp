@@ -18,7 +18,7 @@ namespace {
 using boost::asio::ip::tcp;
 namespace opcode = websocketpp::frame::opcode;
 
-constexpr std::chrono::seconds kStopTimeout{2};
+constexpr std::chrono::seconds kStopTimeout{1};
 constexpr std::chrono::seconds kResponseTimeout{60};  ///< for a peer to take a whole file
 constexpr long kClosingHandshakeTimeout = 5000;       // [ms]
 /// Sockets beyond the WebSockets: HTTP requests, upgrades under way, connections refused or ending.
@@ -225,6 +225,8 @@ void WsTransport::closed(WsStream& stream) {
   if (stream.id == 0) return;
   const ConnectionId id = std::exchange(stream.id, 0);
   stream.peer->set_gone();
+  // It shares the io_context, whose pending operations own the stream: a circle otherwise.
+  stream.peer.reset();
   open_.erase(id);
   if (stopping_ && open_.empty()) io_->stop();
   connections_.closed(id);
