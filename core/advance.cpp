@@ -21,7 +21,11 @@ std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
     take_step(model->scene.numerics.integrator, force_model, state, start + piece * dt, dt,
               scratch);
     ++report.steps;
-    if (const auto fault = find_fault(*model, state.now, bounds, dt)) {
+    auto fault = find_fault(*model, state.now, bounds, dt);
+    if (work.too_many_pairs) {  // of liquids, whose particles come first
+      fault = Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
+    }
+    if (fault) {
       return GuardEvent{fault->cause,
                         start + (piece + 1) * dt,
                         model->bodies[fault->body].id,

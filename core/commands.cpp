@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/forces/vat_motion.h"
 #include "core/limits.h"
 #include "core/model/compile.h"
 #include "core/scene/validate.h"
@@ -90,8 +91,21 @@ std::vector<BodyId> ids_of(const Model& model) {
 
 }  // namespace
 
+Present Simulation::Impl::present() const {
+  Present present;
+  for (const ModelBody& body : model->bodies) {
+    const auto part = [&](const auto& column) {
+      return std::span(column).subspan(body.particles.begin, body.particles.size());
+    };
+    present.bodies.push_back(
+        {part(state.now.position), part(model->radius), body.sample->springs.size()});
+  }
+  if (model->scene.vat) present.vat_offset = vat_motion(*model->scene.vat, time()).offset;
+  return present;
+}
+
 Result<BodyId> Simulation::add_body(const BodyDescription& body) {
-  Errors errors = find_body_errors(impl_->model->scene, body, "/body");
+  Errors errors = find_body_errors(impl_->model->scene, impl_->present(), body, "/body");
   if (!errors.empty()) return errors;
   Scene scene = impl_->model->scene;
   scene.bodies.push_back(body);
@@ -124,24 +138,19 @@ Status Simulation::set_gravity(const Vec3& gravity) {
 }
 
 Status Simulation::set_interface(const InterfaceDescription& interface) {
+  Errors errors =
+      find_interface_errors(impl_->model->scene, impl_->present(), interface, "/interface");
+  if (!errors.empty()) return errors;
   Scene scene = impl_->model->scene;
   const auto same_pair = [&](const InterfaceDescription& other) {
     return std::ranges::is_permutation(other.materials, interface.materials);
   };
   const auto found = std::ranges::find_if(scene.interfaces, same_pair);
-  const auto index = static_cast<std::size_t>(found - scene.interfaces.begin());
   if (found == scene.interfaces.end()) {
     scene.interfaces.push_back(interface);
   } else {
     *found = interface;
   }
-  const std::string prefix = "/interfaces/" + std::to_string(index);
-  Errors errors = find_errors(scene);
-  for (Error& error : errors) {
-    if (error.path.starts_with(prefix))
-      error.path = "/interface" + error.path.substr(prefix.size());
-  }
-  if (!errors.empty()) return errors;
   impl_->recompile(std::move(scene), ids_of(*impl_->model));
   return {};
 }

@@ -21,6 +21,8 @@ const char* to_string(GuardEvent::Cause cause) {
       return "outside_domain";
     case GuardEvent::Cause::too_fast:
       return "too_fast";
+    case GuardEvent::Cause::too_many_pairs:
+      return "too_many_pairs";
   }
   VAT_CHECK(false && "not a cause");
   return "";

@@ -44,10 +44,11 @@ struct LiquidFields {
   std::vector<Real> pressure;  ///< [Pa]
 };
 
-/// What the guard saw. A step that ends with a non-finite value, outside the domain or too fast
-/// (see core/step/guard.h) is undone and repeated in two, four and at last eight parts.
+/// What the guard saw. A step that ends with a non-finite value, outside the domain, too fast (see
+/// core/step/guard.h) or with more pairs of liquid particles than memory is meant for is undone and
+/// repeated in two, four and at last eight parts.
 struct GuardEvent {
-  enum class Cause { non_finite, outside_domain, too_fast };
+  enum class Cause { non_finite, outside_domain, too_fast, too_many_pairs };
   Cause cause;
   Real time;  ///< [s] end of the failed step, or part of one
   BodyId body;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/integrators/integrator.h"
+#include "core/scene/validate.h"
 #include "core/simulation.h"
 #include "core/step/controls.h"
 #include "core/step/guard.h"
@@ -28,6 +29,8 @@ struct Simulation::Impl : Snapshot::Content {
   Real step_size() const { return model->scene.numerics.step; }
   Real time() const { return static_cast<Real>(state.step_count) * step_size(); }
   const ModelBody* find(BodyId id) const;
+  /// For the checks of what users add.
+  Present present() const;
 
   /// Takes over what belongs together. Does not fail.
   void adopt(Content content, GuardBounds content_bounds) noexcept;

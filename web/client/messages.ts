@@ -57,7 +57,7 @@ export interface SessionStatus {
 
 export interface GuardEvent {
   tick: number;
-  cause: 'non_finite' | 'outside_domain' | 'too_fast';
+  cause: 'non_finite' | 'outside_domain' | 'too_fast' | 'too_many_pairs';
   time: number;
   body: number;
   particle: number;

@@ -35,6 +35,7 @@ const kCauses: Readonly<Record<GuardEvent['cause'], string>> = {
   non_finite: 'got a position or velocity that is not a number',
   outside_domain: 'left the domain',
   too_fast: 'moved too fast',
+  too_many_pairs: 'was crushed',
 };
 
 /** What the guard of the simulation saw and did, in words. */
