@@ -153,7 +153,7 @@ void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors)
   }
   body.velocity = reader.vector("velocity", -kMaxSpeed, kMaxSpeed, body.velocity);
   body.angular_velocity =
-      reader.vector("angular_velocity", -kMaxAngularSpeed, kMaxAngularSpeed, body.angular_velocity);
+      reader.vector("angular_velocity", kAnyMin, kAnyMax, body.angular_velocity);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.name = reader.text("name", kMaxNameLength, "");
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");
-  scene.gravity = reader.vector("gravity", -kMaxGravity, kMaxGravity, scene.gravity);
+  scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);
   read_part(reader, "default_interface", scene.default_interface, errors,
             [&](const Json& value, std::string path) {

@@ -9,7 +9,7 @@ LiquidConstants to_liquid(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   LiquidConstants liquid;
   liquid.stiffness = reader.real("stiffness", 0, kMaxStiffness);
-  liquid.viscosity = reader.real("viscosity", 0, kMaxViscosity);
+  liquid.viscosity = reader.real("viscosity", kAnyMin, kAnyMax);
   liquid.support_radius = reader.real("support_radius", kMinLength, kMaxLength);
   reader.refuse_unknown();
   return liquid;
@@ -36,7 +36,7 @@ SlideMotion to_motion(const Json& value, std::string path, Errors& errors) {
   SlideMotion motion;
   motion.axis = reader.vector("axis", -kMaxLength, kMaxLength, motion.axis);
   motion.stroke = reader.real("stroke", -kMaxLength, kMaxLength);
-  motion.period = reader.real("period", kMinPeriod, kMaxPeriod, motion.period);
+  motion.period = reader.real("period", kAnyMin, kAnyMax, motion.period);
   reader.refuse_unknown();
   return motion;
 }
@@ -46,7 +46,7 @@ SlideMotion to_motion(const Json& value, std::string path, Errors& errors) {
 SpringConstants to_spring_constants(ObjectReader& reader) {
   SpringConstants constants;
   constants.stiffness = reader.real("stiffness", 0, kMaxStiffness);
-  constants.damping = reader.real("damping", 0, kMaxDamping, constants.damping);
+  constants.damping = reader.real("damping", kAnyMin, kAnyMax, constants.damping);
   return constants;
 }
 
@@ -61,7 +61,7 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Material material;
   material.name = reader.text("name", kMaxNameLength);
-  material.density = reader.real("density", kMinDensity, kMaxDensity, material.density);
+  material.density = reader.real("density", kAnyMin, kAnyMax, material.density);
   if (const Json* liquid = reader.member("liquid")) {
     material.liquid = to_liquid(*liquid, reader.path_of("liquid"), errors);
   }
