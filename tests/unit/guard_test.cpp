@@ -107,6 +107,67 @@ TEST(Guard, NothingMayPassInOneStepWhatItWouldNotNotice) {
                too_fast, 2, 0);
 }
 
+/// The travel of each body of two particles of radius 0.025 m, of the given kinds and materials.
+std::vector<Real> travel_of(const std::vector<std::pair<BodyKind, std::string>>& bodies,
+                            bool self_contact = true) {
+  Scene scene = make_three_kinds();
+  if (!self_contact) {
+    for (Material& material : scene.materials) material.self_contact.reset();
+  }
+  scene.bodies.clear();
+  for (const auto& [kind, material] : bodies) {
+    const auto count = static_cast<Real>(scene.bodies.size());
+    scene.bodies.push_back(make_block("body " + std::to_string(scene.bodies.size()), kind, material,
+                                      2, {count, 0, 0}, Vec3::Zero()));
+  }
+  const ForceProbe probe(scene);
+  return guard_bounds(probe.model()).travel;
+}
+
+// Liquids of one material meet by their densities, whatever the contact laws say.
+TEST(Guard, OnlyLiquidsOfOneMaterialDoNotNoticeOneAnother) {
+  using enum BodyKind;
+  const std::vector<Real> free{kMaxLength, kMaxLength};
+  const std::vector<Real> noticed{0.05, 0.05};
+  EXPECT_EQ(travel_of({{liquid, "a"}, {liquid, "a"}}), free);
+  EXPECT_EQ(travel_of({{liquid, "a"}, {liquid, "b"}}), noticed);
+  EXPECT_EQ(travel_of({{liquid, "a"}, {rigid, "a"}}), noticed);
+  EXPECT_EQ(travel_of({{deformable, "a"}, {liquid, "a"}}, false), noticed);
+  EXPECT_EQ(travel_of({{rigid, "a"}, {rigid, "a"}}), noticed);
+  EXPECT_EQ(travel_of({{rigid, "a"}, {deformable, "b"}}, false), noticed);
+  EXPECT_EQ(travel_of({{rigid, "a"}}), std::vector<Real>{kMaxLength});
+}
+
+TEST(Guard, ADeformableBodyNoticesItselfWhereItHasSelfContact) {
+  EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}), std::vector<Real>{0.05});
+  EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}, false), std::vector<Real>{kMaxLength});
+}
+
+/// The fault of a cube that moves at `speed` and turns at `rate` about the same axis. Its corners
+/// are 0.0433 m from its middle, and a step may take them 0.05 m.
+std::optional<Fault> fault_of_turning_cube(Real speed, Real rate) {
+  const ForceProbe probe(make_three_kinds());
+  const Mat3 inertia = probe.model().rigid_bodies[0].inertia;
+  return fault_after([&](Configuration& at) {
+    at.rigid[0].momentum = {0, 0, speed};  // of 1 kg
+    at.rigid[0].angular_momentum = inertia * Vec3(0, 0, rate);
+  });
+}
+
+TEST(Guard, TheSpeedOfTheTipsOfARigidBodyCounts) {
+  const Real corner = std::sqrt(3) * 0.025;
+  for (const Real rate : {0.0, 400.0, 900.0}) {
+    const Real most = 50 - corner * rate;
+    EXPECT_FALSE(fault_of_turning_cube(most - 0.1, rate).has_value());
+    expect_fault(fault_of_turning_cube(most + 0.1, rate), GuardEvent::Cause::too_fast, 2, 0);
+  }
+}
+
+TEST(Guard, ARigidBodyMayTurnByARadianInAStep) {
+  EXPECT_FALSE(fault_of_turning_cube(0, 0.999 / kStep).has_value());
+  expect_fault(fault_of_turning_cube(0, 1.001 / kStep), GuardEvent::Cause::too_fast, 2, 0);
+}
+
 /// A mass on a spring of frequency `omega_dt` / step: velocity Verlet is stable below 2.
 Scene make_oscillator(Real omega_dt, Real step = kStep, Real stretch = 0.1) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);

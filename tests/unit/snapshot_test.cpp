@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/shaken_vat.h"
 
 namespace vat {
@@ -80,6 +82,20 @@ TEST(Snapshot, ForgetsABodyAddedSince) {
   simulation.restore(snapshot);
   ASSERT_TRUE(simulation.add_body(make_newcomer()).ok());
   EXPECT_EQ(hash_after(simulation, kSteps), with_newcomer);
+}
+
+// Users may still hold the first newcomer's id.
+TEST(Snapshot, RestoredGivesNoIdTwice) {
+  Simulation simulation = make_busy();
+  const Snapshot snapshot = simulation.snapshot();
+  std::set<BodyId> ids;
+  for (const BodyView& body : simulation.bodies()) ids.insert(body.id);
+  for (int n = 0; n < 3; ++n) {
+    const BodyId id = simulation.add_body(make_newcomer()).value();
+    EXPECT_TRUE(ids.insert(id).second) << "id " << id;
+    simulation.restore(snapshot);
+    EXPECT_FALSE(simulation.find_body(id).has_value());
+  }
 }
 
 TEST(Snapshot, TakenAfterCommandsHoldsThem) {

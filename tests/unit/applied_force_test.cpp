@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/shaken_vat.h"
+
+// An applied force acts for whole steps, and its impulse is force times duration.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kStep = 1e-3;
+const Vec3 kForce(3, -20, 7);
+
+// Momenta are near 4 kg m/s, and each is the sum of at most 54 particles after at most 40 steps:
+// a hundred roundings of half an epsilon, and as many of the forces that cancel.
+constexpr Real kRoundOff = 4 * 200 * std::numeric_limits<Real>::epsilon();
+
+Vec3 total_momentum(const Simulation& simulation) {
+  Vec3 total = Vec3::Zero();
+  for (const BodyDiagnostics& body : simulation.diagnostics().bodies) total += body.linear_momentum;
+  return total;
+}
+
+Scene make_moving_block(IntegratorId integrator, BodyKind kind) {
+  Scene scene = make_two_material_scene(integrator, kStep);
+  scene.bodies = {make_block("block", kind, "a", 3, {1, 2, 3}, {1, 0, 0})};
+  return scene;
+}
+
+struct Duration {
+  Real in_steps;
+  std::uint32_t whole_steps;
+};
+constexpr Duration kDurations[] = {{0.3, 1}, {1, 1}, {10, 10}, {10.5, 11}};
+
+/// After every step the gain of momentum is that step's share of the impulse, in equal parts.
+void expect_equal_shares(const Scene& scene, const Duration& duration,
+                         std::uint32_t earlier_steps) {
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(earlier_steps);
+  const Vec3 before = total_momentum(simulation);
+  const Vec3 impulse = duration.in_steps * kStep * kForce;
+  const BodyId id = simulation.bodies()[0].id;
+  ASSERT_TRUE(simulation.apply_force(id, kForce, duration.in_steps * kStep).ok());
+  for (std::uint32_t n = 1; n <= duration.whole_steps + 3; ++n) {
+    ASSERT_TRUE(simulation.advance(1).events.empty());
+    const Real share = std::min<Real>(1, static_cast<Real>(n) / duration.whole_steps);
+    EXPECT_LT((total_momentum(simulation) - before - share * impulse).norm(), kRoundOff)
+        << "step " << n << " of " << duration.in_steps;
+  }
+}
+
+// Velocity Verlet keeps the forces of a step's end for the next: both edges must be sharp there
+// too.
+TEST(AppliedForce, GivesEachStepAnEqualShareOfItsImpulse) {
+  for (const IntegratorId integrator : kIntegrators) {
+    for (const BodyKind kind : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
+      SCOPED_TRACE(std::string(to_string(integrator)) + " " + to_string(kind));
+      for (const Duration& duration : kDurations) {
+        expect_equal_shares(make_moving_block(integrator, kind), duration, 0);
+        expect_equal_shares(make_moving_block(integrator, kind), duration, 7);
+      }
+    }
+  }
+}
+
+/// Two blocks that collide while they fall; the force acts on the first.
+Scene make_collision(IntegratorId integrator) {
+  Scene scene = make_two_material_scene(integrator, kStep);
+  scene.gravity = {0, 0, -9.81};
+  scene.bodies = {make_block("pusher", BodyKind::rigid, "a", 3, {0, 0, 0}, {0.5, 0, 0}),
+                  make_block("pushed", BodyKind::deformable, "b", 3, {0.149, 0, 0}, {-0.5, 0, 0})};
+  return scene;
+}
+
+// Contacts act between the two, and gravity gives M g t.
+TEST(AppliedForce, GivesItsImpulseWhileOtherForcesAct) {
+  constexpr std::uint32_t kSteps = 20;
+  for (const IntegratorId integrator : kIntegrators) {
+    for (const Duration& duration : kDurations) {
+      Simulation simulation = make_simulation(make_collision(integrator));
+      simulation.advance(5);
+      const Vec3 before = total_momentum(simulation);
+      const BodyId id = simulation.bodies()[0].id;
+      ASSERT_TRUE(simulation.apply_force(id, kForce, duration.in_steps * kStep).ok());
+      const Vec3 other = simulation.diagnostics().bodies[1].linear_momentum;
+      ASSERT_TRUE(simulation.advance(kSteps).events.empty());
+      const Real mass = 54 * 0.125;
+      const Vec3 expected = before + duration.in_steps * kStep * kForce +
+                            mass * kSteps * kStep * simulation.scene().gravity;
+      EXPECT_LT((total_momentum(simulation) - expected).norm(), kRoundOff)
+          << to_string(integrator) << " " << duration.in_steps;
+      EXPECT_GT((simulation.diagnostics().bodies[1].linear_momentum - other).x(), 0.1)
+          << "the bodies do not touch";
+    }
+  }
+}
+
+TEST(AppliedForce, OverlappingForcesEachGiveTheirImpulse) {
+  for (const IntegratorId integrator : kIntegrators) {
+    Simulation simulation = make_simulation(make_moving_block(integrator, BodyKind::rigid));
+    const Vec3 before = total_momentum(simulation);
+    const BodyId id = simulation.bodies()[0].id;
+    ASSERT_TRUE(simulation.apply_force(id, kForce, 4 * kStep).ok());
+    simulation.advance(2);
+    ASSERT_TRUE(simulation.apply_force(id, {-5, 0, 0}, 7.5 * kStep).ok());
+    simulation.advance(20);
+    const Vec3 expected = 4 * kStep * kForce + 7.5 * kStep * Vec3(-5, 0, 0);
+    EXPECT_LT((total_momentum(simulation) - before - expected).norm(), kRoundOff)
+        << to_string(integrator);
+  }
+}
+
+TEST(AppliedForce, EndsAlikeHoweverTheStepsAreAskedFor) {
+  for (const IntegratorId integrator : kIntegrators) {
+    Simulation at_once = make_simulation(make_collision(integrator));
+    Simulation one_by_one = make_simulation(make_collision(integrator));
+    for (Simulation* simulation : {&at_once, &one_by_one}) {
+      const BodyId id = simulation->bodies()[0].id;
+      ASSERT_TRUE(simulation->apply_force(id, kForce, 10.5 * kStep).ok());
+    }
+    at_once.advance(20);
+    for (int n = 0; n < 20; ++n) one_by_one.advance(1);
+    EXPECT_EQ(at_once.state_hash(), one_by_one.state_hash()) << to_string(integrator);
+  }
+}
+
+// The guard takes a step in parts: each must have its share of the force.
+TEST(AppliedForce, GivesItsImpulseInStepsThatAreTakenInParts) {
+  for (const IntegratorId integrator : kIntegrators) {
+    Scene scene = make_two_material_scene(integrator, kStep);
+    scene.bodies = {make_block("fast", BodyKind::rigid, "a", 1, {0, 0, 0}, {60, 0, 0}),
+                    make_block("other", BodyKind::rigid, "b", 1, {9, 9, 9}, Vec3::Zero())};
+    Simulation simulation = make_simulation(scene);
+    const Vec3 before = total_momentum(simulation);
+    const BodyId id = simulation.bodies()[0].id;
+    ASSERT_TRUE(simulation.apply_force(id, kForce, 10.5 * kStep).ok());
+    EXPECT_EQ(simulation.advance(15).undone_steps, 15U);
+    EXPECT_LT((total_momentum(simulation) - before - 10.5 * kStep * kForce).norm(), 3 * kRoundOff)
+        << to_string(integrator);
+  }
+}
+
+}  // namespace
+}  // namespace vat

@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/mixed_scenes.h"
+
+// What the guard does to a run: which bits come out, and what the report says.
+
+namespace vat {
+namespace {
+
+using namespace test;
+using enum GuardEvent::Cause;
+
+constexpr Real kStep = 1e-3;
+// A particle at 50 m/s passes in a step the 0.05 m at which another would notice it: it needs two
+// parts from there on, four from 100 m/s, eight from 200 m/s, and from 400 m/s no number helps.
+
+/// A particle in flight, and another body far away that it could meet. It gains 1 m/s in a step.
+Scene make_flight(Real speed, IntegratorId integrator = IntegratorId::explicit_euler) {
+  Scene scene = make_two_material_scene(integrator, kStep);
+  scene.gravity = {1000, 0, 0};
+  scene.bodies = {make_block("fast", BodyKind::liquid, "a", 1, {0, 0, 0}, {speed, 0, 0}),
+                  make_block("other", BodyKind::rigid, "b", 1, {9, 9, 9}, Vec3::Zero())};
+  return scene;
+}
+
+/// The guard acts in some steps, not in all: the corners of the crate turn at 1.6 m/s, so that the
+/// 9th step is the first in two parts, and the 59th in four.
+Scene make_flight_and_crowd(IntegratorId integrator) {
+  Scene scene = make_flight(39.5, integrator);
+  scene.bodies[1].position = {0, 9, 9};
+  scene.bodies.push_back(
+      make_block("jelly", BodyKind::deformable, "b", 3, {0, 0.5, 0}, {39.5, 0, 0}));
+  scene.bodies.push_back(make_block("crate", BodyKind::rigid, "a", 2, {0, 0.62, 0}, {39.5, 0, 0}));
+  scene.bodies.back().angular_velocity = {10, -20, 30};
+  return scene;
+}
+
+TEST(GuardRun, GivesTheSameBitsHoweverTheStepsAreAskedFor) {
+  constexpr std::uint32_t kSteps = 80;
+  for (const IntegratorId integrator : kIntegrators) {
+    Simulation whole = make_simulation(make_flight_and_crowd(integrator));
+    Simulation tens = make_simulation(make_flight_and_crowd(integrator));
+    Simulation ones = make_simulation(make_flight_and_crowd(integrator));
+    const AdvanceReport report = whole.advance(kSteps);
+    EXPECT_EQ(report.undone_steps, 50U + 2 * 22U) << to_string(integrator);
+    std::uint64_t undone = 0;
+    for (std::uint32_t n = 0; n < kSteps / 10; ++n) undone += tens.advance(10).undone_steps;
+    EXPECT_EQ(undone, report.undone_steps) << to_string(integrator);
+    for (std::uint32_t n = 0; n < kSteps; ++n) ones.advance(1);
+    EXPECT_EQ(tens.state_hash(), whole.state_hash()) << to_string(integrator);
+    EXPECT_EQ(ones.state_hash(), whole.state_hash()) << to_string(integrator);
+    EXPECT_EQ(ones.time(), whole.time());
+  }
+}
+
+// A part of length h fails where its end is above 0.05 m / h; every part adds 1000 m/s^2 h.
+TEST(GuardRun, AnEventIsAtTheEndOfTheFailedPart) {
+  Simulation simulation = make_simulation(make_flight(196.375));
+  simulation.advance(3);
+  const AdvanceReport report = simulation.advance(1);  // from 199.375 m/s
+  EXPECT_FALSE(report.failed);
+  ASSERT_EQ(report.events.size(), 3U);
+  const Real start = 3 * kStep;
+  // The first half fails, and of the quarters the third: it ends at 200.125 m/s.
+  const Real ends[] = {start + kStep, start + kStep / 2, start + 3 * kStep / 4};
+  Real length = kStep;
+  for (std::size_t e = 0; e < 3; ++e) {
+    EXPECT_EQ(report.events[e].cause, too_fast);
+    EXPECT_EQ(report.events[e].body, simulation.bodies()[0].id);
+    EXPECT_EQ(report.events[e].particle, 0U);
+    EXPECT_DOUBLE_EQ(report.events[e].time, ends[e]);
+    EXPECT_EQ(report.events[e].step, length);
+    EXPECT_TRUE(report.events[e].recovered);
+    length /= 2;
+  }
+  EXPECT_EQ(report.undone_steps, 3U);
+  EXPECT_EQ(report.steps, 1U + 1U + 3U + 8U);
+}
+
+TEST(GuardRun, CountsAllEventsAndKeepsTheFirstAndTheLast) {
+  constexpr std::size_t kMax = AdvanceReport::kMaxEvents;
+  Simulation simulation = make_simulation(make_flight(105));
+  const AdvanceReport report = simulation.advance(20);
+  EXPECT_FALSE(report.failed);
+  EXPECT_EQ(report.undone_steps, 40U);
+  EXPECT_EQ(report.steps, 20 * (1U + 1U + 4U));
+  ASSERT_EQ(report.events.size(), kMax);
+  for (std::size_t e = 0; e + 1 < kMax; ++e) {
+    const auto step = static_cast<Real>(e / 2);
+    EXPECT_DOUBLE_EQ(report.events[e].time, (step + (e % 2 == 0 ? 1 : 0.5)) * kStep);
+    EXPECT_EQ(report.events[e].step, e % 2 == 0 ? kStep : kStep / 2);
+  }
+  EXPECT_DOUBLE_EQ(report.events.back().time, 19.5 * kStep);
+  EXPECT_EQ(report.events.back().step, kStep / 2);
+  EXPECT_TRUE(report.events.back().recovered);
+}
+
+TEST(GuardRun, OfACallThatFailsAfterManyEventsTheLastIsNotRecovered) {
+  Simulation simulation = make_simulation(make_flight(390.5));
+  const std::uint64_t start = simulation.state_hash();
+  const AdvanceReport report = simulation.advance(20);  // the tenth reaches 400.5 m/s
+  EXPECT_TRUE(report.failed);
+  EXPECT_EQ(report.undone_steps, 9 * 3U + 4U);
+  ASSERT_EQ(report.events.size(), AdvanceReport::kMaxEvents);
+  EXPECT_TRUE(report.events.front().recovered);
+  EXPECT_FALSE(report.events.back().recovered);
+  EXPECT_EQ(report.events.back().step, kStep / 8);
+  EXPECT_EQ(simulation.state_hash(), start);
+}
+
+TEST(GuardRun, OfACallThatFailsTheStepsBeforeAreRecovered) {
+  Simulation simulation = make_simulation(make_flight(397.5));
+  const AdvanceReport report = simulation.advance(20);  // the third reaches 400.5 m/s
+  EXPECT_TRUE(report.failed);
+  ASSERT_EQ(report.events.size(), 2 * 3U + 4U);
+  for (std::size_t e = 0; e < report.events.size(); ++e) {
+    EXPECT_EQ(report.events[e].recovered, e < 6) << e;
+  }
+}
+
+/// A ball of 0.1 m at 1 m/s, and two grains of `radius` at rest.
+Scene make_ball_and_grains(Real radius) {
+  Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
+  scene.bodies = {
+      make_body("ball", BodyKind::rigid, "a", make_particles({{0, 0, 0}}, 1), 0.1),
+      make_body("grain", BodyKind::rigid, "a", make_particles({{0.5, 2, 0}}, 1e-6), radius),
+      make_body("other grain", BodyKind::deformable, "b", make_particles({{0.5, 3, 0}}, 1e-6),
+                radius)};
+  scene.bodies[0].velocity = {1, 0, 0};
+  return scene;
+}
+
+// A step of 1 mm is ten radii of a grain, but a hundredth of where the ball notices one.
+TEST(GuardRun, AGrainAtRestDoesNotLimitABall) {
+  Simulation simulation = make_simulation(make_ball_and_grains(1e-4));
+  EXPECT_EQ(simulation.advance(1000).undone_steps, 0U);
+  EXPECT_NEAR(position_of(simulation, 0).x(), 1, 1e-12);
+}
+
+// Grains notice one another at 0.2 mm.
+TEST(GuardRun, AGrainIsLimitedByAnotherGrain) {
+  Scene scene = make_ball_and_grains(1e-4);
+  scene.bodies[1].velocity = {0.3, 0, 0};
+  Simulation simulation = make_simulation(scene);
+  const AdvanceReport report = simulation.advance(1);
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].cause, too_fast);
+  EXPECT_EQ(report.events[0].body, simulation.bodies()[1].id);
+}
+
+}  // namespace
+}  // namespace vat
