@@ -234,8 +234,8 @@ Status Simulation::grab_start(std::uint64_t id, BodyId body_id, Index particle,
   }
   if (Status status = check_vector(target, kMaxLength, "/target"); !status) return status;
   std::vector<Grab>& grabs = impl_->controls.grabs;
-  std::erase_if(grabs, [&](const Grab& grab) { return grab.id == id; });
-  if (grabs.size() >= kMaxGrabs) {
+  const auto known = std::ranges::find(grabs, id, &Grab::id);
+  if (known == grabs.end() && grabs.size() >= kMaxGrabs) {
     return Error{"limit_reached", "", "at most " + std::to_string(kMaxGrabs) + " grabs at once"};
   }
   Grab grab;
@@ -246,7 +246,11 @@ Status Simulation::grab_start(std::uint64_t id, BodyId body_id, Index particle,
   grab.held = held_particles(*impl_->model, *body, impl_->state.now, particle);
   grab.target = target;
   tune_grab(*impl_->model, *body, impl_->state.now, grab);
-  grabs.push_back(std::move(grab));
+  if (known == grabs.end()) {
+    grabs.push_back(std::move(grab));
+  } else {
+    *known = std::move(grab);
+  }
   impl_->state.forces_current = false;
   return {};
 }
