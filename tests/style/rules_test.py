@@ -2,11 +2,14 @@
 
 import os
 import re
+import shutil
+import subprocess
+import tempfile
 import unittest
 
 import document_rules
 import source_rules
-from tree import Tree, read_tree
+from tree import OUR_ENTRIES, Tree, read_tree
 
 REFERENCES = """# References
 | equation | file | what |
@@ -85,6 +88,10 @@ class SourceRules(RuleTest):
         self.refuses(source_rules.line_ends, {"a.md": "x"}, "no newline")
         self.refuses(source_rules.line_ends, {"a.md": "x\r\n"}, "carriage return")
 
+    def test_encoding(self):
+        self.accepts(source_rules.encoding, {"a.md": "größer\n"})
+        self.refuses(source_rules.encoding, {"a.md": "x\ngr\N{REPLACEMENT CHARACTER}er\n"}, "a.md:2")
+
     def test_tabs(self):
         self.accepts(source_rules.tabs, {"a.cpp": '"\\t"\n', "Makefile": "\tx\n"})
         self.refuses(source_rules.tabs, {"a.cpp": "x\n\tx\n"}, "a.cpp:2")
@@ -156,9 +163,57 @@ class Coverage(unittest.TestCase):
         for rule in source_rules.RULES + document_rules.RULES:
             self.assertTrue(any(t.startswith(f"test_{rule.__name__}") for t in tests), rule.__name__)
 
-    def test_read_tree_sees_this_file_and_skips_nothing_of_it(self):
-        tree = read_tree(os.path.dirname(os.path.abspath(__file__)))
-        self.assertTrue(re.search(r"skips_nothing_of_it", tree.files["rules_test.py"]))
+
+class ReadTree(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = folder.name
+        self.write("README.md", b"ours\n")
+        self.write("core/a.h", b"/// ours\n")
+        self.write("bath.json", b"a user's")
+        self.write("notes.txt", "für mich".encode("latin-1"))
+        self.write("runs/core/a.h", b"a user's")
+
+    def write(self, path, content):
+        full = os.path.join(self.root, path)
+        os.makedirs(os.path.dirname(full), exist_ok=True)
+        with open(full, "wb") as file:
+            file.write(content)
+
+    def git(self, *arguments):
+        own = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+        subprocess.run(["git", *arguments], cwd=self.root, env=own, check=True, capture_output=True)
+
+    def test_leaves_out_what_a_user_keeps_beside_the_project(self):
+        tree = read_tree(self.root)
+        self.assertEqual(tree.files, {"README.md": "ours\n", "core/a.h": "/// ours\n"})
+        self.assertEqual(tree.paths, set(tree.files))
+
+    def test_has_what_git_tracks_and_is_there(self):
+        if not shutil.which("git"):
+            self.skipTest("no git")
+        self.write("core/gone.h", b"x")
+        self.write("core/picture.png", b"x")
+        self.git("init")
+        self.git("add", "README.md", "core")
+        os.remove(os.path.join(self.root, "core/gone.h"))
+        self.write("core/new.h", b"not added yet")
+        tree = read_tree(self.root)
+        self.assertEqual(set(tree.files), {"README.md", "core/a.h"})
+        self.assertEqual(tree.paths, {"README.md", "core/a.h", "core/picture.png"})
+
+    def test_reads_line_ends_and_wrong_bytes_as_they_are(self):
+        self.write("core/a.h", "gr\xf6\xdfer\r\n".encode("latin-1"))
+        text = read_tree(self.root).files["core/a.h"]
+        self.assertTrue(text.endswith("\r\n"))
+        self.assertIn("\N{REPLACEMENT CHARACTER}", text)
+
+    def test_fits_this_checkout(self):
+        here = os.path.dirname(os.path.abspath(__file__))
+        tree = read_tree(os.path.join(here, "..", ".."))
+        self.assertIn("def test_fits_this_checkout", tree.files["tests/style/rules_test.py"])
+        self.assertEqual({path.split("/")[0] for path in tree.paths} - OUR_ENTRIES, set())
 
 
 if __name__ == "__main__":

@@ -90,6 +90,15 @@ def line_ends(tree):
     return faults
 
 
+def encoding(tree):
+    return [
+        f"{path}:{number}: not UTF-8"
+        for path, text in sorted(tree.files.items())
+        for number, line in numbered(text)
+        if "\N{REPLACEMENT CHARACTER}" in line
+    ]
+
+
 def tabs(tree):
     return [
         f"{path}:{number}: tab"
@@ -117,4 +126,6 @@ def header_docstrings(tree):
     ]
 
 
-RULES = (layering, determinism, file_length, line_ends, tabs, denied_words, header_docstrings)
+RULES = (
+    layering, determinism, file_length, line_ends, encoding, tabs, denied_words, header_docstrings,
+)

@@ -1,9 +1,16 @@
 """The text of a checkout, as the rules see it."""
 
 import os
+import subprocess
 from dataclasses import dataclass, field
 
-SKIPPED_FOLDERS = {".git", "build", "node_modules", "dist", "__pycache__", ".cache"}
+# Without git's list: what is ours in the checkout, apart from what is built or fetched there.
+OUR_ENTRIES = {
+    "core", "docker", "protocol", "server", "tests", "web", "vat", "CMakeLists.txt",
+    "CMakePresets.json", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "README.md", ".ci",
+    ".clang-format", ".clang-tidy", ".dockerignore", ".editorconfig", ".gitignore",
+}
+SKIPPED_FOLDERS = {"node_modules", "dist", "__pycache__"}
 TEXT_ENDINGS = (
     ".cpp", ".h", ".ts", ".js", ".css", ".html", ".py", ".sh", ".cmake", ".md", ".json", ".jsonl",
     ".yaml", ".txt",
@@ -36,17 +43,43 @@ class Tree:
         return path in self.paths or any(p.startswith(path.rstrip("/") + "/") for p in self.paths)
 
 
-def read_tree(root):
-    """The files below `root`, apart from what is built or fetched."""
-    files, paths = {}, set()
+def tracked_paths(root):
+    """What git tracks and the folder has; None where git cannot tell."""
+    if not os.path.exists(os.path.join(root, ".git")):
+        return None
+    command = ["git", "-C", root, "ls-files", "-z"]
+    try:
+        listed = subprocess.run(command, check=True, capture_output=True).stdout
+    except (OSError, subprocess.CalledProcessError):  # no git, or the folder is another user's
+        return None
+    paths = os.fsdecode(listed).split("\0")
+    return [path for path in paths if os.path.isfile(os.path.join(root, path))]
+
+
+def our_paths(root):
+    """The files below OUR_ENTRIES."""
+    paths = []
     for folder, folders, names in os.walk(root):
-        folders[:] = sorted(set(folders) - SKIPPED_FOLDERS)
-        for name in names:
-            full = os.path.join(folder, name)
-            path = os.path.relpath(full, root).replace(os.sep, "/")
-            paths.add(path)
-            is_text = name.endswith(TEXT_ENDINGS) or name in TEXT_NAMES
-            if is_text and not path.startswith(RAW_FOLDER):
-                with open(full, encoding="utf-8") as file:
-                    files[path] = file.read()
-    return Tree(files, paths)
+        folders[:] = set(folders) - SKIPPED_FOLDERS
+        if folder == root:
+            folders[:] = set(folders) & OUR_ENTRIES
+            names = set(names) & OUR_ENTRIES
+        paths += [os.path.relpath(os.path.join(folder, name), root) for name in names]
+    return paths
+
+
+def is_text(path):
+    name = os.path.basename(path)
+    return (name.endswith(TEXT_ENDINGS) or name in TEXT_NAMES) and not path.startswith(RAW_FOLDER)
+
+
+def read_tree(root):
+    """The project's own files below `root`: a user may keep others beside them."""
+    paths = tracked_paths(root)
+    if paths is None:
+        paths = our_paths(root)
+    files = {}
+    for path in filter(is_text, paths):
+        with open(os.path.join(root, path), encoding="utf-8", errors="replace", newline="") as file:
+            files[path] = file.read()
+    return Tree(files, set(paths))
