@@ -112,14 +112,14 @@ export class BodyView {
     for (const material of this.materials) material.dispose();
   }
 
-  private addParticles(color: Color): void {
+  private addParticles(colour: Color): void {
     const { kind, radius } = this.description;
     if (kind === 'liquid') {
-      const look = { color, radius: kSplatSize * radius };
+      const look = { colour, radius: kSplatSize * radius };
       this.add(splatDepthMaterial(look), kOrder.splatDepth, kLiquidLayer);
       this.add(splatMaterial(look), kOrder.splat, kLiquidLayer);
     } else {
-      this.add(sphereMaterial({ color, radius, gloss: kGloss[kind] }), kOrder.solid);
+      this.add(sphereMaterial({ colour, radius, gloss: kGloss[kind] }), kOrder.solid);
     }
   }
 

@@ -29,7 +29,7 @@ export const kImpostorHit = /* glsl */ `
   flat in float tint;
   in vec3 view_point;
   uniform float radius;
-  uniform vec3 color;
+  uniform vec3 colour;
   uniform mat4 projectionMatrix;
 
   float depth_of(vec3 point) {

@@ -39,7 +39,7 @@ const kFragmentShader = /* glsl */ `
     vec3 normal = vec3(sum.xy / sum.w, 0.0);
     normal.z = sqrt(max(1.0 - dot(normal.xy, normal.xy), 0.01));
     normal = normalize(normal);
-    vec3 color = texture(tint, at).rgb / sum.w;
+    vec3 colour = texture(tint, at).rgb / sum.w;
 
     vec4 far = projectionMatrixInverse * vec4(2.0 * at - 1.0, 1.0, 1.0);
     vec3 ray = normalize(far.xyz);
@@ -54,7 +54,7 @@ const kFragmentShader = /* glsl */ `
     float mirror = 0.04 + 0.96 * pow(1.0 - facing, 4.0);
     vec3 sky = mix(vec3(0.35, 0.42, 0.5), vec3(0.92, 0.96, 1.0), smoothstep(-0.3, 0.8, bounced.z));
     float sun = 0.5 + 0.5 * dot(n, ${kSun});
-    vec3 body = color * mix(0.45, 1.2, sun * sun);
+    vec3 body = colour * mix(0.45, 1.2, sun * sun);
     float shine = pow(max(dot(bounced, ${kSun}), 0.0), 60.0);
     vec3 light = mix(body, sky, 0.7 * mirror) + 0.55 * shine;
     gl_FragColor = vec4(light, coverage * mix(0.74, 0.96, max(mirror, shine)));
@@ -94,13 +94,13 @@ export class LiquidPass {
     const size = renderer.getDrawingBufferSize(new Vector2()).multiplyScalar(kScale).ceil();
     this.target.setSize(size.x, size.y);
     this.surface.material.uniforms.projectionMatrixInverse!.value = camera.projectionMatrixInverse;
-    const color = renderer.getClearColor(new Color());
+    const colour = renderer.getClearColor(new Color());
     renderer.setClearColor(0, 0);
     renderer.setRenderTarget(this.target);
     camera.layers.set(kLiquidLayer);
     renderer.render(scene, camera);
     camera.layers.set(0);
     renderer.setRenderTarget(null);
-    renderer.setClearColor(color, 1);
+    renderer.setClearColor(colour, 1);
   }
 }

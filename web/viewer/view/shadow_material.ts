@@ -7,8 +7,8 @@ export interface FloorUniforms {
   floor_bounds: { value: Vector4 };
   /** Height above the floor at which a particle casts no shadow any more [m]. */
   reach: { value: number };
-  floor_color: { value: Color };
-  shadow_color: { value: Color };
+  floor_colour: { value: Color };
+  shadow_colour: { value: Color };
 }
 
 export function floorUniforms(): FloorUniforms {
@@ -16,8 +16,8 @@ export function floorUniforms(): FloorUniforms {
     floor_z: { value: 0 },
     floor_bounds: { value: new Vector4() },
     reach: { value: 1 },
-    floor_color: { value: new Color() },
-    shadow_color: { value: new Color() },
+    floor_colour: { value: new Color() },
+    shadow_colour: { value: new Color() },
   };
 }
 
@@ -44,13 +44,13 @@ const kFragmentShader = /* glsl */ `
   in float strength;
   in vec2 at;
   uniform vec4 floor_bounds;
-  uniform vec3 floor_color;
-  uniform vec3 shadow_color;
+  uniform vec3 floor_colour;
+  uniform vec3 shadow_colour;
 
   void main() {
     if (any(lessThan(at, floor_bounds.xy)) || any(greaterThan(at, floor_bounds.zw))) discard;
     float dark = strength * (1.0 - smoothstep(0.0, 1.0, length(spot)));
-    gl_FragColor = vec4(mix(floor_color, shadow_color, dark), 1.0);
+    gl_FragColor = vec4(mix(floor_colour, shadow_colour, dark), 1.0);
     #include <colorspace_fragment>
   }
 `;

@@ -18,7 +18,7 @@ const kShade = /* glsl */ `
     float crevice = mix(0.45, 1.0, smoothstep(0.0, 0.75, facing));
     float shine = pow(max(dot(n, normalize(eye + ${kSun})), 0.0), mix(24.0, 90.0, gloss));
 
-    vec3 base = color * (1.0 + 0.16 * tint);
+    vec3 base = colour * (1.0 + 0.16 * tint);
     vec3 light = base * (sky + 0.62 * sun) * crevice + mix(0.10, 0.65, gloss) * shine;
     gl_FragColor = vec4(light, coverage);
     #include <colorspace_fragment>
@@ -26,7 +26,7 @@ const kShade = /* glsl */ `
 `;
 
 export interface SphereLook {
-  color: Color;
+  colour: Color;
   /** World radius of the drawn spheres [m]. */
   radius: number;
   /** 0 matt, 1 wet. */
@@ -34,11 +34,11 @@ export interface SphereLook {
 }
 
 /** Shaded spheres. */
-export function sphereMaterial({ color, radius, gloss }: SphereLook): ShaderMaterial {
+export function sphereMaterial({ colour, radius, gloss }: SphereLook): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kImpostorVertexShader,
     fragmentShader: `uniform float gloss;\n${kImpostorHit}${kShade}`,
-    uniforms: { color: { value: color }, radius: { value: radius }, gloss: { value: gloss } },
+    uniforms: { colour: { value: colour }, radius: { value: radius }, gloss: { value: gloss } },
     alphaToCoverage: true,
   });
 }

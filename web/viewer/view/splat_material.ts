@@ -21,7 +21,7 @@ const kSplat = /* glsl */ `
     vec3 bulge = -miss / radius;
     float weight = inside * inside * inside;
     shape = weight * vec4(0.9 * bulge.xy, point.z, 1.0);
-    tints = weight * vec4(color * (1.0 + 0.1 * tint), 1.0);
+    tints = weight * vec4(colour * (1.0 + 0.1 * tint), 1.0);
   }
 `;
 
@@ -31,17 +31,17 @@ const kOutputs = /* glsl */ `
 `;
 
 export interface SplatLook {
-  color: Color;
+  colour: Color;
   /** World radius at which a splat ends [m]. */
   radius: number;
 }
 
-function splatShader({ color, radius }: SplatLook, body: string): ShaderMaterial {
+function splatShader({ colour, radius }: SplatLook, body: string): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
     fragmentShader: kOutputs + kImpostorHit + body,
-    uniforms: { color: { value: color }, radius: { value: radius } },
+    uniforms: { colour: { value: colour }, radius: { value: radius } },
   });
 }
 

@@ -89,8 +89,8 @@ export class World {
     this.look = look;
     this.ground.paint(look);
     this.vat?.paint(look);
-    this.floor.floor_color.value.copy(look.floor);
-    this.floor.shadow_color.value.copy(look.shadow);
+    this.floor.floor_colour.value.copy(look.floor);
+    this.floor.shadow_colour.value.copy(look.shadow);
   }
 
   private moveVat(offset: Vector): void {
