@@ -23,8 +23,8 @@ Simulation make_run(IntegratorId integrator) {
   return simulation;
 }
 
-Status grab_corner(Simulation& simulation, std::uint64_t hand, std::size_t body, Index particle,
-                   const Vec3& target) {
+Status grab(Simulation& simulation, std::uint64_t hand, std::size_t body, Index particle,
+            const Vec3& target) {
   return simulation.grab_start(hand, simulation.bodies()[body].id, particle, target);
 }
 
@@ -36,29 +36,37 @@ const std::map<std::string, Command> kChanges = {
      }},
     {"grab of a deformable body",
      [](Simulation& s) {
-       return grab_corner(s, kHand, 1, 5, {0, 0, 0.5});
+       return grab(s, kHand, 1, 5, {0, 0, 0.5});
      }},
     {"grab of another particle",
      [](Simulation& s) {
-       return grab_corner(s, kHand, 1, 6, {0, 0, 0.5});
+       return grab(s, kHand, 1, 6, {0, 0, 0.5});
+     }},
+    {"grab of its middle, all of it in reach",
+     [](Simulation& s) {
+       return grab(s, kHand, 1, 13, {0, 0, 0.5});
+     }},
+    {"grab of a face, all of it in reach",
+     [](Simulation& s) {
+       return grab(s, kHand, 1, 4, {0, 0, 0.5});
      }},
     {"grab of a rigid body",
      [](Simulation& s) {
-       return grab_corner(s, kHand, 2, 5, {0, 0, 0.5});
+       return grab(s, kHand, 2, 5, {0, 0, 0.5});
      }},
     {"grab with another target",
      [](Simulation& s) {
-       return grab_corner(s, kHand, 2, 5, {0, 0, 0.6});
+       return grab(s, kHand, 2, 5, {0, 0, 0.6});
      }},
     {"grab that is moved",
      [](Simulation& s) {
-       EXPECT_TRUE(grab_corner(s, kHand, 2, 5, {0, 0, 0.5}).ok());
+       EXPECT_TRUE(grab(s, kHand, 2, 5, {0, 0, 0.5}).ok());
        return s.grab_move(kHand, {0, 0.1, 0.5});
      }},
     {"two grabs",
      [](Simulation& s) {
-       EXPECT_TRUE(grab_corner(s, kHand, 2, 5, {0, 0, 0.5}).ok());
-       return grab_corner(s, kHand + 1, 1, 5, {0, 0, 0.5});
+       EXPECT_TRUE(grab(s, kHand, 2, 5, {0, 0, 0.5}).ok());
+       return grab(s, kHand + 1, 1, 5, {0, 0, 0.5});
      }},
     {"force",
      [](Simulation& s) {
@@ -89,6 +97,17 @@ TEST(StateHash, SeesWhatEveryCommandSets) {
   }
 }
 
+TEST(StateHash, SeesWhichOfTwoEqualBodiesIsHeld) {
+  Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.bodies = {make_block("one", BodyKind::rigid, "a", 2, {0, 0, 0}, Vec3::Zero()),
+                  make_block("two", BodyKind::rigid, "a", 2, {1, 0, 0}, Vec3::Zero())};
+  Simulation of_one = make_simulation(scene);
+  Simulation of_two = make_simulation(scene);
+  ASSERT_TRUE(grab(of_one, kHand, 0, 0, {0, 1, 0}).ok());
+  ASSERT_TRUE(grab(of_two, kHand, 1, 0, {0, 1, 0}).ok());
+  EXPECT_NE(of_one.state_hash(), of_two.state_hash());
+}
+
 TEST(StateHash, IsThatOfTheSnapshotThatIsRestored) {
   for (const IntegratorId integrator : kIntegrators) {
     for (const auto& [name, command] : kChanges) {
@@ -114,7 +133,7 @@ const std::map<std::string, Command> kNoChanges = {
      }},
     {"a grab that ends",
      [](Simulation& s) {
-       EXPECT_TRUE(grab_corner(s, kHand, 2, 5, {0, 0, 0.5}).ok());
+       EXPECT_TRUE(grab(s, kHand, 2, 5, {0, 0, 0.5}).ok());
        return s.grab_end(kHand);
      }},
     {"a snapshot that is restored",
