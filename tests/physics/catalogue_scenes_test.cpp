@@ -1,54 +1,79 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "protocol/scene_json.h"
 #include "tests/support/scenes.h"
 
-// Each scene of the catalogue, two seconds of it: in full they run twenty.
+// Each scene of the catalogue, for the twenty seconds that it is made for.
 
 namespace vat {
 namespace {
 
 using namespace test;
 
-class CatalogueScene : public testing::TestWithParam<const char*> {};
+const std::string kFolder = VAT_SOURCE_DIR "/protocol/scenes/";
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kSeconds = 1;  // a hundred times slower
+#else
+constexpr int kSeconds = 20;
+#endif
+
+// The column of 0.8 m weighs 7850 Pa on its floor, which the gas equation of state answers at
+// rho / rho0 - 1 = p / (c^2 rho0) = 3.5 % with c = 15 m/s. On the average over the liquid that
+// leaves as much again for the impact of what falls.
+constexpr Real kMaxCompression = 0.035;
+
+class CatalogueScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(CatalogueScene, RunsWithoutTheGuardAndStaysInItsVat) {
-  const Result<Scene> scene =
-      read_scene_file(std::string(VAT_SOURCE_DIR "/protocol/scenes/") + GetParam() + ".json");
+  const Result<Scene> scene = read_scene_file(kFolder + GetParam() + ".json");
   ASSERT_TRUE(scene.ok()) << scene.errors()[0].message;
   ASSERT_TRUE(scene.value().vat.has_value());
   Simulation simulation = make_simulation(scene.value());
-  const Real energy_at_start =
-      simulation.diagnostics().kinetic_energy + simulation.diagnostics().gravitational_energy;
-  for (int tick = 0; tick < 100; ++tick) {
+  const Diagnostics start = simulation.diagnostics();
+  Real mean_error = 0;
+  const int ticks = static_cast<int>(std::lround(kSeconds / scene.value().numerics.tick));
+  for (int tick = 0; tick < ticks; ++tick) {
     const AdvanceReport report = simulation.advance(simulation.steps_per_tick());
     ASSERT_TRUE(report.events.empty())
         << to_string(report.events[0].cause) << " at " << report.events[0].time << " s";
-    ASSERT_EQ(simulation.diagnostics().particles_outside, 0U) << "at " << simulation.time() << " s";
+    const Diagnostics now = simulation.diagnostics();
+    ASSERT_EQ(now.particles_outside, 0U) << "at " << simulation.time() << " s";
+    mean_error = std::max(mean_error, now.mean_density_error);
   }
-  EXPECT_DOUBLE_EQ(simulation.time(), 2);
-  const Diagnostics end = simulation.diagnostics();
-  EXPECT_LT(end.max_density_error, 1);
+  EXPECT_DOUBLE_EQ(simulation.time(), kSeconds);
+  EXPECT_LT(mean_error, kMaxCompression);
   // A vat that stands still takes energy only.
   if (!scene.value().vat->motion) {
-    EXPECT_LT(end.kinetic_energy + end.gravitational_energy, energy_at_start);
+    const Diagnostics end = simulation.diagnostics();
+    EXPECT_LT(end.kinetic_energy + end.gravitational_energy,
+              start.kinetic_energy + start.gravitational_energy);
   }
 }
 
+std::vector<std::string> catalogue() {
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(kFolder)) {
+    if (file.path().extension() == ".json") names.push_back(file.path().stem());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
 /// Names of tests have no hyphens.
-std::string test_name(const testing::TestParamInfo<const char*>& parameter) {
+std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
   std::string name = parameter.param;
   std::ranges::replace(name, '-', '_');
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, CatalogueScene,
-                         testing::Values("buoyancy", "dam-break", "deformable-drop", "rigid-stack",
-                                         "sliding-vat-liquid", "sliding-vat-solids"),
-                         test_name);
+INSTANTIATE_TEST_SUITE_P(All, CatalogueScene, testing::ValuesIn(catalogue()), test_name);
 
 }  // namespace
 }  // namespace vat

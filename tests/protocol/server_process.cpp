@@ -1,12 +1,14 @@
 #include "tests/protocol/server_process.h"
 
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <regex>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 namespace vat::script {
@@ -17,17 +19,24 @@ using std::chrono::steady_clock;
 constexpr auto kStartTime = std::chrono::seconds(30);  // a sanitizer build on a busy machine
 constexpr auto kStopTime = std::chrono::seconds(10);
 
+/// The port in "vat is at http://HOST:PORT/ ...", the line that the server prints when it is ready.
+std::optional<std::uint16_t> port_in(const std::string& line) {
+  constexpr std::string_view kStart = "vat is at http://";
+  if (!line.starts_with(kStart)) return {};
+  const std::size_t colon = line.rfind(':', line.find('/', kStart.size()));
+  return static_cast<std::uint16_t>(std::stoul(line.substr(colon + 1)));
+}
+
 }  // namespace
 
 ServerProcess::ServerProcess(const std::string& program,
                              const std::vector<std::string>& arguments) {
   start(program, arguments);
   const auto deadline = steady_clock::now() + kStartTime;
-  const std::regex url("vat is at http://[^ /]*:([0-9]+)/.*");
-  std::smatch match;
   try {
-    std::string line = read_line(deadline);
-    while (!std::regex_match(line, match, url)) line = read_line(deadline);
+    std::optional<std::uint16_t> port;
+    while (!port) port = port_in(read_line(deadline));
+    port_ = *port;
   } catch (...) {
     if (!reap()) {
       kill(pid_, SIGKILL);
@@ -36,7 +45,6 @@ ServerProcess::ServerProcess(const std::string& program,
     close(output_);
     throw;
   }
-  port_ = static_cast<std::uint16_t>(std::stoul(match[1]));
 }
 
 ServerProcess::~ServerProcess() {
@@ -58,6 +66,7 @@ void ServerProcess::start(const std::string& program, const std::vector<std::str
   argv.push_back(nullptr);
   pid_ = fork();
   if (pid_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a server must not outlive a runner that crashed
     dup2(ends[1], STDOUT_FILENO);
     close(ends[0]);
     close(ends[1]);
