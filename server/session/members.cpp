@@ -1,14 +1,8 @@
 #include "server/session/members.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace vat {
-
-bool Members::any_subscribed() const {
-  return std::ranges::any_of(
-      members_, [](const auto& entry) { return entry.second.subscription.has_value(); });
-}
 
 Member* Members::find(ConnectionId id) {
   const auto found = members_.find(id);

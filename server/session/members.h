@@ -30,7 +30,6 @@ struct Member {
 class Members {
  public:
   std::size_t size() const { return members_.size(); }
-  bool any_subscribed() const;
   /// Null if it has not joined. Valid until the member leaves.
   Member* find(ConnectionId id);
   /// Replaces an earlier membership of the same client.
