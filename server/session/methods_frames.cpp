@@ -32,9 +32,14 @@ SessionAction read_unsubscribe(ObjectReader&, Errors&) {
 ServerAction read_ack(ObjectReader& params, Errors&) {
   const auto sequence = static_cast<std::uint32_t>(
       params.count("sequence", 1, std::numeric_limits<std::uint32_t>::max()));
-  return [sequence](SessionDirectory&, Caller& caller) -> std::optional<RpcResult> {
-    if (caller.client()->acknowledge(sequence)) return Json::object();
-    return invalid_params({Error{"out_of_range", "/sequence", "must be of a frame that was sent"}});
+  return [sequence](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
+    if (!caller.client()->acknowledge(sequence)) {
+      return invalid_params(
+          {Error{"out_of_range", "/sequence", "must be of a frame that was sent"}});
+    }
+    Json reply = Json::object();
+    if (const auto tick = directory.tick_of(caller)) reply["tick"] = *tick;
+    return reply;
   };
 }
 

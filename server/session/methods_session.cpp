@@ -59,9 +59,8 @@ ServerAction read_leave(ObjectReader&, Errors&) {
 
 ServerAction read_close(ObjectReader& params, Errors&) {
   const SessionId session = read_session_id(params);
-  return [session](SessionDirectory& directory, Caller&) -> std::optional<RpcResult> {
-    if (auto error = directory.close(session, "closed by a client")) return *std::move(error);
-    return Json::object();
+  return [session](SessionDirectory& directory, Caller& caller) {
+    return to_answer(directory.close(caller, session, "closed by a client"));
   };
 }
 

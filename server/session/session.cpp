@@ -32,7 +32,11 @@ void Session::start() {
   schedule(&Session::status_turn);
 }
 
-void Session::close() {
+void Session::close(std::optional<Caller> caller) {
+  {
+    const std::lock_guard lock(mutex_);
+    closer_ = std::move(caller);
+  }
   schedule(&Session::close_turn);
 }
 
@@ -145,7 +149,7 @@ void Session::carry_out_leave(Caller caller) {
   const ConnectionId client = caller.client()->id();
   for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
   core_.leave(client);
-  caller.answer(Json::object());
+  caller.answer(Json{{"tick", core_.run().tick()}});
 }
 
 void Session::carry_out_action(Caller caller, const SessionAction& action) {
@@ -190,7 +194,7 @@ void Session::schedule_step() {
 void Session::step_turn() {
   step_scheduled_ = false;
   if (steps_.empty()) return;
-  core_.tick(SteadyClock::now(), false);
+  run_tick(SteadyClock::now(), false);
   if (core_.take_interruption()) {
     end_all_steps();
   } else if (--steps_.front().ticks_left == 0) {
@@ -217,9 +221,15 @@ void Session::end_all_steps() {
 void Session::tick_turn() {
   const auto now = SteadyClock::now();
   if (!core_.playing() || now < clock_.due()) return;  // a wait that was overtaken by a command
-  core_.tick(now, true);
+  run_tick(now, true);
   clock_.tick_done(SteadyClock::now());
   wait_for_tick();
+}
+
+void Session::run_tick(SteadyClock::time_point now, bool timed) {
+  if (!core_.tick(now, timed)) return;
+  update_summary();  // before the frames: who acknowledges one is told no earlier tick
+  core_.send_tick_frames();
 }
 
 void Session::follow_clock() {
@@ -259,10 +269,12 @@ void Session::close_turn() {
   tick_timer_.cancel();
   status_timer_.cancel();
   std::deque<Item> items;
+  std::optional<Caller> closer;
   {
     const std::lock_guard lock(mutex_);
     inbox_closed_ = true;
     items.swap(inbox_);
+    closer.swap(closer_);
   }
   for (StepJob& job : steps_) {
     job.caller.answer(no_such_session(id_));
@@ -270,6 +282,7 @@ void Session::close_turn() {
   }
   steps_.clear();
   for (Item& item : items) item.caller.answer(no_such_session(id_));
+  if (closer) closer->answer(Json{{"tick", core_.run().tick()}});
 }
 
 }  // namespace vat

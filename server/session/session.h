@@ -33,8 +33,9 @@ class Session : public std::enable_shared_from_this<Session> {
           const SessionEnvironment& environment, boost::asio::thread_pool& pool);
 
   void start();
-  /// Ends all work soon; commands that are not carried out yet are answered by no_such_session.
-  void close();
+  /// Ends all work soon, at most once: commands that are not carried out yet are answered by
+  /// no_such_session, and then the caller, if there is one, with the tick that was the last.
+  void close(std::optional<Caller> caller);
 
   /// Answered with the description.
   void join(Caller caller, std::uint64_t membership);
@@ -83,6 +84,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void end_all_steps();
 
   void tick_turn();
+  void run_tick(SteadyClock::time_point now, bool timed);
   void follow_clock();
   void wait_for_tick();
   void status_turn();
@@ -96,6 +98,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::deque<Item> inbox_;
   bool inbox_scheduled_ = false;
   bool inbox_closed_ = false;
+  std::optional<Caller> closer_;  // is answered by the last turn
   SessionSummary summary_;
 
   // Used on the strand only.

@@ -94,16 +94,16 @@ void SessionCore::leave(ConnectionId client) {
   status_due_ = true;
 }
 
-void SessionCore::tick(SteadyClock::time_point now, bool timed) {
+bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
   const AdvanceReport report = run_.advance();
   tell_guard(report);
   if (report.failed) {
     spdlog::warn("session {}: paused by the guard at tick {}", id_, run_.tick());
     set_playing(false);
-    return;
+    return false;
   }
   if (timed) rate_.tick_done(now, run_.tick_seconds());
-  send_frames(true);
+  return true;
 }
 
 void SessionCore::tell_guard(const AdvanceReport& report) {

@@ -64,9 +64,10 @@ class SessionCore {
   /// Frees the client's grabs.
   void leave(ConnectionId client);
 
-  /// Runs one tick and sends its frames. A guard that failed pauses the session. The rate is
-  /// measured where `timed`: ticks of control.step keep no pace.
-  void tick(SteadyClock::time_point now, bool timed);
+  /// Runs one tick; its frames are due then. False if the guard failed, which pauses the session.
+  /// The rate is measured where `timed`: ticks of control.step keep no pace.
+  bool tick(SteadyClock::time_point now, bool timed);
+  void send_tick_frames() { send_frames(true); }
   /// Tells what is due.
   void announce();
   void announce_status();

@@ -107,7 +107,7 @@ RpcResult SessionDirectory::create_from(const Json& scene, std::string name) {
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
   auto created = create(std::move(name), std::get<Scene>(read));
   if (auto* error = std::get_if<RpcError>(&created)) return std::move(*error);
-  return Json{{"session", std::get<SessionId>(created)}};
+  return Json{{"session", std::get<SessionId>(created)}, {"tick", 0}};
 }
 
 std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const {
@@ -154,19 +154,27 @@ std::optional<RpcError> SessionDirectory::post(Caller& caller, SessionAction act
   return {};
 }
 
-std::optional<RpcError> SessionDirectory::close(const SessionId& id, const std::string& reason) {
+std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId& id,
+                                                const std::string& reason) {
   const std::lock_guard lock(mutex_);
   const auto session = find_session(id);
   if (session == sessions_.end()) return no_such_session(id);
-  close_session(session, reason);
+  close_session(session, reason, std::move(caller));
   return {};
+}
+
+std::optional<std::uint64_t> SessionDirectory::tick_of(const Caller& caller) const {
+  const std::lock_guard lock(mutex_);
+  const auto client = clients_.find(caller.client()->id());
+  if (client == clients_.end() || client->second.session == 0) return {};
+  return sessions_.at(client->second.session)->summary().tick;
 }
 
 void SessionDirectory::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    while (!sessions_.empty()) close_session(sessions_.begin(), "the server stops");
+    while (!sessions_.empty()) close_session(sessions_.begin(), "the server stops", {});
   }
   pool_.join();
 }
@@ -188,7 +196,8 @@ void SessionDirectory::leave_session(Client& client, Caller caller) {
   client.session = 0;
 }
 
-void SessionDirectory::close_session(Sessions::iterator session, const std::string& reason) {
+void SessionDirectory::close_session(Sessions::iterator session, const std::string& reason,
+                                     std::optional<Caller> caller) {
   const SessionId id = to_id(session->first);
   const std::string event = write_event("session.closed", {{"session", id}, {"reason", reason}});
   for (auto& [connection, client] : clients_) {
@@ -197,7 +206,7 @@ void SessionDirectory::close_session(Sessions::iterator session, const std::stri
     client.outbox->leave();
     client.outbox->send(event);  // the last that it hears of the session
   }
-  session->second->close();
+  session->second->close(std::move(caller));
   sessions_.erase(session);
   spdlog::info("session {} closed: {}", id, reason);
 }

@@ -3,6 +3,7 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -43,7 +44,10 @@ class SessionDirectory {
   std::optional<RpcError> leave(Caller& caller);
   /// Hands the action to the session that the caller is in.
   std::optional<RpcError> post(Caller& caller, SessionAction action);
-  std::optional<RpcError> close(const SessionId& id, const std::string& reason);
+  /// Answered by the session once its work has ended, or by the error that is returned.
+  std::optional<RpcError> close(Caller& caller, const SessionId& id, const std::string& reason);
+  /// The tick of the session that the caller is in, as of its last answer or turn; none outside.
+  std::optional<std::uint64_t> tick_of(const Caller& caller) const;
 
   void stop();
 
@@ -62,7 +66,9 @@ class SessionDirectory {
   Sessions::iterator find_session(const SessionId& id);
   std::size_t client_count(Sessions::key_type session) const;
   void leave_session(Client& client, Caller caller);
-  void close_session(Sessions::iterator session, const std::string& reason);
+  /// The caller, if there is one, is answered by the session.
+  void close_session(Sessions::iterator session, const std::string& reason,
+                     std::optional<Caller> caller);
   std::optional<RpcError> refuse_session_locked() const;
 
   const Catalogue& catalogue_;

@@ -92,6 +92,19 @@ TEST_F(SessionFrames, ASlowClientGetsTheNewestAndHindersNobody) {
   EXPECT_EQ(all.back().header.dropped, 97u);
 }
 
+TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
+  client->result("frames.subscribe");
+  client->send("control.play");
+  for (std::uint32_t sequence = 1; sequence <= 20; ++sequence) {
+    const Frame frame =
+        client->wait_frame([&](const Frame& f) { return f.header.sequence == sequence; });
+    const Json reply = client->result("frames.ack", {{"sequence", sequence}});
+    EXPECT_GE(reply.at("tick"), frame.header.tick) << "no earlier than what it has seen";
+  }
+  client->result("session.leave");
+  EXPECT_EQ(client->result("frames.ack", {{"sequence", 1}}), Json::object());
+}
+
 TEST_F(SessionFrames, AClientThatReadsNothingIsClosedAndTheOthersGoOn) {
   const auto dead = join();
   dead->result("frames.subscribe");

@@ -73,6 +73,29 @@ TEST_F(SessionLifecycle, AClientIsInOneSessionAtMost) {
   EXPECT_EQ(guest->error("session.leave").at("code"), 1001);
 }
 
+TEST_F(SessionLifecycle, EveryReplyNamesTheTick) {
+  const Json created = client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  EXPECT_EQ(created.at("tick"), 0);
+  const auto guest = join();
+  EXPECT_EQ(guest->result("control.step", {{"ticks", 3}}).at("tick"), 3);
+  EXPECT_EQ(guest->result("session.leave").at("tick"), 3);
+  client->result("control.step", {{"ticks", 2}});
+  EXPECT_EQ(guest->result("session.close", {{"session", "s1"}}).at("tick"), 5);
+}
+
+TEST_F(SessionLifecycle, WhoClosesASessionIsAnsweredAfterItsEarlierCommands) {
+  const int step = client->send("control.step", {{"ticks", 1000}});
+  const int query = client->send("session.hash");
+  const int close = client->send("session.close", {{"session", "s1"}});
+  EXPECT_GE(client->wait_reply(close).at("result").at("tick"), 0);
+  std::vector<Json> ids;
+  for (const Json& text : client->connection->texts()) {
+    if (text.contains("id")) ids.push_back(text.at("id"));
+  }
+  ASSERT_GE(ids.size(), 3u);
+  EXPECT_EQ(std::vector<Json>(ids.end() - 3, ids.end()), (std::vector<Json>{step, query, close}));
+}
+
 TEST_F(SessionLifecycle, ASessionLivesOnWithoutClients) {
   client->result("world.set_gravity", {{"gravity", {0, 0, 0}}});
   client->result("control.step", {{"ticks", 5}});

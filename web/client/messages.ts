@@ -119,14 +119,14 @@ interface Method<Params, Result> {
 export interface Methods {
   'server.info': Method<Nothing, ServerInfo>;
   'scene.list': Method<Nothing, { scenes: SceneEntry[] }>;
-  'session.create': Method<{ name: string; scene: SceneReference }, { session: string }>;
+  'session.create': Method<{ name: string; scene: SceneReference }, InEffect & { session: string }>;
   'session.list': Method<Nothing, { sessions: SessionEntry[] }>;
   'session.join': Method<
     { session?: string },
     InEffect & { session: string; description: SessionDescription }
   >;
-  'session.leave': Method<Nothing, unknown>;
-  'session.close': Method<{ session: string }, unknown>;
+  'session.leave': Method<Nothing, InEffect>;
+  'session.close': Method<{ session: string }, InEffect>;
   'scene.load': Method<{ scene: SceneReference }, InEffect>;
   'control.play': Method<Nothing, InEffect>;
   'control.pause': Method<Nothing, InEffect>;
@@ -146,7 +146,8 @@ export interface Methods {
   'grab.end': Method<{ grab: number }, InEffect>;
   'frames.subscribe': Method<{ max_error?: number; every?: number }, InEffect>;
   'frames.unsubscribe': Method<Nothing, InEffect>;
-  'frames.ack': Method<{ sequence: number }, never>;
+  /** The tick is there while the client is in a session. */
+  'frames.ack': Method<{ sequence: number }, Partial<InEffect>>;
   'state.query': Method<
     { bodies?: (string | number)[] },
     InEffect & { time: number; bodies: BodyState[] }
