@@ -171,11 +171,12 @@ std::size_t count_foremost(const SampledBody& body, const Vec3& direction) {
 }  // namespace
 
 std::size_t count_flattest_side(const SampledBody& body, const Quat& orientation) {
-  std::vector<Vec3> directions;
-  const Mat3 axes = principal_axes(body);
-  for (int axis = 0; axis < 3; ++axis) directions.emplace_back(axes.col(axis));
+  const auto lattice = lattice_directions();
+  std::vector<Vec3> directions(lattice.begin(), lattice.end());
   const Mat3 rotation = orientation.normalized().toRotationMatrix();
-  for (const Vec3& direction : lattice_directions()) directions.emplace_back(rotation * direction);
+  for (Vec3& direction : directions) direction = rotation * direction;
+  const Mat3 axes = principal_axes(body);
+  directions.insert(directions.end(), {axes.col(0), axes.col(1), axes.col(2)});
   std::size_t most = 1;
   for (const Vec3& direction : directions) {
     most =

@@ -14,7 +14,7 @@ constexpr Real kWholeTolerance = 1e-9;  // relative; far above round-off, far be
 
 // How far a step is shortened to meet the end of the run: beyond, the end is moved instead.
 constexpr Real kMostShortening = 10;
-constexpr Real kMostTries = 100'000;
+constexpr int kMostTries = 100'000;
 
 bool is_whole(Real interval, Real step) {
   const Real count = std::round(interval / step);
@@ -43,9 +43,9 @@ Real fitted_step(Real wanted_step, Real every, Real until) {
                                                    : std::ceil(every / wanted_step);
   const Real longest = is_whole(every, wanted_step) ? wanted_step : every / fewest;
   if (is_whole(until, longest)) return longest;
-  const Real most = std::min(kMostShortening * fewest, fewest + kMostTries);
-  for (Real steps = fewest + 1; steps <= most; ++steps) {
-    if (is_whole(until, every / steps)) return every / steps;
+  for (int more = 1; more <= kMostTries && fewest + more <= kMostShortening * fewest; ++more) {
+    const Real shorter = every / (fewest + more);
+    if (is_whole(until, shorter)) return shorter;
   }
   return longest;
 }
