@@ -43,11 +43,13 @@ class ConnectionHandler {
   virtual void closed(ConnectionId id) = 0;
 };
 
+/// A complete response. The transport adds Content-Length and Connection, and leaves out the body
+/// where the method is HEAD.
 struct HttpResponse {
   int status = 200;
-  std::string content_type;
+  std::string content_type;  ///< the header Content-Type
   std::string body;
-  std::vector<std::pair<std::string, std::string>> headers;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< further ones: name, value
 };
 
 /// Answers a plain HTTP request; called on the transport's thread.

@@ -19,27 +19,35 @@ struct RpcError {
   Json data = Json::object();
 };
 
+// The rows of PROTOCOL.md's table of errors. `message` is for people; the names of methods,
+// sessions and scenes may be passed as the client gave them, and are made printable.
+
+/// `error` is parse_json()'s: its code becomes `data.reason`.
 RpcError parse_failed(const Error& error);
 RpcError invalid_request(std::string message);
 RpcError method_not_found(std::string_view method);
 /// There must be at least one error; paths are pointers into `params`.
 RpcError invalid_params(const Errors& errors);
+/// A fault of this program; what it was belongs in the log, not in the reply.
 RpcError internal_error();
 RpcError not_joined();
 RpcError no_such_session(std::string_view session);
 RpcError no_such_body(std::string message);
 RpcError no_such_scene(std::string_view scene);
+/// `limit` is the name in server.info's `limits`, `maximum` its value.
 RpcError limit_reached(std::string_view limit, std::size_t maximum);
 RpcError not_allowed(std::string message);
 /// What the core refused: its no_such_body has an error of its own, all else is invalid_params.
 RpcError refused(const Errors& errors);
 
+/// What a reply carries: its `result`, an object, or its `error`.
 using RpcResult = std::variant<Json, RpcError>;
 
+/// A request of valid form; whether the method exists is not known yet.
 struct RpcRequest {
-  std::optional<Json> id;  ///< a string or an integer; absent: a notification
+  std::optional<Json> id;  ///< a string of at most 64 bytes or an integer; absent: a notification
   std::string method;
-  Json params;  ///< an object
+  Json params;  ///< an object, empty where the message has none
 };
 
 /// The request in a parsed message, or what is wrong with it. `id` is set as soon as a usable one
