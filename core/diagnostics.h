@@ -9,6 +9,7 @@
 
 namespace vat {
 
+/// Sums over one body. Particles that are fixed count with the mass they have.
 struct BodyDiagnostics {
   BodyId id;
   std::string name;

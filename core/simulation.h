@@ -18,10 +18,10 @@ namespace vat {
 
 /// A rigid body's pose and motion.
 struct RigidPose {
-  Vec3 center_of_mass;
-  Quat orientation;  ///< body axes, those of the body's shape, to world axes
-  Vec3 velocity;
-  Vec3 angular_velocity;  ///< world axes
+  Vec3 center_of_mass;    ///< [m]
+  Quat orientation;       ///< body axes, those of the body's shape, to world axes
+  Vec3 velocity;          ///< [m/s] of the centre of mass
+  Vec3 angular_velocity;  ///< [rad/s] world axes
 };
 
 /// Read-only view of one body; valid until the simulation next changes.
@@ -30,12 +30,12 @@ struct BodyView {
   std::string_view name;
   BodyKind kind;
   std::string_view material;
-  std::span<const Vec3> positions;
-  std::span<const Vec3> velocities;
-  std::span<const Real> masses;
-  std::span<const Real> radii;
+  std::span<const Vec3> positions;        ///< [m] world axes, as are velocities
+  std::span<const Vec3> velocities;       ///< [m/s]
+  std::span<const Real> masses;           ///< [kg]
+  std::span<const Real> radii;            ///< [m]
   std::optional<RigidPose> pose;          ///< rigid bodies
-  std::span<const Vec3> local_positions;  ///< rigid bodies: about the centre of mass, body axes
+  std::span<const Vec3> local_positions;  ///< [m] rigid bodies: about the centre of mass, body axes
 };
 
 /// SPH fields of one liquid body at the present positions, one value a particle.
@@ -58,6 +58,7 @@ struct GuardEvent {
 };
 const char* to_string(GuardEvent::Cause cause);
 
+/// What a call of advance() did.
 struct AdvanceReport {
   /// Of an unstable scene every step may have events; the first of a call, and its last, are kept.
   static constexpr std::size_t kMaxEvents = 16;
@@ -65,8 +66,9 @@ struct AdvanceReport {
   std::uint64_t steps = 0;         ///< steps taken, parts and undone ones included
   std::uint64_t undone_steps = 0;  ///< each had an event
   bool failed = false;             ///< the state is the one before the call
-  std::vector<GuardEvent> events;
+  std::vector<GuardEvent> events;  ///< in the order in which they were seen
 
+  /// Counts the event, and keeps it in place of the last where there are kMaxEvents.
   void add(const GuardEvent& event);
 };
 
@@ -92,7 +94,8 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Takes `steps` steps of step_size(), each of them guarded: see GuardEvent.
+  /// Takes `steps` steps of step_size(), each of them guarded: see GuardEvent. All or none: after a
+  /// failure, or an exception, the state is the one before the call.
   AdvanceReport advance(std::uint32_t steps);
 
   Real time() const;       ///< [s]
@@ -102,8 +105,11 @@ class Simulation {
   std::size_t spring_count() const;
   const Scene& scene() const;  ///< as it is now: commands change it
 
+  /// In the order of the scene; added bodies are last.
   std::vector<BodyView> bodies() const;
+  /// Nothing if no body has this id. Ids stay with their bodies, whatever is added or removed.
   std::optional<BodyView> find_body(BodyId id) const;
+  /// Nothing if no body has this name.
   std::optional<BodyId> find_body(std::string_view name) const;
   /// The vat's present displacement [m]; zero without a vat or motion.
   Vec3 vat_offset() const;
@@ -113,31 +119,41 @@ class Simulation {
   /// 64-bit hash of all that the next steps start from: the state, with the forces that are kept
   /// from the last step, gravity, grabs and applied forces. Equal futures for one scene.
   std::uint64_t state_hash() const;
+  /// A copy of the present state, with the bodies and the commands in force.
   Snapshot snapshot() const;
   /// Goes back to a snapshot taken from this simulation, bodies and commands in force included.
   void restore(const Snapshot& snapshot);
 
+  /// Measures the present state, at the cost of about one force evaluation.
   Diagnostics diagnostics() const;
   /// The stages of one force evaluation and the columns they read and write, as text.
   std::string plan_text() const;
+  /// Told of the stages of every step from now on; null for nobody. It must outlive its use here.
   void set_observer(StageObserver* observer);
 
   /// Adds a body at the present time. Fails like create(), paths under "/body"; its name must be
   /// new.
   Result<BodyId> add_body(const BodyDescription& body);
+  /// Ends the body's grabs and applied forces too. Fails if there is no such body.
   Status remove_body(BodyId id);
+  /// `gravity` in m/s^2, each component at most kMaxGravity in magnitude; fails beyond.
   Status set_gravity(const Vec3& gravity);
-  /// Adds or replaces one interface.
+  /// Adds or replaces one interface. Fails like create(), paths under "/interface".
   Status set_interface(const InterfaceDescription& interface);
   /// A force [N] on the whole body, in equal accelerations, for `duration` seconds rounded up to
-  /// whole steps; weakened as much, so that the impulse is force times duration.
+  /// whole steps; weakened as much, so that the impulse is force times duration. Fails if there is
+  /// no such body, a component is beyond kMaxForce, the duration is not above 0 and at most
+  /// kMaxForceTime, or kMaxAppliedForces act already.
   Status apply_force(BodyId id, const Vec3& force, Real duration);
 
   /// Ties a particle to a target by a critically damped spring. A deformable or liquid body is held
   /// by the particles around the grabbed one. `grab` is the caller's name for it; starting a grab
-  /// that exists moves it to the new particle.
+  /// that exists moves it to the new particle. Fails if there is no such body or particle, `target`
+  /// [m] is not within kMaxLength, or there are kMaxGrabs others.
   Status grab_start(std::uint64_t grab, BodyId id, Index particle, const Vec3& target);
+  /// Moves the target [m]. Fails if there is no such grab, or beyond kMaxLength.
   Status grab_move(std::uint64_t grab, const Vec3& target);
+  /// Lets go. Fails if there is no such grab, as when its body was removed.
   Status grab_end(std::uint64_t grab);
 
  private:

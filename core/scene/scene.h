@@ -45,6 +45,7 @@ struct LatticeSprings {
   std::optional<SpringConstants> bend;
 };
 
+/// What bodies are made of. A body uses the parts that its kind needs.
 struct Material {
   std::string name;
   Real density = 1000;                          ///< [kg/m^3]; rest density for a liquid
@@ -53,34 +54,37 @@ struct Material {
   std::optional<SpringConstants> self_contact;  ///< dynamic springs within one deformable body
 };
 
+/// A box along the body's axes.
 struct BoxShape {
-  Vec3 center = Vec3::Zero();
-  Vec3 size = Vec3::Zero();
+  Vec3 center = Vec3::Zero();  ///< [m]
+  Vec3 size = Vec3::Zero();    ///< whole edges [m]
 };
+/// A ball.
 struct SphereShape {
-  Vec3 center = Vec3::Zero();
-  Real radius = 0;
+  Vec3 center = Vec3::Zero();  ///< [m]
+  Real radius = 0;             ///< [m]
 };
+/// A solid circular cylinder with flat ends.
 struct CylinderShape {
-  Vec3 center = Vec3::Zero();
-  Vec3 axis = Vec3::UnitZ();  ///< any length but zero
-  Real radius = 0;
-  Real height = 0;
+  Vec3 center = Vec3::Zero();  ///< of its volume [m]
+  Vec3 axis = Vec3::UnitZ();   ///< any length but zero
+  Real radius = 0;             ///< [m]
+  Real height = 0;             ///< along the axis, from end to end [m]
 };
 /// Closed triangle mesh; triangles are counter-clockwise seen from outside.
 struct MeshShape {
-  std::string source;  ///< where the mesh came from, for messages only
-  std::vector<Vec3> vertices;
-  std::vector<std::array<Index, 3>> triangles;
+  std::string source;                           ///< where the mesh came from, for messages only
+  std::vector<Vec3> vertices;                   ///< [m]
+  std::vector<std::array<Index, 3>> triangles;  ///< indices of vertices
 };
 /// Particles one by one. `velocities`, `masses` and `radii` are empty or as long as `positions`;
 /// empty masses: the body's mass in equal parts, or density times spacing cubed; empty radii: the
 /// body's radius. `fixed` lists particles that never move (deformable bodies only).
 struct ParticleShape {
-  std::vector<Vec3> positions;
-  std::vector<Vec3> velocities;
-  std::vector<Real> masses;
-  std::vector<Real> radii;
+  std::vector<Vec3> positions;   ///< [m]
+  std::vector<Vec3> velocities;  ///< [m/s]
+  std::vector<Real> masses;      ///< [kg]
+  std::vector<Real> radii;       ///< [m]
   std::vector<Index> fixed;
 };
 using Shape = std::variant<BoxShape, SphereShape, CylinderShape, MeshShape, ParticleShape>;
@@ -146,11 +150,12 @@ struct Numerics {
   Real tick = 0.02;  ///< [s]
 };
 
+/// All that a simulation starts from.
 struct Scene {
   std::string name;
   std::string title;
   std::string description;
-  Vec3 gravity{0, 0, -9.81};
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
   std::vector<Material> materials;
   std::vector<InterfaceDescription> interfaces;
   SpringConstants default_interface{1000, 1};  ///< for pairs that `interfaces` does not list
