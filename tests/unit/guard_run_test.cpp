@@ -108,8 +108,9 @@ TEST(GuardRun, CountsAllEventsAndKeepsTheFirstAndTheLast) {
   EXPECT_EQ(report.steps, 20 * (1U + 1U + 4U));
   ASSERT_EQ(report.events.size(), kMax);
   for (std::size_t e = 0; e + 1 < kMax; ++e) {
-    const auto step = static_cast<Real>(e / 2);
-    EXPECT_DOUBLE_EQ(report.events[e].time, (step + (e % 2 == 0 ? 1 : 0.5)) * kStep);
+    const std::size_t step = e / 2;  // two events each
+    EXPECT_DOUBLE_EQ(report.events[e].time,
+                     (static_cast<Real>(step) + (e % 2 == 0 ? 1 : 0.5)) * kStep);
     EXPECT_EQ(report.events[e].step, e % 2 == 0 ? kStep : kStep / 2);
   }
   EXPECT_DOUBLE_EQ(report.events.back().time, 19.5 * kStep);
