@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace vat::test {
 
 struct ProgramResult {
@@ -25,23 +27,6 @@ std::string test_scene(const std::string& name);
 std::string read_file(const std::string& path);
 
 std::vector<std::string> lines_of(const std::string& text);
-
-/// A folder of its own for one test, removed with all it holds.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  /// Path of a file in the folder.
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-  /// Names of what is in the folder, sorted.
-  std::vector<std::string> names() const;
-
- private:
-  std::string path_;
-};
 
 /// A named pipe, made in a folder of the test's own and held open for reading.
 class Pipe {

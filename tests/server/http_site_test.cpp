@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "tests/server/static_files_folder.h"
 #include "tests/server/transport_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vat::test {
 

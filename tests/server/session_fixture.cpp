@@ -4,7 +4,7 @@
 
 #include "core/simulation.h"
 #include "server/session/describe.h"
-#include "tests/server/static_files_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vat::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/server/static_files_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vat::test {
 

@@ -1,29 +1,43 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace vat::test {
 
-/// A new folder that goes with its contents when the test ends.
+/// A folder of its own for one test, removed with all it holds.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "vat-test-XXXXXX").string();
+    const std::string pattern = "vat-test-" + std::string(6, 'X');  // as mkdtemp wants it
+    std::string name = (std::filesystem::temp_directory_path() / pattern).string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = name;
   }
   ~TemporaryFolder() {
-    std::error_code ignored;
+    std::error_code ignored;  // nothing depends on the removal
     std::filesystem::remove_all(path_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Path of a file in the folder.
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  /// Names of what is in the folder, sorted.
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+  }
   void write(const std::filesystem::path& name, const std::string& content) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream file(path_ / name, std::ios::binary);
