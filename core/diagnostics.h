@@ -13,10 +13,12 @@ namespace vat {
 struct BodyDiagnostics {
   BodyId id;
   std::string name;
-  Real mass;                             ///< [kg]
-  Vec3 center_of_mass;                   ///< [m]
-  Vec3 linear_momentum;                  ///< [kg m/s]
-  Vec3 angular_momentum;                 ///< about the world's origin [kg m^2/s]
+  Real mass;              ///< [kg]
+  Vec3 center_of_mass;    ///< [m]
+  Vec3 linear_momentum;   ///< [kg m/s]
+  Vec3 angular_momentum;  ///< about the world's origin [kg m^2/s]
+  Vec3 outer_force;       ///< by the walls and other bodies, without gravity and users' forces [N]
+  Vec3 outer_torque;      ///< of the same forces about the centre of mass [N m]
   std::optional<Quat> orientation;       ///< rigid bodies
   std::optional<Vec3> angular_velocity;  ///< rigid bodies, world axes [rad/s]
 };

@@ -34,4 +34,17 @@ const char* to_string(IntegratorId id) {
   return "";
 }
 
+const char* to_string(StepControl control) {
+  switch (control) {
+    case StepControl::fixed:
+      return "fixed";
+    case StepControl::adaptive:
+      return "adaptive";
+    case StepControl::local:
+      return "local";
+  }
+  VAT_CHECK(false && "not a step control");
+  return "";
+}
+
 }  // namespace vat

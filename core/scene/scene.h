@@ -22,6 +22,13 @@ enum class IntegratorId : std::uint8_t {
   runge_kutta_4,
 };
 
+/// How the length of steps is chosen; see core/step/step_control.h.
+enum class StepControl : std::uint8_t {
+  fixed,     ///< every step has the scene's length
+  adaptive,  ///< the whole scene halves its step as often as the fastest process asks for
+  local,     ///< each particle has its own power-of-two part of the step
+};
+
 /// A Hooke spring's constants: stiffness k [N/m] of Boldt eq. 3 and damping along the spring
 /// [N s/m] (not in the paper; 0 is the paper's spring).
 struct SpringConstants {
@@ -97,9 +104,23 @@ struct SpringDescription {
   std::optional<Real> rest_length;  ///< l [m]; default: the distance at the start
 };
 
+/// A plane wave amplitude * sin(wave_vector . x + phase).
+struct PlaneWave {
+  Vec3 amplitude = Vec3::Zero();
+  Vec3 wave_vector = Vec3::Zero();  ///< [rad/m]
+  Real phase = 0;                   ///< [rad]
+};
+
+/// A vector at every point x of the world: gradient (x - center) + the sum of the waves.
+struct VectorField {
+  Vec3 center = Vec3::Zero();    ///< [m]
+  Mat3 gradient = Mat3::Zero();  ///< row i: the derivatives of component i
+  std::vector<PlaneWave> waves;
+};
+
 /// One body. The shape is given in the body's own frame; `position` and `orientation` place that
 /// frame in the world, `velocity` and `angular_velocity` (world axes, about the centre of mass) set
-/// it in motion.
+/// it in motion. Rigid bodies have neither fields nor jitter; only rigid bodies are held.
 struct BodyDescription {
   std::string name;
   BodyKind kind = BodyKind::liquid;
@@ -113,6 +134,15 @@ struct BodyDescription {
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
   std::vector<SpringDescription> springs{};  ///< deformable bodies only, beside the lattice springs
+  std::optional<VectorField> velocity_field{};      ///< [m/s] added to the particles' velocities
+  std::optional<VectorField> displacement_field{};  ///< [m] added to their places, not to springs'
+                                                    ///< default rest lengths
+  Real jitter = 0;                                  ///< greatest random shift along each axis, in
+                                                    ///< spacings
+  std::uint32_t seed = 0;                           ///< of the jitter
+  /// A held rigid body moves on as if no force acted on it, up to the time `release` [s].
+  Real release = 0;
+  bool fixed = false;  ///< held for ever
 };
 
 /// The name that stands for the vat's walls in an interface.
@@ -133,21 +163,53 @@ struct SlideMotion {
   Real period = 1;  ///< [s]
 };
 
+/// What one wall of the vat does to liquids that flow along it.
+struct Wall {
+  bool no_slip = false;          ///< the liquid at the wall has the wall's velocity
+  Vec3 velocity = Vec3::Zero();  ///< of the wall's surface, along the wall [m/s]
+};
+
 /// An axis-aligned container with analytic walls, at `min`..`max` at time 0. Without a lid it is
-/// open at +z and its side walls go up for ever.
+/// open at +z and its side walls go up for ever. There are no walls across periodic axes.
 struct Vat {
   Vec3 min = Vec3::Zero();
   Vec3 max = Vec3::Zero();
   bool lid = false;
   std::optional<SlideMotion> motion;
+  std::array<Wall, 6> walls{};  ///< x_min, x_max, y_min, y_max, z_min, z_max
+};
+
+/// A world that repeats itself along some axes: what leaves through one side comes in through the
+/// other, and particles near both sides are neighbours.
+struct Periodicity {
+  Vec3 min = Vec3::Zero();     ///< [m]; read along periodic axes only, as is max
+  Vec3 max = Vec3::Zero();     ///< [m]
+  std::array<bool, 3> axes{};  ///< which of x, y, z repeat
+};
+
+/// A field of acceleration -angular_frequency^2 (x - center), which pulls everything to a point.
+struct CentralField {
+  Vec3 center = Vec3::Zero();  ///< [m]
+  Real angular_frequency = 0;  ///< [rad/s]
+};
+
+/// Forces that act; one that is off costs nothing.
+struct ForceSwitches {
+  bool gravity = true;    ///< and the central field
+  bool pressure = true;   ///< of liquids
+  bool viscosity = true;  ///< of liquids, at no-slip walls too
+  bool springs = true;    ///< static connections
+  bool contacts = true;   ///< dynamic connections between particles
+  bool walls = true;      ///< of the vat
 };
 
 /// `tick` is the interval at which a server applies commands and publishes frames; it is a whole
 /// number of steps.
 struct Numerics {
   IntegratorId integrator = IntegratorId::velocity_verlet;
-  Real step = 1e-3;  ///< dt [s]
+  Real step = 1e-3;  ///< dt [s]; of varied steps the greatest
   Real tick = 0.02;  ///< [s]
+  StepControl control = StepControl::fixed;
 };
 
 /// All that a simulation starts from.
@@ -161,11 +223,18 @@ struct Scene {
   SpringConstants default_interface{1000, 1};  ///< for pairs that `interfaces` does not list
   std::vector<BodyDescription> bodies;
   std::optional<Vat> vat;
+  std::optional<Periodicity> periodic;
+  std::optional<CentralField> central_field;
+  ForceSwitches forces;
+  /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
+  /// dimensions, and masses, forces and energies are per metre of depth.
+  int dimensions = 3;
   Numerics numerics;
 };
 
 /// Names used in scene files, messages and tables.
 const char* to_string(BodyKind kind);
 const char* to_string(IntegratorId id);
+const char* to_string(StepControl control);
 
 }  // namespace vat

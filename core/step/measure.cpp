@@ -11,8 +11,8 @@ namespace {
 
 BodyDiagnostics measure_free_body(const Model& model, const ModelBody& body,
                                   const Configuration& at) {
-  BodyDiagnostics result{body.id,      body.name,    body.mass, Vec3::Zero(),
-                         Vec3::Zero(), Vec3::Zero(), {},        {}};
+  BodyDiagnostics result{body.id,      body.name,    body.mass,    Vec3::Zero(), Vec3::Zero(),
+                         Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), {},           {}};
   for (Index i = body.particles.begin; i < body.particles.end; ++i) {
     const Vec3 momentum = model.mass[i] * at.velocity[i];
     result.center_of_mass += (model.mass[i] / body.mass) * at.position[i];
@@ -32,6 +32,8 @@ BodyDiagnostics measure_rigid_body(const Model& model, const ModelBody& body,
       state.center_of_mass,
       state.momentum,
       state.angular_momentum + state.center_of_mass.cross(state.momentum),
+      Vec3::Zero(),
+      Vec3::Zero(),
       state.orientation,
       angular_velocity(model.rigid_bodies[body.rigid], state.orientation, state.angular_momentum)};
 }
