@@ -14,6 +14,7 @@ inline constexpr std::size_t kMaxBodies = 4096;          // the frame's per-body
 inline constexpr std::size_t kMaxMaterials = 64;         // the interface table is quadratic in it
 inline constexpr std::size_t kMaxNameLength = 64;        // names are shown to other users
 inline constexpr std::size_t kMaxTextLength = 4096;      // title and description
+inline constexpr std::size_t kMaxWaves = 64;             // of one field: each particle sums them
 inline constexpr std::size_t kMaxMeshTriangles = 200'000;    // memory and time to check it
 inline constexpr std::size_t kMaxMeshWork = 20'000'000;      // pairs of triangle and lattice column
 inline constexpr std::size_t kMaxLatticePoints = 8'000'000;  // of all shapes' bounding boxes
@@ -51,12 +52,18 @@ inline constexpr Real kMinDensity = 1e-6;      // [kg/m^3]
 inline constexpr Real kMaxDensity = 1e9;       // [kg/m^3]
 inline constexpr Real kMaxViscosity = 1e9;     // [Pa s]
 inline constexpr Real kMaxGravity = 1e3;       // [m/s^2]
-inline constexpr Real kMaxAngularSpeed = 1e4;  // [rad/s]
+inline constexpr Real kMaxAngularSpeed = 1e4;  // [rad/s], and of the central field
+inline constexpr Real kMaxGradient = 1e9;      // [1/s] or a pure number, of a field
+inline constexpr Real kMaxWaveNumber = 1e9;    // [rad/m]
+inline constexpr Real kMaxPhase = 1e3;         // [rad]
+inline constexpr Real kMaxJitter = 0.5;        // of a spacing: neighbours keep their order
+inline constexpr Real kMaxRelease = 1e9;       // [s] of a held body
 inline constexpr Real kMinPeriod = 1e-3;       // [s] of the vat's motion
 inline constexpr Real kMaxPeriod = 1e6;        // [s]
 inline constexpr Real kMaxForceTime = 3600;    // [s] of an applied force
 inline constexpr Real kMinStep = 1e-7;         // [s]
 inline constexpr Real kMaxStep = 0.1;          // [s]
 inline constexpr Real kMaxTick = 1.0;          // [s]
+inline constexpr int kMaxStepLevel = 10;       // halvings of a step: a nominal step must end
 
 }  // namespace vat

@@ -63,16 +63,18 @@ class ContactRules {
 };
 
 /// Calls f(contact) for every dynamic connection of particle i, in an order that depends on
-/// positions and indices alone. Needs the columns liquid_cells and solid_cells.
+/// positions and indices alone; with `slack` [m] those too that are up to so much beyond their
+/// threshold. Needs the columns liquid_cells and solid_cells.
 template <class F>
 void for_each_contact(const Model& model, const Workspace& work, const Configuration& at, Index i,
-                      F&& f) {
+                      F&& f, Real slack = 0) {
   const ContactRules rules(model, i);
   const Vec3 p = at.position[i];
-  const Real reach2 = model.contact_reach * model.contact_reach;
+  const Real reach = model.contact_reach + slack;
+  const Real reach2 = reach * reach;
   const auto search = [&](const CellSortedPoints& points, Index first, auto&& wanted) {
     const std::span<const Index> order = points.grid.order();
-    points.grid.for_each_run(p, model.contact_reach, [&](Index begin, Index end) {
+    points.grid.for_each_run(p, reach, [&](Index begin, Index end) {
       for (Index slot = begin; slot < end; ++slot) {
         const Vec3 x(p.x() - points.x[slot], p.y() - points.y[slot], p.z() - points.z[slot]);
         const Real r2 = x.squaredNorm();
@@ -80,7 +82,8 @@ void for_each_contact(const Model& model, const Workspace& work, const Configura
         const Index j = first + order[slot];
         Contact contact;
         if (!wanted(j) || !rules.find_law(j, contact)) continue;
-        if (!(r2 < contact.threshold * contact.threshold) || rules.excluded(j)) continue;
+        const Real notice = contact.threshold + slack;
+        if (!(r2 < notice * notice) || rules.excluded(j)) continue;
         contact.self = i;
         contact.other = j;
         contact.x = x;

@@ -32,12 +32,20 @@ struct Forces {
   std::vector<Vec3> rigid_torque;  ///< tau about r_cm, Boldt eq. 6 [N m]
 };
 
+/// What adaptive step control remembers from one step to the next.
+struct StepHistory {
+  std::uint32_t level = 0;  ///< the last step was the nominal one over 2^level
+  std::uint32_t held = 0;   ///< steps since the level changed
+  Real observed_rate = 0;   ///< of the motion of deformable bodies in the last step [rad/s]
+};
+
 /// All that is needed to go on with the same bits.
 struct State {
   Configuration now;
   std::uint64_t step_count = 0;  ///< nominal steps since time 0
   Forces forces;                 ///< of the last evaluation; velocity Verlet opens a step with them
   bool forces_current = false;  ///< false: something but the integrator changed what they depend on
+  StepHistory history;
 };
 
 /// The state at time 0.
