@@ -146,6 +146,33 @@ SpringDescription to_spring(const Json& value, std::string path, Errors& errors)
   return spring;
 }
 
+Mat3 to_matrix(const Json& value, const std::string& path, Real bound, Errors& errors) {
+  Mat3 matrix = Mat3::Zero();
+  if (to_array(value, path, 3, 3, errors) == nullptr) return matrix;
+  const Vectors rows = to_vectors(value, path, bound, errors);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    matrix.row(static_cast<Eigen::Index>(row)) = rows[row].transpose();
+  }
+  return matrix;
+}
+
+PlaneWave to_wave(const Json& value, std::string path, Real bound, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  PlaneWave wave;
+  wave.amplitude = reader.vector("amplitude", -bound, bound);
+  wave.wave_vector = reader.vector("wave_vector", -kMaxWaveNumber, kMaxWaveNumber);
+  wave.phase = reader.real("phase", -kMaxPhase, kMaxPhase, wave.phase);
+  reader.refuse_unknown();
+  return wave;
+}
+
+void read_field(ObjectReader& reader, std::string_view key, Real bound,
+                std::optional<VectorField>& field, Errors& errors) {
+  if (const Json* value = reader.member(key)) {
+    field = to_field(*value, reader.path_of(key), bound, errors);
+  }
+}
+
 void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors) {
   body.position = reader.vector("position", -kMaxLength, kMaxLength, body.position);
   if (const Json* orientation = reader.member("orientation")) {
@@ -154,6 +181,13 @@ void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors)
   body.velocity = reader.vector("velocity", -kMaxSpeed, kMaxSpeed, body.velocity);
   body.angular_velocity =
       reader.vector("angular_velocity", kAnyMin, kAnyMax, body.angular_velocity);
+  read_field(reader, "velocity_field", kMaxSpeed, body.velocity_field, errors);
+  read_field(reader, "displacement_field", kMaxLength, body.displacement_field, errors);
+  body.jitter = reader.real("jitter", 0, kMaxJitter, body.jitter);
+  body.seed = static_cast<std::uint32_t>(
+      reader.count("seed", 0, std::numeric_limits<std::uint32_t>::max(), body.seed));
+  body.fixed = reader.boolean("fixed", body.fixed);
+  body.release = reader.real("release", 0, kMaxRelease, body.release);
 }
 
 }  // namespace
@@ -187,6 +221,23 @@ Shape to_shape(const Json& value, const std::string& path, const MeshSource& mes
   }
   reader.refuse_unknown();
   return shape;
+}
+
+VectorField to_field(const Json& value, std::string path, Real bound, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  VectorField field;
+  field.center = reader.vector("center", -kMaxLength, kMaxLength, field.center);
+  if (const Json* gradient = reader.member("gradient")) {
+    field.gradient = to_matrix(*gradient, reader.path_of("gradient"), kMaxGradient, errors);
+  }
+  if (const Json* waves = reader.array("waves", kMaxWaves)) {
+    for (std::size_t i = 0; i < waves->size(); ++i) {
+      field.waves.push_back(
+          to_wave((*waves)[i], pointer_to(reader.path_of("waves"), i), bound, errors));
+    }
+  }
+  reader.refuse_unknown();
+  return field;
 }
 
 BodyDescription to_body(const Json& value, const std::string& path, const MeshSource& meshes,

@@ -112,6 +112,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.name = reader.text("name", kMaxNameLength, "");
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");
+  scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);
   read_part(reader, "default_interface", scene.default_interface, errors,
@@ -121,6 +122,16 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   read_interfaces(reader, partial, errors);
   read_part(reader, "vat", scene.vat, errors, [&](const Json& value, std::string path) {
     return scene_parts::to_vat(value, std::move(path), errors);
+  });
+  read_part(reader, "periodic", scene.periodic, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_periodicity(value, std::move(path), errors);
+  });
+  read_part(reader, "central_field", scene.central_field, errors,
+            [&](const Json& value, std::string path) {
+              return scene_parts::to_central_field(value, std::move(path), errors);
+            });
+  read_part(reader, "forces", scene.forces, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_force_switches(value, std::move(path), errors);
   });
   read_part(reader, "numerics", scene.numerics, errors, [&](const Json& value, std::string path) {
     return scene_parts::to_numerics(value, std::move(path), errors);

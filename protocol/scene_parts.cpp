@@ -30,17 +30,6 @@ LatticeSprings to_lattice_springs(const Json& value, std::string path, Errors& e
   return springs;
 }
 
-SlideMotion to_motion(const Json& value, std::string path, Errors& errors) {
-  ObjectReader reader(value, std::move(path), errors);
-  reader.choice("type", {"slide"});
-  SlideMotion motion;
-  motion.axis = reader.vector("axis", -kMaxLength, kMaxLength, motion.axis);
-  motion.stroke = reader.real("stroke", -kMaxLength, kMaxLength);
-  motion.period = reader.real("period", kAnyMin, kAnyMax, motion.period);
-  reader.refuse_unknown();
-  return motion;
-}
-
 }  // namespace
 
 SpringConstants to_spring_constants(ObjectReader& reader) {
@@ -92,33 +81,6 @@ InterfaceDescription to_interface(const Json& value, std::string path, Errors& e
   if (reader.has("threshold")) interface.threshold = reader.real("threshold", 0, kMaxLength);
   reader.refuse_unknown();
   return interface;
-}
-
-Vat to_vat(const Json& value, std::string path, Errors& errors) {
-  ObjectReader reader(value, std::move(path), errors);
-  Vat vat;
-  vat.min = reader.vector("min", -kMaxLength, kMaxLength);
-  vat.max = reader.vector("max", -kMaxLength, kMaxLength);
-  vat.lid = reader.boolean("lid", vat.lid);
-  if (const Json* motion = reader.member("motion")) {
-    vat.motion = to_motion(*motion, reader.path_of("motion"), errors);
-  }
-  reader.refuse_unknown();
-  return vat;
-}
-
-Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
-  ObjectReader reader(value, std::move(path), errors);
-  Numerics numerics;
-  // In the order of IntegratorId.
-  numerics.integrator = static_cast<IntegratorId>(reader.choice(
-      "integrator",
-      {"explicit_euler", "symplectic_euler", "velocity_verlet", "heun", "runge_kutta_4"},
-      static_cast<std::size_t>(numerics.integrator)));
-  numerics.step = reader.real("step", kMinStep, kMaxStep, numerics.step);
-  numerics.tick = reader.real("tick", kMinStep, kMaxTick, numerics.tick);
-  reader.refuse_unknown();
-  return numerics;
 }
 
 }  // namespace vat::scene_parts

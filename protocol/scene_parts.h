@@ -19,7 +19,12 @@ SpringConstants to_spring_constants(const Json& value, std::string path, Errors&
 Material to_material(const Json& value, std::string path, Errors& errors);
 InterfaceDescription to_interface(const Json& value, std::string path, Errors& errors);
 Vat to_vat(const Json& value, std::string path, Errors& errors);
+Periodicity to_periodicity(const Json& value, std::string path, Errors& errors);
+CentralField to_central_field(const Json& value, std::string path, Errors& errors);
+ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors);
 Numerics to_numerics(const Json& value, std::string path, Errors& errors);
+/// `bound` is that of the field's values at its waves' crests.
+VectorField to_field(const Json& value, std::string path, Real bound, Errors& errors);
 Shape to_shape(const Json& value, const std::string& path, const MeshSource& meshes,
                Errors& errors);
 BodyDescription to_body(const Json& value, const std::string& path, const MeshSource& meshes,

@@ -46,8 +46,19 @@ Json to_json(const InterfaceDescription& interface) {
   return json;
 }
 
+Json to_json(const std::array<Wall, 6>& walls) {
+  Json json;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    json[kWallNames[i]] = {{"no_slip", walls[i].no_slip}, {"velocity", to_json(walls[i].velocity)}};
+  }
+  return json;
+}
+
 Json to_json(const Vat& vat) {
-  Json json = {{"min", to_json(vat.min)}, {"max", to_json(vat.max)}, {"lid", vat.lid}};
+  Json json = {{"min", to_json(vat.min)},
+               {"max", to_json(vat.max)},
+               {"lid", vat.lid},
+               {"walls", to_json(vat.walls)}};
   if (vat.motion) {
     json["motion"] = {{"type", "slide"},
                       {"axis", to_json(vat.motion->axis)},
@@ -55,6 +66,44 @@ Json to_json(const Vat& vat) {
                       {"period", vat.motion->period}};
   }
   return json;
+}
+
+Json to_json(const Periodicity& periodic) {
+  Json axes = Json::array();
+  for (std::size_t axis = 0; axis < periodic.axes.size(); ++axis) {
+    if (periodic.axes[axis]) axes.push_back(kAxisNames[axis]);
+  }
+  return {
+      {"axes", std::move(axes)}, {"min", to_json(periodic.min)}, {"max", to_json(periodic.max)}};
+}
+
+Json to_json(const ForceSwitches& forces) {
+  return {{"gravity", forces.gravity},     {"pressure", forces.pressure},
+          {"viscosity", forces.viscosity}, {"springs", forces.springs},
+          {"contacts", forces.contacts},   {"walls", forces.walls}};
+}
+
+Json to_json(const Numerics& numerics) {
+  return {{"integrator", to_string(numerics.integrator)},
+          {"step", numerics.step},
+          {"tick", numerics.tick},
+          {"control", to_string(numerics.control)}};
+}
+
+Json to_json(const VectorField& field) {
+  Json waves = Json::array();
+  for (const PlaneWave& wave : field.waves) {
+    waves.push_back({{"amplitude", to_json(wave.amplitude)},
+                     {"wave_vector", to_json(wave.wave_vector)},
+                     {"phase", wave.phase}});
+  }
+  Json gradient = Json::array();
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    gradient.push_back(to_json(Vec3(field.gradient.row(row).transpose())));
+  }
+  return {{"center", to_json(field.center)},
+          {"gradient", std::move(gradient)},
+          {"waves", std::move(waves)}};
 }
 
 Json to_json(const BoxShape& box) {
@@ -105,12 +154,18 @@ Json to_json(const BodyDescription& body) {
                {"orientation", Json::array({body.orientation.w(), body.orientation.x(),
                                             body.orientation.y(), body.orientation.z()})},
                {"velocity", to_json(body.velocity)},
-               {"angular_velocity", to_json(body.angular_velocity)}};
+               {"angular_velocity", to_json(body.angular_velocity)},
+               {"jitter", body.jitter},
+               {"seed", body.seed},
+               {"fixed", body.fixed},
+               {"release", body.release}};
   // Explicit particles may go without a spacing, which zero stands for.
   if (body.spacing != 0) json["spacing"] = body.spacing;
   if (body.mass) json["mass"] = *body.mass;
   if (body.radius) json["radius"] = *body.radius;
   for (const SpringDescription& spring : body.springs) json["springs"].push_back(to_json(spring));
+  if (body.velocity_field) json["velocity_field"] = to_json(*body.velocity_field);
+  if (body.displacement_field) json["displacement_field"] = to_json(*body.displacement_field);
   return json;
 }
 
@@ -132,12 +187,16 @@ Json write_scene(const Scene& scene) {
                {"materials", to_list(scene.materials)},
                {"default_interface", to_json(scene.default_interface)},
                {"interfaces", to_list(scene.interfaces)},
-               {"numerics",
-                {{"integrator", to_string(scene.numerics.integrator)},
-                 {"step", scene.numerics.step},
-                 {"tick", scene.numerics.tick}}},
+               {"dimensions", scene.dimensions},
+               {"forces", to_json(scene.forces)},
+               {"numerics", to_json(scene.numerics)},
                {"bodies", to_list(scene.bodies)}};
   if (scene.vat) json["vat"] = to_json(*scene.vat);
+  if (scene.periodic) json["periodic"] = to_json(*scene.periodic);
+  if (scene.central_field) {
+    json["central_field"] = {{"center", to_json(scene.central_field->center)},
+                             {"angular_frequency", scene.central_field->angular_frequency}};
+  }
   return json;
 }
 

@@ -163,6 +163,11 @@ struct SlideMotion {
   Real period = 1;  ///< [s]
 };
 
+/// Names of the axes, and of the vat's walls in the order of Vat::walls.
+inline constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
+inline constexpr std::array<const char*, 6> kWallNames{"x_min", "x_max", "y_min",
+                                                       "y_max", "z_min", "z_max"};
+
 /// What one wall of the vat does to liquids that flow along it.
 struct Wall {
   bool no_slip = false;          ///< the liquid at the wall has the wall's velocity
@@ -210,6 +215,8 @@ struct Numerics {
   Real step = 1e-3;  ///< dt [s]; of varied steps the greatest
   Real tick = 0.02;  ///< [s]
   StepControl control = StepControl::fixed;
+  /// Of varied steps: the phase error per radian, relative, of the motion that they resolve.
+  Real tolerance = 1e-3;
 };
 
 /// All that a simulation starts from.

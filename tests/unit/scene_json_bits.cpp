@@ -14,6 +14,7 @@ class BitWriter {
 
   void put(Real value) { put_number(std::bit_cast<std::uint64_t>(value)); }
   void put(Index value) { put_number(value); }
+  void put(int value) { put_number(static_cast<std::uint64_t>(value)); }
   void put(bool value) { put_number(value ? 1 : 0); }
   void put(const std::string& value) { text_ += '"' + value + "\"\n"; }
   void put(const Vec3& value) {
@@ -65,13 +66,37 @@ class BitWriter {
     const auto& [axis, stroke, period] = motion;
     put_all(axis, stroke, period);
   }
+  void put(const Wall& wall) {
+    const auto& [no_slip, velocity] = wall;
+    put_all(no_slip, velocity);
+  }
   void put(const Vat& vat) {
-    const auto& [min, max, lid, motion] = vat;
-    put_all(min, max, lid, motion);
+    const auto& [min, max, lid, motion, walls] = vat;
+    put_all(min, max, lid, motion, walls);
+  }
+  void put(const Periodicity& periodic) {
+    const auto& [min, max, axes] = periodic;
+    put_all(min, max, axes);
+  }
+  void put(const CentralField& field) {
+    const auto& [center, angular_frequency] = field;
+    put_all(center, angular_frequency);
+  }
+  void put(const ForceSwitches& forces) {
+    const auto& [gravity, pressure, viscosity, springs, contacts, walls] = forces;
+    put_all(gravity, pressure, viscosity, springs, contacts, walls);
+  }
+  void put(const PlaneWave& wave) {
+    const auto& [amplitude, wave_vector, phase] = wave;
+    put_all(amplitude, wave_vector, phase);
+  }
+  void put(const VectorField& field) {
+    const auto& [center, gradient, waves] = field;
+    put_all(center, Vec3(gradient.col(0)), Vec3(gradient.col(1)), Vec3(gradient.col(2)), waves);
   }
   void put(const Numerics& numerics) {
-    const auto& [integrator, step, tick] = numerics;
-    put_all(integrator, step, tick);
+    const auto& [integrator, step, tick, control] = numerics;
+    put_all(integrator, step, tick, control);
   }
   void put(const BoxShape& box) {
     const auto& [center, size] = box;
@@ -103,15 +128,17 @@ class BitWriter {
   }
   void put(const BodyDescription& body) {
     const auto& [name, kind, material, shape, spacing, mass, radius, position, orientation,
-                 velocity, angular_velocity, springs] = body;
+                 velocity, angular_velocity, springs, velocity_field, displacement_field, jitter,
+                 seed, release, fixed] = body;
     put_all(name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
-            angular_velocity, springs);
+            angular_velocity, springs, velocity_field, displacement_field, jitter, seed, release,
+            fixed);
   }
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
-                 bodies, vat, numerics] = scene;
+                 bodies, vat, periodic, central_field, forces, dimensions, numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
-            vat, numerics);
+            vat, periodic, central_field, forces, dimensions, numerics);
   }
 
  private:

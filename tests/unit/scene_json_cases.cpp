@@ -10,6 +10,11 @@ const char* const kFullDocument = R"json({
   "title": "Every member",
   "description": "One body of each kind and shape",
   "gravity": [0.125, -0.25, -1.625],
+  "dimensions": 3,
+  "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
+  "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
+  "forces": {"gravity": false, "pressure": false, "viscosity": false, "springs": false,
+             "contacts": false, "walls": false},
   "materials": [
     {"name": "water", "density": 998.5,
      "liquid": {"stiffness": 90, "viscosity": 0.75, "support_radius": 0.125}},
@@ -26,22 +31,34 @@ const char* const kFullDocument = R"json({
     {"materials": ["rubber", "wood"], "stiffness": 800.5, "damping": 4.5, "threshold": 0.03125}
   ],
   "vat": {"min": [-2, -1.5, -0.5], "max": [3, 1.75, 2.5], "lid": true,
-          "motion": {"type": "slide", "axis": [0, 2, 0], "stroke": 0.2, "period": 2.5}},
-  "numerics": {"integrator": "runge_kutta_4", "step": 0.0005, "tick": 0.01},
+          "motion": {"type": "slide", "axis": [0, 2, 0], "stroke": 0.2, "period": 2.5},
+          "walls": {"y_min": {"no_slip": true, "velocity": [0.5, 0, -0.25]},
+                    "z_max": {"no_slip": true}}},
+  "numerics": {"integrator": "runge_kutta_4", "step": 0.0005, "tick": 0.01,
+               "control": "adaptive"},
   "bodies": [
     {"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.0625,
      "shape": {"type": "box", "center": [0.1, 0.2, 0.3], "size": [0.5, 0.25, 0.125]},
      "radius": 0.03, "position": [1, -0.5, 0.25], "orientation": [0.5, 0.5, 0.5, 0.5],
-     "velocity": [0.1, 0.2, 0.3]},
+     "velocity": [0.1, 0.2, 0.3], "jitter": 0.125, "seed": 4294967295,
+     "velocity_field": {"center": [0.1, 0.2, 0.3],
+                        "gradient": [[1, 2, 3], [4, 5, 6], [7, 8, 9.5]],
+                        "waves": [{"amplitude": [0.1, 0.2, 0.3], "wave_vector": [1, 2, 3],
+                                   "phase": 0.5},
+                                  {"amplitude": [0, 0, 1], "wave_vector": [4, 0, 0]}]},
+     "displacement_field": {"waves": [{"amplitude": [0.01, 0.02, 0.03],
+                                       "wave_vector": [3, 2, 1]}]}},
     {"name": "ball", "kind": "rigid", "material": "wood", "spacing": 0.05,
      "shape": {"type": "sphere", "center": [0.01, 0.02, 0.03], "radius": 0.125},
-     "mass": 2.5, "position": [-1, 0.5, 1.5], "angular_velocity": [1.5, -2.5, 3.5]},
+     "mass": 2.5, "position": [-1, 0.5, 1.5], "angular_velocity": [1.5, -2.5, 3.5],
+     "release": 0.75},
     {"name": "rod", "kind": "deformable", "material": "rubber", "spacing": 0.04,
      "shape": {"type": "cylinder", "center": [0, 0, 0.1], "axis": [1, 2, 2],
                "radius": 0.1, "height": 0.3},
      "position": [-1, -0.75, 1.5]},
     {"name": "wedge", "kind": "rigid", "material": "wood", "spacing": 0.05,
-     "shape": {"type": "mesh", "file": "meshes/wedge.obj", "scale": 0.5}, "position": [2, 0, 1]},
+     "shape": {"type": "mesh", "file": "meshes/wedge.obj", "scale": 0.5}, "position": [2, 0, 1],
+     "fixed": true},
     {"name": "tetra", "kind": "rigid", "material": "wood", "spacing": 0.05,
      "shape": {"type": "mesh", "source": "by hand",
                "vertices": [[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]],
@@ -113,8 +130,18 @@ std::vector<BodyDescription> full_bodies() {
   bodies[0].radius = 0.03;
   bodies[0].orientation = Quat(0.5, 0.5, 0.5, 0.5);
   bodies[0].velocity = {0.1, 0.2, 0.3};
+  bodies[0].velocity_field =
+      VectorField{{0.1, 0.2, 0.3},
+                  (Mat3() << 1, 2, 3, 4, 5, 6, 7, 8, 9.5).finished(),
+                  {{{0.1, 0.2, 0.3}, {1, 2, 3}, 0.5}, {{0, 0, 1}, {4, 0, 0}, 0}}};
+  bodies[0].displacement_field =
+      VectorField{Vec3::Zero(), Mat3::Zero(), {{{0.01, 0.02, 0.03}, {3, 2, 1}, 0}}};
+  bodies[0].jitter = 0.125;
+  bodies[0].seed = 4294967295;
   bodies[1].mass = 2.5;
   bodies[1].angular_velocity = {1.5, -2.5, 3.5};
+  bodies[1].release = 0.75;
+  bodies[3].fixed = true;
   bodies[5].springs = {{0, 1, {100.5, 0.125}, 0.2}, {2, 1, {50.5, 0}, {}}};
   return bodies;
 }
@@ -131,8 +158,13 @@ Scene full_scene() {
   scene.default_interface = {1500.5, 3.5};
   scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5}, 0.0625},
                       {{"rubber", "wood"}, {800.5, 4.5}, 0.03125}};
-  scene.vat = Vat{{-2, -1.5, -0.5}, {3, 1.75, 2.5}, true, SlideMotion{{0, 2, 0}, 0.2, 2.5}};
-  scene.numerics = {IntegratorId::runge_kutta_4, 0.0005, 0.01};
+  scene.vat = Vat{{-2, -1.5, -0.5}, {3, 1.75, 2.5}, true, SlideMotion{{0, 2, 0}, 0.2, 2.5}, {}};
+  scene.vat->walls[2] = {true, {0.5, 0, -0.25}};
+  scene.vat->walls[5].no_slip = true;
+  scene.periodic = Periodicity{{-2, -1, -2.5}, {3, 5, 6}, {true, false, false}};
+  scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
+  scene.forces = {false, false, false, false, false, false};
+  scene.numerics = {IntegratorId::runge_kutta_4, 0.0005, 0.01, StepControl::adaptive};
   scene.bodies = full_bodies();
   return scene;
 }

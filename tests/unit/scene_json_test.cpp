@@ -72,7 +72,7 @@ TEST(SceneJson, DefaultsOfTheParts) {
   Scene expected;
   expected.materials.emplace_back().name = "wood";
   expected.default_interface = {7, 0};
-  expected.vat = Vat{{0, 0, 0}, {1, 1, 1}, false, SlideMotion{Vec3::UnitX(), 0.5, 1}};
+  expected.vat = Vat{{0, 0, 0}, {1, 1, 1}, false, SlideMotion{Vec3::UnitX(), 0.5, 1}, {}};
   BodyDescription& rod = expected.bodies.emplace_back();
   rod.name = "rod";
   rod.kind = BodyKind::rigid;
@@ -106,6 +106,16 @@ std::set<std::string> required_members() {
                                  "/vat/max",
                                  "/vat/motion/type",
                                  "/vat/motion/stroke",
+                                 "/periodic/axes",
+                                 "/periodic/min",
+                                 "/periodic/max",
+                                 "/central_field/angular_frequency",
+                                 "/bodies/0/velocity_field/waves/0/amplitude",
+                                 "/bodies/0/velocity_field/waves/0/wave_vector",
+                                 "/bodies/0/velocity_field/waves/1/amplitude",
+                                 "/bodies/0/velocity_field/waves/1/wave_vector",
+                                 "/bodies/0/displacement_field/waves/0/amplitude",
+                                 "/bodies/0/displacement_field/waves/0/wave_vector",
                                  "/materials/0/name",
                                  "/materials/1/name",
                                  "/materials/2/name",
