@@ -19,7 +19,7 @@ namespace {
 constexpr Real kGrabFrequency = 2 * std::numbers::pi * 2;  // [rad/s] follows a hand
 constexpr Real kGrabMaxAcceleration = 200;                 // [m/s^2]
 constexpr Real kGrabReach = 3;                             // [particle diameters] held around it
-constexpr Real kGrabMaxDampingRatio = 0.5;  // of the held momentum in a step; 2 is unstable
+constexpr Real kGrabMaxDampingRatio = 0.5;  // of the held momentum in a step; 1 is unstable
 
 Error no_such_body() {
   return {"no_such_body", "/body", "there is no body with this id"};

@@ -2,16 +2,18 @@
 
 #include <vector>
 
+#include "core/integrators/damping_solve.h"
 #include "core/scene/scene.h"
 #include "core/state/state.h"
 #include "core/step/force_model.h"
 
 namespace vat {
 
-/// Arrays that the Runge-Kutta methods keep between steps; empty for the others.
+/// Arrays kept between steps by the methods that need them.
 struct IntegratorScratch {
   Configuration start;
-  Configuration increment;  ///< weighted sum of the stages' rates
+  Configuration increment;  ///< weighted sum of a Runge-Kutta method's rates
+  DampingScratch damping;   ///< of velocity Verlet
 };
 
 /// One step of `dt` seconds from `time`. Free particles and rigid bodies advance together, and
@@ -21,7 +23,7 @@ struct IntegratorScratch {
 /// |---|---|---|
 /// | explicit_euler | 1 | 1 |
 /// | symplectic_euler | 1 | 1 |
-/// | velocity_verlet | 1 | 2 (1 in damping, which is taken at the half step) |
+/// | velocity_verlet | 1 | 2 |
 /// | heun | 2 | 2 |
 /// | runge_kutta_4 | 4 | 4 |
 void take_step(IntegratorId id, const ForceModel& force_model, State& state, Real time, Real dt,

@@ -6,6 +6,7 @@
 
 #include "core/model/contacts.h"
 #include "core/rigid/mass_properties.h"
+#include "core/scene/step_limits.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -118,6 +119,17 @@ void add_rigid_bodies(Model& model) {
   }
 }
 
+ModelDamping find_damping(const Model& model) {
+  std::vector<const SampledBody*> samples;
+  for (const ModelBody& body : model.bodies) samples.push_back(body.sample.get());
+  ModelDamping damping;
+  for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples)) {
+    if (part.bound.rate > 0) damping.bounds.push_back(part.bound);
+  }
+  damping.any = !damping.bounds.empty();
+  return damping;
+}
+
 }  // namespace
 
 LiquidModel::LiquidModel(const Material& material)
@@ -142,6 +154,7 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
   add_springs(*model);
   add_rigid_bodies(*model);
   compile_contacts(*model);
+  model->damping = find_damping(*model);
   model->plan = make_step_plan(*model);
   return model;
 }

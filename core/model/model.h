@@ -11,6 +11,7 @@
 #include "core/kernels/viscosity_kernel.h"
 #include "core/scene/sampling.h"
 #include "core/scene/scene.h"
+#include "core/scene/stable_step.h"
 #include "core/step/step_plan.h"
 #include "core/types.h"
 
@@ -73,6 +74,12 @@ struct RigidModel {
   std::array<int, 3> splitting;  ///< principal axes: two with the closest moments, and the third
 };
 
+/// The forces of a model that depend on velocities.
+struct ModelDamping {
+  bool any = false;
+  std::vector<Oscillation> bounds;  ///< of the parts that have such forces
+};
+
 /// A compiled scene: constant while it is stepped. Particles are ordered liquid, deformable, rigid,
 /// each body contiguous.
 struct Model {
@@ -109,6 +116,7 @@ struct Model {
   Real contact_reach = 0;      ///< [m] no contact between particles further apart than this
   bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
+  ModelDamping damping;
 
   StepPlan plan;
 

@@ -185,26 +185,22 @@ std::size_t count_flattest_side(const SampledBody& body, const Quat& orientation
   return most;
 }
 
-std::vector<StepLimit> find_contact_limits(const Scene& scene,
-                                           const std::vector<SampledBody>& samples) {
+void add_contacts(const Scene& scene, std::span<const SampledBody* const> samples,
+                  std::vector<OscillatingPart>& parts) {
   std::vector<ContactBody> bodies;
   for (std::size_t b = 0; b < samples.size(); ++b) {
-    bodies.push_back(describe(scene, scene.bodies[b], samples[b]));
+    bodies.push_back(describe(scene, scene.bodies[b], *samples[b]));
   }
-  std::vector<StepLimit> limits;
   for (const LawInUse& law : find_worst(scene, bodies)) {
-    const Real step = stable_step(
-        scene.numerics.integrator,
-        {law.constants.stiffness * law.inverse_mass, law.constants.damping * law.inverse_mass});
-    if (!std::isfinite(step)) continue;
+    if (law.inverse_mass == 0) continue;
     std::string names = '"' + scene.bodies[law.worst[0]].name + '"';
     if (law.worst[1] != law.worst[0]) names += " and \"" + scene.bodies[law.worst[1]].name + '"';
-    limits.push_back({law.path,
-                      step > 0 ? "contacts of " + names + " may become unstable"
-                               : "undamped contacts gain energy with this integrator",
-                      step});
+    parts.push_back(
+        {law.path,
+         "contacts of " + names + " may become unstable",
+         "undamped contacts gain energy with this integrator",
+         {law.constants.stiffness * law.inverse_mass, law.constants.damping * law.inverse_mass}});
   }
-  return limits;
 }
 
 }  // namespace vat

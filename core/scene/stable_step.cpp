@@ -55,7 +55,7 @@ Real explicit_euler_limit(const Oscillation& oscillation) {
 }
 
 /// The root of omega2 dt^2 + 2 rate dt = 4, in the form that is exact for either of them zero.
-Real leapfrog_limit(const Oscillation& oscillation) {
+Real symplectic_euler_limit(const Oscillation& oscillation) {
   const Real rate = oscillation.rate;
   return 4 / (rate + std::sqrt(rate * rate + 4 * oscillation.omega2));
 }
@@ -68,8 +68,9 @@ Real stable_step(IntegratorId integrator, const Oscillation& oscillation) {
   }
   switch (integrator) {
     case IntegratorId::symplectic_euler:
+      return symplectic_euler_limit(oscillation);
     case IntegratorId::velocity_verlet:
-      return leapfrog_limit(oscillation);
+      return 2 / std::sqrt(oscillation.omega2);
     case IntegratorId::explicit_euler:
       return explicit_euler_limit(oscillation);
     case IntegratorId::heun:

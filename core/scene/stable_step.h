@@ -14,10 +14,10 @@ inline Oscillation operator+(const Oscillation& a, const Oscillation& b) {
 }
 
 /// The step [s] up to which the integrator does not let the oscillation grow: infinite where
-/// nothing oscillates, 0 where it grows at any step (undamped, with explicit Euler or Heun).
-/// Symplectic Euler and velocity Verlet take the damping at the velocity half a step before, so
-/// both need (omega dt)^2 + 2 rate dt <= 4; of the others it is where their stability polynomial
-/// leaves the unit circle.
+/// nothing grows, 0 where it grows at any step (undamped, with explicit Euler or Heun). Symplectic
+/// Euler takes the damping at the velocity half a step before, and needs (omega dt)^2 + 2 rate dt
+/// <= 4; velocity Verlet solves for it, and needs omega dt <= 2; of the others it is where their
+/// stability polynomial leaves the unit circle.
 Real stable_step(IntegratorId integrator, const Oscillation& oscillation);
 
 }  // namespace vat

@@ -63,53 +63,58 @@ SpringBound bound_springs(const SampledBody& body) {
 }
 
 /// The strongest damping limits some integrators and the weakest others.
-void limit_springs(const Scene& scene, std::size_t index, const SampledBody& body,
-                   std::vector<StepLimit>& limits) {
+void add_springs(std::size_t index, const SampledBody& body, std::vector<OscillatingPart>& parts) {
   const SpringBound bound = bound_springs(body);
-  const IntegratorId integrator = scene.numerics.integrator;
-  Real step = stable_step(integrator, bound.greatest);
+  const auto add = [&](const Oscillation& oscillation) {
+    parts.push_back({body_path(index), "its springs may become unstable",
+                     "undamped springs gain energy with this integrator", oscillation});
+  };
+  add(bound.greatest);
   if (bound.greatest.omega2 > 0) {
-    const Oscillation weakest{bound.greatest.omega2, bound.least_ratio * bound.greatest.omega2};
-    step = std::min(step, stable_step(integrator, weakest));
-  }
-  if (std::isfinite(step)) {
-    limits.push_back({body_path(index),
-                      step > 0 ? "its springs may become unstable"
-                               : "undamped springs gain energy with this integrator",
-                      step});
+    add({bound.greatest.omega2, bound.least_ratio * bound.greatest.omega2});
   }
 }
 
-void limit_liquid(const Scene& scene, std::size_t index, std::vector<StepLimit>& limits) {
+void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPart>& parts) {
   const Material& material = material_of(scene, scene.bodies[index]);
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
   const Real sound = kVerletLimit / kSoundLimit * std::sqrt(liquid.stiffness) / h;
   const Real viscosity = liquid.viscosity / material.density;
-  const Oscillation oscillation{sound * sound, kVerletLimit / kViscousLimit * viscosity / (h * h)};
-  const Real step = stable_step(scene.numerics.integrator, oscillation);
-  if (std::isfinite(step)) {
-    limits.push_back({body_path(index),
-                      step > 0 ? "sound or viscosity in the liquid becomes unstable"
-                               : "sound in an inviscid liquid gains energy with this integrator",
-                      step});
-  }
+  parts.push_back({body_path(index),
+                   "sound or viscosity in the liquid becomes unstable",
+                   "sound in an inviscid liquid gains energy with this integrator",
+                   {sound * sound, kVerletLimit / kViscousLimit * viscosity / (h * h)}});
 }
 
 }  // namespace
 
-std::vector<StepLimit> find_step_limits(const Scene& scene,
-                                        const std::vector<SampledBody>& samples) {
-  std::vector<StepLimit> limits;
+std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
+                                                    std::span<const SampledBody* const> samples) {
+  std::vector<OscillatingPart> parts;
   for (std::size_t b = 0; b < samples.size(); ++b) {
     if (scene.bodies[b].kind == BodyKind::liquid) {
-      limit_liquid(scene, b, limits);
+      add_liquid(scene, b, parts);
     } else {
-      limit_springs(scene, b, samples[b], limits);
+      add_springs(b, *samples[b], parts);
     }
   }
-  for (StepLimit& limit : find_contact_limits(scene, samples)) {
-    limits.push_back(std::move(limit));
+  add_contacts(scene, samples, parts);
+  return parts;
+}
+
+std::vector<StepLimit> find_step_limits(const Scene& scene,
+                                        const std::vector<SampledBody>& samples) {
+  std::vector<const SampledBody*> bodies;
+  for (const SampledBody& sample : samples) bodies.push_back(&sample);
+  std::vector<StepLimit> limits;
+  for (OscillatingPart& part : find_oscillating_parts(scene, bodies)) {
+    const Real step = stable_step(scene.numerics.integrator, part.bound);
+    if (!std::isfinite(step)) continue;
+    const bool is_same = !limits.empty() && limits.back().path == part.path;
+    if (is_same && limits.back().step <= step) continue;
+    if (is_same) limits.pop_back();
+    limits.push_back({std::move(part.path), std::move(step > 0 ? part.reason : part.gains), step});
   }
   return limits;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,18 @@ struct StepLimit {
   std::string reason;  ///< "... become unstable"
   Real step = 0;       ///< [s]; 0: no step is stable with this integrator
 };
+
+/// A part of a scene that oscillates or decays, as an upper bound.
+struct OscillatingPart {
+  std::string path;    ///< JSON pointer to what makes it oscillate
+  std::string reason;  ///< "... become unstable", where a step is too long
+  std::string gains;   ///< "... gain energy", with an integrator for which no step is short enough
+  Oscillation bound;
+};
+
+/// The parts of the scene that limit its steps; see find_step_limits().
+std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
+                                                    std::span<const SampledBody* const> samples);
 
 /// The limits of the scene's springs, sound and viscosity (by body) and of its contacts (by
 /// interface, the default one included, and by self-contact), for its integrator. `samples` are the

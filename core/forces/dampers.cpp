@@ -1,0 +1,129 @@
+#include "core/forces/dampers.h"
+
+#include "core/forces/contact_search.h"
+#include "core/forces/pair_direction.h"
+#include "core/forces/vat_motion.h"
+#include "core/step/force_model.h"
+
+namespace vat {
+namespace {
+
+void add_spring_dampers(const Model& model, const Configuration& at, Index i,
+                        std::vector<Damper>& dampers) {
+  for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+    const SpringEnd& spring = model.spring_ends[s];
+    if (spring.damping == 0) continue;
+    const Vec3 x = at.position[i] - at.position[spring.other];
+    dampers.push_back({spring.other, spring.damping, pair_direction(x, x.norm(), i, spring.other)});
+  }
+}
+
+void add_contact_dampers(const Model& model, const Workspace& work, const Configuration& at,
+                         Index i, std::vector<Damper>& dampers) {
+  for_each_contact(model, work, at, i, [&](const Contact& contact) {
+    if (contact.damping == 0) return;
+    const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other);
+    const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
+    const Real push =
+        contact.stiffness * (contact.threshold - contact.distance) - contact.damping * speed;
+    if (push > 0) dampers.push_back({contact.other, contact.damping, n});
+  });
+}
+
+void add_wall_dampers(const Model& model, const Configuration& at, Real time, Index i,
+                      std::vector<Damper>& dampers) {
+  const ContactLaw& law = model.wall_laws[model.material[i]];
+  if (law.damping == 0) return;
+  const Vat& vat = *model.scene.vat;
+  const VatMotion motion = vat_motion(vat, time);
+  const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
+  for (int wall = 0; wall < wall_count(vat); ++wall) {
+    const Real overlap = threshold - wall_distance(vat, motion, wall, at.position[i]);
+    if (overlap <= 0) continue;
+    const Vec3 n = wall_normal(wall);
+    const Real speed = (at.velocity[i] - motion.velocity).dot(n);
+    if (law.stiffness * overlap > law.damping * speed) {
+      dampers.push_back({kNoParticle, law.damping, n});
+    }
+  }
+}
+
+}  // namespace
+
+void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time) {
+  const Model& model = f.model;
+  blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
+  for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
+    DamperBlock& block = blocks_[begin / kBlockSize];
+    block.dampers.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Index>(k);
+      block.begin[k - begin] = static_cast<Index>(block.dampers.size());
+      if (i >= model.liquid_count && i < model.free_count) {
+        add_spring_dampers(model, at, i, block.dampers);
+      }
+      if (model.contact_reach > 0) add_contact_dampers(model, f.work, at, i, block.dampers);
+      if (model.scene.vat) add_wall_dampers(model, at, time, i, block.dampers);
+    }
+    block.begin[end - begin] = static_cast<Index>(block.dampers.size());
+  });
+  collect_viscosity(f);
+}
+
+void DampingMatrix::collect_viscosity(const ForceModel& f) {
+  const Model& model = f.model;
+  viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
+  for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
+    std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
+    viscosities.resize(pairs.begin[end - begin]);
+    for (std::size_t s = begin; s < end; ++s) {
+      const LiquidRecord& own = f.work.liquid_records[s];
+      const Index i = f.work.liquid.grid.order()[s];
+      const LiquidModel& liquid = *model.liquids[model.material[i]];
+      for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
+        const LiquidRecord& other = f.work.liquid_records[pairs.slots[k]];
+        const Real r = (own.position - other.position).norm();
+        viscosities[k] =
+            liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
+      }
+    }
+  });
+}
+
+void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
+                             std::vector<Vec3>& force) {
+  for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
+    const DamperBlock& block = blocks_[begin / kBlockSize];
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3 sum = Vec3::Zero();
+      for (Index k = block.begin[i - begin]; k < block.begin[i - begin + 1]; ++k) {
+        const Damper& damper = block.dampers[k];
+        Real speed = w[i].dot(damper.direction);
+        if (damper.other != kNoParticle) {
+          speed = (w[i] - w[damper.other]).dot(damper.direction);
+        }
+        sum -= damper.strength * speed * damper.direction;
+      }
+      force[i] = sum;
+    }
+  });
+  if (f.model.liquid_count == 0) return;
+
+  const std::span<const Index> order = f.work.liquid.grid.order();
+  by_slot_.resize(order.size());
+  for (std::size_t s = 0; s < order.size(); ++s) by_slot_[s] = w[order[s]];
+  for_blocks(f.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
+    const std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
+    for (std::size_t s = begin; s < end; ++s) {
+      Vec3 sum = Vec3::Zero();
+      for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
+        sum += viscosities[k] * (by_slot_[pairs.slots[k]] - by_slot_[s]);
+      }
+      force[order[s]] += sum;
+    }
+  });
+}
+
+}  // namespace vat

@@ -1,0 +1,145 @@
+#include "core/integrators/damping_solve.h"
+
+#include <gtest/gtest.h>
+
+#include "core/integrators/integrator.h"
+#include "tests/support/force_probe.h"
+#include "tests/support/scenes.h"
+#include "tests/support/thread_runner.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kStep = 0.01;
+
+/// A block of 27 particles whose springs are damped far beyond what explicit steps of kStep bear,
+/// set in motion so that they move against one another.
+Scene make_damped_block() {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
+  scene.materials = {test::make_material("gum")};
+  ParticleShape shape = test::make_particles(test::make_lattice(3, 3, 3, 0.1), 0.1);
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    const auto x = static_cast<Real>(i);
+    shape.velocities.push_back(0.1 * Vec3(std::sin(x), std::cos(2 * x), std::sin(3 * x)));
+  }
+  scene.bodies = {test::make_body("block", BodyKind::deformable, "gum", shape, 0.01)};
+  const auto& positions = std::get<ParticleShape>(scene.bodies[0].shape).positions;
+  scene.bodies[0].springs = test::join_near(positions, 0.15, {1, 5});
+  return scene;
+}
+
+/// The same for a liquid, nu dt / h^2 = 1.
+Scene make_viscous_drop() {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
+  scene.materials = {test::make_liquid("tar", 1000, {1, 4000, 0.2})};
+  ParticleShape shape = test::make_particles(test::make_lattice(6, 6, 6, 0.1), 1);
+  for (const Vec3& x : shape.positions) shape.velocities.push_back({x.z(), 0, -x.x() * x.x()});
+  scene.bodies = {test::make_body("drop", BodyKind::liquid, "tar", shape, 0.05)};
+  return scene;
+}
+
+/// Two rigid bars and a ball of the block's kind that press one another through strong dampers.
+Scene make_damped_contacts() {
+  Scene scene = make_damped_block();
+  scene.materials.push_back(test::make_material("steel"));
+  scene.default_interface = {10, 50};
+  for (const Real side : {-1.0, 1.0}) {
+    ParticleShape bar = test::make_particles(test::make_lattice(5, 1, 1, 0.1), 0.2);
+    scene.bodies.push_back(
+        test::make_body(side < 0 ? "low" : "high", BodyKind::rigid, "steel", bar, 0.05));
+    scene.bodies.back().position = Vec3(0.03, 0.02, side * 0.155);
+    scene.bodies.back().velocity = Vec3(0, 0, -side);
+    scene.bodies.back().angular_velocity = Vec3(0, side, 0.5);
+  }
+  return scene;
+}
+
+/// Takes one step of velocity Verlet and returns how far the forces that it ended with are from
+/// those at the velocities at its end.
+Real force_error(const Scene& scene) {
+  test::ForceProbe probe(scene);
+  const Model& model = probe.model();
+  EXPECT_TRUE(must_solve_damping(model, kStep));
+  const Controls controls;
+  Workspace work;
+  const ForceModel force_model{model, controls, work};
+  IntegratorScratch scratch;
+  State state = probe.state();
+  state.forces_current = false;
+  take_step(IntegratorId::velocity_verlet, force_model, state, 0, kStep, scratch);
+  const std::vector<Vec3> kept = state.forces.particle;
+  force_model.evaluate(state.now, kStep, state.forces);
+  Real wrong = 0;
+  Real whole = 0;
+  for (Index i = 0; i < model.free_count; ++i) {
+    wrong += (kept[i] - state.forces.particle[i]).squaredNorm();
+    whole += kept[i].squaredNorm();
+  }
+  return std::sqrt(wrong / whole);
+}
+
+TEST(DampingSolve, VelocitiesAreThoseThatTheirOwnDampingLeadsTo) {
+  EXPECT_LT(force_error(make_damped_block()), 0.01);
+  EXPECT_LT(force_error(make_viscous_drop()), 0.01);
+}
+
+Vec3 momentum_of(const Diagnostics& d) {
+  Vec3 sum = Vec3::Zero();
+  for (const BodyDiagnostics& body : d.bodies) sum += body.linear_momentum;
+  return sum;
+}
+Vec3 angular_momentum_of(const Diagnostics& d) {
+  Vec3 sum = Vec3::Zero();
+  for (const BodyDiagnostics& body : d.bodies) sum += body.angular_momentum;
+  return sum;
+}
+
+TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
+  for (const Scene& scene : {make_damped_block(), make_viscous_drop(), make_damped_contacts()}) {
+    Simulation simulation = test::make_simulation(scene);
+    const Diagnostics start = simulation.diagnostics();
+    Real energy = start.kinetic_energy + start.elastic_energy + start.contact_energy;
+    for (int n = 0; n < 100; ++n) {
+      ASSERT_TRUE(simulation.advance(1).events.empty());
+      const Diagnostics now = simulation.diagnostics();
+      const Real left = now.kinetic_energy + now.elastic_energy + now.contact_energy;
+      // Compression of a liquid is an energy that diagnostics do not count.
+      if (scene.bodies[0].kind != BodyKind::liquid) {
+        EXPECT_LT(left, energy * (1 + 1e-9)) << n;
+      }
+      energy = left;
+      EXPECT_LT((momentum_of(now) - momentum_of(start)).norm(), 1e-12);
+      // Viscosity acts along velocities, not along the line between particles.
+      if (scene.bodies[0].kind != BodyKind::liquid) {
+        EXPECT_LT((angular_momentum_of(now) - angular_momentum_of(start)).norm(), 1e-12);
+      }
+    }
+    EXPECT_LT(energy, 0.5 * start.kinetic_energy);
+  }
+}
+
+TEST(DampingSolve, LightDampingNeedsNone) {
+  Scene scene = make_damped_block();
+  scene.bodies[0].springs =
+      test::join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.15, {1, 0.01});
+  EXPECT_FALSE(must_solve_damping(test::ForceProbe(scene).model(), kStep));
+}
+
+TEST(DampingSolve, GivesTheSameBitsForAnyNumberOfThreads) {
+  std::vector<std::uint64_t> hashes;
+  for (const unsigned threads : {1U, 2U, 4U}) {
+    test::ThreadRunner runner(threads);
+    Scene scene = make_viscous_drop();
+    ParticleShape shape = test::make_particles(test::make_lattice(9, 9, 9, 0.1), 1);
+    for (const Vec3& x : shape.positions) shape.velocities.push_back({x.z(), x.x(), 0});
+    scene.bodies[0].shape = shape;
+    Simulation simulation = test::make_simulation(scene, &runner);
+    simulation.advance(5);
+    hashes.push_back(simulation.state_hash());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+}  // namespace
+}  // namespace vat
