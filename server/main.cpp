@@ -2,7 +2,6 @@
 #include <exception>
 #include <iostream>
 
-#include "server/cli/bench.h"
 #include "server/cli/command.h"
 #include "server/cli/serve.h"
 #include "server/cli/simulate.h"
@@ -22,7 +21,6 @@ int run(int argc, char** argv) {
   vat::add_serve_command(app, exit_code);
   vat::add_simulate_command(app, exit_code);
   vat::add_validate_command(app, exit_code);
-  vat::add_bench_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

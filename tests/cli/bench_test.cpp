@@ -7,11 +7,11 @@
 namespace vat::test {
 namespace {
 
-TEST(Bench, RowsAreConsistent) {
+TEST(BenchSpeed, RowsAreConsistent) {
   const TemporaryFolder folder;
   const std::string file = folder.file("bench.csv");
   const ProgramResult result =
-      run_vat({"bench", "--quick", "--output", file, test_scene("pair"), test_scene("mixed")});
+      run_bench({"speed", "--quick", "--output", file, test_scene("pair"), test_scene("mixed")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Table table = read_csv(file);
   ASSERT_GE(table.rows.size(), 2u);
@@ -31,10 +31,61 @@ TEST(Bench, RowsAreConsistent) {
   }
 }
 
-TEST(Bench, FailedRunIsAnError) {
-  const ProgramResult result = run_vat({"bench", "--quick", test_scene("unstable")});
+TEST(BenchSpeed, FailedRunIsAnError) {
+  const ProgramResult result = run_bench({"speed", "--quick", test_scene("unstable")});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, testing::HasSubstr("unstable.json/bodies/1: a step failed"));
+}
+
+TEST(BenchSpeed, UnknownSceneListsTheCatalogue) {
+  const ProgramResult result = run_bench({"speed", "atlantis"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, testing::HasSubstr("atlantis: is not in the catalogue, which has"));
+}
+
+TEST(BenchUsage, WrongWordsAreNamed) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{}, "subcommand"},
+      {{"conquer"}, "conquer"},
+      {{"speed", "--output", "bench.txt"}, "must end in .csv"},
+      {{"speed", "--fast"}, "--fast"},
+      {{"validate", "--threads", "0"}, "--threads"},
+      {{"validate", "--case"}, "--case"},
+  };
+  for (const auto& [arguments, named] : wrong) {
+    const ProgramResult result = run_bench(arguments);
+    EXPECT_EQ(result.exit_code, 2) << named;
+    EXPECT_THAT(result.err, testing::HasSubstr(named));
+  }
+}
+
+TEST(BenchValidate, ListedCasesAreThoseThatAnErrorNames) {
+  const ProgramResult list = run_bench({"validate", "--list"});
+  EXPECT_EQ(list.exit_code, 0);
+  const ProgramResult unknown = run_bench({"validate", "--case", "DEF-99"});
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_THAT(unknown.err, testing::StartsWith("DEF-99: there is no such case; there are"));
+  for (const std::string& name : lines_of(list.out)) {
+    EXPECT_THAT(unknown.err, testing::HasSubstr(' ' + name));
+  }
+}
+
+TEST(BenchValidate, TableIsWrittenThreeTimes) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"validate", "--quick", "--case", "DEF-1", "--output", folder.file("results")});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const Table table = read_csv(folder.file("results/validation.csv"));
+  ASSERT_FALSE(table.rows.empty());
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_EQ(table.text(row, "case"), "DEF-1");
+    EXPECT_EQ(table.text(row, "passed"), "true");
+    EXPECT_EQ(table.text(row, "state hash").size(), 16u);
+  }
+  // A heading, an empty line, the columns and a rule before the rows.
+  EXPECT_EQ(lines_of(read_file(folder.file("results/validation.md"))).size(),
+            table.rows.size() + 4);
+  EXPECT_THAT(read_file(folder.file("results/validation.json")), testing::StartsWith("[\n"));
 }
 
 }  // namespace

@@ -53,6 +53,14 @@ ProgramResult run_vat(const std::vector<std::string>& arguments) {
   return RunningProgram(arguments).finish();
 }
 
+ProgramResult run_bench(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {VAT_BENCH_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const TemporaryFolder folder;
+  const int exit_code = wait_for(start(words, folder.file("out"), folder.file("err")));
+  return {exit_code, read_file(folder.file("out")), read_file(folder.file("err"))};
+}
+
 ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>& arguments) {
   // Without the trap the system would kill the program, instead of failing its writes.
   const std::string script = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec \"$@\"";

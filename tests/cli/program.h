@@ -15,6 +15,8 @@ struct ProgramResult {
 
 /// Runs the built program to its end.
 ProgramResult run_vat(const std::vector<std::string>& arguments);
+/// The same for `vat bench`.
+ProgramResult run_bench(const std::vector<std::string>& arguments);
 
 /// The same where no file, standard output and error included, may grow beyond `blocks` of
 /// 512 bytes, as on a disk that fills up.

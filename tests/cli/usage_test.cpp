@@ -67,9 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--dt", "1e-400"}), "--dt"},
                     WrongUse{with_scene({"--every", "inf"}), "--every"},
                     WrongUse{with_scene({"another.json"}), "another.json"},
-                    WrongUse{with_scene({"--until"}), "--until"},
-                    WrongUse{{"bench", "--output", "bench.txt"}, "must end in .csv"},
-                    WrongUse{{"bench", "--fast"}, "--fast"}));
+                    WrongUse{with_scene({"--until"}), "--until"}));
 
 TEST(Usage, VersionIsPrinted) {
   const ProgramResult result = run_vat({"--version"});
@@ -106,7 +104,7 @@ TEST(Usage, StepThatIsTooShortIsExplained) {
 }
 
 TEST(Usage, UnknownSceneListsTheCatalogue) {
-  for (const char* command : {"simulate", "validate", "bench"}) {
+  for (const char* command : {"simulate", "validate"}) {
     const ProgramResult result = run_vat({command, "atlantis"});
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.err, HasSubstr("atlantis: is not in the catalogue, which has"));

@@ -1,4 +1,4 @@
-#include "server/cli/bench.h"
+#include "tests/bench/speed.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -8,18 +8,18 @@
 #include <thread>
 #include <vector>
 
-#include "server/cli/bench_measure.h"
-#include "server/cli/bench_report.h"
 #include "server/cli/command.h"
 #include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"
 #include "server/output/output_file.h"
+#include "tests/bench/speed_measure.h"
+#include "tests/bench/speed_report.h"
 
-namespace vat {
+namespace vat::bench {
 
 namespace {
 
-constexpr BenchSettings kQuick{.warm_up = 0.2, .measured = 0.2, .repetitions = 1};
+constexpr SpeedSettings kQuick{.warm_up = 0.2, .measured = 0.2, .repetitions = 1};
 
 struct Options {
   std::vector<std::string> scenes;
@@ -38,12 +38,12 @@ std::vector<std::size_t> thread_counts() {
 }
 
 /// Adds a row for each number of threads; fails where their states differ.
-Status bench_scene(const Scene& scene, const BenchSettings& settings, std::vector<BenchRow>& rows) {
+Status time_scene(const Scene& scene, const SpeedSettings& settings, std::vector<SpeedRow>& rows) {
   std::optional<std::uint64_t> expected_hash;
   for (const std::size_t threads : thread_counts()) {
-    const Result<BenchRow> row = measure(scene, threads, settings);
+    const Result<SpeedRow> row = measure(scene, threads, settings);
     if (!row) return row.errors();
-    print_bench_row(std::cout, row.value());
+    print_speed_row(std::cout, row.value());
     rows.push_back(row.value());
     if (!expected_hash) expected_hash = row.value().state_hash;
     if (row.value().state_hash != *expected_hash) {
@@ -55,15 +55,15 @@ Status bench_scene(const Scene& scene, const BenchSettings& settings, std::vecto
   return {};
 }
 
-/// Benches the scenes in order. The path of every error begins with the scene's name.
-Result<std::vector<BenchRow>> bench_scenes(const std::vector<std::string>& names,
-                                           const Options& options) {
-  std::vector<BenchRow> rows;
-  print_bench_header(std::cout);
+/// Times the scenes in order. The path of every error begins with the scene's name.
+Result<std::vector<SpeedRow>> time_scenes(const std::vector<std::string>& names,
+                                          const Options& options) {
+  std::vector<SpeedRow> rows;
+  print_speed_header(std::cout);
   for (const std::string& name : names) {
     const Result<Scene> scene = load_scene(name, options.scenes_folder);
     const Status done =
-        scene ? bench_scene(scene.value(), options.quick ? kQuick : BenchSettings{}, rows)
+        scene ? time_scene(scene.value(), options.quick ? kQuick : SpeedSettings{}, rows)
               : Status(scene.errors());
     if (done) continue;
     Errors errors = done.errors();
@@ -75,14 +75,14 @@ Result<std::vector<BenchRow>> bench_scenes(const std::vector<std::string>& names
   return rows;
 }
 
-Status write_csv(OutputFile& file, const std::vector<BenchRow>& rows) {
-  std::string text = bench_csv_header();
-  for (const BenchRow& row : rows) text += bench_csv_row(row);
+Status write_csv(OutputFile& file, const std::vector<SpeedRow>& rows) {
+  std::string text = speed_csv_header();
+  for (const SpeedRow& row : rows) text += speed_csv_row(row);
   if (Status written = file.append(text); !written) return written;
   return file.commit();
 }
 
-int bench(const Options& options) {
+int speed(const Options& options) {
   std::vector<std::string> names = options.scenes;
   if (names.empty()) {
     Result<std::vector<std::string>> all = catalogue_names(options.scenes_folder);
@@ -95,8 +95,8 @@ int bench(const Options& options) {
     if (!file) return fail(options.output, file.errors());
     csv = std::move(file).value();
   }
-  const Result<std::vector<BenchRow>> rows = bench_scenes(names, options);
-  if (!rows) return fail("bench", rows.errors());
+  const Result<std::vector<SpeedRow>> rows = time_scenes(names, options);
+  if (!rows) return fail("speed", rows.errors());
   if (!csv) return kExitOk;
   const Status written = write_csv(*csv, rows.value());
   return written ? kExitOk : fail(options.output, written.errors());
@@ -104,9 +104,9 @@ int bench(const Options& options) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, int& exit_code) {
+void add_speed_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "bench", "Time scenes with 1, 2 and 4 threads, from a typical state, median of 5 runs");
+      "speed", "Time scenes with 1, 2 and 4 threads, from a typical state, median of 5 runs");
   const auto options = std::make_shared<Options>();
   command->add_option("scenes", options->scenes, "Scenes; default: the whole catalogue");
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
@@ -116,7 +116,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->footer(
       "Exit codes: 0 fine, 1 invalid scene, failed run or states that differ between "
       "thread counts, 2 wrong usage.");
-  command->callback([options, &exit_code] { exit_code = bench(*options); });
+  command->callback([options, &exit_code] { exit_code = speed(*options); });
 }
 
-}  // namespace vat
+}  // namespace vat::bench

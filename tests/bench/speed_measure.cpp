@@ -1,4 +1,4 @@
-#include "server/cli/bench_measure.h"
+#include "tests/bench/speed_measure.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include "server/cli/simulate_run.h"
 #include "server/task_runner.h"
 
-namespace vat {
+namespace vat::bench {
 
 namespace {
 
@@ -28,7 +28,7 @@ Result<std::uint64_t> advance_by(Simulation& simulation, Real interval) {
 }
 
 /// One timed repetition; gives the wall time of a step [ms].
-Result<Real> time_repetition(Simulation& simulation, BenchRow& row, Real interval) {
+Result<Real> time_repetition(Simulation& simulation, SpeedRow& row, Real interval) {
   const Real begin_time = simulation.time();
   const auto begin = std::chrono::steady_clock::now();
   const Result<std::uint64_t> steps = advance_by(simulation, interval);
@@ -39,8 +39,8 @@ Result<Real> time_repetition(Simulation& simulation, BenchRow& row, Real interva
   return wall.count() / static_cast<Real>(row.steps);
 }
 
-BenchRow describe_run(const Simulation& simulation, std::size_t threads) {
-  BenchRow row;
+SpeedRow describe_run(const Simulation& simulation, std::size_t threads) {
+  SpeedRow row;
   row.scene = simulation.scene().name;
   row.integrator = to_string(simulation.scene().numerics.integrator);
   row.particles = simulation.particle_count();
@@ -57,15 +57,15 @@ Real median_of_sorted(const std::vector<Real>& values) {
 
 }  // namespace
 
-Real BenchRow::particle_steps_per_second() const {
+Real SpeedRow::particle_steps_per_second() const {
   return static_cast<Real>(particles) / (median_ms_per_step * 1e-3);
 }
 
-Real BenchRow::real_time_factor() const {
+Real SpeedRow::real_time_factor() const {
   return simulated / (median_ms_per_step * 1e-3 * static_cast<Real>(steps));
 }
 
-Result<BenchRow> measure(const Scene& scene, std::size_t threads, const BenchSettings& settings) {
+Result<SpeedRow> measure(const Scene& scene, std::size_t threads, const SpeedSettings& settings) {
   ThreadPoolRunner runner(threads);
   Result<Simulation> created = Simulation::create(scene, &runner);
   if (!created) return created.errors();
@@ -73,7 +73,7 @@ Result<BenchRow> measure(const Scene& scene, std::size_t threads, const BenchSet
   const Result<std::uint64_t> warmed_up = advance_by(simulation, settings.warm_up);
   if (!warmed_up) return warmed_up.errors();
   const Snapshot start = simulation.snapshot();
-  BenchRow row = describe_run(simulation, threads);
+  SpeedRow row = describe_run(simulation, threads);
   std::vector<Real> times;
   for (int i = 0; i < settings.repetitions; ++i) {
     simulation.restore(start);
@@ -92,4 +92,4 @@ Result<BenchRow> measure(const Scene& scene, std::size_t threads, const BenchSet
   return row;
 }
 
-}  // namespace vat
+}  // namespace vat::bench

@@ -1,4 +1,4 @@
-#include "server/cli/bench_report.h"
+#include "tests/bench/speed_report.h"
 
 #include <array>
 #include <iomanip>
@@ -6,7 +6,7 @@
 
 #include "server/output/text.h"
 
-namespace vat {
+namespace vat::bench {
 
 namespace {
 
@@ -34,12 +34,12 @@ void print_columns(std::ostream& out, const std::array<std::string, kColumnCount
 
 }  // namespace
 
-void print_bench_header(std::ostream& out) {
+void print_speed_header(std::ostream& out) {
   print_columns(out, {"scene", "integrator", "particles", "springs", "threads", "steps", "ms/step",
                       "min", "part. steps/s", "real time", "hash"});
 }
 
-void print_bench_row(std::ostream& out, const BenchRow& row) {
+void print_speed_row(std::ostream& out, const SpeedRow& row) {
   print_columns(out, {row.scene, row.integrator, std::to_string(row.particles),
                       std::to_string(row.springs), std::to_string(row.threads),
                       std::to_string(row.steps), rounded(row.median_ms_per_step, 4),
@@ -47,12 +47,12 @@ void print_bench_row(std::ostream& out, const BenchRow& row) {
                       rounded(row.real_time_factor(), 2), hash_text(row.state_hash)});
 }
 
-std::string bench_csv_header() {
+std::string speed_csv_header() {
   return "scene,integrator,particles,springs,threads,steps,ms_per_step_median,ms_per_step_min,"
          "particle_steps_per_second,real_time_factor,state_hash\n";
 }
 
-std::string bench_csv_row(const BenchRow& row) {
+std::string speed_csv_row(const SpeedRow& row) {
   std::string text;
   append_csv_field(text, row.scene);
   text += ',' + row.integrator;
@@ -68,4 +68,4 @@ std::string bench_csv_row(const BenchRow& row) {
   return text + ',' + hash_text(row.state_hash) + '\n';
 }
 
-}  // namespace vat
+}  // namespace vat::bench

@@ -7,15 +7,15 @@
 #include "core/scene/scene.h"
 #include "core/support/result.h"
 
-namespace vat {
+namespace vat::bench {
 
-struct BenchSettings {
+struct SpeedSettings {
   Real warm_up = 1;     ///< [s] simulated before the clock starts, to reach a typical state
   Real measured = 1;    ///< [s] simulated in each repetition
   int repetitions = 5;  ///< each from the same snapshot
 };
 
-struct BenchRow {
+struct SpeedRow {
   std::string scene;
   std::string integrator;
   std::size_t particles = 0;
@@ -33,6 +33,6 @@ struct BenchRow {
 
 /// Times one scene with one number of threads. Fails where the scene is invalid, a step fails, or
 /// two repetitions end in different states.
-Result<BenchRow> measure(const Scene& scene, std::size_t threads, const BenchSettings& settings);
+Result<SpeedRow> measure(const Scene& scene, std::size_t threads, const SpeedSettings& settings);
 
-}  // namespace vat
+}  // namespace vat::bench

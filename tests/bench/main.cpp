@@ -1,0 +1,40 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "server/cli/command.h"
+#include "tests/bench/speed.h"
+#include "tests/bench/validate.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"Speed, validation, accuracy and stability of the simulation", "vat bench"};
+  // Not require_subcommand(1): that would hide which word is not a sub-command.
+  app.require_subcommand(0, 1);
+  app.callback([&app] {
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+  });
+  int exit_code = vat::kExitOk;
+  vat::bench::add_speed_command(app, exit_code);
+  vat::bench::add_validate_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? vat::kExitOk : vat::kExitUsage;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int exit_code = run(argc, argv);
+    if (std::cout.flush()) return exit_code;
+    std::cerr << "vat bench: standard output cannot be written\n";  // a full disk, say
+  } catch (const std::exception& error) {
+    std::cerr << "vat bench: " << error.what() << '\n';
+  }
+  return vat::kExitFailed;
+}

@@ -1,0 +1,45 @@
+#include "tests/bench/validate_table.h"
+
+#include <limits>
+
+namespace vat::bench {
+
+using validation::Outcome;
+using validation::Row;
+using validation::Tolerance;
+
+std::string tolerance_text(const Row& row) {
+  const std::string reference = short_text(row.reference);
+  const std::string tolerance = short_text(row.tolerance.value);
+  switch (row.tolerance.kind) {
+    case Tolerance::Kind::absolute:
+      return reference + " +- " + tolerance;
+    case Tolerance::Kind::relative:
+      return reference + " (1 +- " + tolerance + ")";
+    case Tolerance::Kind::at_most:
+      return "<= " + reference;
+    case Tolerance::Kind::at_least:
+      return ">= " + reference;
+  }
+  return {};
+}
+
+Table validation_table(const std::vector<Outcome>& outcomes) {
+  constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
+  Table table{{"case", "metric", "reference", "measured", "must be", "tolerance from", "passed",
+               "seconds", "state hash"},
+              {}};
+  for (const Outcome& outcome : outcomes) {
+    for (const Row& row : outcome.rows) {
+      table.rows.push_back({outcome.name, row.metric, row.reference, row.measured,
+                            tolerance_text(row), row.tolerance.source, row.passed(), row.seconds,
+                            hash_text(row.state_hash)});
+    }
+    if (!outcome.error) continue;
+    table.rows.push_back({outcome.name, "ended early: " + *outcome.error, kAbsent, kAbsent,
+                          std::string(), std::string(), false, kAbsent, std::string()});
+  }
+  return table;
+}
+
+}  // namespace vat::bench

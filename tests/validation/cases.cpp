@@ -1,0 +1,24 @@
+#include "tests/validation/cases.h"
+
+#include <iterator>
+
+namespace vat::validation {
+
+namespace {
+
+std::vector<Case> collect() {
+  std::vector<Case> cases;
+  for (const auto group : {oscillator_cases}) {
+    std::ranges::move(group(), std::back_inserter(cases));
+  }
+  return cases;
+}
+
+}  // namespace
+
+const std::vector<Case>& all_cases() {
+  static const std::vector<Case> cases = collect();
+  return cases;
+}
+
+}  // namespace vat::validation

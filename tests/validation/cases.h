@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/validation/case.h"
+
+namespace vat::validation {
+
+/// All cases in the order of the table. Each group is made in a file of its own in cases/; a new
+/// group is declared here and added in cases.cpp.
+const std::vector<Case>& all_cases();
+
+std::vector<Case> oscillator_cases();
+
+}  // namespace vat::validation
