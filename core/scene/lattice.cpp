@@ -112,14 +112,16 @@ std::vector<LatticePoint> fill_mesh(const MeshShape& mesh, const Lattice& lattic
 
 }  // namespace
 
-Lattice make_lattice(const Shape& shape, Real spacing) {
+Lattice make_lattice(const Shape& shape, Real spacing, int dimensions) {
   const Bounds bounds = std::visit([](const auto& s) { return bounds_of(s); }, shape);
   Lattice lattice;
   lattice.spacing = spacing;
   lattice.first = bounds.center;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);
-    lattice.size[axis] = std::max(Real{1}, std::floor(bounds.size[a] / spacing + kRounding));
+    const bool flat = dimensions == 2 && axis == 1;
+    const Real cells = flat ? 1 : std::floor(bounds.size[a] / spacing + kRounding);
+    lattice.size[axis] = std::max(Real{1}, cells);
     lattice.first[a] -= spacing * (lattice.size[axis] - 1) / 2;
   }
   return lattice;

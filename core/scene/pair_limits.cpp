@@ -5,26 +5,31 @@
 #include <cstdio>
 
 #include "core/limits.h"
+#include "core/neighbours/periodic_box.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/scene/interface_table.h"
 
 namespace vat {
 namespace {
 
-/// The bodies' particles one after the other.
+PeriodicBox box_of(const Scene& scene) {
+  return scene.periodic ? PeriodicBox(*scene.periodic) : PeriodicBox();
+}
+
+/// The bodies' particles one after the other, in a periodic world within its box.
 struct Particles {
   std::vector<Vec3> positions;
   std::vector<std::uint8_t> material;  // kMaxMaterials is 64
 };
 
-Particles gather(const std::vector<Material>& materials, const std::vector<PairBody>& bodies,
-                 bool liquid) {
+Particles gather(const Scene& scene, const std::vector<PairBody>& bodies, bool liquid) {
+  const PeriodicBox box = box_of(scene);
   Particles all;
   for (const PairBody& body : bodies) {
     if ((body.description->kind == BodyKind::liquid) != liquid) continue;
     const auto material =
-        static_cast<std::uint8_t>(material_index(materials, body.description->material));
-    all.positions.insert(all.positions.end(), body.positions.begin(), body.positions.end());
+        static_cast<std::uint8_t>(material_index(scene.materials, body.description->material));
+    for (const Vec3& position : body.positions) all.positions.push_back(box.wrap(position));
     all.material.insert(all.material.end(), body.positions.size(), material);
   }
   return all;
@@ -33,7 +38,8 @@ Particles gather(const std::vector<Material>& materials, const std::vector<PairB
 /// Counts neighbours as the step searches for them, up to the limits.
 class NeighbourCount {
  public:
-  explicit NeighbourCount(std::size_t particles) : most_(max_start_pairs(particles)) {}
+  NeighbourCount(std::size_t particles, const PeriodicBox& box)
+      : most_(max_start_pairs(particles)), box_(box) {}
 
   bool is_exceeded() const { return found_ > most_ || tried_ > kMaxSearch; }
 
@@ -50,19 +56,22 @@ class NeighbourCount {
       sorted.material.push_back(others.material[i]);
     }
     for (std::size_t i = 0; i < particles.positions.size() && !is_exceeded(); ++i) {
-      const Vec3& p = particles.positions[i];
-      grid.for_each_run(p, reach, [&](Index begin, Index end) {
-        tried_ += end - begin;
-        for (Index j = begin; j < end; ++j) {
-          const Real r2 = (p - sorted.positions[j]).squaredNorm();
-          found_ += counts(particles.material[i], sorted.material[j], r2) ? 1 : 0;
-        }
+      box_.for_each_image(particles.positions[i], reach, [&](const Vec3& shift) {
+        const Vec3 p = particles.positions[i] + shift;
+        grid.for_each_run(p, reach, [&](Index begin, Index end) {
+          tried_ += end - begin;
+          for (Index j = begin; j < end; ++j) {
+            const Real r2 = (p - sorted.positions[j]).squaredNorm();
+            found_ += counts(particles.material[i], sorted.material[j], r2) ? 1 : 0;
+          }
+        });
       });
     }
   }
 
  private:
   std::size_t most_;
+  PeriodicBox box_;
   std::size_t found_ = 0;
   std::size_t tried_ = 0;
 };
@@ -76,26 +85,40 @@ std::string too_many_text(const std::string& what, Real reach, std::size_t parti
   return what + text;
 }
 
-void check_liquid(const std::vector<Material>& materials, const std::vector<PairBody>& bodies,
-                  const std::string& path, RangeCheck& check) {
-  const Particles all = gather(materials, bodies, true);
-  if (all.positions.empty()) return;
-  std::vector<Real> support2(materials.size(), 0);
-  std::size_t widest = all.material.front();
-  for (const std::uint8_t m : all.material) {
-    const Real support = materials[m].liquid->support_radius;
-    support2[m] = support * support;
-    if (support2[m] > support2[widest]) widest = m;
+/// The liquid bodies' material of the widest support; none without liquid.
+std::optional<std::size_t> widest_liquid(const Scene& scene, const std::vector<PairBody>& bodies) {
+  const auto support = [&](std::size_t m) { return scene.materials[m].liquid->support_radius; };
+  std::optional<std::size_t> widest;
+  for (const PairBody& body : bodies) {
+    if (body.description->kind != BodyKind::liquid) continue;
+    const std::size_t m = material_index(scene.materials, body.description->material);
+    if (!widest || support(m) > support(*widest)) widest = m;
   }
-  const Real reach = materials[widest].liquid->support_radius;
-  NeighbourCount count(all.positions.size());
+  return widest;
+}
+
+std::string name_support(const Material& material) {
+  return "the support radius of \"" + material.name + '"';
+}
+
+void check_liquid(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
+                  RangeCheck& check) {
+  const auto widest = widest_liquid(scene, bodies);
+  if (!widest) return;
+  const Particles all = gather(scene, bodies, true);
+  std::vector<Real> support2(scene.materials.size(), 0);
+  for (std::size_t m = 0; m < support2.size(); ++m) {
+    const auto& liquid = scene.materials[m].liquid;
+    if (liquid) support2[m] = liquid->support_radius * liquid->support_radius;
+  }
+  const Real reach = scene.materials[*widest].liquid->support_radius;
+  NeighbourCount count(all.positions.size(), box_of(scene));
   count.add(all, all, reach, [&](std::size_t own, std::size_t other, Real r2) {
     return own == other && r2 < support2[own];
   });
   if (count.is_exceeded()) {
     check.add("too_many", path,
-              too_many_text("the support radius of \"" + materials[widest].name + '"', reach,
-                            all.positions.size()));
+              too_many_text(name_support(scene.materials[*widest]), reach, all.positions.size()));
   }
 }
 
@@ -106,9 +129,10 @@ struct ContactReach {
   bool liquids_touch = false;
 };
 
-ContactReach find_reach(const std::vector<Material>& materials,
-                        const std::vector<InterfaceDescription>& interfaces,
-                        const std::vector<PairBody>& bodies) {
+ContactReach find_reach(const Scene& scene, const std::vector<PairBody>& bodies) {
+  const std::vector<Material>& materials = scene.materials;
+  const std::vector<InterfaceDescription>& interfaces = scene.interfaces;
+  if (!scene.forces.contacts) return {};
   const InterfaceTable table(materials, interfaces);
   std::vector<Real> radius;
   std::vector<std::size_t> material;
@@ -144,17 +168,15 @@ ContactReach find_reach(const std::vector<Material>& materials,
   return reach;
 }
 
-void check_contacts(const std::vector<Material>& materials,
-                    const std::vector<InterfaceDescription>& interfaces,
-                    const std::vector<PairBody>& bodies, const std::string& path,
-                    RangeCheck& check) {
-  const ContactReach reach = find_reach(materials, interfaces, bodies);
+void check_contacts(const Scene& scene, const std::vector<PairBody>& bodies,
+                    const std::string& path, RangeCheck& check) {
+  const ContactReach reach = find_reach(scene, bodies);
   if (reach.distance == 0) return;
-  const Particles solids = gather(materials, bodies, false);
-  const Particles liquids = gather(materials, bodies, true);
+  const Particles solids = gather(scene, bodies, false);
+  const Particles liquids = gather(scene, bodies, true);
   const std::size_t particles = solids.positions.size() + liquids.positions.size();
   const Real reach2 = reach.distance * reach.distance;
-  NeighbourCount count(particles);
+  NeighbourCount count(particles, box_of(scene));
   const auto within = [&](std::size_t, std::size_t, Real r2) { return r2 < reach2; };
   count.add(solids, solids, reach.distance, within);
   count.add(liquids, solids, reach.distance, within);
@@ -168,13 +190,43 @@ void check_contacts(const std::vector<Material>& materials,
   }
 }
 
+/// Adds an error where a particle could meet another one and its image at once.
+void check_length(const Periodicity& periodic, Real reach, const std::string& cause,
+                  const std::string& path, RangeCheck& check) {
+  for (std::size_t axis = 0; axis < periodic.axes.size(); ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    if (!periodic.axes[axis] || periodic.max[a] - periodic.min[a] >= 2 * reach) continue;
+    char text[120];
+    std::snprintf(text, sizeof text, "the period along %s must be at least %.9g m, twice ",
+                  kAxisNames[axis], 2 * reach);
+    check.add("out_of_range", path, text + cause);
+  }
+}
+
 }  // namespace
 
-void check_pairs(const std::vector<Material>& materials,
-                 const std::vector<InterfaceDescription>& interfaces,
-                 const std::vector<PairBody>& bodies, const std::string& path, RangeCheck& check) {
-  check_liquid(materials, bodies, path, check);
-  check_contacts(materials, interfaces, bodies, path, check);
+bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
+                   RangeCheck& check) {
+  if (!scene.periodic) return true;
+  Errors errors;
+  RangeCheck own(errors);
+  if (const auto widest = widest_liquid(scene, bodies)) {
+    const Material& material = scene.materials[*widest];
+    check_length(*scene.periodic, material.liquid->support_radius, name_support(material), path,
+                 own);
+  }
+  const ContactReach reach = find_reach(scene, bodies);
+  check_length(*scene.periodic, reach.distance, reach.cause, path, own);
+  for (Error& error : errors) {
+    check.add(std::move(error.code), std::move(error.path), std::move(error.message));
+  }
+  return errors.empty();
+}
+
+void check_pairs(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
+                 RangeCheck& check) {
+  check_liquid(scene, bodies, path, check);
+  check_contacts(scene, bodies, path, check);
 }
 
 }  // namespace vat

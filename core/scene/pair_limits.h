@@ -16,13 +16,17 @@ struct PairBody {
   std::span<const Real> radii;      ///< [m]
 };
 
+/// Whether every period of the scene is at least twice the distance at which any two particles
+/// notice each other; adds errors at `path` (code out_of_range).
+bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
+                   RangeCheck& check);
+
 /// Adds an error where particles reach so many others that time and memory are lost on pairs: more
 /// than max_start_pairs() of them, or more than kMaxSearch tries to find them. Liquid particles
 /// reach others of their material within its support radius; where bodies can touch, all particles
 /// reach others within the greatest distance at which any two of the scene do. Errors are at
-/// `path`.
-void check_pairs(const std::vector<Material>& materials,
-                 const std::vector<InterfaceDescription>& interfaces,
-                 const std::vector<PairBody>& bodies, const std::string& path, RangeCheck& check);
+/// `path`. The periods must be long enough.
+void check_pairs(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
+                 RangeCheck& check);
 
 }  // namespace vat

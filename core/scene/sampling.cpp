@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "core/scene/field.h"
+#include "core/scene/jitter.h"
 #include "core/scene/lattice.h"
 #include "core/scene/mesh.h"
 
@@ -56,26 +58,41 @@ void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeI
   for (Index a = 0; a < points.size(); ++a) {
     for (const Offset& offset : offsets) {
       if (const auto b = index.find(points[a], offset)) {
-        const Real length = (points[a].position - points[*b].position).norm();
+        const Real length = (sample.positions[a] - sample.positions[*b]).norm();
         sample.springs.push_back({a, *b, constants->stiffness, constants->damping, length});
       }
     }
   }
 }
 
-void sample_lattice(const BodyDescription& body, const Material& material, SampledBody& sample) {
-  const Lattice lattice = make_lattice(body.shape, body.spacing);
+/// What one lattice point stands for [m^3]; in two dimensions [m^2].
+Real cell_size(Real spacing, int dimensions) {
+  return dimensions == 2 ? spacing * spacing : spacing * spacing * spacing;
+}
+
+void shift_at_random(const BodyDescription& body, int dimensions, SampledBody& sample) {
+  if (body.jitter == 0) return;
+  jitter(sample.positions, body.jitter * body.spacing, body.seed, dimensions);
+}
+
+Real lattice_mass(const BodyDescription& body, const Material& material, int dimensions,
+                  std::size_t count) {
+  if (body.mass) return *body.mass / static_cast<Real>(count);
+  if (body.kind == BodyKind::liquid) return material.density * cell_size(body.spacing, dimensions);
+  const Real size = dimensions == 2 ? shape_area(body.shape) : shape_volume(body.shape);
+  return material.density * size / static_cast<Real>(count);
+}
+
+void sample_lattice(const BodyDescription& body, const Material& material, int dimensions,
+                    SampledBody& sample) {
+  const Lattice lattice = make_lattice(body.shape, body.spacing, dimensions);
   const std::vector<LatticePoint> points = fill_lattice(body.shape, lattice);
   for (const LatticePoint& point : points) sample.positions.push_back(point.position);
   const std::size_t count = points.size();
-  Real mass = material.density * body.spacing * body.spacing * body.spacing;
-  if (body.kind != BodyKind::liquid) {
-    mass = material.density * shape_volume(body.shape) / static_cast<Real>(count);
-  }
-  if (body.mass) mass = *body.mass / static_cast<Real>(count);
-  sample.masses.assign(count, mass);
+  sample.masses.assign(count, lattice_mass(body, material, dimensions, count));
   sample.radii.assign(count, body.radius.value_or(body.spacing / 2));
   sample.velocities.assign(count, Vec3::Zero());
+  shift_at_random(body, dimensions, sample);
   if (body.kind == BodyKind::deformable && material.springs) {
     const LatticeIndex index(lattice, points);
     add_lattice_springs(points, index, kStructural, material.springs->structural, sample);
@@ -85,10 +102,10 @@ void sample_lattice(const BodyDescription& body, const Material& material, Sampl
 }
 
 void take_particles(const ParticleShape& shape, const BodyDescription& body,
-                    const Material& material, SampledBody& sample) {
+                    const Material& material, int dimensions, SampledBody& sample) {
   const std::size_t count = shape.positions.size();
   const Real equal_mass = body.mass ? *body.mass / static_cast<Real>(count)
-                                    : material.density * body.spacing * body.spacing * body.spacing;
+                                    : material.density * cell_size(body.spacing, dimensions);
   sample.positions = shape.positions;
   sample.velocities = shape.velocities;
   sample.masses = shape.masses;
@@ -97,6 +114,7 @@ void take_particles(const ParticleShape& shape, const BodyDescription& body,
   if (sample.velocities.empty()) sample.velocities.assign(count, Vec3::Zero());
   if (sample.masses.empty()) sample.masses.assign(count, equal_mass);
   if (sample.radii.empty()) sample.radii.assign(count, body.radius.value_or(body.spacing / 2));
+  shift_at_random(body, dimensions, sample);
 }
 
 void add_listed_springs(const BodyDescription& body, SampledBody& sample) {
@@ -119,11 +137,17 @@ Vec3 center_of_mass(const SampledBody& sample) {
 
 void place(const BodyDescription& body, SampledBody& sample) {
   const Mat3 rotation = body.orientation.normalized().toRotationMatrix();
-  for (Vec3& position : sample.positions) position = body.position + rotation * position;
+  for (Vec3& position : sample.positions) {
+    position = body.position + rotation * position;
+    if (body.displacement_field) position += value_at(*body.displacement_field, position);
+  }
   const Vec3 center = center_of_mass(sample);
   for (std::size_t i = 0; i < sample.positions.size(); ++i) {
     const Vec3 turning = body.angular_velocity.cross(sample.positions[i] - center);
     sample.velocities[i] = rotation * sample.velocities[i] + body.velocity + turning;
+    if (body.velocity_field) {
+      sample.velocities[i] += value_at(*body.velocity_field, sample.positions[i]);
+    }
   }
   for (const Index fixed : sample.fixed) sample.velocities[fixed].setZero();
 }
@@ -144,14 +168,25 @@ Real volume_of(const ParticleShape&) {
   return 0;
 }
 
+Real area_of(const BoxShape& box) {
+  return box.size.x() * box.size.z();
+}
+Real area_of(const SphereShape& sphere) {
+  return std::numbers::pi * sphere.radius * sphere.radius;
+}
+template <class Other>
+Real area_of(const Other&) {
+  return 0;
+}
+
 }  // namespace
 
-SampledBody sample_body(const BodyDescription& body, const Material& material) {
+SampledBody sample_body(const BodyDescription& body, const Material& material, int dimensions) {
   SampledBody sample;
   if (const auto* particles = std::get_if<ParticleShape>(&body.shape)) {
-    take_particles(*particles, body, material, sample);
+    take_particles(*particles, body, material, dimensions, sample);
   } else {
-    sample_lattice(body, material, sample);
+    sample_lattice(body, material, dimensions, sample);
   }
   add_listed_springs(body, sample);
   place(body, sample);
@@ -160,6 +195,10 @@ SampledBody sample_body(const BodyDescription& body, const Material& material) {
 
 Real shape_volume(const Shape& shape) {
   return std::visit([](const auto& s) { return volume_of(s); }, shape);
+}
+
+Real shape_area(const Shape& shape) {
+  return std::visit([](const auto& s) { return area_of(s); }, shape);
 }
 
 }  // namespace vat

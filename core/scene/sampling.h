@@ -29,10 +29,17 @@ struct SampledBody {
 /// the description. Sampled shapes are filled with a simple cubic lattice of `spacing`, centred on
 /// the shape's bounding box; a particle belongs to the shape if its centre does. Solid bodies get
 /// mass = density * exact volume of the shape in equal parts (or the given mass); a liquid particle
-/// gets density * spacing^3 so that the lattice is at rest density. The body must be valid.
-SampledBody sample_body(const BodyDescription& body, const Material& material);
+/// gets density * spacing^3 so that the lattice is at rest density. Springs are at rest where the
+/// jitter leaves their ends, and stretched by the displacement field. In two dimensions a square
+/// lattice fills the section at y = 0, and areas stand for volumes: masses are per metre [kg/m].
+/// The body must be valid.
+SampledBody sample_body(const BodyDescription& body, const Material& material, int dimensions = 3);
 
 /// Exact volume of a sampled shape [m^3]; zero for explicit particles.
 Real shape_volume(const Shape& shape);
+
+/// Exact area of the section at y = 0 [m^2] of a shape that a scene of two dimensions may sample:
+/// a box or a sphere. Zero for others.
+Real shape_area(const Shape& shape);
 
 }  // namespace vat

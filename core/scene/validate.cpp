@@ -1,8 +1,6 @@
 #include "core/scene/validate.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -79,41 +77,6 @@ void check_interfaces(const Scene& scene, RangeCheck& check) {
     if (!pairs.insert(std::minmax(first, second)).second) {
       check.add("duplicate", path + "/materials", "must not be a pair that came before");
     }
-  }
-}
-
-void check_slide(const SlideMotion& motion, const std::string& path, RangeCheck& check) {
-  if (check.vector(motion.axis, -kMaxLength, kMaxLength, path + "/axis") &&
-      motion.axis.norm() < kMinLength) {
-    check.add("out_of_range", path + "/axis", "must not be the zero vector");
-  }
-  const bool stroke = check.real(motion.stroke, -kMaxLength, kMaxLength, path + "/stroke");
-  const bool period = check.real(motion.period, kMinPeriod, kMaxPeriod, path + "/period");
-  if (stroke && period && std::numbers::pi * std::abs(motion.stroke) / motion.period > kMaxSpeed) {
-    check.add("out_of_range", path + "/period", "is too short: the vat would pass 10000 m/s");
-  }
-}
-
-void check_vat(const Vat& vat, RangeCheck& check) {
-  const bool min = check.vector(vat.min, -kMaxLength, kMaxLength, "/vat/min");
-  const bool max = check.vector(vat.max, -kMaxLength, kMaxLength, "/vat/max");
-  if (min && max && !((vat.max - vat.min).array() >= kMinLength).all()) {
-    check.add("out_of_range", "/vat/max", "must be above min along every axis");
-  }
-  if (vat.motion) check_slide(*vat.motion, "/vat/motion", check);
-}
-
-void check_numerics(const Numerics& numerics, RangeCheck& check) {
-  constexpr Real kWhole = 1e-9;  // rounding of tick / step
-  const bool step = check.real(numerics.step, kMinStep, kMaxStep, "/numerics/step");
-  const bool tick = check.real(numerics.tick, kMinStep, kMaxTick, "/numerics/tick");
-  if (!step || !tick) return;
-  const Real steps = numerics.tick / numerics.step;
-  const Real whole = std::round(steps);
-  if (whole < 1 || whole > static_cast<Real>(kMaxStepsPerTick) ||
-      std::abs(steps - whole) > kWhole * steps) {
-    check.add("out_of_range", "/numerics/tick",
-              "must be a whole number of steps, 1 to " + std::to_string(kMaxStepsPerTick));
   }
 }
 
@@ -199,13 +162,21 @@ Errors find_errors(const Scene& scene) {
   check.vector(scene.gravity, -kMaxGravity, kMaxGravity, "/gravity");
   check_materials(scene, check);
   check_interfaces(scene, check);
-  if (scene.vat) check_vat(*scene.vat, check);
+  if (scene.dimensions != 2 && scene.dimensions != 3) {
+    check.add("out_of_range", "/dimensions", "must be 2 or 3");
+  }
+  if (scene.periodic) check_periodicity(*scene.periodic, check);
+  if (scene.central_field) check_central_field(*scene.central_field, check);
+  if (scene.vat) check_vat(scene, check);
+  if (scene.dimensions == 2) check_plane(scene, check);
   check_numerics(scene.numerics, check);
   std::vector<SampledBody> samples;
   check_bodies(scene, check, samples);
-  if (errors.empty()) {
-    check_pairs(scene.materials, scene.interfaces, pair_bodies(scene, present_of(samples)),
-                "/bodies", check);
+  if (!errors.empty()) return errors;
+  const Present present = present_of(samples);
+  const std::vector<PairBody> pairs = pair_bodies(scene, present);
+  if (check_periods(scene, pairs, "/periodic/max", check)) {
+    check_pairs(scene, pairs, "/bodies", check);
   }
   return errors;
 }
@@ -231,15 +202,15 @@ Errors find_body_errors(const Scene& scene, const Present& present, const BodyDe
   if (!errors.empty()) return errors;
   std::vector<PairBody> pairs = pair_bodies(scene, present);
   pairs.push_back({&body, sample->positions, sample->radii});
-  check_pairs(scene.materials, scene.interfaces, pairs, path, check);
+  if (check_periods(scene, pairs, path, check)) check_pairs(scene, pairs, path, check);
   return errors;
 }
 
 Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path) {
   std::vector<SampledBody> samples;
   for (const BodyDescription& other : scene.bodies) {
-    samples.push_back(
-        sample_body(other, scene.materials[material_index(scene.materials, other.material)]));
+    samples.push_back(sample_body(
+        other, scene.materials[material_index(scene.materials, other.material)], scene.dimensions));
   }
   return find_body_errors(scene, present_of(samples), body, path);
 }
@@ -250,9 +221,10 @@ Errors find_interface_errors(const Scene& scene, const Present& present,
   RangeCheck check(errors);
   check_interface(scene, interface, path, check);
   if (!errors.empty()) return errors;
-  std::vector<InterfaceDescription> interfaces = scene.interfaces;
-  interfaces.push_back(interface);  // the last of a pair of materials counts
-  check_pairs(scene.materials, interfaces, pair_bodies(scene, present), path, check);
+  Scene changed = scene;
+  changed.interfaces.push_back(interface);  // the last of a pair of materials counts
+  const std::vector<PairBody> pairs = pair_bodies(changed, present);
+  if (check_periods(changed, pairs, path, check)) check_pairs(changed, pairs, path, check);
   return errors;
 }
 

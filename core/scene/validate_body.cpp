@@ -1,13 +1,10 @@
 #include <algorithm>
-#include <cmath>
 
 #include "core/limits.h"
 #include "core/scene/validate_parts.h"
 
 namespace vat {
 namespace {
-
-constexpr Real kUnitTolerance = 1e-3;  // of a quaternion's length: rounded in a file, no mistake
 
 const Material* check_material(const Scene& scene, const BodyDescription& body,
                                const std::string& path, RangeCheck& check) {
@@ -23,17 +20,6 @@ const Material* check_material(const Scene& scene, const BodyDescription& body,
     return nullptr;
   }
   return &*found;
-}
-
-void check_motion(const BodyDescription& body, const std::string& path, RangeCheck& check) {
-  check.vector(body.position, -kMaxLength, kMaxLength, path + "/position");
-  check.vector(body.velocity, -kMaxSpeed, kMaxSpeed, path + "/velocity");
-  check.vector(body.angular_velocity, -kMaxAngularSpeed, kMaxAngularSpeed,
-               path + "/angular_velocity");
-  if (!(std::abs(body.orientation.norm() - 1) <= kUnitTolerance)) {
-    check.add("out_of_range", path + "/orientation",
-              "must be a quaternion [w, x, y, z] of length 1 (within 0.001)");
-  }
 }
 
 /// What the shape's particles say one by one is not also said for the whole body.
@@ -111,14 +97,21 @@ std::size_t lattice_spring_count(const BodyDescription& body, const Material& ma
   return each * points.size();  // an upper bound: a limit that is easy to explain
 }
 
-void check_inside_vat(const Vat& vat, const Vec3& offset, const SampledBody& sample,
+/// Whether a point is between the walls that the vat has.
+bool is_inside(const Scene& scene, const Vec3& p) {
+  const Vat& vat = *scene.vat;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (scene.periodic && scene.periodic->axes[static_cast<std::size_t>(axis)]) continue;
+    const bool is_open_above = axis == 2 && !vat.lid;
+    if (!(p[axis] > vat.min[axis] && (is_open_above || p[axis] < vat.max[axis]))) return false;
+  }
+  return true;
+}
+
+void check_inside_vat(const Scene& scene, const Vec3& offset, const SampledBody& sample,
                       const std::string& path, RangeCheck& check) {
   for (const Vec3& position : sample.positions) {
-    const Vec3 p = position - offset;
-    const bool above_floor = (p.array() > vat.min.array()).all();
-    const bool between_sides = p.x() < vat.max.x() && p.y() < vat.max.y();
-    const bool below_lid = !vat.lid || p.z() < vat.max.z();
-    if (above_floor && between_sides && below_lid) continue;
+    if (is_inside(scene, position - offset)) continue;
     check.add("outside_vat", path, "must start inside the vat, with every particle's centre");
     return;
   }
@@ -131,10 +124,10 @@ struct BodySize {
 
 /// The size of a body whose shape and spacing are valid; none where it cannot be sampled.
 std::optional<BodySize> measure_lattice(const BodyDescription& body, const Material& material,
-                                        const std::string& path, Allowance& allowance,
-                                        RangeCheck& check) {
+                                        int dimensions, const std::string& path,
+                                        Allowance& allowance, RangeCheck& check) {
   if (allowance.is_exceeded()) return {};
-  const Lattice lattice = make_lattice(body.shape, body.spacing);
+  const Lattice lattice = make_lattice(body.shape, body.spacing, dimensions);
   if (const char* excess = allowance.take_lattice(body.shape, lattice)) {
     check.add("too_many", path + "/spacing", excess);
     return {};
@@ -149,7 +142,7 @@ std::optional<BodySize> measure_lattice(const BodyDescription& body, const Mater
 }
 
 std::optional<BodySize> measure_body(const BodyDescription& body, const Material* material,
-                                     const std::string& path, Allowance& allowance,
+                                     int dimensions, const std::string& path, Allowance& allowance,
                                      RangeCheck& check) {
   bool can_sample = check_sizes(body, path, check);
   const auto* mesh = std::get_if<MeshShape>(&body.shape);
@@ -163,7 +156,7 @@ std::optional<BodySize> measure_body(const BodyDescription& body, const Material
     return BodySize{particles->positions.size(), 0};
   }
   if (material == nullptr) return {};
-  return measure_lattice(body, *material, path, allowance, check);
+  return measure_lattice(body, *material, dimensions, path, allowance, check);
 }
 
 }  // namespace
@@ -176,7 +169,9 @@ std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset
   RangeCheck own_check(own);
   const Material* material = check_material(scene, body, path, own_check);
   check_motion(body, path, own_check);
-  if (const auto size = measure_body(body, material, path, allowance, own_check)) {
+  if (scene.dimensions == 2) check_body_in_plane(body, path, own_check);
+  if (const auto size =
+          measure_body(body, material, scene.dimensions, path, allowance, own_check)) {
     check_springs(body, size->particles, path, own_check);
     allowance.take_particles(size->particles);
     allowance.take_springs(size->lattice_springs + body.springs.size());
@@ -184,8 +179,9 @@ std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset
   if (own.empty()) check_ratios(body, *material, path, own_check);
   std::optional<SampledBody> sample;
   if (own.empty() && !allowance.is_exceeded()) {
-    sample = sample_body(body, *material);
-    if (scene.vat) check_inside_vat(*scene.vat, vat_offset, *sample, path, own_check);
+    sample = sample_body(body, *material, scene.dimensions);
+    check_start(body, *sample, path, own_check);
+    if (scene.vat) check_inside_vat(scene, vat_offset, *sample, path, own_check);
   }
   if (!own.empty()) sample.reset();
   for (Error& error : own) {

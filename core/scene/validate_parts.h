@@ -17,6 +17,15 @@ void check_constants(const SpringConstants& constants, const std::string& path, 
 void check_interface(const Scene& scene, const InterfaceDescription& interface,
                      const std::string& path, RangeCheck& check);
 
+void check_vat(const Scene& scene, RangeCheck& check);
+void check_periodicity(const Periodicity& periodic, RangeCheck& check);
+void check_central_field(const CentralField& field, RangeCheck& check);
+void check_numerics(const Numerics& numerics, RangeCheck& check);
+
+/// That a scene of two dimensions, but its bodies, stays in its plane. Code: off_plane.
+void check_plane(const Scene& scene, RangeCheck& check);
+void check_body_in_plane(const BodyDescription& body, const std::string& path, RangeCheck& check);
+
 /// What may be spent on a scene's bodies. A body that is too much by itself is not sampled; one
 /// that is too much together with those before it ends the sampling, since one excess is enough to
 /// refuse the scene.
@@ -49,6 +58,13 @@ class Allowance {
 std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,
                                       const BodyDescription& body, const std::string& path,
                                       Allowance& allowance, RangeCheck& check);
+
+/// Where a body starts and how it moves: ranges, and what its kind allows.
+void check_motion(const BodyDescription& body, const std::string& path, RangeCheck& check);
+
+/// What fields make of a body's particles.
+void check_start(const BodyDescription& body, const SampledBody& sample, const std::string& path,
+                 RangeCheck& check);
 
 /// Ranges of the shape's own values, and for meshes whether they can be filled. True where the
 /// shape can be sampled.

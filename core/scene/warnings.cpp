@@ -35,7 +35,7 @@ Start sample_all(const Scene& scene) {
   for (const BodyDescription& body : scene.bodies) {
     const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
     const auto index = static_cast<Index>(start.bodies.size());
-    start.bodies.push_back(sample_body(body, *material));
+    start.bodies.push_back(sample_body(body, *material, scene.dimensions));
     const SampledBody& sample = start.bodies.back();
     start.positions.insert(start.positions.end(), sample.positions.begin(), sample.positions.end());
     start.radii.insert(start.radii.end(), sample.radii.begin(), sample.radii.end());

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/scene/scene.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// The field's value at the point `x` of the world.
+Vec3 value_at(const VectorField& field, const Vec3& x);
+
+}  // namespace vat
