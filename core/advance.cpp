@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/limits.h"
+#include "core/scene/error_model.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
 
@@ -13,14 +15,13 @@ constexpr int kMaxHalvings = 3;
 }  // namespace
 
 std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
-                                                         const ForceModel& force_model,
-                                                         AdvanceReport& report) {
-  const Real start = time();
-  const Real dt = step_size() / pieces;
+                                                         const ForceModel& force_model, Real start,
+                                                         Real whole, AdvanceReport& report) {
+  const Real dt = whole / pieces;
   for (std::uint32_t piece = 0; piece < pieces; ++piece) {
     take_step(model->scene.numerics.integrator, force_model, state, start + piece * dt, dt,
               scratch);
-    ++report.steps;
+    report.count_step(dt);
     auto fault = find_fault(*model, state.now, bounds, dt);
     if (work.too_many_pairs) {  // of liquids, whose particles come first
       fault = Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
@@ -37,11 +38,12 @@ std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
   return {};
 }
 
-bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, AdvanceReport& report) {
+bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real start, Real dt,
+                                         AdvanceReport& report) {
   const std::size_t earlier_events = report.events.size();
   step_start = state.now;
   for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
-    const auto event = take_step_in(1U << halvings, force_model, report);
+    const auto event = take_step_in(1U << halvings, force_model, start, dt, report);
     if (!event) return true;
     report.add(*event);
     state.now = step_start;
@@ -54,11 +56,43 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, AdvanceR
   return false;
 }
 
+std::uint32_t Simulation::Impl::wanted_level(const ForceModel& force_model, Real start) {
+  const Numerics& numerics = model->scene.numerics;
+  find_present_steps(force_model, state, start, numerics.step, step_bounds, bounds, present_steps);
+  Real step = present_steps.least();
+  if (state.history.observed_rate > 0) {
+    step = std::min(step, resolving_phase(numerics.integrator, numerics.tolerance) /
+                              state.history.observed_rate);
+  }
+  return level_of(step, numerics.step);
+}
+
+bool Simulation::Impl::take_adaptive_step(ForceModel& force_model, AdvanceReport& report) {
+  constexpr std::uint32_t kParts = 1U << kMaxStepLevel;
+  const Real part = step_size() / kParts;
+  force_model.probe = &probe;
+  for (std::uint32_t position = 0; position < kParts;) {
+    const Real start = time() + position * part;
+    choose_level(wanted_level(force_model, start), position, state.history);
+    const std::uint32_t parts = kParts >> state.history.level;
+    probe.begin(state);
+    if (!take_guarded_step(force_model, start, parts * part, report)) return false;
+    state.history.observed_rate = probe.observed_rate(*model);
+    ++state.history.held;
+    position += parts;
+  }
+  return true;
+}
+
 bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& report) {
   ForceModel force_model{*model, controls, work, runner, observer};
+  force_model.report = &report;
+  const bool is_fixed = model->scene.numerics.control == StepControl::fixed;
   for (std::uint32_t s = 0; s < steps; ++s) {
     force_model.step = state.step_count;
-    if (!take_guarded_step(force_model, report)) return false;
+    const bool is_taken = is_fixed ? take_guarded_step(force_model, time(), step_size(), report)
+                                   : take_adaptive_step(force_model, report);
+    if (!is_taken) return false;
     ++state.step_count;
     for (const AppliedForce& applied : controls.applied_forces) {
       // The forces that velocity Verlet keeps for the next step still have this one in them.
@@ -84,6 +118,12 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   });
   impl.pose_rigid_particles();
   return report;
+}
+
+void AdvanceReport::count_step(Real step) {
+  least_step = steps == 0 ? step : std::min(least_step, step);
+  greatest_step = std::max(greatest_step, step);
+  ++steps;
 }
 
 void AdvanceReport::add(const GuardEvent& event) {

@@ -77,8 +77,9 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
   new_state.step_count = state.step_count;
   Controls new_controls = rebind(controls, *new_model);
   GuardBounds new_bounds = guard_bounds(*new_model);
+  StepBounds new_step_bounds = find_step_bounds(*new_model);
   adopt({std::move(new_model), std::move(new_state), std::move(new_controls)},
-        std::move(new_bounds));
+        std::move(new_bounds), std::move(new_step_bounds));
 }
 
 namespace {

@@ -54,13 +54,16 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(impl.next_id++);
   impl.model = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
   impl.bounds = guard_bounds(*impl.model);
+  impl.step_bounds = find_step_bounds(*impl.model);
   impl.state = initial_state(*impl.model);
   return simulation;
 }
 
-void Simulation::Impl::adopt(Content content, GuardBounds content_bounds) noexcept {
+void Simulation::Impl::adopt(Content content, GuardBounds content_bounds,
+                             StepBounds content_step_bounds) noexcept {
   static_cast<Content&>(*this) = std::move(content);
   bounds = std::move(content_bounds);
+  step_bounds = std::move(content_step_bounds);
   work = {};
   measured = {};
 }
@@ -154,6 +157,11 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
     hash.add(rigid.momentum);
     hash.add(rigid.angular_momentum);
   }
+  if (model.scene.numerics.control == StepControl::adaptive) {
+    hash.add(std::uint64_t{state.history.level});
+    hash.add(std::uint64_t{state.history.held});
+    hash.add(state.history.observed_rate);
+  }
   hash.add(std::uint64_t{state.forces_current});
   if (!state.forces_current) return;
   for (Index i = 0; i < model.free_count; ++i) hash.add(state.forces.particle[i]);
@@ -218,7 +226,8 @@ Snapshot Simulation::snapshot() const {
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  impl_->adopt(*snapshot.content_, guard_bounds(*snapshot.content_->model));
+  const Model& model = *snapshot.content_->model;
+  impl_->adopt(*snapshot.content_, guard_bounds(model), find_step_bounds(model));
 }
 
 Snapshot::Snapshot(std::shared_ptr<const Content> content) : content_(std::move(content)) {}

@@ -44,9 +44,10 @@ struct LiquidFields {
   std::vector<Real> pressure;  ///< [Pa]
 };
 
-/// What the guard saw. A step that ends with a non-finite value, outside the domain, too fast (see
-/// core/step/guard.h) or with more pairs of liquid particles than memory is meant for is undone and
-/// repeated in two, four and at last eight parts.
+/// What the guard saw. A step, or the part of one that step control takes, that ends with a
+/// non-finite value, outside the domain, too fast (see core/step/guard.h) or with more pairs of
+/// liquid particles than memory is meant for is undone and repeated in two, four and at last eight
+/// parts.
 struct GuardEvent {
   enum class Cause { non_finite, outside_domain, too_fast, too_many_pairs };
   Cause cause;
@@ -65,11 +66,22 @@ struct AdvanceReport {
 
   std::uint64_t steps = 0;         ///< steps taken, parts and undone ones included
   std::uint64_t undone_steps = 0;  ///< each had an event
+  Real least_step = 0;             ///< [s] the shortest and the longest of them; of local control
+  Real greatest_step = 0;          ///< the steps of particles
+  std::uint64_t force_evaluations = 0;  ///< of all particles at once
+  /// How often the forces on one particle were summed, in part or whole: the measure on which local
+  /// control compares with the others, whose evaluations count every particle.
+  std::uint64_t particle_evaluations = 0;
   bool failed = false;             ///< the state is the one before the call
   std::vector<GuardEvent> events;  ///< in the order in which they were seen
 
   /// Counts the event, and keeps it in place of the last where there are kMaxEvents.
   void add(const GuardEvent& event);
+  void count_evaluation(std::size_t particles) {
+    ++force_evaluations;
+    particle_evaluations += particles;
+  }
+  void count_step(Real step);
 };
 
 /// Told when each stage of the step begins and ends; for profiles. The core has no clock.
@@ -94,8 +106,9 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Takes `steps` steps of step_size(), each of them guarded: see GuardEvent. All or none: after a
-  /// failure, or an exception, the state is the one before the call.
+  /// Takes `steps` steps of step_size(), each in the parts that the scene's StepControl chooses,
+  /// all of them guarded: see GuardEvent. All or none: after a failure, or an exception, the state
+  /// is the one before the call.
   AdvanceReport advance(std::uint32_t steps);
 
   Real time() const;       ///< [s]

@@ -5,6 +5,7 @@
 #include "core/simulation.h"
 #include "core/step/controls.h"
 #include "core/step/guard.h"
+#include "core/step/step_control.h"
 
 namespace vat {
 
@@ -18,12 +19,15 @@ struct Snapshot::Content {
 struct Simulation::Impl : Snapshot::Content {
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
-  BodyId next_id = 1;  ///< not in snapshots: an id is never used again
-  GuardBounds bounds;  ///< of the model
+  BodyId next_id = 1;      ///< not in snapshots: an id is never used again
+  GuardBounds bounds;      ///< of the model
+  StepBounds step_bounds;  ///< of the model
   Workspace work;
   IntegratorScratch scratch;
-  State call_start;            ///< of the advance() in progress
-  Configuration step_start;    ///< of its present step
+  State call_start;          ///< of the advance() in progress
+  Configuration step_start;  ///< of its present step, or part of one
+  PresentSteps present_steps;
+  MotionProbe probe;
   mutable Workspace measured;  ///< scratch of read-only questions
 
   Real step_size() const { return model->scene.numerics.step; }
@@ -33,7 +37,7 @@ struct Simulation::Impl : Snapshot::Content {
   Present present() const;
 
   /// Takes over what belongs together. Does not fail.
-  void adopt(Content content, GuardBounds content_bounds) noexcept;
+  void adopt(Content content, GuardBounds content_bounds, StepBounds content_step_bounds) noexcept;
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
   /// of them. Changes nothing where it fails.
   void recompile(Scene scene, const std::vector<BodyId>& ids);
@@ -41,11 +45,14 @@ struct Simulation::Impl : Snapshot::Content {
   void pose_rigid_particles();
 
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
-  /// One nominal step, in as many parts as it takes; false where none helped.
-  bool take_guarded_step(const ForceModel& force_model, AdvanceReport& report);
-  /// One nominal step in equal parts, up to the first fault.
+  /// One nominal step, in the parts that adaptive control chooses.
+  bool take_adaptive_step(ForceModel& force_model, AdvanceReport& report);
+  std::uint32_t wanted_level(const ForceModel& force_model, Real start);
+  /// `dt` seconds from `start`, in as many equal parts as it takes; false where none helped.
+  bool take_guarded_step(const ForceModel& force_model, Real start, Real dt, AdvanceReport& report);
+  /// The same in `pieces` parts, up to the first fault.
   std::optional<GuardEvent> take_step_in(std::uint32_t pieces, const ForceModel& force_model,
-                                         AdvanceReport& report);
+                                         Real start, Real dt, AdvanceReport& report);
 };
 
 }  // namespace vat

@@ -9,6 +9,8 @@ void ForceModel::evaluate(Configuration& configuration, Real time, Forces& force
     stage.run(context);
     if (observer != nullptr) observer->stage_ends(stage.name);
   }
+  if (report != nullptr) report->count_evaluation(model.particle_count);
+  if (probe != nullptr) probe->see(configuration, forces);
 }
 
 }  // namespace vat

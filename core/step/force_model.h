@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/simulation.h"
+#include "core/step/step_control_probe.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -14,7 +15,9 @@ struct ForceModel {
   Workspace& work;
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
-  std::uint64_t step = 0;  ///< the nominal step being taken
+  std::uint64_t step = 0;           ///< the nominal step being taken
+  AdvanceReport* report = nullptr;  ///< counts evaluations, if any
+  MotionProbe* probe = nullptr;     ///< sees them, if any
 
   /// Forces at `configuration` and `time`; also moves rigid particles to their poses.
   void evaluate(Configuration& configuration, Real time, Forces& forces) const;

@@ -1,0 +1,25 @@
+#include "core/scene/error_model.h"
+
+#include <cmath>
+
+#include "core/support/check.h"
+
+namespace vat {
+
+Real resolving_phase(IntegratorId integrator, Real error) {
+  switch (integrator) {
+    case IntegratorId::explicit_euler:
+    case IntegratorId::symplectic_euler:
+      return 2 * error;
+    case IntegratorId::velocity_verlet:
+      return std::sqrt(24 * error);
+    case IntegratorId::heun:
+      return std::sqrt(6 * error);
+    case IntegratorId::runge_kutta_4:
+      return std::sqrt(std::sqrt(120 * error));
+  }
+  VAT_CHECK(false && "not an integrator");
+  return 0;
+}
+
+}  // namespace vat

@@ -1,0 +1,222 @@
+#include "core/step/step_control.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/forces/contacts.h"
+#include "core/forces/liquid.h"
+#include "core/forces/rigid.h"
+#include "core/limits.h"
+#include "core/rigid/rigid_motion.h"
+#include "core/scene/error_model.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+constexpr Real kTravelShare = 0.5;   // of the guard's: two bodies may approach each other
+constexpr Real kGreatestTurn = 0.5;  // [rad] a step; the guard's is 1
+
+/// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they lie in `at`.
+template <class Constant>
+Real spring_load(const Model& model, const std::vector<Vec3>& at, Index i, Constant&& constant) {
+  Mat3 load = Mat3::Zero();
+  for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+    const SpringEnd& spring = model.spring_ends[s];
+    const Vec3 x = at[i] - at[spring.other];
+    const Real length2 = x.squaredNorm();
+    load += constant(spring) *
+            (length2 > 0 ? Mat3(x * x.transpose() / length2) : Mat3(Mat3::Identity()));
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(load, Eigen::EigenvaluesOnly);
+  return 2 * solver.eigenvalues()[2] * model.inverse_mass[i];
+}
+
+std::vector<Vec3> starting_places(const Model& model) {
+  std::vector<Vec3> at(model.particle_count);
+  for (const ModelBody& body : model.bodies) {
+    std::ranges::copy(body.sample->positions, at.begin() + body.particles.begin);
+  }
+  return at;
+}
+
+}  // namespace
+
+StepBounds find_step_bounds(const Model& model) {
+  StepBounds bounds;
+  if (model.scene.numerics.control == StepControl::fixed) return bounds;
+  const std::vector<Vec3> at = starting_places(model);
+  bounds.spring_step.assign(model.free_count, kInfinity);
+  for (Index i = 0; i < model.free_count; ++i) {
+    if (model.spring_begin[i] == model.spring_begin[i + 1] || model.inverse_mass[i] == 0) continue;
+    const Oscillation bound{
+        spring_load(model, at, i, [](const SpringEnd& spring) { return spring.stiffness; }),
+        spring_load(model, at, i, [](const SpringEnd& spring) { return spring.damping; })};
+    bounds.spring_step[i] = safe_step(model.scene.numerics, bound);
+  }
+  bounds.field_step = kInfinity;
+  if (model.scene.central_field && model.scene.central_field->angular_frequency > 0) {
+    const Numerics& numerics = model.scene.numerics;
+    bounds.field_step = resolving_phase(numerics.integrator, numerics.tolerance) /
+                        model.scene.central_field->angular_frequency;
+  }
+  return bounds;
+}
+
+namespace {
+
+/// The time in which a particle at `speed` with `acceleration` travels `way`.
+Real travel_time(Real way, Real speed, Real acceleration) {
+  return 2 * way / (speed + std::sqrt(speed * speed + 4 * acceleration * way));
+}
+
+/// What a state says about one body's steps.
+struct Present {
+  const Model& model;
+  const State& state;
+  const StepBounds& bounds;
+  const GuardBounds& guard;
+
+  Real acceleration(Index i) const {
+    return state.forces_current ? model.inverse_mass[i] * state.forces.particle[i].norm() : 0;
+  }
+};
+
+void limit_free_travel(const Present& present, TaskRunner* runner, std::vector<Real>& steps) {
+  for_blocks(runner, present.model.free_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Index>(k);
+      const Real way = kTravelShare * present.guard.travel[present.model.body[i]];
+      const Real speed = present.state.now.velocity[i].norm();
+      steps[i] = std::min({present.bounds.spring_step[i], present.bounds.field_step,
+                           travel_time(way, speed, present.acceleration(i))});
+    }
+  });
+}
+
+void limit_rigid_travel(const Present& present, std::vector<Real>& steps) {
+  for (std::size_t b = 0; b < present.model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = present.model.rigid_bodies[b];
+    const RigidState& state = present.state.now.rigid[b];
+    const Real turning = angular_velocity(rigid, state.orientation, state.angular_momentum).norm();
+    const Real speed =
+        rigid.inverse_mass * state.momentum.norm() + present.guard.extent[b] * turning;
+    const bool is_known = present.state.forces_current;
+    const Real acceleration =
+        is_known ? rigid.inverse_mass * present.state.forces.rigid_force[b].norm() : 0;
+    const Real way = kTravelShare * present.guard.travel[rigid.body];
+    steps[b] = std::min({present.bounds.field_step, travel_time(way, speed, acceleration),
+                         turning > 0 ? kGreatestTurn / turning : kInfinity});
+  }
+}
+
+Real liquid_step(const Present& present) {
+  Real step = kInfinity;
+  for (const ModelBody& body : present.model.bodies) {
+    if (body.kind != BodyKind::liquid) continue;
+    const LiquidModel& liquid = *present.model.liquids[body.material];
+    Real speed2 = 0;
+    Real acceleration = 0;
+    for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+      speed2 = std::max(speed2, present.state.now.velocity[i].squaredNorm());
+      acceleration = std::max(acceleration, present.acceleration(i));
+    }
+    const Real h_s = liquid.support_radius / 2;
+    const Real fastest = std::sqrt(liquid.stiffness) + std::sqrt(speed2);
+    if (fastest > 0) step = std::min(step, 0.4 * h_s / fastest);
+    if (acceleration > 0) step = std::min(step, 0.25 * std::sqrt(h_s / acceleration));
+    if (liquid.viscosity > 0) {
+      step = std::min(step, 0.125 * h_s * h_s * liquid.rest_density / liquid.viscosity);
+    }
+  }
+  return step;
+}
+
+void limit_grabs(const ForceModel& f, PresentSteps& steps) {
+  for (const Grab& grab : f.controls.grabs) {
+    const Real step = safe_step(f.model.scene.numerics,
+                                {grab.stiffness / grab.held_mass, grab.damping / grab.held_mass});
+    const ModelBody& body = f.model.bodies[grab.body];
+    if (body.kind == BodyKind::rigid) {
+      steps.rigid[body.rigid] = std::min(steps.rigid[body.rigid], step);
+      continue;
+    }
+    for (const Index held : grab.held) {
+      Real& own = steps.particle[body.particles.begin + held];
+      own = std::min(own, step);
+    }
+  }
+}
+
+/// How far any two particles that may touch can approach each other in a step of `longest`, and no
+/// more than in the steps that their travel allows.
+Real greatest_approach(const Present& present, Real longest) {
+  Real greatest = 0;
+  const auto take = [&](Index body, Real speed) {
+    greatest =
+        std::max(greatest, std::min(speed * longest, kTravelShare * present.guard.travel[body]));
+  };
+  const Real gained = present.model.scene.gravity.norm() * longest;
+  for (Index i = 0; i < present.model.free_count; ++i) {
+    take(present.model.body[i], present.state.now.velocity[i].norm() + gained);
+  }
+  for (std::size_t b = 0; b < present.model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = present.model.rigid_bodies[b];
+    for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
+      take(rigid.body, present.state.now.velocity[i].norm() + gained);
+    }
+  }
+  return 2 * greatest;
+}
+
+}  // namespace
+
+Real PresentSteps::least() const {
+  Real least = liquid;
+  for (const Real step : particle) least = std::min(least, step);
+  for (const Real step : rigid) least = std::min(least, step);
+  return least;
+}
+
+void find_present_steps(const ForceModel& f, State& state, Real time, Real longest,
+                        const StepBounds& bounds, const GuardBounds& guard, PresentSteps& steps) {
+  const Model& model = f.model;
+  StepContext context{model, f.controls, time, f.step, state.now, state.forces, f.work, f.runner};
+  pose_rigid_bodies(context);
+  const Present present{model, state, bounds, guard};
+  steps.particle.resize(model.free_count);
+  steps.rigid.resize(model.rigid_bodies.size());
+  limit_free_travel(present, f.runner, steps.particle);
+  limit_rigid_travel(present, steps.rigid);
+  steps.liquid = liquid_step(present);
+  limit_grabs(f, steps);
+  if (model.contact_reach > 0) {
+    if (model.liquid_count > 0) sort_liquid(context);
+    sort_solids(context);
+  }
+  find_contact_steps(f, state.now, time, longest, greatest_approach(present, longest),
+                     steps.contacts, steps.particle, steps.rigid);
+}
+
+std::uint32_t level_of(Real step, Real nominal) {
+  std::uint32_t level = 0;
+  while (level < kMaxStepLevel && std::ldexp(nominal, -static_cast<int>(level)) > step) ++level;
+  return level;
+}
+
+void choose_level(std::uint32_t wanted, std::uint32_t position, StepHistory& history) {
+  if (wanted > history.level) {
+    history.level = wanted;
+    history.held = 0;
+    return;
+  }
+  const std::uint32_t longer = 1U << (kMaxStepLevel - history.level + 1);
+  if (wanted < history.level && history.held >= kHeldSteps && position % longer == 0) {
+    --history.level;
+    history.held = 0;
+  }
+}
+
+}  // namespace vat

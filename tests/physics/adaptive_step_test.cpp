@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/mixed_scenes.h"
+#include "tests/support/thread_runner.h"
+
+// What adaptive step control reaches, and at what cost.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kGravity = 9.81;
+constexpr Real kReach = 0.1;  // threshold of the walls' interface [m]
+
+Scene make_adaptive(Scene scene, Real tolerance) {
+  scene.numerics.control = StepControl::adaptive;
+  scene.numerics.tolerance = tolerance;
+  return scene;
+}
+
+/// RIG-4: a mass of 1 falls from a height onto a floor.
+Scene make_bounce(Real stiffness, Real step, Real height = 1) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {make_material("steel")};
+  scene.interfaces = {{{"steel", kVatMaterial}, {stiffness, 0}, kReach}};
+  scene.vat = Vat{Vec3(-50, -50, 0), Vec3(50, 50, 50), false, {}};
+  scene.gravity = {0, 0, -kGravity};
+  scene.bodies = {make_body("ball", BodyKind::rigid, "steel",
+                            make_particles({{0, 0, kReach + height}}, 1), 1e-6)};
+  return scene;
+}
+
+struct Outcome {
+  Real error = 0;
+  std::uint64_t evaluations = 0;
+};
+
+/// The greatest error of the height after three bounces, over some heights of fall, so that no step
+/// is lucky with where in it the contacts begin and end.
+Outcome run_bounces(Real stiffness, Real step, StepControl control) {
+  constexpr Real kTime = 2.8;
+  Outcome outcome;
+  for (int n = 0; n < 8; ++n) {
+    const Real height = 1 + 0.003 * n;
+    Scene scene = make_bounce(stiffness, step, height);
+    scene.numerics.control = control;
+    scene.numerics.tolerance = 1e-5;
+    Simulation simulation = make_simulation(scene);
+    const AdvanceReport report =
+        simulation.advance(static_cast<std::uint32_t>(std::lround(kTime / step)));
+    EXPECT_EQ(report.undone_steps, 0U);
+    outcome.evaluations += report.force_evaluations;
+    const Real speed = std::sqrt(2 * kGravity * height);
+    const Real omega = std::sqrt(stiffness);
+    const Real contact = 2 / omega * (std::numbers::pi - std::atan(speed * omega / kGravity));
+    const Real since = std::fmod(kTime + speed / kGravity, contact + 2 * speed / kGravity);
+    const Real expected = speed * since - kGravity * since * since / 2;
+    outcome.error =
+        std::max(outcome.error, std::abs(position_of(simulation, 0).z() - kReach - expected));
+  }
+  return outcome;
+}
+
+// A contact takes a thirtieth of the time, or a three-hundredth: that much is to be won, less the
+// short steps that come before and after it.
+TEST(AdaptiveStep, ReachesTheErrorOfFixedStepsAtAFractionOfTheCost) {
+  for (const Real stiffness : {1e4, 1e5, 1e6}) {
+    const Outcome adaptive = run_bounces(stiffness, 0.02, StepControl::adaptive);
+    EXPECT_LT(adaptive.error, 1e-4) << stiffness;
+    Real step = 1e-3;
+    Outcome fixed = run_bounces(stiffness, step, StepControl::fixed);
+    while (fixed.error > adaptive.error) {
+      step /= 2;
+      fixed = run_bounces(stiffness, step, StepControl::fixed);
+    }
+    const Real saved =
+        static_cast<Real>(fixed.evaluations) / static_cast<Real>(adaptive.evaluations);
+    EXPECT_GT(saved, 20) << stiffness;
+    RecordProperty("saved_" + std::to_string(std::lround(stiffness)), std::to_string(saved));
+  }
+}
+
+TEST(AdaptiveStep, IsTheNominalOneWhereNothingAsksForLess) {
+  const Scene scene = make_bounce(1e4, 0.02);
+  Simulation fixed = make_simulation(scene);
+  Simulation adaptive = make_simulation(make_adaptive(scene, 1e-3));
+  fixed.advance(10);  // from the 13th on, travel would ask for less: 0.05 m
+  const AdvanceReport report = adaptive.advance(10);
+  EXPECT_EQ(report.steps, 10U);
+  EXPECT_EQ(report.least_step, 0.02);
+  EXPECT_EQ(report.greatest_step, 0.02);
+  EXPECT_EQ(position_of(adaptive, 0), position_of(fixed, 0));
+}
+
+// A pile at rest must be stable, but has nothing to resolve.
+TEST(AdaptiveStep, OfABodyAtRestIsOnlyStable) {
+  constexpr Real kStiffness = 1e4;
+  Scene scene = make_adaptive(make_bounce(kStiffness, 0.1), 1e-5);
+  std::get<ParticleShape>(scene.bodies[0].shape).positions[0].z() = kReach - kGravity / kStiffness;
+  Simulation simulation = make_simulation(scene);
+  const AdvanceReport report = simulation.advance(20);
+  EXPECT_EQ(report.least_step, 0.1 / 8);  // 2 / omega = 0.02, and the next shorter is in its margin
+  EXPECT_NEAR(position_of(simulation, 0).z(), kReach - kGravity / kStiffness, 1e-12);
+}
+
+// INT: nothing tunnels, and nothing is left to the guard, where a step at the nominal length would
+// carry a particle ten walls far.
+TEST(AdaptiveStep, LetsNoProjectilePassAThinWall) {
+  for (const IntegratorId integrator : kIntegrators) {
+    Scene scene = make_scene(integrator, 0.01);
+    scene.materials = {make_material("steel")};
+    scene.interfaces = {{{"steel", "steel"}, {1e5, 0}, 0.05}};
+    scene.bodies = {
+        make_body("wall", BodyKind::rigid, "steel", make_particles(make_lattice(1, 9, 9, 0.03), 10),
+                  0.015),
+        make_body("shot", BodyKind::rigid, "steel", make_particles({{-1.013, 0, 0}}, 0.001), 0.01)};
+    scene.bodies[1].velocity = {50, 0, 0};
+    Simulation simulation = make_simulation(make_adaptive(scene, 1e-3));
+    const AdvanceReport report = simulation.advance(5);
+    EXPECT_EQ(report.undone_steps, 0U) << to_string(integrator);
+    EXPECT_LT(velocity_of(simulation, 1).x(), -45) << to_string(integrator);
+    EXPECT_LT(report.least_step, 1e-3);
+  }
+}
+
+/// Bodies of all kinds that fall on one another, with the nominal step too long for each of them.
+Scene make_crowd(IntegratorId integrator) {
+  Scene scene = make_two_material_scene(integrator, 0.02, 1);
+  scene.gravity = {0, 0, -kGravity};
+  scene.vat = Vat{Vec3(-0.25, -0.25, -0.21), Vec3(1, 1, 1.3), true, SlideMotion{{1, 0, 0}, 0.2, 2}};
+  int n = 0;
+  for (const BodyKind kind : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
+    scene.bodies.push_back(make_block("body" + std::to_string(n), kind, n % 2 == 0 ? "a" : "b", 7,
+                                      Vec3(0.02, 0.03, 0.4 * n), {0.3, 0.1, n == 0 ? 0 : -1.0}));
+    ++n;
+  }
+  return make_adaptive(scene, 1e-2);
+}
+
+TEST(AdaptiveStep, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
+  for (const IntegratorId integrator : {IntegratorId::velocity_verlet, IntegratorId::heun}) {
+    const Scene scene = make_crowd(integrator);
+    Simulation serial = make_simulation(scene);
+    const AdvanceReport report = serial.advance(6);
+    EXPECT_EQ(report.undone_steps, 0U);
+    EXPECT_GT(report.steps, 12U);
+    for (const std::size_t threads : {2u, 4u}) {
+      ThreadRunner runner(threads);
+      Simulation threaded = make_simulation(scene, &runner);
+      threaded.advance(6);
+      EXPECT_EQ(threaded.state_hash(), serial.state_hash());
+    }
+    const Snapshot middle = serial.snapshot();
+    serial.advance(4);
+    const std::uint64_t end = serial.state_hash();
+    serial.restore(middle);
+    for (int n = 0; n < 4; ++n) serial.advance(1);
+    EXPECT_EQ(serial.state_hash(), end) << to_string(integrator);
+  }
+}
+
+// The stiff spring of this body needs resolving only where it swings.
+TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
+  scene.materials = {make_material("rubber")};
+  BodyDescription body = make_body("pair", BodyKind::deformable, "rubber",
+                                   make_particles({{0, 0, 0}, {1, 0, 0}, {1.1, 0, 0}}, 1), 0.01);
+  // The soft spring pulls with 0.1 N, and half of it goes on to the third particle.
+  body.springs = {{0, 1, {1, 0}, 0.9}, {1, 2, {1e4, 0}, 0.1 - 0.05 / 1e4}};
+  scene.bodies = {body};
+  const auto steps_of = [](const Scene& s) {
+    return make_simulation(make_adaptive(s, 1e-4)).advance(100).steps;
+  };
+  const std::uint64_t calm = steps_of(scene);
+  scene.bodies[0].springs[1].rest_length = 0.09;
+  const std::uint64_t excited = steps_of(scene);
+  EXPECT_LT(calm, 110U);  // 1.4 rad/s; omega_max = 141 rad/s is stable
+  // 24e-4 = z^2, and z / (141 rad/s) lies between the parts of levels 4 and 5.
+  EXPECT_NEAR(static_cast<double>(excited), 3200, 100);
+}
+
+}  // namespace
+}  // namespace vat
