@@ -17,8 +17,8 @@ std::size_t count_non_finite(const Simulation& simulation) {
       count += static_cast<std::size_t>(
           std::ranges::count_if(column, [](const Vec3& v) { return !v.allFinite(); }));
     }
-    if (body.pose && !(body.pose->orientation.coeffs().allFinite() &&
-                       body.pose->angular_velocity.allFinite())) {
+    if (body.pose &&
+        !(body.pose->orientation.coeffs().allFinite() && body.pose->angular_velocity.allFinite())) {
       ++count;
     }
   }
@@ -71,6 +71,13 @@ bool take_tick(const AdversarialCase& adversarial, Simulation& simulation, Outco
   return outcome.fault.empty();
 }
 
+/// Walls without stiffness hold nobody.
+bool has_walls(const Scene& scene) {
+  return std::ranges::none_of(scene.interfaces, [](const InterfaceDescription& interface) {
+    return interface.materials[1] == kVatMaterial && interface.constants.stiffness == 0;
+  });
+}
+
 void run_created(const AdversarialCase& adversarial, Simulation& simulation, Outcome& outcome) {
   observe(simulation, outcome);
   const Real tick = simulation.step_size() * simulation.steps_per_tick();
@@ -80,6 +87,7 @@ void run_created(const AdversarialCase& adversarial, Simulation& simulation, Out
     if (!take_tick(adversarial, simulation, outcome)) return;
   }
   outcome.ending = Ending::ran;
+  if (!has_walls(simulation.scene())) outcome.most_outside = 0;
   if (outcome.most_outside > 0) {
     outcome.fault = std::to_string(outcome.most_outside) + " particles outside the vat";
   } else if (adversarial.judge) {

@@ -9,7 +9,8 @@
 /// Bodies and scenes that the stability tests are made of.
 namespace vat::stability {
 
-inline constexpr Real kSpacing = 0.05;  // [m] of every lattice here, but where a case says otherwise
+inline constexpr Real kSpacing =
+    0.05;  // [m] of every lattice here, but where a case says otherwise
 inline constexpr BodyKind kKinds[] = {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid};
 
 /// Earth's gravity, the default numerics and the materials "water", "oil" (liquids, and anything

@@ -15,20 +15,18 @@ void add_springs(Cases& cases) {
     constexpr Real kStiffness = 100;
     Scene scene = make_scene();
     scene.gravity = Vec3::Zero();
-    scene.bodies = {
-        make_spring_pair("pair", part * kLength, kLength, {kStiffness, 0}, {0.5, 0.5})};
+    scene.bodies = {make_spring_pair("pair", part * kLength, kLength, {kStiffness, 0}, {0.5, 0.5})};
     const Real fastest = kLength * (1 - part) * std::sqrt(kStiffness / 0.25);
-    cases.push_back({.group = "crushed spring",
-                     .name = "spring at " + label(part) + " of its length",
-                     .scene = scene,
-                     .duration = 1,
-                     .judge = [fastest](const Simulation& simulation) {
-                       const Real speed = (test::velocity_of(simulation, 1) -
-                                           test::velocity_of(simulation, 0))
-                                              .norm();
-                       return speed <= 1.001 * fastest ? std::string()
-                                                       : "parts at " + label(speed) + " m/s";
-                     }});
+    cases.push_back(
+        {.group = "crushed spring",
+         .name = "spring at " + label(part) + " of its length",
+         .scene = scene,
+         .duration = 1,
+         .judge = [fastest](const Simulation& simulation) {
+           const Real speed =
+               (test::velocity_of(simulation, 0, 1) - test::velocity_of(simulation, 0, 0)).norm();
+           return speed <= 1.001 * fastest ? std::string() : "parts at " + label(speed) + " m/s";
+         }});
   }
 }
 
@@ -60,37 +58,47 @@ void add_contacts(Cases& cases) {
       scene.bodies = {make_particle("a", kind, {0.5, 0.5, 0.025 * part}, 0.1),
                       make_particle("b", kind, {0.5, 0.5, 0.025 * part + part * kSpacing}, 0.1)};
       cases.push_back({.group = std::string("crushed contact of ") + to_string(kind),
-                       .name = std::string("contact of ") + to_string(kind) + " at " +
-                               label(part) + " of its length, on the floor",
+                       .name = std::string("contact of ") + to_string(kind) + " at " + label(part) +
+                               " of its length, on the floor",
                        .scene = scene});
     }
   }
 }
 
-/// Liquid at a multiple of its rest density, in the middle of a tank or filling a narrow one.
+/// What a unit of mass of a gas of p = k (rho - rho_0) gives off from `density` times rho_0 [J/kg].
+Real internal_energy(Real stiffness, Real density) {
+  return stiffness * (std::log(density) + 1 / density - 1);
+}
+
+/// Liquid at a multiple of its rest density, in the middle of a tank or filling a narrow one. The
+/// walls bear the push of its start and particles at the speed of its burst, eight behind each
+/// other.
 void add_liquids(Cases& cases) {
+  constexpr Real kRadius = kSpacing / 2;
   for (const Real density : {1.5, 3.0, 10.0}) {
     for (const bool confined : {false, true}) {
       const Real spacing = kSpacing / std::cbrt(density);
       Scene scene = make_tank();
       BodyDescription block = make_block("block", BodyKind::liquid, 8, {0.5, 0.5, 0.5}, spacing);
       std::get<ParticleShape>(block.shape).masses.assign(512, 0.125);
-      const Real half = 4 * spacing;
+      block.radius = kRadius;
       if (confined) {
-        scene.vat->min = Vec3::Constant(0.5 - half);
-        scene.vat->max = Vec3::Constant(0.5 + half);
-        // The pressure of k (rho - rho_0) on the part of a wall that a particle has.
-        const Real push = 100 * 1000 * (density - 1) * spacing * spacing;
-        const Real stiffness = std::max(1e4, 4 * push / (kSpacing / 2));
-        for (auto& interface : scene.interfaces) interface.constants.stiffness = stiffness;
+        scene.vat->min = Vec3::Constant(0.5 - 4 * spacing);
+        scene.vat->max = Vec3::Constant(0.5 + 4 * spacing);
+      }
+      const Real push = 100 * 1000 * (density - 1) * spacing * spacing;
+      const Real burst = 8 * 0.125 * 2 * internal_energy(100, density);
+      for (auto& interface : scene.interfaces) {
+        interface.constants.stiffness =
+            std::max({1e4, 8 * push / kRadius, 8 * burst / (kRadius * kRadius)});
       }
       scene.bodies = {block};
-      take_stable_step(scene, 0.3 / density);
+      take_stable_step(scene, 0.3);
       cases.push_back({.group = confined ? "crushed liquid in a narrow vat" : "crushed liquid",
                        .name = std::string(confined ? "confined " : "") + "liquid at " +
                                label(density) + " of its density",
                        .scene = scene,
-                       .duration = 0.3});
+                       .duration = 0.1});
     }
   }
 }

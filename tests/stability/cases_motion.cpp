@@ -135,10 +135,10 @@ void add_heavy_vats(Cases& cases) {
       scene.bodies = {make_block("block", kind, 4, {0.5, 0.5, 0.1})};
       stiffen(scene, 4, times * kEarth, stroke);
       take_stable_step(scene, 0.25);
-      cases.push_back({.group = std::string("shaken vat: ") + to_string(kind),
-                       .name = std::string(to_string(kind)) + " in a vat shaken with " +
-                               label(times) + " g",
-                       .scene = scene});
+      cases.push_back(
+          {.group = std::string("shaken vat: ") + to_string(kind),
+           .name = std::string(to_string(kind)) + " in a vat shaken with " + label(times) + " g",
+           .scene = scene});
     }
   }
 }

@@ -47,11 +47,11 @@ void add_blocks(Cases& cases) {
     for (std::size_t b = a; b < std::size(kKinds); ++b) {
       const std::string kinds = names(kKinds[b], kKinds[a]);
       for (const Real depth : {0.1, 0.5, 0.99}) {
-        cases.push_back({.group = "overlap of " + kinds,
-                         .name = "overlap of " + kinds + " by " + label(depth),
-                         .scene = make_two_blocks(kKinds[b], kKinds[a],
-                                                  {edge * (1 - depth), 0.003, 0.001}),
-                         .judge = judge_momentum});
+        cases.push_back(
+            {.group = "overlap of " + kinds,
+             .name = "overlap of " + kinds + " by " + label(depth),
+             .scene = make_two_blocks(kKinds[b], kKinds[a], {edge * (1 - depth), 0.003, 0.001}),
+             .judge = judge_momentum});
       }
       cases.push_back({.group = "coincident " + kinds,
                        .name = "coincident " + kinds,
@@ -80,8 +80,8 @@ void add_pairs(Cases& cases) {
                      .scene = scene,
                      .duration = 0.1,
                      .judge = [speed](const Simulation& simulation) {
-                       const Vec3 apart = test::velocity_of(simulation, 1) -
-                                          test::velocity_of(simulation, 0);
+                       const Vec3 apart =
+                           test::velocity_of(simulation, 1) - test::velocity_of(simulation, 0);
                        // Verlet's error over half an oscillation is z^2/24, and as much again of
                        // the step in which the contact ends; z = 0.0115.
                        const bool good = std::abs(apart.x() / speed - 1) < 1e-4;
@@ -126,12 +126,12 @@ void add_heaps(Cases& cases) {
     for (const std::size_t count : {300U, 2000U}) {
       Scene scene = make_tank();
       scene.bodies = {make_heap(kind, count)};
-      cases.push_back({.group = std::string("heap of ") + to_string(kind),
-                       .name = std::to_string(count) + " particles of one " + to_string(kind) +
-                               " in one place",
-                       .scene = scene,
-                       .expected = kind == BodyKind::liquid ? Expected::may_stop : Expected::runs,
-                       .duration = 0.1});
+      cases.push_back(
+          {.group = std::string("heap of ") + to_string(kind),
+           .name = std::to_string(count) + " particles of one " + to_string(kind) + " in one place",
+           .scene = scene,
+           .expected = kind == BodyKind::liquid ? Expected::may_stop : Expected::runs,
+           .duration = 0.1});
     }
   }
   Scene refused = make_tank();

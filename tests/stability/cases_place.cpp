@@ -108,15 +108,17 @@ void add_thin_rigid_bodies(Cases& cases) {
   for (const auto& [name, points] : shapes) {
     for (const Real spin : {0.0, 100.0}) {
       Scene scene = make_tank();
+      // A corner of the plate comes with 0.1 m times the spin, and all of its mass.
+      for (auto& interface : scene.interfaces) interface.constants.stiffness = 1e6;
       scene.bodies = {test::make_body("thin", BodyKind::rigid, "wood",
                                       test::make_particles(points, 0.1), kSpacing / 2)};
       scene.bodies[0].position = {0.5, 0.5, 0.5};
       scene.bodies[0].angular_velocity = {spin, 0.01 * spin, 0};
       take_stable_step(scene, 0.3);
-      cases.push_back({.group = std::string("rigid ") + name,
-                       .name = std::string("rigid ") + name + " turning with " + label(spin) +
-                               " rad/s",
-                       .scene = scene});
+      cases.push_back(
+          {.group = std::string("rigid ") + name,
+           .name = std::string("rigid ") + name + " turning with " + label(spin) + " rad/s",
+           .scene = scene});
     }
   }
 }

@@ -12,11 +12,12 @@ Scene make_stack(Real lower_mass, Real upper_mass) {
   Scene scene = make_tank();
   const Real radius = 0.05;
   const Real stiffness = (lower_mass + upper_mass) * 9.81 / (0.1 * radius);
-  scene.default_interface = {stiffness, 0.1 * std::sqrt(stiffness * std::min(lower_mass, upper_mass))};
+  scene.default_interface = {stiffness,
+                             0.1 * std::sqrt(stiffness * std::min(lower_mass, upper_mass))};
   for (auto& interface : scene.interfaces) interface.constants = scene.default_interface;
-  scene.bodies = {make_particle("lower", BodyKind::rigid, {0.5, 0.5, radius}, lower_mass, radius),
-                  make_particle("upper", BodyKind::rigid, {0.5, 0.5, 3 * radius}, upper_mass,
-                                radius)};
+  scene.bodies = {
+      make_particle("lower", BodyKind::rigid, {0.5, 0.5, radius}, lower_mass, radius),
+      make_particle("upper", BodyKind::rigid, {0.5, 0.5, 3 * radius}, upper_mass, radius)};
   take_stable_step(scene, 0.4);
   return scene;
 }
@@ -45,8 +46,7 @@ void add_mass_ratios(Cases& cases) {
     pool.bodies = {make_block("pool", BodyKind::liquid, 6, {0.5, 0.5, 0.2}),
                    make_particle("ball", BodyKind::rigid, {0.5, 0.5, 0.5}, 0.125 * ratio)};
     take_stable_step(pool, 0.4);
-    cases.push_back(
-        {.group = "ball on a pool", .name = "ball on a pool," + to, .scene = pool});
+    cases.push_back({.group = "ball on a pool", .name = "ball on a pool," + to, .scene = pool});
   }
 }
 
@@ -103,16 +103,18 @@ void add_long_steps(Cases& cases) {
   Scene liquid = make_tank();
   liquid.bodies = {make_block("pool", BodyKind::liquid, 6, {0.5, 0.5, 0.2})};
 
-  const std::pair<const char*, const Scene*> scenes[] = {
-      {"oscillator", &oscillator}, {"lattice", &lattice}, {"contact", &contact}, {"liquid", &liquid}};
+  const std::pair<const char*, const Scene*> scenes[] = {{"oscillator", &oscillator},
+                                                         {"lattice", &lattice},
+                                                         {"contact", &contact},
+                                                         {"liquid", &liquid}};
   for (const auto& [name, scene] : scenes) {
     for (const Real part : {1.1, 2.0, 5.0, 50.0}) {
-      AdversarialCase adversarial{.group = std::string("too long steps of a ") + name,
-                                  .name = std::string(name) + " with steps of " + label(part) +
-                                          " times the limit",
-                                  .scene = *scene,
-                                  .expected = Expected::may_stop,
-                                  .duration = 2};
+      AdversarialCase adversarial{
+          .group = std::string("too long steps of a ") + name,
+          .name = std::string(name) + " with steps of " + label(part) + " times the limit",
+          .scene = *scene,
+          .expected = Expected::may_stop,
+          .duration = 2};
       const Real step = std::min(part * least_step_limit(*scene), 0.1);
       adversarial.scene.numerics.step = adversarial.scene.numerics.tick = step;
       cases.push_back(adversarial);

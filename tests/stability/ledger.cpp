@@ -1,0 +1,143 @@
+#include "tests/stability/ledger.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/stability/builders.h"
+
+namespace vat::stability {
+namespace {
+
+const Material& find_material(const Scene& scene, std::string_view name) {
+  return *std::ranges::find(scene.materials, name, &Material::name);
+}
+
+SpringConstants wall_constants(const Scene& scene, std::string_view material) {
+  for (const InterfaceDescription& interface : scene.interfaces) {
+    if (interface.materials[0] == material && interface.materials[1] == kVatMaterial) {
+      return interface.constants;
+    }
+  }
+  return scene.default_interface;
+}
+
+struct VatPose {
+  Vec3 offset = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+};
+
+VatPose vat_pose(const Vat& vat, Real time) {
+  if (!vat.motion) return {};
+  const Real omega = 2 * std::numbers::pi / vat.motion->period;
+  const Vec3 half = vat.motion->stroke / 2 * vat.motion->axis.normalized();
+  return {half * (1 - std::cos(omega * time)), half * omega * std::sin(omega * time)};
+}
+
+/// Of a closed vat's six walls on one particle.
+Vec3 wall_force(const Vat& vat, const VatPose& pose, const SpringConstants& law, Real radius,
+                const Vec3& position, const Vec3& velocity) {
+  Vec3 force = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Real x = position[axis] - pose.offset[axis];
+    const Real v = velocity[axis] - pose.velocity[axis];
+    const Real below = vat.min[axis] + radius - x;
+    const Real above = x - (vat.max[axis] - radius);
+    if (below > 0) force[axis] += std::max(0.0, law.stiffness * below - law.damping * v);
+    if (above > 0) force[axis] -= std::max(0.0, law.stiffness * above + law.damping * v);
+  }
+  return force;
+}
+
+Vec3 momentum_of(const Diagnostics& now) {
+  Vec3 sum = Vec3::Zero();
+  for (const BodyDiagnostics& body : now.bodies) sum += body.linear_momentum;
+  return sum;
+}
+
+Real pressure_energy(const Scene& scene, const Diagnostics& now) {
+  Real energy = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].kind != BodyKind::liquid) continue;
+    const Material& material = find_material(scene, scene.bodies[b].material);
+    energy += now.bodies[b].mass * material.liquid->stiffness * now.max_density_error *
+              now.max_density_error / 2;
+  }
+  return energy;
+}
+
+}  // namespace
+
+Ledger::Outside Ledger::outside(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  const VatPose pose = scene.vat ? vat_pose(*scene.vat, simulation.time()) : VatPose{};
+  Outside sum{Vec3::Zero(), 0};
+  for (const BodyView& body : simulation.bodies()) {
+    const SpringConstants law = wall_constants(scene, body.material);
+    for (std::size_t i = 0; i < body.positions.size(); ++i) {
+      sum.force += body.masses[i] * scene.gravity;
+      if (!scene.vat) continue;
+      const Vec3 force =
+          wall_force(*scene.vat, pose, law, body.radii[i], body.positions[i], body.velocities[i]);
+      sum.force += force;
+      sum.power += force.dot(pose.velocity);
+    }
+  }
+  return sum;
+}
+
+Real Ledger::mechanical(const Diagnostics& now) {
+  return now.kinetic_energy + now.gravitational_energy + now.elastic_energy + now.contact_energy;
+}
+
+bool Ledger::closes(const Scene& scene) {
+  return scene.numerics.integrator == IntegratorId::velocity_verlet &&
+         std::ranges::all_of(scene.materials, [&](const Material& material) {
+           return !scene.vat || wall_constants(scene, material.name).damping == 0;
+         });
+}
+
+Ledger::Ledger(const Simulation& simulation)
+    : scene_(simulation.scene()), last_(outside(simulation)) {
+  const Diagnostics start = simulation.diagnostics();
+  momentum_ = momentum_of(start);
+  energy_ = mechanical(start);
+  Scene verlet = scene_;
+  verlet.numerics.integrator = IntegratorId::velocity_verlet;
+  phase_ = 2 * scene_.numerics.step / least_step_limit(verlet);
+  add_step(simulation, start);
+}
+
+void Ledger::add_step(const Simulation& simulation, const Diagnostics& now) {
+  const Outside next = outside(simulation);
+  const Real dt = now.bodies.empty() ? 0 : simulation.step_size();
+  const bool is_start = moved_ == 0;
+  if (!is_start) {
+    momentum_ += dt / 2 * (last_.force + next.force);
+    moved_ += dt / 2 * (last_.force + next.force).norm();
+    energy_ += dt / 2 * (last_.power + next.power);
+  }
+  last_ = next;
+  Real motion = 0;
+  for (const BodyView& body : simulation.bodies()) {
+    for (std::size_t i = 0; i < body.masses.size(); ++i) {
+      motion += body.masses[i] * body.velocities[i].norm();
+    }
+  }
+  if (is_start) moved_ = motion + 1e-300;
+  momentum_error_ =
+      std::max(momentum_error_, (momentum_of(now) - momentum_).norm() / (moved_ + motion));
+  energy_excess_ = std::max(energy_excess_, mechanical(now) - energy_);
+  energy_scale_ =
+      std::max(energy_scale_, now.kinetic_energy + now.elastic_energy + now.contact_energy);
+  liquid_energy_ = std::max(liquid_energy_, pressure_energy(scene_, now));
+}
+
+Real Ledger::energy_bound() const {
+  constexpr Real kRoundOff = 1e-10;
+  const bool first_order = scene_.numerics.integrator == IntegratorId::symplectic_euler;
+  const Real of_integrator = first_order ? 3 * phase_ / 2 : 3 * phase_ * phase_ / 6;
+  return of_integrator + kRoundOff + 2 * liquid_energy_ / energy_scale_;
+}
+
+}  // namespace vat::stability
