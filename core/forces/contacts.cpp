@@ -7,7 +7,8 @@ namespace vat {
 
 void sort_solids(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
-  c.work.solids.build(points.subspan(c.model.liquid_count), c.model.contact_reach);
+  c.work.solids.build(points.subspan(c.model.liquid_count), c.model.contact_reach,
+                      c.model.periodic);
 }
 
 void add_contacts(StepContext& c) {
@@ -16,7 +17,8 @@ void add_contacts(StepContext& c) {
     for (std::size_t i = begin; i < end; ++i) {
       Vec3 sum = Vec3::Zero();
       for_each_contact(c.model, c.work, at, static_cast<Index>(i), [&](const Contact& contact) {
-        const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other);
+        const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
+                                      c.model.scene.dimensions);
         const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
         const Real push =
             contact.stiffness * (contact.threshold - contact.distance) - contact.damping * speed;

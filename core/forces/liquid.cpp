@@ -34,31 +34,52 @@ void make_room(std::vector<Index>& slots, std::size_t wanted) {
   slots.resize(size);
 }
 
+/// Difference of two slots' places; in a periodic world, of their nearest images.
+template <bool periodic>
+Vec3 difference(const PeriodicBox& box, const CellSortedPoints& points, Index to, Index from) {
+  const Vec3 x(points.x[to] - points.x[from], points.y[to] - points.y[from],
+               points.z[to] - points.z[from]);
+  return periodic ? box.nearest(x) : x;
+}
+
 /// Slots nearer to slot `self` than `support`, appended to `found` from `count` on; the new count.
 /// Every candidate is written and only a neighbour advances the count: no branch to mispredict.
-std::size_t find_neighbours(const CellSortedPoints& points, Index self, Real support,
-                            std::vector<Index>& found, std::size_t count) {
+template <bool periodic>
+std::size_t find_neighbours(const PeriodicBox& box, const CellSortedPoints& points, Index self,
+                            Real support, std::vector<Index>& found, std::size_t count) {
   constexpr Index kChunk = 1024;  // room for candidates at a time: a crowded cell may hold them all
-  const Real x = points.x[self];
-  const Real y = points.y[self];
-  const Real z = points.z[self];
+  const Vec3 p(points.x[self], points.y[self], points.z[self]);
   const Real support2 = support * support;
-  points.grid.for_each_run({x, y, z}, support, [&](Index begin, Index end) {
-    while (begin < end) {
-      const Index stop = std::min(end, begin + kChunk);
-      make_room(found, count + (stop - begin));
-      Index* const out = found.data();
-      for (Index slot = begin; slot < stop; ++slot) {
-        const Real dx = points.x[slot] - x;
-        const Real dy = points.y[slot] - y;
-        const Real dz = points.z[slot] - z;
-        out[count] = slot;
-        count +=
-            static_cast<std::size_t>((dx * dx + dy * dy + dz * dz < support2) & (slot != self));
+  const auto search_image = [&](const Vec3& shift) {
+    const Vec3 image = periodic ? Vec3(p + shift) : p;
+    points.grid.for_each_run(image, support, [&](Index begin, Index end) {
+      while (begin < end) {
+        const Index stop = std::min(end, begin + kChunk);
+        make_room(found, count + (stop - begin));
+        Index* const out = found.data();
+        for (Index slot = begin; slot < stop; ++slot) {
+          // The shift comes last: so seen from the other end all is opposite to the bit.
+          Real dx = points.x[slot] - p.x();
+          Real dy = points.y[slot] - p.y();
+          Real dz = points.z[slot] - p.z();
+          if constexpr (periodic) {
+            dx -= shift.x();
+            dy -= shift.y();
+            dz -= shift.z();
+          }
+          out[count] = slot;
+          count +=
+              static_cast<std::size_t>((dx * dx + dy * dy + dz * dz < support2) & (slot != self));
+        }
+        begin = stop;
       }
-      begin = stop;
-    }
-  });
+    });
+  };
+  if constexpr (periodic) {
+    box.for_each_image(p, support, search_image);
+  } else {
+    search_image(Vec3::Zero());
+  }
   return count;
 }
 
@@ -77,28 +98,30 @@ std::size_t keep_material(const Model& model, std::span<const Index> order, Inde
 
 void sort_liquid(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
-  c.work.liquid.build(points.first(c.model.liquid_count), greatest_support(c.model));
+  c.work.liquid.build(points.first(c.model.liquid_count), greatest_support(c.model),
+                      c.model.periodic);
 }
 
 namespace {
 
 /// rho_i = sum_j m_j W(x_i - x_j, h), the particle itself included.                   Boldt eq. 10
+template <bool periodic>
 Real sum_density(const Model& model, const CellSortedPoints& points, Index self,
                  std::span<const Index> neighbours) {
   const std::span<const Index> order = points.grid.order();
   const Poly6& kernel = liquid_of(model, order[self]).density_kernel;
   Real density = model.mass[order[self]] * kernel.value(0);
   for (const Index slot : neighbours) {
-    const Real dx = points.x[slot] - points.x[self];
-    const Real dy = points.y[slot] - points.y[self];
-    const Real dz = points.z[slot] - points.z[self];
-    density += model.mass[order[slot]] * kernel.value(dx * dx + dy * dy + dz * dz);
+    const Vec3 x = difference<periodic>(model.periodic, points, slot, self);
+    density +=
+        model.mass[order[slot]] * kernel.value(x.x() * x.x() + x.y() * x.y() + x.z() * x.z());
   }
   return density;
 }
 
 /// Fills one block's pairs and densities. Once the blocks together have found more than `most`, the
 /// rest get no neighbours.
+template <bool periodic>
 void fill_block(StepContext& c, std::size_t begin, std::size_t end,
                 std::atomic<std::size_t>& pair_count, std::size_t most) {
   const CellSortedPoints& points = c.work.liquid;
@@ -111,13 +134,14 @@ void fill_block(StepContext& c, std::size_t begin, std::size_t end,
     pairs.begin[s - begin] = static_cast<Index>(first);
     if (pair_count.load(std::memory_order_relaxed) <= most) {
       const Real support = liquid_of(c.model, order[self]).support_radius;
-      count = find_neighbours(points, self, support, pairs.slots, count);
+      count =
+          find_neighbours<periodic>(c.model.periodic, points, self, support, pairs.slots, count);
       if (c.model.liquids_touch) {
         count = keep_material(c.model, order, self, pairs.slots, first, count);
       }
       pair_count.fetch_add(count - first, std::memory_order_relaxed);
     }
-    c.work.density[order[self]] = sum_density(
+    c.work.density[order[self]] = sum_density<periodic>(
         c.model, points, self, std::span<const Index>(pairs.slots).subspan(first, count - first));
   }
   pairs.begin[end - begin] = static_cast<Index>(count);
@@ -132,7 +156,11 @@ void compute_liquid_density(StepContext& c) {
   const std::size_t most = max_pairs(c.model.liquid_count);
   std::atomic<std::size_t> pair_count = 0;
   for_blocks(c.runner, slots, [&](std::size_t begin, std::size_t end) {
-    fill_block(c, begin, end, pair_count, most);
+    if (c.model.periodic.any()) {
+      fill_block<true>(c, begin, end, pair_count, most);
+    } else {
+      fill_block<false>(c, begin, end, pair_count, most);
+    }
   });
   c.work.too_many_pairs = pair_count > most;
   // One particle is enough for the guard to see; which blocks were cut off depends on threads.
@@ -152,18 +180,23 @@ void compute_liquid_pressure(StepContext& c) {
 
 namespace {
 
-template <bool viscous>
+template <LiquidTerms terms>
 void fill_records(StepContext& c) {
-  const std::span<const Index> order = c.work.liquid.grid.order();
+  const CellSortedPoints& points = c.work.liquid;
+  const std::span<const Index> order = points.grid.order();
   c.work.liquid_records.resize(order.size());
+  if constexpr (terms.filled) c.work.filling.resize(order.size());
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const Index i = order[slot];
       LiquidRecord& record = c.work.liquid_records[slot];
-      record.position = c.configuration.position[i];
+      record.position = {points.x[slot], points.y[slot], points.z[slot]};
       record.volume = c.model.mass[i] / c.work.density[i];
-      if constexpr (viscous) record.velocity = c.configuration.velocity[i];
-      record.pressure = c.work.pressure[i];
+      if constexpr (terms.viscosity) record.velocity = c.configuration.velocity[i];
+      if constexpr (terms.pressure) record.pressure = c.work.pressure[i];
+      if constexpr (terms.filled) {
+        c.work.filling[slot] = c.work.density[i] / c.work.filled_density[i];
+      }
     }
   });
 }
@@ -172,23 +205,28 @@ void fill_records(StepContext& c) {
 // half the pressure gradient in the bulk (there sum_j V_j grad W is near zero); Boldt also prints
 // densities for the pressures and drops the sign.
 // Viscosity: mu V_i V_j (v_j - v_i) laplacian W.                                  [MCG03] eq. 14
-// Both are forces on particles: the papers' force densities times the particle's volume.
-template <bool viscous>
+// Both are forces on particles: the papers' force densities times the particle's volume, which the
+// caller multiplies by.
+template <LiquidTerms terms>
 Vec3 liquid_pair_force(const LiquidModel& liquid, const LiquidRecord& i, const LiquidRecord& j,
-                       Real r, const Vec3& direction) {
-  Vec3 force = -(i.pressure + j.pressure) * liquid.pressure_kernel.slope(r) * direction;
-  if constexpr (viscous) {
-    force += liquid.viscosity * liquid.viscosity_kernel.laplacian(r) * (j.velocity - i.velocity);
+                       Real r, const Vec3& direction, Real filling) {
+  Vec3 force = Vec3::Zero();
+  if constexpr (terms.pressure) {
+    force = -(i.pressure + j.pressure) * liquid.pressure_kernel.slope(r) * direction;
+  }
+  if constexpr (terms.viscosity) {
+    const Vec3 slowing =
+        liquid.viscosity * liquid.viscosity_kernel.laplacian(r) * (j.velocity - i.velocity);
+    force += terms.filled ? Vec3(filling * slowing) : slowing;
   }
   return j.volume * force;
 }
 
-}  // namespace
-
-template <bool viscous>
-void add_liquid_forces(StepContext& c) {
-  fill_records<viscous>(c);
+template <LiquidTerms terms, bool periodic>
+void add_pair_forces(StepContext& c) {
+  fill_records<terms>(c);
   const std::span<const Index> order = c.work.liquid.grid.order();
+  const int dimensions = c.model.scene.dimensions;
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = c.work.liquid_pairs[begin / kBlockSize];
     for (std::size_t s = begin; s < end; ++s) {
@@ -198,17 +236,34 @@ void add_liquid_forces(StepContext& c) {
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
         const Index slot = pairs.slots[k];
         const LiquidRecord& other = c.work.liquid_records[slot];
-        const Vec3 x_ij = own.position - other.position;
+        Vec3 x_ij = own.position - other.position;
+        if constexpr (periodic) x_ij = c.model.periodic.nearest(x_ij);
         const Real r = x_ij.norm();
-        const Vec3 direction = pair_direction(x_ij, r, order[s], order[slot]);
-        sum += liquid_pair_force<viscous>(liquid, own, other, r, direction);
+        const Vec3 direction =
+            terms.pressure ? pair_direction(x_ij, r, order[s], order[slot], dimensions) : x_ij;
+        const Real filling = terms.filled ? c.work.filling[s] * c.work.filling[slot] : 1;
+        sum += liquid_pair_force<terms>(liquid, own, other, r, direction, filling);
       }
       c.forces.particle[order[s]] += own.volume * sum;
     }
   });
 }
 
-template void add_liquid_forces<true>(StepContext&);
-template void add_liquid_forces<false>(StepContext&);
+}  // namespace
+
+template <LiquidTerms terms>
+void add_liquid_forces(StepContext& c) {
+  if (c.model.periodic.any()) {
+    add_pair_forces<terms, true>(c);
+  } else {
+    add_pair_forces<terms, false>(c);
+  }
+}
+
+template void add_liquid_forces<{true, true, false}>(StepContext&);
+template void add_liquid_forces<{true, true, true}>(StepContext&);
+template void add_liquid_forces<{true, false, false}>(StepContext&);
+template void add_liquid_forces<{false, true, false}>(StepContext&);
+template void add_liquid_forces<{false, true, true}>(StepContext&);
 
 }  // namespace vat

@@ -16,8 +16,17 @@ void compute_liquid_density(StepContext& context);
 /// and the pull of a negative pressure there makes particles clump.
 void compute_liquid_pressure(StepContext& context);
 
-/// Stage: pressure force, and viscosity where asked for, as forces on particles.
-template <bool viscous>
+/// Which forces a liquid has. Chosen when a scene is compiled: pairs do not ask.
+struct LiquidTerms {
+  bool pressure = true;
+  bool viscosity = true;
+  /// Viscosity counts volumes by the filled density: beside a wall that drags the liquid along, the
+  /// summed one lacks what is beyond the wall.
+  bool filled = false;
+};
+
+/// Stage: pressure force and viscosity, as forces on particles.
+template <LiquidTerms terms>
 void add_liquid_forces(StepContext& context);
 
 }  // namespace vat

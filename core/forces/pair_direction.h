@@ -7,8 +7,9 @@
 namespace vat {
 
 /// A unit vector for two particles in the same place, where x_ij / |x_ij| has no meaning: a hash of
-/// the pair, so that it is the same in every run, and opposite when i and j change places.
-inline Vec3 coincident_direction(Index i, Index j) {
+/// the pair, so that it is the same in every run, and opposite when i and j change places. In two
+/// dimensions it is in the plane y = 0.
+inline Vec3 coincident_direction(Index i, Index j, int dimensions = 3) {
   const Index low = i < j ? i : j;
   const Index high = i < j ? j : i;
   std::uint64_t bits = (std::uint64_t{low} << 32 | high) * 0x9e3779b97f4a7c15ULL;
@@ -18,13 +19,14 @@ inline Vec3 coincident_direction(Index i, Index j) {
     bits *= 0xbf58476d1ce4e5b9ULL;
     direction[axis] = static_cast<Real>(bits >> 40) - 0x1p23 + 0.5;  // never zero
   }
+  if (dimensions == 2) direction.y() = 0;
   direction.normalize();
   return i < j ? direction : Vec3(-direction);
 }
 
 /// x_ij / r, or the above for r = 0.
-inline Vec3 pair_direction(const Vec3& x_ij, Real r, Index i, Index j) {
-  return r > 0 ? Vec3(x_ij / r) : coincident_direction(i, j);
+inline Vec3 pair_direction(const Vec3& x_ij, Real r, Index i, Index j, int dimensions = 3) {
+  return r > 0 ? Vec3(x_ij / r) : coincident_direction(i, j, dimensions);
 }
 
 }  // namespace vat

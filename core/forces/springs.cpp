@@ -7,10 +7,10 @@ namespace vat {
 namespace {
 
 // f = -(k (|p_e - p_i| - l) + c v_ei.n) n with n = (p_e - p_i) / |p_e - p_i|.      Boldt eq. 3
-Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring) {
+Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int dimensions) {
   const Vec3 x = at.position[e] - at.position[spring.other];
   const Real r = x.norm();
-  const Vec3 n = pair_direction(x, r, e, spring.other);
+  const Vec3 n = pair_direction(x, r, e, spring.other, dimensions);
   const Real speed = (at.velocity[e] - at.velocity[spring.other]).dot(n);
   return -(spring.stiffness * (r - spring.rest_length) + spring.damping * speed) * n;
 }
@@ -26,7 +26,7 @@ void add_spring_forces(StepContext& c) {
       const Index e = first + static_cast<Index>(k);
       Vec3 sum = Vec3::Zero();
       for (Index s = c.model.spring_begin[e]; s < c.model.spring_begin[e + 1]; ++s) {
-        sum += spring_force(c.configuration, e, c.model.spring_ends[s]);
+        sum += spring_force(c.configuration, e, c.model.spring_ends[s], c.model.scene.dimensions);
       }
       c.forces.particle[e] += sum;
     }

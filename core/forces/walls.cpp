@@ -8,12 +8,11 @@
 namespace vat {
 namespace {
 
-Vec3 wall_force(const Vat& vat, const VatMotion& motion, const ContactLaw& law, Real threshold,
+Vec3 wall_force(const Model& model, const VatMotion& motion, const ContactLaw& law, Real threshold,
                 const Vec3& position, const Vec3& velocity) {
   Vec3 force = Vec3::Zero();
-  const int walls = wall_count(vat);
-  for (int wall = 0; wall < walls; ++wall) {
-    const Real overlap = threshold - wall_distance(vat, motion, wall, position);
+  for (const int wall : model.walls) {
+    const Real overlap = threshold - wall_distance(*model.scene.vat, motion, wall, position);
     if (overlap <= 0) continue;
     const int axis = wall / 2;
     const Real side = wall % 2 == 0 ? 1 : -1;
@@ -26,14 +25,13 @@ Vec3 wall_force(const Vat& vat, const VatMotion& motion, const ContactLaw& law, 
 }  // namespace
 
 void add_wall_forces(StepContext& c) {
-  const Vat& vat = *c.model.scene.vat;
-  const VatMotion motion = vat_motion(vat, c.time);
+  const VatMotion motion = vat_motion(*c.model.scene.vat, c.time);
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ContactLaw& law = c.model.wall_laws[c.model.material[i]];
       const Real threshold = law.threshold > 0 ? law.threshold : c.model.radius[i];
-      c.forces.particle[i] += wall_force(vat, motion, law, threshold, c.configuration.position[i],
-                                         c.configuration.velocity[i]);
+      c.forces.particle[i] += wall_force(c.model, motion, law, threshold,
+                                         c.configuration.position[i], c.configuration.velocity[i]);
     }
   });
 }

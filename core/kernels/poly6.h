@@ -6,11 +6,15 @@
 
 namespace vat {
 
-/// W(r) = 315/(64 pi h^9) (h^2 - r^2)^3 for r <= h [MCG03] eq. 20; Boldt, section "Kernels".
+/// W(r) = C (h^2 - r^2)^3 for r <= h, in three dimensions with C = 315/(64 pi h^9) [MCG03] eq. 20;
+/// Boldt, section "Kernels". In two, C = 4/(pi h^8) for a unit integral over the plane.
 class Poly6 {
  public:
-  explicit Poly6(Real h)
-      : h2_(h * h), scale_(315 / (64 * std::numbers::pi * h2_ * h2_ * h2_ * h2_ * h)) {}
+  /// `dimensions`: 3 or 2.
+  explicit Poly6(Real h, int dimensions = 3)
+      : h2_(h * h),
+        scale_(dimensions == 3 ? 315 / (64 * std::numbers::pi * h2_ * h2_ * h2_ * h2_ * h)
+                               : 4 / (std::numbers::pi * h2_ * h2_ * h2_ * h2_)) {}
 
   /// From the squared distance, which must be at most h^2.
   Real value(Real r2) const {

@@ -6,11 +6,16 @@
 
 namespace vat {
 
-/// W(r) = 15/(pi h^6) (h - r)^3 for r <= h [MCG03] eq. 21 after [DC96]. Its gradient does not
-/// vanish at the centre, so pressure keeps particles apart.
+/// W(r) = C (h - r)^3 for r <= h, in three dimensions with C = 15/(pi h^6) [MCG03] eq. 21 after
+/// [DC96]; in two, C = 10/(pi h^5) for a unit integral over the plane. Its gradient does not vanish
+/// at the centre, so pressure keeps particles apart.
 class Spiky {
  public:
-  explicit Spiky(Real h) : h_(h), scale_(15 / (std::numbers::pi * h * h * h * h * h * h)) {}
+  /// `dimensions`: 3 or 2.
+  explicit Spiky(Real h, int dimensions = 3)
+      : h_(h),
+        scale_(dimensions == 3 ? 15 / (std::numbers::pi * h * h * h * h * h * h)
+                               : 10 / (std::numbers::pi * h * h * h * h * h)) {}
 
   Real value(Real r) const {
     const Real d = h_ - r;

@@ -3,7 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
+#include "core/forces/vat_motion.h"
 #include "core/model/contacts.h"
 #include "core/rigid/mass_properties.h"
 #include "core/scene/step_limits.h"
@@ -30,8 +33,19 @@ void add_bodies(Model& model, const std::vector<BodyId>& ids,
     body.material = find_material(scene, description.material);
     body.sample = samples[b] ? std::move(samples[b])
                              : std::make_shared<const SampledBody>(
-                                   sample_body(description, scene.materials[body.material]));
+                                   sample_body(description, scene.materials[body.material], scene.dimensions));
     model.bodies.push_back(std::move(body));
+  }
+}
+
+/// Not across periodic axes, nor across the plane of two dimensions.
+void add_walls(Model& model) {
+  const Vat& vat = *model.scene.vat;
+  for (int wall = 0; wall < wall_count(vat); ++wall) {
+    const int axis = wall / 2;
+    if (model.periodic.repeats(axis) || (model.scene.dimensions == 2 && axis == 1)) continue;
+    if (model.scene.forces.walls) model.walls.push_back(wall);
+    if (vat.walls[static_cast<std::size_t>(wall)].no_slip) model.no_slip_walls.push_back(wall);
   }
 }
 
@@ -68,6 +82,7 @@ void lay_out_particles(Model& model) {
 void add_springs(Model& model) {
   std::vector<std::vector<SpringEnd>> ends(model.free_count);
   for (const ModelBody& body : model.bodies) {
+    if (!model.scene.forces.springs) break;
     const Index first = body.particles.begin;
     for (const SampledSpring& spring : body.sample->springs) {
       const auto end_at = [&](Index other) {
@@ -97,26 +112,46 @@ void set_inertia(RigidModel& rigid, const Mat3& inertia) {
   rigid.splitting = w[0] - w[1] < w[1] - w[2] ? std::array{0, 1, 2} : std::array{1, 2, 0};
 }
 
+/// The first step that begins at the body's release or after it.
+std::uint64_t first_free_step(const BodyDescription& body, Real step) {
+  constexpr Real kRounding = 1e-6;  // a release after whole steps is not one step later
+  if (body.fixed) return std::numeric_limits<std::uint64_t>::max();
+  return static_cast<std::uint64_t>(std::max(Real{0}, std::ceil(body.release / step - kRounding)));
+}
+
 void add_rigid_bodies(Model& model) {
   model.local_position.resize(model.particle_count - model.free_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     ModelBody& body = model.bodies[b];
     if (body.kind != BodyKind::rigid) continue;
-    const MassProperties properties = mass_properties(*body.sample);
+    const bool plane = model.scene.dimensions == 2;
+    const MassProperties properties =
+        plane ? plane_mass_properties(*body.sample) : mass_properties(*body.sample);
     body.rigid = static_cast<Index>(model.rigid_bodies.size());
     RigidModel rigid;
     rigid.body = static_cast<Index>(b);
     rigid.particles = body.particles;
     rigid.inverse_mass = 1 / properties.mass;
+    rigid.free_from = first_free_step(model.scene.bodies[b], model.scene.numerics.step);
     const Mat3 to_body =
         model.scene.bodies[b].orientation.normalized().toRotationMatrix().transpose();
-    set_inertia(rigid, to_body * properties.inertia * to_body.transpose());
+    // In the plane it is the same in all axes, and rounding must not make it otherwise.
+    set_inertia(rigid, plane ? properties.inertia
+                             : Mat3(to_body * properties.inertia * to_body.transpose()));
     model.rigid_bodies.push_back(rigid);
     for (Index i = 0; i < body.particles.size(); ++i) {
       model.local_position[body.particles.begin - model.free_count + i] =
           to_body * (body.sample->positions[i] - properties.center_of_mass);
     }
   }
+}
+
+/// A force that is off has the constant zero.
+LiquidModel make_liquid(const Material& material, const Scene& scene) {
+  LiquidModel liquid(material, scene.dimensions);
+  if (!scene.forces.pressure) liquid.stiffness = 0;
+  if (!scene.forces.viscosity) liquid.viscosity = 0;
+  return liquid;
 }
 
 ModelDamping find_damping(const Model& model) {
@@ -132,24 +167,28 @@ ModelDamping find_damping(const Model& model) {
 
 }  // namespace
 
-LiquidModel::LiquidModel(const Material& material)
+LiquidModel::LiquidModel(const Material& material, int dimensions)
     : support_radius(material.liquid->support_radius),
       rest_density(material.density),
       stiffness(material.liquid->stiffness),
       viscosity(material.liquid->viscosity),
-      density_kernel(support_radius),
-      pressure_kernel(support_radius),
-      viscosity_kernel(support_radius) {}
+      density_kernel(support_radius, dimensions),
+      pressure_kernel(support_radius, dimensions),
+      viscosity_kernel(support_radius, dimensions),
+      half_space(support_radius, dimensions) {}
 
 std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids,
                                      std::vector<std::shared_ptr<const SampledBody>> samples) {
   VAT_CHECK(ids.size() == scene.bodies.size() && samples.size() == scene.bodies.size());
   auto model = std::make_shared<Model>();
   model->scene = std::move(scene);
+  if (model->scene.periodic) model->periodic = PeriodicBox(*model->scene.periodic);
+  if (model->scene.vat) add_walls(*model);
   add_bodies(*model, ids, std::move(samples));
   lay_out_particles(*model);
   for (const Material& material : model->scene.materials) {
-    model->liquids.push_back(material.liquid ? std::optional(LiquidModel(material)) : std::nullopt);
+    model->liquids.emplace_back();
+    if (material.liquid) model->liquids.back() = make_liquid(material, model->scene);
   }
   add_springs(*model);
   add_rigid_bodies(*model);

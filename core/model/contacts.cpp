@@ -102,6 +102,7 @@ void find_exclusions(Model& model) {
 void compile_contacts(Model& model) {
   fill_laws(model);
   find_reach(model);
+  if (!model.scene.forces.contacts) model.contact_reach = 0;
   if (model.has_self_contact) find_exclusions(model);
 }
 

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/half_space.h"
 #include "core/kernels/poly6.h"
 #include "core/kernels/spiky.h"
 #include "core/kernels/viscosity_kernel.h"
+#include "core/neighbours/periodic_box.h"
 #include "core/scene/sampling.h"
 #include "core/scene/scene.h"
 #include "core/scene/stable_step.h"
@@ -37,7 +39,7 @@ struct ModelBody {
 
 /// One material's SPH constants with everything that depends on h alone.
 struct LiquidModel {
-  explicit LiquidModel(const Material& material);
+  LiquidModel(const Material& material, int dimensions);
   Real support_radius;
   Real rest_density;
   Real stiffness;
@@ -45,6 +47,7 @@ struct LiquidModel {
   Poly6 density_kernel;
   Spiky pressure_kernel;
   ViscosityKernel viscosity_kernel;
+  HalfSpace half_space;
 };
 
 /// Dynamic connection between particles of two materials: unilateral spring and dashpot with
@@ -72,6 +75,10 @@ struct RigidModel {
   Quat principal_axes;           ///< principal to body axes
   Vec3 inverse_moments;          ///< about the principal axes [1 / (kg m^2)]
   std::array<int, 3> splitting;  ///< principal axes: two with the closest moments, and the third
+  std::uint64_t free_from = 0;   ///< the first nominal step in which forces move it
+
+  /// Whether the body moves through this step as if no force acted on it.
+  bool is_held(std::uint64_t step) const { return step < free_from; }
 };
 
 /// The forces of a model that depend on velocities.
@@ -85,6 +92,12 @@ struct ModelDamping {
 struct Model {
   Scene scene;
   std::vector<ModelBody> bodies;  ///< in the scene's order
+
+  PeriodicBox periodic;
+  /// The vat's walls, by the numbers of core/forces/vat_motion.h: those that the scene has, and of
+  /// them those that are no_slip.
+  std::vector<int> walls;
+  std::vector<int> no_slip_walls;
 
   Index liquid_count = 0;  ///< particles [0, liquid_count) are liquid
   Index free_count = 0;    ///< particles [0, free_count) move on their own; the rest are rigid

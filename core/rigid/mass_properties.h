@@ -15,4 +15,9 @@ struct MassProperties {
 /// sphere, and keeps single and collinear particles from a singular tensor.
 MassProperties mass_properties(const SampledBody& body);
 
+/// The same of a body in the plane y = 0, of discs: I = sum m_e (x.x + r_e^2 / 2), about y. It is
+/// put about every axis: none but y is ever turned about, and a body whose moments are equal stays
+/// in the plane to the bit.
+MassProperties plane_mass_properties(const SampledBody& body);
+
 }  // namespace vat

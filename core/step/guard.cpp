@@ -121,6 +121,11 @@ GuardBounds guard_bounds(const Model& model) {
   bounds.min = (vat.min.array() - 2 * side - stroke).max(-kMaxLength);
   bounds.max = (vat.max.array() + 2 * side + stroke).min(kMaxLength);
   if (!vat.lid) bounds.max.z() = std::min(kMaxLength, vat.max.z() + 100 * side);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::ranges::find(model.walls, 2 * axis) != model.walls.end()) continue;
+    bounds.min[axis] = -kMaxLength;
+    bounds.max[axis] = kMaxLength;
+  }
   return bounds;
 }
 

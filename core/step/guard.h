@@ -27,7 +27,7 @@ struct GuardBounds {
 };
 
 /// The domain is, with a vat, its box and twice its longest side around it, a hundred times above
-/// an open top.
+/// an open top, and everything along axes without walls.
 GuardBounds guard_bounds(const Model& model);
 
 /// The first particle or rigid body that is non-finite, out of bounds, or too fast for steps of

@@ -83,7 +83,7 @@ Real wall_contact_energy(const Model& model, const Configuration& at, Real time)
   for (Index i = 0; i < model.particle_count; ++i) {
     const ContactLaw& law = model.wall_laws[model.material[i]];
     const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
-    for (int wall = 0; wall < wall_count(vat); ++wall) {
+    for (const int wall : model.walls) {
       const Real overlap = threshold - wall_distance(vat, motion, wall, at.position[i]);
       if (overlap > 0) energy += 0.5 * law.stiffness * overlap * overlap;
     }
@@ -97,7 +97,7 @@ std::size_t count_outside(const Model& model, const Configuration& at, Real time
   std::size_t count = 0;
   for (const Vec3& position : at.position) {
     bool outside = false;
-    for (int wall = 0; wall < wall_count(vat); ++wall) {
+    for (const int wall : model.walls) {
       outside = outside || !(wall_distance(vat, motion, wall, position) >= 0);
     }
     count += outside ? 1 : 0;

@@ -5,6 +5,7 @@
 #include "core/forces/contacts.h"
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
+#include "core/forces/no_slip.h"
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
 #include "core/forces/walls.h"
@@ -15,8 +16,8 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",     "velocity", "rigid_state", "force",       "liquid_cells",
-    "liquid_pairs", "density",  "pressure",    "solid_cells", "rigid_force"};
+    "position", "velocity",       "rigid_state", "force",       "liquid_cells", "liquid_pairs",
+    "density",  "filled_density", "pressure",    "solid_cells", "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -27,26 +28,46 @@ std::string join(const std::vector<Column>& columns) {
   return text;
 }
 
-bool any_viscosity(const Model& model) {
-  for (const ModelBody& body : model.bodies) {
-    if (body.kind == BodyKind::liquid && model.liquids[body.material]->viscosity > 0) return true;
+void add_viscous_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  const bool pressed = model.scene.forces.pressure;
+  if (!model.no_slip_walls.empty()) {
+    plan.add("fill_liquid_density", {position, density}, {filled_density}, &fill_liquid_density);
+    if (pressed) {
+      plan.add("liquid_forces",
+               {position, velocity, liquid_cells, liquid_pairs, density, filled_density, pressure,
+                force},
+               {force}, &add_liquid_forces<LiquidTerms{true, true, true}>);
+    } else {
+      plan.add("liquid_viscosity",
+               {position, velocity, liquid_cells, liquid_pairs, density, filled_density, force},
+               {force}, &add_liquid_forces<LiquidTerms{false, true, true}>);
+    }
+    plan.add("no_slip_walls", {position, velocity, filled_density, force}, {force},
+             &add_no_slip_forces);
+  } else if (pressed) {
+    plan.add("liquid_forces",
+             {position, velocity, liquid_cells, liquid_pairs, density, pressure, force}, {force},
+             &add_liquid_forces<LiquidTerms{true, true, false}>);
+  } else {
+    plan.add("liquid_viscosity", {position, velocity, liquid_cells, liquid_pairs, density, force},
+             {force}, &add_liquid_forces<LiquidTerms{false, true, false}>);
   }
-  return false;
 }
 
 void add_liquid_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
+  const bool has_pressure = model.scene.forces.pressure;
   plan.add("sort_liquid", {position}, {liquid_cells}, &sort_liquid);
+  if (!has_pressure && !has_viscosity(model)) return;  // the cells are for contacts
   plan.add("liquid_density", {liquid_cells}, {liquid_pairs, density}, &compute_liquid_density);
-  plan.add("liquid_pressure", {density}, {pressure}, &compute_liquid_pressure);
-  if (any_viscosity(model)) {
-    plan.add("liquid_forces",
-             {position, velocity, liquid_cells, liquid_pairs, density, pressure, force}, {force},
-             &add_liquid_forces<true>);
+  if (has_pressure) plan.add("liquid_pressure", {density}, {pressure}, &compute_liquid_pressure);
+  if (has_viscosity(model)) {
+    add_viscous_stages(model, plan);
   } else {
     plan.add("liquid_forces_inviscid",
              {position, liquid_cells, liquid_pairs, density, pressure, force}, {force},
-             &add_liquid_forces<false>);
+             &add_liquid_forces<LiquidTerms{true, false, false}>);
   }
 }
 
@@ -74,6 +95,13 @@ void PlanBuilder::add(std::string_view name, std::initializer_list<Column> reads
   plan_.stages.push_back({name, reads, writes, run});
 }
 
+bool has_viscosity(const Model& model) {
+  for (const ModelBody& body : model.bodies) {
+    if (body.kind == BodyKind::liquid && model.liquids[body.material]->viscosity > 0) return true;
+  }
+  return false;
+}
+
 StepPlan make_step_plan(const Model& model) {
   using enum Column;
   PlanBuilder plan({position, velocity, rigid_state});
@@ -86,7 +114,8 @@ StepPlan make_step_plan(const Model& model) {
   if (!model.spring_ends.empty()) {
     plan.add("springs", {position, velocity, force}, {force}, &add_spring_forces);
   }
-  if (model.scene.vat) plan.add("walls", {position, velocity, force}, {force}, &add_wall_forces);
+  if (!model.walls.empty())
+    plan.add("walls", {position, velocity, force}, {force}, &add_wall_forces);
   if (!model.rigid_bodies.empty()) {
     plan.add("gather_rigid_forces", {position, rigid_state, force}, {rigid_force},
              &gather_rigid_forces);

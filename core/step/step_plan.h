@@ -20,11 +20,12 @@ enum class Column : std::uint8_t {
   liquid_cells,
   liquid_pairs,
   density,
+  filled_density,
   pressure,
   solid_cells,
   rigid_force,
 };
-inline constexpr std::size_t kColumnCount = 10;
+inline constexpr std::size_t kColumnCount = 11;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);
@@ -53,6 +54,9 @@ class PlanBuilder {
   StepPlan plan_;
   bool written_[kColumnCount] = {};
 };
+
+/// Whether some liquid of the model is viscous, and viscosity on.
+bool has_viscosity(const Model& model);
 
 /// The plan for a model whose bodies and contact tables are complete.
 StepPlan make_step_plan(const Model& model);

@@ -2,7 +2,13 @@
 
 namespace vat {
 
-void CellSortedPoints::build(std::span<const Vec3> points, Real cell_size) {
+void CellSortedPoints::build(std::span<const Vec3> points, Real cell_size,
+                             const PeriodicBox& periodic) {
+  if (periodic.any()) {
+    wrapped.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) wrapped[i] = periodic.wrap(points[i]);
+    points = wrapped;
+  }
   grid.build(points, cell_size);
   x.resize(points.size());
   y.resize(points.size());

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/neighbours/periodic_box.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/state/state.h"
 #include "core/step/controls.h"
@@ -18,8 +19,11 @@ struct CellSortedPoints {
   std::vector<Real> x;
   std::vector<Real> y;
   std::vector<Real> z;
+  std::vector<Vec3> wrapped;  ///< the points themselves, in their order; periodic worlds only
 
-  void build(std::span<const Vec3> points, Real cell_size);
+  /// `cell_size`: best the search radius [m]. In a periodic world the coordinates are those of the
+  /// images in the box.
+  void build(std::span<const Vec3> points, Real cell_size, const PeriodicBox& periodic);
 };
 
 /// What a pressure or viscosity pair reads of a liquid particle, one cache line.
@@ -45,8 +49,11 @@ struct Workspace {
   std::vector<PairBlock> liquid_pairs;
   bool too_many_pairs = false;  ///< above max_pairs(): the lists are not whole, a density is a NaN
   std::vector<Real> density;    ///< by liquid particle [kg/m^3]
-  std::vector<Real> pressure;   ///< by liquid particle [Pa]
-  CellSortedPoints solids;      ///< deformable and rigid particles; index 0 is the first of them
+  /// The same with all of the space beyond no-slip walls filled with the liquid at rest density.
+  std::vector<Real> filled_density;
+  std::vector<Real> filling;   ///< by liquid slot: density over filled density
+  std::vector<Real> pressure;  ///< by liquid particle [Pa]
+  CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
 };
 
 /// What a stage sees.

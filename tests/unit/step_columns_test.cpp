@@ -56,6 +56,9 @@ void spoil(Column column, Columns& columns) {
     case Column::density:
       std::ranges::fill(columns.work.density, kNan);
       return;
+    case Column::filled_density:
+      std::ranges::fill(columns.work.filled_density, kNan);
+      return;
     case Column::pressure:
       std::ranges::fill(columns.work.pressure, kNan);
       return;
@@ -101,6 +104,8 @@ std::vector<char> content(Column column, const Columns& columns) {
     }
     case Column::density:
       return bytes_of(columns.work.density);
+    case Column::filled_density:
+      return bytes_of(columns.work.filled_density);
     case Column::pressure:
       return bytes_of(columns.work.pressure);
     case Column::solid_cells:
@@ -179,6 +184,20 @@ TEST(StepColumns, AreReadAndWrittenAsDeclared) {
 
 TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutViscosity) {
   expect_declared(crowded_scene(0));
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredBesideNoSlipWalls) {
+  Scene scene = crowded_scene(1);
+  scene.vat->walls[4] = {true, {0.5, 0, 0}};
+  expect_declared(scene);
+  scene.forces.pressure = false;
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutPressure) {
+  Scene scene = crowded_scene(1);
+  scene.forces.pressure = false;
+  expect_declared(scene);
 }
 
 TEST(StepColumns, OfACollapsedLiquidAreCutOffAndFailTheStep) {

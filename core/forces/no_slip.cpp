@@ -1,0 +1,57 @@
+#include "core/forces/no_slip.h"
+
+#include "core/forces/vat_motion.h"
+#include "core/step/workspace.h"
+
+namespace vat {
+namespace {
+
+const LiquidModel& liquid_of(const Model& model, std::size_t particle) {
+  return *model.liquids[model.material[particle]];
+}
+
+}  // namespace
+
+void fill_liquid_density(StepContext& c) {
+  const Vat& vat = *c.model.scene.vat;
+  const VatMotion motion = vat_motion(vat, c.time);
+  c.work.filled_density.resize(c.model.liquid_count);
+  for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const LiquidModel& liquid = liquid_of(c.model, i);
+      Real filling = 0;
+      for (const int wall : c.model.no_slip_walls) {
+        const Real d = wall_distance(vat, motion, wall, c.configuration.position[i]);
+        filling += liquid.half_space.filling(d);
+      }
+      c.work.filled_density[i] = c.work.density[i] + liquid.rest_density * filling;
+    }
+  });
+}
+
+// The liquid beyond the wall has v(s) - v_i = -(v_i - v_wall) s/d at the distance s from the
+// particle along the wall's normal, so that it has the wall's velocity at the wall, s = d. Summed
+// as any other viscous force, with an integral for the sum over V_j: F_i = -mu V_i (v_i - v_wall) *
+// integral of s/d laplacian W, along the wall only: what keeps liquid from going through is the
+// wall's spring.
+void add_no_slip_forces(StepContext& c) {
+  const Vat& vat = *c.model.scene.vat;
+  const VatMotion motion = vat_motion(vat, c.time);
+  for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const LiquidModel& liquid = liquid_of(c.model, i);
+      const Real volume = c.model.mass[i] / c.work.filled_density[i];
+      for (const int wall : c.model.no_slip_walls) {
+        const Real d = wall_distance(vat, motion, wall, c.configuration.position[i]);
+        const Real drag = liquid.viscosity * volume * liquid.half_space.drag(d);
+        const Vec3 wall_velocity =
+            motion.velocity + vat.walls[static_cast<std::size_t>(wall)].velocity;
+        Vec3 slip = c.configuration.velocity[i] - wall_velocity;
+        slip[wall / 2] = 0;
+        c.forces.particle[i] -= drag * slip;
+      }
+    }
+  });
+}
+
+}  // namespace vat

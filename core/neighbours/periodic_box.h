@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/scene/scene.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// The images of points in a world that repeats itself along some axes. Searches need each length
+/// to be at least twice their radius.
+class PeriodicBox {
+ public:
+  /// Nothing repeats.
+  PeriodicBox() = default;
+  explicit PeriodicBox(const Periodicity& periodicity) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      if (!periodicity.axes[axis]) continue;
+      repeats_[axis] = any_ = true;
+      min_[a] = periodicity.min[a];
+      max_[a] = periodicity.max[a];
+      length_[a] = max_[a] - min_[a];
+      half_[a] = length_[a] / 2;
+    }
+  }
+
+  bool any() const { return any_; }
+  bool repeats(int axis) const { return repeats_[static_cast<std::size_t>(axis)]; }
+
+  /// The image in the box, min <= x < max along periodic axes: `p` itself, to the bit, where it is
+  /// in there already.
+  Vec3 wrap(Vec3 p) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!repeats(axis) || (p[axis] >= min_[axis] && p[axis] < max_[axis])) continue;
+      p[axis] -= length_[axis] * std::floor((p[axis] - min_[axis]) / length_[axis]);
+      // Rounding may leave it beside the box.
+      if (p[axis] < min_[axis] || p[axis] >= max_[axis]) p[axis] = min_[axis];
+    }
+    return p;
+  }
+
+  /// The shortest image of a difference of two points of the box; of -x, the opposite to the bit.
+  Vec3 nearest(Vec3 x) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (x[axis] > half_[axis]) x[axis] -= length_[axis];
+      if (x[axis] < -half_[axis]) x[axis] += length_[axis];
+    }
+    return x;
+  }
+
+  /// Calls f(shift) for the images p + shift of a point of the box from which a ball of `radius`
+  /// reaches into the box, that of no shift included.
+  template <class F>
+  void for_each_image(const Vec3& p, Real radius, F&& f) const {
+    const Real reach = radius * (1 + 1e-6);  // more than a difference can be rounded by
+    std::array<int, 3> first{};
+    std::array<int, 3> last{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      if (!repeats_[a]) continue;
+      if (p[axis] + reach >= max_[axis]) first[a] = -1;
+      if (p[axis] - reach <= min_[axis]) last[a] = 1;
+    }
+    for (int z = first[2]; z <= last[2]; ++z) {
+      for (int y = first[1]; y <= last[1]; ++y) {
+        for (int x = first[0]; x <= last[0]; ++x) {
+          f(Vec3(x * length_.x(), y * length_.y(), z * length_.z()));
+        }
+      }
+    }
+  }
+
+ private:
+  bool any_ = false;
+  std::array<bool, 3> repeats_{};
+  Vec3 min_ = Vec3::Zero();
+  Vec3 max_ = Vec3::Zero();
+  Vec3 length_ = Vec3::Zero();
+  Vec3 half_ = Vec3::Constant(std::numeric_limits<Real>::infinity());
+};
+
+}  // namespace vat
