@@ -98,6 +98,10 @@ bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& re
       // The forces that velocity Verlet keeps for the next step still have this one in them.
       if (applied.end_step == state.step_count) state.forces_current = false;
     }
+    for (const RigidModel& rigid : model->rigid_bodies) {
+      // Those forces do not act on a body that was held.
+      if (rigid.free_from == state.step_count) state.forces_current = false;
+    }
   }
   return true;
 }

@@ -9,7 +9,8 @@
 
 namespace vat {
 
-/// Sums over one body. Particles that are fixed count with the mass they have.
+/// Sums over one body. Particles that are fixed count with the mass they have. In two dimensions
+/// masses, momenta, forces and energies are per metre of depth.
 struct BodyDiagnostics {
   BodyId id;
   std::string name;
@@ -17,8 +18,8 @@ struct BodyDiagnostics {
   Vec3 center_of_mass;    ///< [m]
   Vec3 linear_momentum;   ///< [kg m/s]
   Vec3 angular_momentum;  ///< about the world's origin [kg m^2/s]
-  Vec3 outer_force;       ///< by the walls and other bodies, without gravity and users' forces [N]
-  Vec3 outer_torque;      ///< of the same forces about the centre of mass [N m]
+  Vec3 outer_force;   ///< by walls and other bodies: not by gravity, the central field, users [N]
+  Vec3 outer_torque;  ///< of the same forces about the centre of mass, and of viscosity [N m]
   std::optional<Quat> orientation;       ///< rigid bodies
   std::optional<Vec3> angular_velocity;  ///< rigid bodies, world axes [rad/s]
 };
@@ -27,12 +28,13 @@ struct BodyDiagnostics {
 struct Diagnostics {
   Real time;  ///< [s]
   std::vector<BodyDiagnostics> bodies;
-  Real kinetic_energy;            ///< [J] of all particles and rigid bodies
-  Real gravitational_energy;      ///< [J] -m g.x over all particles
-  Real elastic_energy;            ///< [J] in static springs
-  Real contact_energy;            ///< [J] in dynamic connections and against the walls
-  Real mean_density_error;        ///< liquid: mean of max(0, rho/rho_0 - 1); 0 without liquid
-  Real max_density_error;         ///< liquid: greatest rho/rho_0 - 1, at least 0
+  Real kinetic_energy;        ///< [J] of all particles and rigid bodies
+  Real gravitational_energy;  ///< [J] -m g.x over all particles, and m Omega^2 |x - center|^2 / 2
+                              ///< of the central field; 0 where gravity is off
+  Real elastic_energy;        ///< [J] in static springs
+  Real contact_energy;        ///< [J] in dynamic connections and against the walls
+  Real mean_density_error;    ///< liquid: mean of max(0, rho/rho_0 - 1); 0 without liquid
+  Real max_density_error;     ///< liquid: greatest rho/rho_0 - 1, at least 0
   std::size_t particles_outside;  ///< beyond a wall of the vat
 };
 

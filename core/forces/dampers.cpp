@@ -37,7 +37,7 @@ void add_wall_dampers(const Model& model, const Configuration& at, Real time, In
   const Vat& vat = *model.scene.vat;
   const VatMotion motion = vat_motion(vat, time);
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
-  for (int wall = 0; wall < wall_count(vat); ++wall) {
+  for (const int wall : model.walls) {
     const Real overlap = threshold - wall_distance(vat, motion, wall, at.position[i]);
     if (overlap <= 0) continue;
     const Vec3 n = wall_normal(wall);
@@ -63,7 +63,7 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
         add_spring_dampers(model, at, i, block.dampers);
       }
       if (model.contact_reach > 0) add_contact_dampers(model, f.work, at, i, block.dampers);
-      if (model.scene.vat) add_wall_dampers(model, at, time, i, block.dampers);
+      if (!model.walls.empty()) add_wall_dampers(model, at, time, i, block.dampers);
     }
     block.begin[end - begin] = static_cast<Index>(block.dampers.size());
   });
@@ -72,7 +72,9 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
 
 void DampingMatrix::collect_viscosity(const ForceModel& f) {
   const Model& model = f.model;
-  viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
+  const std::size_t blocks = (model.liquid_count + kBlockSize - 1) / kBlockSize;
+  viscosities_.resize(has_viscosity(model) ? blocks : 0);
+  if (viscosities_.empty()) return;
   for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
     std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
@@ -108,7 +110,7 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
       force[i] = sum;
     }
   });
-  if (f.model.liquid_count == 0) return;
+  if (viscosities_.empty()) return;
 
   const std::span<const Index> order = f.work.liquid.grid.order();
   by_slot_.resize(order.size());

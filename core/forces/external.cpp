@@ -20,18 +20,32 @@ void add_grab(const Grab& grab, StepContext& c) {
                grab.damping * c.configuration.velocity[held];
   const Real size = force.norm();
   if (size > grab.max_force) force *= grab.max_force / size;
+  if (c.model.scene.dimensions == 2) force.y() = 0;  // the target may be anywhere
   for (const Index i : grab.held) {
     c.forces.particle[first + i] += (c.model.mass[first + i] / grab.held_mass) * force;
   }
 }
 
+/// a = -Omega^2 (x - center).
+void add_central_field(const CentralField& field, StepContext& c) {
+  const Real strength = field.angular_frequency * field.angular_frequency;
+  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 arm = c.configuration.position[i] - field.center;
+      c.forces.particle[i] -= (c.model.mass[i] * strength) * arm;
+    }
+  });
+}
+
 }  // namespace
 
 void set_external_forces(StepContext& c) {
-  const Vec3 gravity = c.model.scene.gravity;
+  const Scene& scene = c.model.scene;
+  const Vec3 gravity = scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero());
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
   });
+  if (scene.forces.gravity && scene.central_field) add_central_field(*scene.central_field, c);
   for (const AppliedForce& applied : c.controls.applied_forces) add_applied_force(applied, c);
   for (const Grab& grab : c.controls.grabs) add_grab(grab, c);
 }

@@ -21,8 +21,9 @@ void gather_rigid_forces(StepContext& c) {
       force += c.forces.particle[e];
       torque += (c.configuration.position[e] - center).cross(c.forces.particle[e]);
     }
-    c.forces.rigid_force[b] = force;
-    c.forces.rigid_torque[b] = torque;
+    const bool is_held = rigid.is_held(c.step);
+    c.forces.rigid_force[b] = is_held ? Vec3(Vec3::Zero()) : force;
+    c.forces.rigid_torque[b] = is_held ? Vec3(Vec3::Zero()) : torque;
   }
 }
 

@@ -80,6 +80,11 @@ void apply_inverse_mass(const Equation& eq, const Motion& x, Motion& y) {
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
     const RigidModel& rigid = model.rigid_bodies[r];
+    if (rigid.is_held(eq.force_model.step)) {
+      y.linear[r].setZero();
+      y.angular[r].setZero();
+      continue;
+    }
     y.linear[r] = rigid.inverse_mass * x.linear[r];
     y.angular[r] = to_world(eq.at.rigid[r].orientation, rigid.inverse_inertia) * x.angular[r];
   }
@@ -159,6 +164,7 @@ void solve_damping(const ForceModel& f, const Configuration& at, Real time, Real
   apply_damping(eq, w, product);
   for (Index i = 0; i < f.model.particle_count; ++i) forces.particle[i] += product.particle[i];
   for (std::size_t r = 0; r < f.model.rigid_bodies.size(); ++r) {
+    if (f.model.rigid_bodies[r].is_held(f.step)) continue;
     forces.rigid_force[r] += product.linear[r];
     forces.rigid_torque[r] += product.angular[r];
   }

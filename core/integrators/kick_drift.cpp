@@ -15,6 +15,8 @@ void drift(const Model& model, TaskRunner* runner, Configuration& configuration,
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = configuration.rigid[b];
     state.center_of_mass += (dt * rigid.inverse_mass) * state.momentum;
+    // A held body at rest stays to the bit.
+    if (rigid.free_from > 0 && state.angular_momentum.isZero(0)) continue;
     state.orientation = rotate_freely(rigid, state.orientation, state.angular_momentum, dt);
   }
 }

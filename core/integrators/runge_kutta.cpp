@@ -89,7 +89,7 @@ void finish(const ForceModel& f, const Configuration& start, const Configuration
   for (std::size_t b = 0; b < at.rigid.size(); ++b) {
     at.rigid[b] = start.rigid[b];
     add_scaled(at.rigid[b], dt, increment.rigid[b]);
-    at.rigid[b].orientation.normalize();
+    if (!increment.rigid[b].orientation.coeffs().isZero(0)) at.rigid[b].orientation.normalize();
   }
 }
 

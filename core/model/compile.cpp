@@ -32,8 +32,8 @@ void add_bodies(Model& model, const std::vector<BodyId>& ids,
     body.kind = description.kind;
     body.material = find_material(scene, description.material);
     body.sample = samples[b] ? std::move(samples[b])
-                             : std::make_shared<const SampledBody>(
-                                   sample_body(description, scene.materials[body.material], scene.dimensions));
+                             : std::make_shared<const SampledBody>(sample_body(
+                                   description, scene.materials[body.material], scene.dimensions));
     model.bodies.push_back(std::move(body));
   }
 }

@@ -115,15 +115,15 @@ std::vector<LawInUse> find_worst(const Scene& scene, const std::vector<ContactBo
     const ContactBody& a = bodies[i];
     for (std::size_t j = 0; j < i; ++j) {
       const ContactBody& b = bodies[j];
-      if (!can_touch(a, b)) continue;
+      if (!scene.forces.contacts || !can_touch(a, b)) continue;
       LawInUse& law = laws[table.between(a.material, b.material).value_or(other)];
       take(law, inverse_mass(a, b, law), {j, i});
     }
-    if (scene.vat) {
+    if (scene.vat && scene.forces.walls) {
       const Real at_once = a.kind == BodyKind::rigid ? a.side : 1;
       take(laws[table.with_walls(a.material).value_or(other)], at_once / a.mass, {i, i});
     }
-    if (a.kind == BodyKind::deformable && a.count > 1) {
+    if (scene.forces.contacts && a.kind == BodyKind::deformable && a.count > 1) {
       LawInUse& law = laws[other + 1 + a.material];
       take(law, inverse_mass(a, a, law), {i, i});
     }

@@ -79,8 +79,9 @@ void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPa
   const Material& material = material_of(scene, scene.bodies[index]);
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
-  const Real sound = kVerletLimit / kSoundLimit * std::sqrt(liquid.stiffness) / h;
-  const Real viscosity = liquid.viscosity / material.density;
+  const Real sound =
+      kVerletLimit / kSoundLimit * std::sqrt(scene.forces.pressure ? liquid.stiffness : 0) / h;
+  const Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
   parts.push_back({body_path(index),
                    "sound or viscosity in the liquid becomes unstable",
                    "sound in an inviscid liquid gains energy with this integrator",
@@ -95,7 +96,7 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
   for (std::size_t b = 0; b < samples.size(); ++b) {
     if (scene.bodies[b].kind == BodyKind::liquid) {
       add_liquid(scene, b, parts);
-    } else {
+    } else if (scene.forces.springs) {
       add_springs(b, *samples[b], parts);
     }
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/forces/contact_search.h"
+#include "core/forces/external.h"
+#include "core/forces/liquid.h"
 #include "core/forces/vat_motion.h"
 #include "core/rigid/rigid_motion.h"
 
@@ -116,6 +118,52 @@ void measure_density_error(const Model& model, const Workspace& work, Diagnostic
   if (model.liquid_count > 0) result.mean_density_error = sum / model.liquid_count;
 }
 
+bool runs(const StepPlan& plan, StageFunction stage) {
+  return std::ranges::find(plan.stages, stage, &Stage::run) != plan.stages.end();
+}
+
+/// Runs the plan but for external forces: `forces` are those of particles and walls on each other.
+void evaluate_inner_forces(StepContext& c) {
+  std::ranges::fill(c.forces.particle, Vec3::Zero());
+  for (const Stage& stage : c.model.plan.stages) {
+    if (stage.run != &set_external_forces) stage.run(c);
+  }
+}
+
+/// Density and pressure where no force needs them.
+void complete_liquid_fields(StepContext& c) {
+  if (c.model.liquid_count == 0) return;
+  if (!runs(c.model.plan, &compute_liquid_density)) {
+    sort_liquid(c);
+    compute_liquid_density(c);
+  }
+  if (!runs(c.model.plan, &compute_liquid_pressure)) compute_liquid_pressure(c);
+}
+
+/// Forces among the body's own particles cancel in the sums.
+void measure_outer_forces(const ModelBody& body, const Configuration& at, const Forces& inner,
+                          BodyDiagnostics& result) {
+  for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+    result.outer_force += inner.particle[i];
+    result.outer_torque += (at.position[i] - result.center_of_mass).cross(inner.particle[i]);
+  }
+}
+
+Real external_energy(const Model& model, const Configuration& at) {
+  const Scene& scene = model.scene;
+  if (!scene.forces.gravity) return 0;
+  Real energy = 0;
+  for (Index i = 0; i < model.particle_count; ++i) {
+    energy -= model.mass[i] * scene.gravity.dot(at.position[i]);
+  }
+  if (!scene.central_field) return energy;
+  const auto& [center, omega] = *scene.central_field;
+  for (Index i = 0; i < model.particle_count; ++i) {
+    energy += 0.5 * model.mass[i] * omega * omega * (at.position[i] - center).squaredNorm();
+  }
+  return energy;
+}
+
 }  // namespace
 
 Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) {
@@ -124,18 +172,26 @@ Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) 
   forces.particle.resize(model.particle_count);
   forces.rigid_force.resize(model.rigid_bodies.size());
   forces.rigid_torque.resize(model.rigid_bodies.size());
-  force_model.evaluate(at, time, forces);
+  StepContext context{model,
+                      force_model.controls,
+                      time,
+                      force_model.step,
+                      at,
+                      forces,
+                      force_model.work,
+                      force_model.runner};
+  evaluate_inner_forces(context);
+  complete_liquid_fields(context);
 
   Diagnostics result{};
   result.time = time;
   for (const ModelBody& body : model.bodies) {
     result.bodies.push_back(body.kind == BodyKind::rigid ? measure_rigid_body(model, body, at)
                                                          : measure_free_body(model, body, at));
+    measure_outer_forces(body, at, forces, result.bodies.back());
   }
   result.kinetic_energy = kinetic_energy(model, at);
-  for (Index i = 0; i < model.particle_count; ++i) {
-    result.gravitational_energy -= model.mass[i] * model.scene.gravity.dot(at.position[i]);
-  }
+  result.gravitational_energy = external_energy(model, at);
   result.elastic_energy = elastic_energy(model, at);
   if (model.contact_reach > 0) {
     result.contact_energy = pair_contact_energy(model, force_model.work, at);

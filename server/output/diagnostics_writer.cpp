@@ -22,7 +22,9 @@ std::string header_row(const Diagnostics& diagnostics) {
       "time,kinetic_energy,gravitational_energy,elastic_energy,contact_energy,"
       "mean_density_error,max_density_error,particles_outside,guard_events";
   for (const BodyDiagnostics& body : diagnostics.bodies) {
-    append_names(row, body.name, {"mass", "x", "y", "z", "px", "py", "pz", "lx", "ly", "lz"});
+    append_names(row, body.name,
+                 {"mass", "x", "y", "z", "px", "py", "pz", "lx", "ly", "lz", "fx", "fy", "fz", "tx",
+                  "ty", "tz"});
     if (body.orientation) append_names(row, body.name, {"qw", "qx", "qy", "qz"});
     if (body.angular_velocity) append_names(row, body.name, {"wx", "wy", "wz"});
   }
@@ -45,6 +47,8 @@ void append_body(std::string& row, const BodyDiagnostics& body) {
   append_vector(row, body.center_of_mass);
   append_vector(row, body.linear_momentum);
   append_vector(row, body.angular_momentum);
+  append_vector(row, body.outer_force);
+  append_vector(row, body.outer_torque);
   if (body.orientation) {
     const Quat& q = *body.orientation;
     append_values(row, {q.w(), q.x(), q.y(), q.z()});
