@@ -8,7 +8,8 @@ namespace {
 
 std::vector<Case> collect() {
   std::vector<Case> cases;
-  for (const auto group : {oscillator_cases}) {
+  for (const auto group : {oscillator_cases, chain_cases, static_cases, pendulum_cases,
+                           cantilever_cases, free_spin_cases, rigid_top_cases}) {
     std::ranges::move(group(), std::back_inserter(cases));
   }
   return cases;

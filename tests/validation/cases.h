@@ -12,5 +12,11 @@ namespace vat::validation {
 const std::vector<Case>& all_cases();
 
 std::vector<Case> oscillator_cases();
+std::vector<Case> chain_cases();
+std::vector<Case> static_cases();
+std::vector<Case> pendulum_cases();
+std::vector<Case> cantilever_cases();
+std::vector<Case> free_spin_cases();
+std::vector<Case> rigid_top_cases();
 
 }  // namespace vat::validation

@@ -1,9 +1,26 @@
 #include "tests/validation/order.h"
 
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <stdexcept>
 
 namespace vat::validation {
+
+namespace {
+
+/// Magnitude of the windowed samples' Fourier transform.
+Real spectrum(const std::vector<Real>& samples, Real phase_step) {
+  const Real window_step = 2 * std::numbers::pi / static_cast<Real>(samples.size());
+  std::complex<Real> sum = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto n = static_cast<Real>(i) + 0.5;
+    sum += samples[i] * (1 - std::cos(window_step * n)) * std::polar(1.0, -phase_step * n);
+  }
+  return std::abs(sum);
+}
+
+}  // namespace
 
 Real theoretical_order(IntegratorId integrator) {
   switch (integrator) {
@@ -47,6 +64,24 @@ Real fitted_frequency(const std::vector<Real>& samples, Real interval) {
     denominator += samples[i] * samples[i];
   }
   return std::acos(numerator / (2 * denominator)) / interval;
+}
+
+// Golden-section search one period of the record to both sides, within which there is one maximum.
+Real spectral_frequency(const std::vector<Real>& samples, Real interval, Real guess) {
+  const Real golden = (std::sqrt(5.0) - 1) / 2;
+  const Real width = 2 * std::numbers::pi / static_cast<Real>(samples.size());
+  Real low = guess * interval - width;
+  Real high = guess * interval + width;
+  while (high - low > 1e-10 * (high + low)) {
+    const Real a = high - golden * (high - low);
+    const Real b = low + golden * (high - low);
+    if (spectrum(samples, a) > spectrum(samples, b)) {
+      high = b;
+    } else {
+      low = a;
+    }
+  }
+  return 0.5 * (low + high) / interval;
 }
 
 }  // namespace vat::validation

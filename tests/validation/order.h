@@ -22,4 +22,8 @@ Real observed_order(const std::vector<Real>& sizes, const std::vector<Real>& err
 /// fit of x(t + interval) + x(t - interval) = 2 cos(omega interval) x(t).
 Real fitted_frequency(const std::vector<Real>& samples, Real interval);
 
+/// Angular frequency [rad/s] near `guess` at which the spectrum of the samples is greatest. A Hann
+/// window keeps other frequencies out that are at least four periods of the whole record away.
+Real spectral_frequency(const std::vector<Real>& samples, Real interval, Real guess);
+
 }  // namespace vat::validation

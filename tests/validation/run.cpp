@@ -49,6 +49,17 @@ BodyDescription& body_of(Scene& scene, std::string_view name) {
   return *found;
 }
 
+Scene with_method(Scene scene, IntegratorId integrator, Real step) {
+  scene.numerics.integrator = integrator;
+  return with_step(std::move(scene), step);
+}
+
+Scene with_step(Scene scene, Real step) {
+  scene.numerics.step = step;
+  scene.numerics.tick = step;
+  return scene;
+}
+
 Run::Run(const Scene& scene, TaskRunner* runner)
     : simulation_(value_of(Simulation::create(scene, runner), scene.name)) {}
 

@@ -15,6 +15,11 @@ Scene load_scene(const std::string& name);
 /// The body of that name. Throws std::out_of_range where there is none.
 BodyDescription& body_of(Scene& scene, std::string_view name);
 
+/// The scene with another integrator and step [s]; a tick is one step.
+Scene with_method(Scene scene, IntegratorId integrator, Real step);
+/// The same with the scene's integrator.
+Scene with_step(Scene scene, Real step);
+
 /// A simulation that measures how long its steps take. Everything throws std::runtime_error where
 /// the scene is invalid, a step fails, or the guard had to repeat a step: a case must not pass by
 /// the guard's help.
