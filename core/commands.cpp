@@ -32,6 +32,14 @@ Status check_vector(const Vec3& value, Real limit, const std::string& path) {
   return Error{"out_of_range", path, message.str()};
 }
 
+/// A vector that moves bodies leaves those of two dimensions in their plane.
+Status check_in_world(const Scene& scene, const Vec3& value, Real limit, const std::string& path) {
+  if (scene.dimensions == 2 && value.y() != 0) {
+    return Error{"off_plane", path, "must have y = 0 in a scene of two dimensions"};
+  }
+  return check_vector(value, limit, path);
+}
+
 /// Copies the state of a body from one model's columns to another's.
 void carry_over(const ModelBody& from, const Configuration& source, const ModelBody& to,
                 Configuration& target) {
@@ -130,7 +138,8 @@ Status Simulation::remove_body(BodyId id) {
 }
 
 Status Simulation::set_gravity(const Vec3& gravity) {
-  if (Status status = check_vector(gravity, kMaxGravity, "/gravity"); !status) return status;
+  Status status = check_in_world(impl_->model->scene, gravity, kMaxGravity, "/gravity");
+  if (!status) return status;
   auto model = std::make_shared<Model>(*impl_->model);
   model->scene.gravity = gravity;
   impl_->model = std::move(model);
@@ -159,7 +168,8 @@ Status Simulation::set_interface(const InterfaceDescription& interface) {
 Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
-  if (Status status = check_vector(force, kMaxForce, "/force"); !status) return status;
+  Status status = check_in_world(impl_->model->scene, force, kMaxForce, "/force");
+  if (!status) return status;
   if (!(duration > 0 && duration <= kMaxForceTime)) {
     return Error{"out_of_range", "/duration", "must be above 0 and at most 3600 seconds"};
   }

@@ -18,7 +18,8 @@ struct Warning {
 /// Every error of the scene at once; empty where it is valid. Checks each value's range (named in
 /// the message), references by name, that each body's material has what its kind needs, that shapes
 /// sample to at least one and at most kMaxParticles particles, mesh closedness, that the tick is a
-/// whole number of steps, and the limits of core/limits.h. What must be sampled to be checked is
+/// whole number of steps, that a scene of two dimensions stays in its plane and periods are longer
+/// than forces reach, and the limits of core/limits.h. What must be sampled to be checked is
 /// bounded: once the bodies exceed a limit together, the rest are not sampled. Pairs of particles
 /// are counted where nothing else is wrong.
 Errors find_errors(const Scene& scene);
@@ -47,10 +48,10 @@ Errors find_body_errors(const Scene& scene, const BodyDescription& body, const s
 Errors find_interface_errors(const Scene& scene, const Present& present,
                              const InterfaceDescription& interface, const std::string& path);
 
-/// Things that are allowed and likely to disappoint: bodies that overlap one another or the walls
-/// at the start, spacing against support radius, motion that is too fast for the step, and
-/// stiffness, damping, viscosity and speed of sound against the step. The scene must be without
-/// errors.
+/// Things that are allowed and likely to disappoint: settings without effect, bodies that overlap
+/// one another or the walls at the start, spacing against support radius, motion that is too fast
+/// for the step, and stiffness, damping, viscosity and speed of sound against the step. The scene
+/// must be without errors.
 std::vector<Warning> find_warnings(const Scene& scene);
 
 }  // namespace vat

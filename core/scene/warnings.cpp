@@ -6,6 +6,7 @@
 
 #include "core/limits.h"
 #include "core/neighbours/uniform_grid.h"
+#include "core/scene/idle_settings.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/sampling.h"
 #include "core/scene/step_limits.h"
@@ -51,9 +52,9 @@ std::string body_path(std::size_t index) {
 using BodyPair = std::pair<Index, Index>;
 
 /// Pairs of particles of two bodies that overlap, counted by pair of bodies.
-std::map<BodyPair, std::size_t> count_overlaps(const Start& start) {
+std::map<BodyPair, std::size_t> count_overlaps(const Scene& scene, const Start& start) {
   std::map<BodyPair, std::size_t> overlaps;
-  if (start.radii.empty()) return overlaps;
+  if (start.radii.empty() || !scene.forces.contacts) return overlaps;
   const Real reach = 2 * std::ranges::max(start.radii);
   UniformGrid grid;
   grid.build(start.positions, reach);
@@ -74,25 +75,33 @@ std::map<BodyPair, std::size_t> count_overlaps(const Start& start) {
 }
 
 void warn_of_overlaps(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
-  for (const auto& [bodies, count] : count_overlaps(start)) {
+  for (const auto& [bodies, count] : count_overlaps(scene, start)) {
     warnings.push_back({"bodies_overlap", body_path(bodies.second),
                         "overlaps \"" + scene.bodies[bodies.first].name + "\" at the start, at " +
                             std::to_string(count) + " pairs of particles: they will jump apart"});
   }
 }
 
+/// The distance from the nearest wall that the vat has.
+Real wall_gap(const Scene& scene, const Vec3& p) {
+  const Vat& vat = *scene.vat;
+  Real nearest = std::numeric_limits<Real>::infinity();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (scene.periodic && scene.periodic->axes[static_cast<std::size_t>(axis)]) continue;
+    if (scene.dimensions == 2 && axis == 1) continue;
+    nearest = std::min(nearest, p[axis] - vat.min[axis]);
+    if (axis < 2 || vat.lid) nearest = std::min(nearest, vat.max[axis] - p[axis]);
+  }
+  return nearest;
+}
+
 void warn_of_walls(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
-  if (!scene.vat) return;
+  if (!scene.vat || !scene.forces.walls) return;
   for (std::size_t b = 0; b < start.bodies.size(); ++b) {
     const SampledBody& sample = start.bodies[b];
     std::size_t count = 0;
     for (std::size_t i = 0; i < sample.positions.size(); ++i) {
-      const Real gap = (1 - kOverlap) * sample.radii[i];
-      const Vec3 below = sample.positions[i] - scene.vat->min;
-      const Vec3 above = scene.vat->max - sample.positions[i];
-      Real nearest = std::min(below.minCoeff(), std::min(above.x(), above.y()));
-      if (scene.vat->lid) nearest = std::min(nearest, above.z());
-      if (nearest < gap) ++count;
+      if (wall_gap(scene, sample.positions[i]) < (1 - kOverlap) * sample.radii[i]) ++count;
     }
     if (count > 0) {
       warnings.push_back({"wall_overlap", body_path(b),
@@ -122,7 +131,7 @@ void warn_of_support(const Scene& scene, std::vector<Warning>& warnings) {
 void warn_of_loose_particles(const Scene& scene, const Start& start,
                              std::vector<Warning>& warnings) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const bool loose = scene.bodies[b].kind == BodyKind::deformable &&
+    const bool loose = scene.forces.springs && scene.bodies[b].kind == BodyKind::deformable &&
                        start.bodies[b].positions.size() > 1 && start.bodies[b].springs.empty();
     if (loose) {
       warnings.push_back({"no_springs", body_path(b),
@@ -174,13 +183,13 @@ Real least_notice(const Scene& scene, const InterfaceTable& table,
     least = std::min(least,
                      listed ? scene.interfaces[*interface].threshold.value_or(touching) : touching);
   };
-  for (std::size_t other = 0; other < partners.size(); ++other) {
+  for (std::size_t other = 0; scene.forces.contacts && other < partners.size(); ++other) {
     const bool is_same = other == material;
     if (is_same && body.kind == BodyKind::liquid) continue;
     if (partners[other].count <= (is_same ? 1U : 0U)) continue;
     notice(table.between(material, other), radius + partners[other].least_radius);
   }
-  if (scene.vat) notice(table.with_walls(material), radius);
+  if (scene.vat && scene.forces.walls) notice(table.with_walls(material), radius);
   return least;
 }
 
@@ -214,6 +223,7 @@ std::vector<Warning> find_warnings(const Scene& scene) {
   warn_of_walls(scene, start, warnings);
   warn_of_support(scene, warnings);
   warn_of_loose_particles(scene, start, warnings);
+  warn_of_idle_settings(scene, warnings);
   warn_of_rotation(scene, warnings);
   warn_of_speed(scene, start, warnings);
   warn_of_steps(scene, start, warnings);
