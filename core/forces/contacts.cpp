@@ -1,5 +1,6 @@
 #include "core/forces/contacts.h"
 
+#include "core/forces/connection.h"
 #include "core/forces/contact_search.h"
 #include "core/forces/pair_direction.h"
 
@@ -20,8 +21,8 @@ void add_contacts(StepContext& c) {
         const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
                                       c.model.scene.dimensions);
         const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
-        const Real push =
-            contact.stiffness * (contact.threshold - contact.distance) - contact.damping * speed;
+        const Real push = connection_push(contact.stiffness, contact.damping, contact.threshold,
+                                          contact.distance, speed);
         if (push > 0) sum += push * n;
       });
       c.forces.particle[i] += sum;

@@ -1,5 +1,6 @@
 #include "core/forces/springs.h"
 
+#include "core/forces/connection.h"
 #include "core/forces/pair_direction.h"
 #include "core/step/workspace.h"
 
@@ -12,7 +13,7 @@ Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int
   const Real r = x.norm();
   const Vec3 n = pair_direction(x, r, e, spring.other, dimensions);
   const Real speed = (at.velocity[e] - at.velocity[spring.other]).dot(n);
-  return -(spring.stiffness * (r - spring.rest_length) + spring.damping * speed) * n;
+  return connection_push(spring.stiffness, spring.damping, spring.rest_length, r, speed) * n;
 }
 
 }  // namespace

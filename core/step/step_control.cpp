@@ -57,7 +57,8 @@ StepBounds find_step_bounds(const Model& model) {
     bounds.spring_step[i] = safe_step(model.scene.numerics, bound);
   }
   bounds.field_step = kInfinity;
-  if (model.scene.central_field && model.scene.central_field->angular_frequency > 0) {
+  if (model.scene.forces.gravity && model.scene.central_field &&
+      model.scene.central_field->angular_frequency > 0) {
     const Numerics& numerics = model.scene.numerics;
     bounds.field_step = resolving_phase(numerics.integrator, numerics.tolerance) /
                         model.scene.central_field->angular_frequency;

@@ -13,6 +13,7 @@ namespace vat {
 namespace {
 
 constexpr Real kStabilityMargin = 0.9;
+constexpr Real kLocalMargin = 0.5;  // kicks at several periods have resonances below the limit
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
 /// What a step's length depends on beside the state.
@@ -82,7 +83,7 @@ ContactOutlook look_at_walls(const Search& search, const std::vector<Real>& inve
   const ContactLaw& law = model.wall_laws[model.material[i]];
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   ContactOutlook sum;
-  for (int wall = 0; wall < wall_count(vat); ++wall) {
+  for (const int wall : model.walls) {
     const Vec3 normal = wall_normal(wall);
     const Real speed = -search.at.velocity[i].dot(normal);
     const Real gap = wall_distance(vat, search.vat_motion, wall, search.at.position[i]) - threshold;
@@ -107,7 +108,9 @@ Real allowed_step(const Numerics& numerics, const ContactOutlook& outlook) {
   const Real amplitude = outlook.speed / rate;
   const Real share = std::min(Real{1}, amplitude / (kFullAmplitude * outlook.threshold));
   const Real resolving = contact_phase(numerics) / (rate * std::sqrt(share));
-  return std::max(outlook.time, std::min(safe_step(numerics, outlook.bound), resolving));
+  const Real step = std::min(safe_step(numerics, outlook.bound), resolving);
+  // Local levels are for a whole step, whenever in it the contact begins.
+  return numerics.control == StepControl::local ? step : std::max(outlook.time, step);
 }
 
 Real greatest_vat_speed(const Model& model) {
@@ -119,6 +122,9 @@ Real greatest_vat_speed(const Model& model) {
 }  // namespace
 
 Real safe_step(const Numerics& numerics, const Oscillation& oscillation) {
+  if (numerics.control == StepControl::local) {  // damping is that of the velocity before the kick
+    return kLocalMargin * stable_step(IntegratorId::symplectic_euler, oscillation);
+  }
   const Real step = stable_step(numerics.integrator, oscillation);
   return step > 0 ? kStabilityMargin * step : kInfinity;
 }
@@ -134,11 +140,11 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
                         Real reach, ContactScratch& scratch, std::vector<Real>& particle_step,
                         std::vector<Real>& rigid_step) {
   const Model& model = f.model;
-  if (model.contact_reach <= 0 && !model.scene.vat) return;
+  if (model.contact_reach <= 0 && model.walls.empty()) return;
   const Search search{f,
                       at,
                       longest,
-                      model.scene.gravity.norm() * longest,
+                      model.scene.forces.gravity ? model.scene.gravity.norm() * longest : 0,
                       reach,
                       model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
                       greatest_vat_speed(model)};
@@ -149,7 +155,7 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
       const auto i = static_cast<Index>(k);
       ContactOutlook outlook;
       if (model.contact_reach > 0) outlook = look_at_pairs(search, scratch.inverse_mass, i);
-      if (model.scene.vat) outlook.add(look_at_walls(search, scratch.inverse_mass, i));
+      if (!model.walls.empty()) outlook.add(look_at_walls(search, scratch.inverse_mass, i));
       scratch.outlook[i] = outlook;
       if (i >= model.free_count || model.inverse_mass[i] == 0) continue;
       particle_step[i] = std::min(particle_step[i], allowed_step(model.scene.numerics, outlook));
