@@ -1,0 +1,25 @@
+#include <gtest/gtest.h>
+
+#include "tests/stability/step_map.h"
+#include "tests/support/scenes.h"
+
+namespace vat::stability {
+namespace {
+
+// The start need not have the fastest mode in it alone, so that more than the limit may pass a
+// short run; less may not.
+TEST(StepMap, ReachesTheoryOnLinearCases) {
+  for (const LinearCase& linear : linear_cases(true)) {
+    for (const IntegratorId integrator : test::kIntegrators) {
+      const StepMapPoint point = map_point(linear, integrator);
+      SCOPED_TRACE(linear.body + ", " + to_string(integrator) + ", damping ratio " +
+                   std::to_string(linear.damping_ratio) + ", mass ratio " +
+                   std::to_string(linear.mass_ratio));
+      EXPECT_GE(point.measured, 0.95 * point.theory);
+      EXPECT_LE(point.measured, 1.1 * point.theory);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vat::stability
