@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "server/cli/command.h"
+#include "tests/bench/accuracy.h"
 #include "tests/bench/speed.h"
 #include "tests/bench/validate.h"
 
@@ -18,6 +19,7 @@ int run(int argc, char** argv) {
   int exit_code = vat::kExitOk;
   vat::bench::add_speed_command(app, exit_code);
   vat::bench::add_validate_command(app, exit_code);
+  vat::bench::add_accuracy_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

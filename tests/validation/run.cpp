@@ -22,7 +22,7 @@ std::string text_of(const Errors& errors) {
 
 template <class T>
 T value_of(Result<T> result, const std::string& what) {
-  if (!result) throw std::runtime_error(what + ": " + text_of(result.errors()));
+  if (!result) throw std::invalid_argument(what + ": " + text_of(result.errors()));
   return std::move(result).value();
 }
 
@@ -69,6 +69,8 @@ void Run::advance_to(Real time) {
   const AdvanceReport report = simulation_.advance(count);
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   steps_ += report.steps;
+  force_evaluations_ += report.force_evaluations;
+  particle_evaluations_ += report.particle_evaluations;
   if (report.undone_steps == 0) return;
   throw std::runtime_error("the guard undid a step (" +
                            std::string(to_string(report.events.front().cause)) +

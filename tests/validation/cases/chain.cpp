@@ -18,7 +18,7 @@ Real mode_shape(int mode, int node) {
 
 /// Displaces the nodes from their places along the x axis in one mode.
 Scene chain_in_mode(int mode, int axis, Real amplitude) {
-  Scene scene = with_step(load_scene("spring-chain"), kStep);
+  Scene scene = with_step(load_scene("DEF-2"), kStep);
   std::vector<Vec3>& positions = std::get<ParticleShape>(scene.bodies[0].shape).positions;
   for (int i = 0; i < kMasses + 2; ++i) {
     const auto node = static_cast<std::size_t>(i);
@@ -61,7 +61,7 @@ void run_modes(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> chain_cases() {
-  return {{"DEF-2", "modes of a stretched chain", "deformable", {"spring-chain"}, run_modes}};
+  return {{"DEF-2", "modes of a stretched chain", "deformable", {"DEF-2"}, run_modes}};
 }
 
 }  // namespace vat::validation

@@ -65,7 +65,7 @@ void add_long_run(Sheet& sheet, const Scene& scene) {
 }
 
 void run_undamped(Sheet& sheet) {
-  const Scene scene = load_scene("spring-oscillator");
+  const Scene scene = load_scene("DEF-1");
   for (const IntegratorId integrator : kIntegrators) {
     add_order_row(sheet, scene, integrator, steps_for(integrator), 1, theoretical_order(integrator),
                   phase_plane_error);
@@ -75,7 +75,7 @@ void run_undamped(Sheet& sheet) {
 }
 
 void run_damped(Sheet& sheet) {
-  const Scene scene = load_scene("damped-oscillator");
+  const Scene scene = load_scene("DEF-1c");
   for (const IntegratorId integrator : kIntegrators) {
     add_order_row(sheet, scene, integrator, steps_for(integrator), 1, theoretical_order(integrator),
                   [](const Run& run) {
@@ -116,7 +116,7 @@ Real pair_bound(IntegratorId integrator, Real step, Real time) {
 
 void run_pair(Sheet& sheet) {
   constexpr Real kStep = 1e-3;
-  const Scene scene = load_scene("spring-pair");
+  const Scene scene = load_scene("DEF-1b");
   for (const IntegratorId integrator : kIntegrators) {
     if (integrator == IntegratorId::explicit_euler) continue;  // its energy grows by e^13
     Run run = sheet.start(with_method(scene, integrator, kStep));
@@ -135,7 +135,7 @@ void run_energy(Sheet& sheet) {
   constexpr Real kStep = 0.01;
   constexpr int kSteps = 100;
   const Real z2 = std::pow(reference(kOscillator + "omega") * kStep, 2);
-  const Scene scene = load_scene("spring-oscillator");
+  const Scene scene = load_scene("DEF-1");
   const std::pair<IntegratorId, Real> factors[] = {
       {IntegratorId::explicit_euler, 1 + z2},
       {IntegratorId::heun, 1 + z2 * z2 / 4},
@@ -154,7 +154,7 @@ void run_energy(Sheet& sheet) {
 void add_bounded_energy(Sheet& sheet, IntegratorId integrator, Real bound, const char* source) {
   constexpr Real kStep = 0.01;
   const Real end = sheet.quick() ? 1e3 : 1e4;
-  Run run = sheet.start(with_method(load_scene("spring-oscillator"), integrator, kStep));
+  Run run = sheet.start(with_method(load_scene("DEF-1"), integrator, kStep));
   const Real start = run.energy();
   Real greatest = 0;
   run.observe_until(end, kStep,
@@ -179,10 +179,10 @@ void run_energy_case(Sheet& sheet) {
 std::vector<Case> oscillator_cases() {
   const std::string kind = "deformable";
   return {
-      {"DEF-1", "undamped mass on a spring", kind, {"spring-oscillator"}, run_undamped},
-      {"DEF-1b", "two free masses and a spring", kind, {"spring-pair"}, run_pair},
-      {"DEF-1c", "damped mass on a spring", kind, {"damped-oscillator"}, run_damped},
-      {"DEF-1d", "energy drift of the integrators", kind, {"spring-oscillator"}, run_energy_case},
+      {"DEF-1", "undamped mass on a spring", kind, {"DEF-1"}, run_undamped},
+      {"DEF-1b", "two free masses and a spring", kind, {"DEF-1b"}, run_pair},
+      {"DEF-1c", "damped mass on a spring", kind, {"DEF-1c"}, run_damped},
+      {"DEF-1d", "energy drift of the integrators", kind, {"DEF-1"}, run_energy_case},
   };
 }
 

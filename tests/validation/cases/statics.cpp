@@ -24,7 +24,7 @@ void add_length(Sheet& sheet, const Equilibrium& rest, const std::string& metric
 }
 
 void run_chain(Sheet& sheet) {
-  const Equilibrium rest = relax(load_scene("hanging-chain"), kResidual, sheet);
+  const Equilibrium rest = relax(load_scene("DEF-3a"), kResidual, sheet);
   const Json& expected = reference_at("/deformable/DEF-3a/y");
   for (std::size_t i = 0; i < expected.size(); ++i) {
     add_length(sheet, rest, "height of node " + std::to_string(i + 1), expected[i].get<Real>(),
@@ -33,7 +33,7 @@ void run_chain(Sheet& sheet) {
 }
 
 void run_catenary(Sheet& sheet) {
-  const Equilibrium rest = relax(load_scene("catenary"), kResidual, sheet);
+  const Equilibrium rest = relax(load_scene("DEF-3b"), kResidual, sheet);
   const std::string expected = "/deformable/DEF-3b/";
   add_length(sheet, rest, "height of the middle", reference(expected + "mid_y"),
              nodes(rest)[10].z());
@@ -49,7 +49,7 @@ void run_catenary(Sheet& sheet) {
 }
 
 void run_cloth(Sheet& sheet) {
-  const Equilibrium rest = relax(load_scene("hanging-cloth"), kResidual, sheet);
+  const Equilibrium rest = relax(load_scene("DEF-3c"), kResidual, sheet);
   const auto node = [&](std::size_t i, std::size_t j) { return nodes(rest)[i * 11 + j]; };
   const std::string expected = "/deformable/DEF-3c/";
   add_length(sheet, rest, "height of the centre", reference(expected + "centre_z"), node(5, 5).z());
@@ -67,9 +67,9 @@ void run_cloth(Sheet& sheet) {
 std::vector<Case> static_cases() {
   const std::string kind = "deformable";
   return {
-      {"DEF-3a", "chain that hangs from one end", kind, {"hanging-chain"}, run_chain},
-      {"DEF-3b", "chain that hangs from both ends", kind, {"catenary"}, run_catenary},
-      {"DEF-3c", "cloth that hangs from its corners", kind, {"hanging-cloth"}, run_cloth},
+      {"DEF-3a", "chain that hangs from one end", kind, {"DEF-3a"}, run_chain},
+      {"DEF-3b", "chain that hangs from both ends", kind, {"DEF-3b"}, run_catenary},
+      {"DEF-3c", "cloth that hangs from its corners", kind, {"DEF-3c"}, run_cloth},
   };
 }
 

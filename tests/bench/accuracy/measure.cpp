@@ -1,0 +1,143 @@
+#include "tests/bench/accuracy/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/validation/order.h"
+
+namespace vat::bench {
+
+using validation::Run;
+
+namespace {
+
+/// A phase error of a tenth per radian, and a quarter of it for each next solution: errors of
+/// second order fall like that where steps are halved.
+Real tolerance_of(std::size_t index) {
+  return 0.1 * std::pow(0.25, static_cast<Real>(index));
+}
+
+Scene scene_for(const Problem& problem, const Method& method, std::size_t index) {
+  const bool varied = method.control != StepControl::fixed;
+  const std::uint32_t count = varied && problem.longest_step_count > 0 ? problem.longest_step_count
+                                                                       : problem.step_counts[index];
+  Scene scene = validation::with_method(problem.scene, method.integrator, problem.end / count);
+  scene.numerics.control = method.control;
+  if (varied) scene.numerics.tolerance = tolerance_of(index);
+  return scene;
+}
+
+/// Runs to the end; notes what every repetition has to agree on.
+double run_once(const Problem& problem, const Scene& scene, TaskRunner* runner,
+                Solution& solution) {
+  Run run(scene, runner);
+  run.advance_to(problem.end);
+  solution.error = problem.error(run);
+  solution.steps = run.steps();
+  solution.force_evaluations = run.force_evaluations();
+  solution.evaluations_per_particle = static_cast<Real>(run.particle_evaluations()) /
+                                      static_cast<Real>(run.simulation().particle_count());
+  solution.state_hash = run.state_hash();
+  return run.seconds();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+void time_runs(const Problem& problem, const Scene& scene, const SweepSettings& settings,
+               TaskRunner* runner, Solution& solution) {
+  std::vector<double> seconds;
+  const double first = run_once(problem, scene, runner, solution);
+  const std::uint64_t hash = solution.state_hash;
+  for (int i = 0; i < settings.repetitions; ++i) {
+    seconds.push_back(run_once(problem, scene, runner, solution));
+    if (solution.state_hash == hash) continue;
+    throw std::logic_error(problem.title + ": two equal runs end in different states");
+  }
+  solution.seconds = seconds.empty() ? first : median(std::move(seconds));
+}
+
+Solution solve(const Problem& problem, const Scene& scene, const SweepSettings& settings,
+               TaskRunner* runner) {
+  const Numerics& numerics = scene.numerics;
+  Solution solution{.method = {numerics.integrator, numerics.control},
+                    .step = numerics.step,
+                    .tolerance = numerics.control == StepControl::fixed ? 0 : numerics.tolerance,
+                    .failure = {}};
+  try {
+    time_runs(problem, scene, settings, runner, solution);
+    if (!std::isfinite(solution.error)) solution.failure = "not finite";
+  } catch (const std::runtime_error& error) {
+    solution.error = std::numeric_limits<Real>::quiet_NaN();
+    solution.failure = error.what();
+  }
+  return solution;
+}
+
+bool is_solved(const Solution& solution) {
+  return solution.failure.empty();
+}
+
+}  // namespace
+
+std::vector<Method> all_methods() {
+  std::vector<Method> methods;
+  for (const StepControl control :
+       {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
+    for (const IntegratorId integrator : validation::kIntegrators) {
+      methods.push_back({integrator, control});
+    }
+  }
+  return methods;
+}
+
+std::string name_of(const Method& method) {
+  return std::string(to_string(method.integrator)) + ", " + to_string(method.control);
+}
+
+std::vector<Solution> sweep(const Problem& problem, const Method& method,
+                            const SweepSettings& settings, TaskRunner* runner) {
+  std::vector<Solution> solutions;
+  for (std::size_t i = 0; i < problem.step_counts.size(); i += settings.stride) {
+    const Scene scene = scene_for(problem, method, i);
+    if (!Simulation::create(scene, runner)) continue;  // too long a step, or a method not offered
+    solutions.push_back(solve(problem, scene, settings, runner));
+    if (solutions.back().seconds > settings.longest_run) break;
+  }
+  return solutions;
+}
+
+std::vector<Solution> pareto_front(const std::vector<Solution>& solutions,
+                                   double (*cost)(const Solution&)) {
+  std::vector<Solution> sorted;
+  std::ranges::copy_if(solutions, std::back_inserter(sorted), is_solved);
+  std::ranges::stable_sort(sorted, {}, cost);
+  std::vector<Solution> front;
+  for (const Solution& solution : sorted) {
+    if (front.empty() || solution.error < front.back().error) front.push_back(solution);
+  }
+  return front;
+}
+
+std::optional<Solution> cheapest(const std::vector<Solution>& solutions, Real error,
+                                 double (*cost)(const Solution&)) {
+  for (const Solution& solution : pareto_front(solutions, cost)) {
+    if (solution.error <= error) return solution;
+  }
+  return std::nullopt;
+}
+
+double seconds_of(const Solution& solution) {
+  return solution.seconds;
+}
+
+double evaluations_of(const Solution& solution) {
+  return solution.evaluations_per_particle;
+}
+
+}  // namespace vat::bench

@@ -1,0 +1,74 @@
+#include <cmath>
+
+#include "tests/bench/accuracy/problem.h"
+#include "tests/validation/reference.h"
+
+namespace vat::bench {
+
+using validation::reference;
+using validation::Run;
+
+namespace {
+
+Problem top(TaskRunner*) {
+  return {.title = "Free asymmetric top",
+          .error_name = "attitude at t = 10 s, in radians",
+          .scene = validation::load_scene("RIG-1"),
+          .end = 10,
+          .step_counts = doubled(100, 8),
+          .error = [](const Run& run) {
+            const Json& q = validation::reference_at("/rigid/RIG-1/quat/10");
+            const Quat exact(q.at(0).get<Real>(), q.at(1).get<Real>(), q.at(2).get<Real>(),
+                             q.at(3).get<Real>());
+            return run.body().pose->orientation.angularDistance(exact.normalized());
+          }};
+}
+
+/// Falls, in free flight again after two whole cycles, so that only the time in flight counts.
+Real bounce_height(Real time) {
+  const Real cycle = reference("/rigid/RIG-4a/period_full");
+  const Real in_flight = time - 2 * cycle;
+  return 1 - 0.5 * reference("/g") * in_flight * in_flight;
+}
+
+Problem bounce(TaskRunner*) {
+  constexpr Real kEnd = 2;
+  constexpr Real kRadius = 0.05;
+  return {.title = "Ball that bounces on a stiff floor",
+          .error_name = "height after two bounces, in heights of the fall",
+          .scene = validation::load_scene("RIG-4"),
+          .end = kEnd,
+          .step_counts = doubled(200, 10),
+          .longest_step_count = 200,
+          .error = [](const Run& run) {
+            const Real height = run.body().positions[0].z() - kRadius;
+            return std::abs(height - bounce_height(kEnd));
+          }};
+}
+
+/// The relative motion is free flight, half a sine while in touch, and free flight.
+Problem collision(TaskRunner*) {
+  constexpr Real kEnd = 0.04;
+  return {.title = "Two balls collide",
+          .error_name = "place of the first ball afterwards, in its way since the impact",
+          .scene = validation::load_scene("RIG-5"),
+          .end = kEnd,
+          .step_counts = doubled(25, 10),
+          .longest_step_count = 25,
+          .error = [](const Run& run) {
+            constexpr Real kGap = 0.02;
+            constexpr Real kSpeed = 3;
+            const Real after = kEnd - kGap / kSpeed - reference("/rigid/RIG-5a/contact_time");
+            const Real distance = 0.1 + kSpeed * after;
+            const Real expected = 0.02 - 2.0 / 3.0 * distance;  // of a centre of mass at rest
+            return std::abs(run.body().positions[0].x() - expected) / (2 * after);
+          }};
+}
+
+}  // namespace
+
+std::vector<ProblemEntry> rigid_problems() {
+  return {{"RIG-1", top}, {"RIG-4", bounce}, {"RIG-5", collision}};
+}
+
+}  // namespace vat::bench
