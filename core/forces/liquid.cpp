@@ -34,52 +34,44 @@ void make_room(std::vector<Index>& slots, std::size_t wanted) {
   slots.resize(size);
 }
 
-/// Difference of two slots' places; in a periodic world, of their nearest images.
-template <bool periodic>
-Vec3 difference(const PeriodicBox& box, const CellSortedPoints& points, Index to, Index from) {
-  const Vec3 x(points.x[to] - points.x[from], points.y[to] - points.y[from],
-               points.z[to] - points.z[from]);
-  return periodic ? box.nearest(x) : x;
+/// Slots nearer to `place` than `support`, but `self`, appended to `found` from `count` on; the new
+/// count. Every candidate is written and only a neighbour advances the count: no branch to
+/// mispredict.
+std::size_t find_near(const CellSortedPoints& points, const Vec3& place, Index self, Real support,
+                      std::vector<Index>& found, std::size_t count) {
+  constexpr Index kChunk = 1024;  // room for candidates at a time: a crowded cell may hold them all
+  const Real x = place.x();
+  const Real y = place.y();
+  const Real z = place.z();
+  const Real support2 = support * support;
+  points.grid.for_each_run({x, y, z}, support, [&](Index begin, Index end) {
+    while (begin < end) {
+      const Index stop = std::min(end, begin + kChunk);
+      make_room(found, count + (stop - begin));
+      Index* const out = found.data();
+      for (Index slot = begin; slot < stop; ++slot) {
+        const Real dx = points.x[slot] - x;
+        const Real dy = points.y[slot] - y;
+        const Real dz = points.z[slot] - z;
+        out[count] = slot;
+        count +=
+            static_cast<std::size_t>((dx * dx + dy * dy + dz * dz < support2) & (slot != self));
+      }
+      begin = stop;
+    }
+  });
+  return count;
 }
 
-/// Slots nearer to slot `self` than `support`, appended to `found` from `count` on; the new count.
-/// Every candidate is written and only a neighbour advances the count: no branch to mispredict.
+/// The neighbours of slot `self`, in the same way; in a periodic world, of all its images.
 template <bool periodic>
 std::size_t find_neighbours(const PeriodicBox& box, const CellSortedPoints& points, Index self,
                             Real support, std::vector<Index>& found, std::size_t count) {
-  constexpr Index kChunk = 1024;  // room for candidates at a time: a crowded cell may hold them all
-  const Vec3 p(points.x[self], points.y[self], points.z[self]);
-  const Real support2 = support * support;
-  const auto search_image = [&](const Vec3& shift) {
-    const Vec3 image = periodic ? Vec3(p + shift) : p;
-    points.grid.for_each_run(image, support, [&](Index begin, Index end) {
-      while (begin < end) {
-        const Index stop = std::min(end, begin + kChunk);
-        make_room(found, count + (stop - begin));
-        Index* const out = found.data();
-        for (Index slot = begin; slot < stop; ++slot) {
-          // The shift comes last: so seen from the other end all is opposite to the bit.
-          Real dx = points.x[slot] - p.x();
-          Real dy = points.y[slot] - p.y();
-          Real dz = points.z[slot] - p.z();
-          if constexpr (periodic) {
-            dx -= shift.x();
-            dy -= shift.y();
-            dz -= shift.z();
-          }
-          out[count] = slot;
-          count +=
-              static_cast<std::size_t>((dx * dx + dy * dy + dz * dz < support2) & (slot != self));
-        }
-        begin = stop;
-      }
-    });
-  };
-  if constexpr (periodic) {
-    box.for_each_image(p, support, search_image);
-  } else {
-    search_image(Vec3::Zero());
-  }
+  const Vec3 place(points.x[self], points.y[self], points.z[self]);
+  if constexpr (!periodic) return find_near(points, place, self, support, found, count);
+  box.for_each_image(place, support, [&](const Vec3& shift) {
+    count = find_near(points, place + shift, self, support, found, count);
+  });
   return count;
 }
 
@@ -112,9 +104,15 @@ Real sum_density(const Model& model, const CellSortedPoints& points, Index self,
   const Poly6& kernel = liquid_of(model, order[self]).density_kernel;
   Real density = model.mass[order[self]] * kernel.value(0);
   for (const Index slot : neighbours) {
-    const Vec3 x = difference<periodic>(model.periodic, points, slot, self);
-    density +=
-        model.mass[order[slot]] * kernel.value(x.x() * x.x() + x.y() * x.y() + x.z() * x.z());
+    Real dx = points.x[slot] - points.x[self];
+    Real dy = points.y[slot] - points.y[self];
+    Real dz = points.z[slot] - points.z[self];
+    if constexpr (periodic) {
+      dx = model.periodic.nearest(dx, 0);
+      dy = model.periodic.nearest(dy, 1);
+      dz = model.periodic.nearest(dz, 2);
+    }
+    density += model.mass[order[slot]] * kernel.value(dx * dx + dy * dy + dz * dz);
   }
   return density;
 }
@@ -208,16 +206,16 @@ void fill_records(StepContext& c) {
 // Both are forces on particles: the papers' force densities times the particle's volume, which the
 // caller multiplies by.
 template <LiquidTerms terms>
-Vec3 liquid_pair_force(const LiquidModel& liquid, const LiquidRecord& i, const LiquidRecord& j,
-                       Real r, const Vec3& direction, Real filling) {
+inline Vec3 liquid_pair_force(const LiquidModel& liquid, const LiquidRecord& i,
+                              const LiquidRecord& j, Real r, const Vec3& direction, Real filling) {
   Vec3 force = Vec3::Zero();
   if constexpr (terms.pressure) {
     force = -(i.pressure + j.pressure) * liquid.pressure_kernel.slope(r) * direction;
   }
   if constexpr (terms.viscosity) {
-    const Vec3 slowing =
-        liquid.viscosity * liquid.viscosity_kernel.laplacian(r) * (j.velocity - i.velocity);
-    force += terms.filled ? Vec3(filling * slowing) : slowing;
+    Real strength = liquid.viscosity * liquid.viscosity_kernel.laplacian(r);
+    if constexpr (terms.filled) strength *= filling;
+    force += strength * (j.velocity - i.velocity);
   }
   return j.volume * force;
 }
@@ -239,9 +237,9 @@ void add_pair_forces(StepContext& c) {
         Vec3 x_ij = own.position - other.position;
         if constexpr (periodic) x_ij = c.model.periodic.nearest(x_ij);
         const Real r = x_ij.norm();
-        const Vec3 direction =
-            terms.pressure ? pair_direction(x_ij, r, order[s], order[slot], dimensions) : x_ij;
-        const Real filling = terms.filled ? c.work.filling[s] * c.work.filling[slot] : 1;
+        const Vec3 direction = pair_direction(x_ij, r, order[s], order[slot], dimensions);
+        Real filling = 1;
+        if constexpr (terms.filled) filling = c.work.filling[s] * c.work.filling[slot];
         sum += liquid_pair_force<terms>(liquid, own, other, r, direction, filling);
       }
       c.forces.particle[order[s]] += own.volume * sum;

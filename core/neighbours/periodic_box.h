@@ -43,11 +43,13 @@ class PeriodicBox {
   }
 
   /// The shortest image of a difference of two points of the box; of -x, the opposite to the bit.
-  Vec3 nearest(Vec3 x) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (x[axis] > half_[axis]) x[axis] -= length_[axis];
-      if (x[axis] < -half_[axis]) x[axis] += length_[axis];
-    }
+  Vec3 nearest(const Vec3& x) const {
+    return {nearest(x.x(), 0), nearest(x.y(), 1), nearest(x.z(), 2)};
+  }
+  /// The same of one component.
+  Real nearest(Real x, int axis) const {
+    if (x > half_[axis]) return x - length_[axis];
+    if (x < -half_[axis]) return x + length_[axis];
     return x;
   }
 
