@@ -20,6 +20,8 @@ std::string tolerance_text(const Row& row) {
       return "<= " + reference;
     case Tolerance::Kind::at_least:
       return ">= " + reference;
+    case Tolerance::Kind::reported:
+      return "reported: " + reference;
   }
   return {};
 }
@@ -31,8 +33,10 @@ Table validation_table(const std::vector<Outcome>& outcomes) {
               {}};
   for (const Outcome& outcome : outcomes) {
     for (const Row& row : outcome.rows) {
+      const bool judged = row.tolerance.kind != Tolerance::Kind::reported;
       table.rows.push_back({outcome.name, row.metric, row.reference, row.measured,
-                            tolerance_text(row), row.tolerance.source, row.passed(), row.seconds,
+                            tolerance_text(row), row.tolerance.source,
+                            judged ? Cell(row.passed()) : Cell(kAbsent), row.seconds,
                             hash_text(row.state_hash)});
     }
     if (!outcome.error) continue;

@@ -9,7 +9,8 @@ namespace {
 std::vector<Case> collect() {
   std::vector<Case> cases;
   for (const auto group : {oscillator_cases, chain_cases, static_cases, pendulum_cases,
-                           cantilever_cases, free_spin_cases, rigid_top_cases}) {
+                           cantilever_cases, free_spin_cases, rigid_top_cases, rigid_contact_cases,
+                           rigid_sampling_cases, liquid_lattice_cases, liquid_channel_cases}) {
     std::ranges::move(group(), std::back_inserter(cases));
   }
   return cases;

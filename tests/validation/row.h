@@ -14,10 +14,11 @@ struct Tolerance {
     relative,  ///< |measured - reference| <= value |reference|
     at_most,   ///< measured <= reference
     at_least,  ///< measured >= reference
+    reported,  ///< any number: where the method itself is the limit, it is shown, not judged
   };
   Kind kind = Kind::absolute;
-  Real value = 0;      ///< unused by at_most and at_least
-  std::string source;  ///< the theory or publication that it comes from
+  Real value = 0;      ///< unused by at_most, at_least and reported
+  std::string source;  ///< the theory or publication that it comes from; of reported, the cause
 };
 
 Tolerance within(Real value, std::string source);
@@ -25,6 +26,8 @@ Tolerance within_relative(Real value, std::string source);
 /// The reference is itself the bound.
 Tolerance at_most(std::string source);
 Tolerance at_least(std::string source);
+/// `cause`: why the reference is not reached.
+Tolerance reported(std::string cause);
 
 /// One line of the validation table.
 struct Row {

@@ -1,0 +1,141 @@
+#include <cmath>
+#include <numbers>
+
+#include "tests/validation/cases.h"
+#include "tests/validation/order.h"
+#include "tests/validation/reference.h"
+
+namespace vat::validation {
+
+namespace {
+
+constexpr Real kPi = std::numbers::pi;
+
+Real constant(const char* name) {
+  return reference(std::string("/liquid/LIQ-7/") + name);
+}
+
+/// Speed at the height z above the resting plate, t after the other began to move.
+Real couette(Real z, Real t) {
+  const Real length = constant("L");
+  const Real top = constant("V0");
+  Real speed = top * z / length;
+  for (int n = 1; n < 200; ++n) {
+    const Real k = n * kPi / length;
+    speed += 2 * top / (n * kPi) * (n % 2 == 0 ? 1 : -1) * std::sin(k * z) *
+             std::exp(-constant("nu") * k * k * t);
+  }
+  return speed;
+}
+
+/// Speed at the height z between resting plates, t after the force began to act.
+Real poiseuille(Real z, Real t) {
+  const Real length = constant("L");
+  const Real nu = constant("nu");
+  Real speed = constant("F") / (2 * nu) * z * (length - z);
+  for (int n = 1; n < 200; n += 2) {
+    const Real k = n * kPi / length;
+    speed -= 4 * constant("F") * length * length / (nu * std::pow(n * kPi, 3)) * std::sin(k * z) *
+             std::exp(-nu * k * k * t);
+  }
+  return speed;
+}
+
+using Profile = Real (*)(Real z, Real t);
+
+/// Relative L2 distance of the particles' speeds from the profile.
+Real profile_error(const Run& run, Profile profile) {
+  const BodyView body = run.body();
+  Real error = 0;
+  Real scale = 0;
+  for (std::size_t i = 0; i < body.positions.size(); ++i) {
+    const Real exact = profile(body.positions[i].z(), run.simulation().time());
+    error += std::pow(body.velocities[i].x() - exact, 2);
+    scale += exact * exact;
+  }
+  return std::sqrt(error / scale);
+}
+
+/// The viscosity of a square lattice over that of its material, for flows that vary little over a
+/// support of `reach` spacings: the second moment of the Laplacian, summed, over the square of the
+/// density's sum.
+Real lattice_viscosity(int reach) {
+  Real density = 0;
+  Real moment = 0;
+  for (int i = -reach; i <= reach; ++i) {
+    for (int j = -reach; j <= reach; ++j) {
+      const Real r = std::hypot(i, j);
+      if (r >= reach) continue;
+      density += 4 / (kPi * std::pow(reach, 8)) * std::pow(reach * reach - r * r, 3);
+      moment += 0.5 * i * i * 40 * (reach - r) / (kPi * std::pow(reach, 5));
+    }
+  }
+  return moment / (density * density);
+}
+
+Scene channel(bool moving_plate, int layers, int reach) {
+  Scene scene = load_scene("LIQ-7");
+  if (!moving_plate) {
+    scene.vat->walls[5].velocity.setZero();
+    scene.gravity.x() = constant("F");
+  }
+  const Real height = constant("L");
+  const Real spacing = height / layers;
+  const Real width = 2 * reach * spacing;  // the least period
+  scene.periodic->max.x() = width;
+  scene.vat->max.x() = width;
+  scene.bodies[0].shape = BoxShape{{width / 2, 0, height / 2}, {width, 1, height}};
+  scene.bodies[0].spacing = spacing;
+  scene.materials[0].liquid->support_radius = reach * spacing;
+  scene.materials[0].liquid->viscosity /= lattice_viscosity(reach);
+  return scene;
+}
+
+void check_flow(Sheet& sheet, const char* name, bool moving_plate, Profile profile) {
+  Run run = sheet.start(channel(moving_plate, 20, 3));
+  for (const char* time : {"0.0225", "0.045", "0.1125", "0.225", "1.0"}) {
+    run.advance_to(std::stod(time));
+    const std::string at = std::string("/liquid/LIQ-7/") + name + '/' + time + "/0.5";
+    sheet.add(std::string("series for the speed in the middle [m/s], ") + name + ", t = " + time,
+              reference(at), profile(constant("L") / 2, std::stod(time)),
+              within_relative(1e-10, "the same series"), run);
+    sheet.add(std::string("relative L2 error of the speeds, 20 layers, ") + name + ", t = " + time,
+              0, profile_error(run, profile), within(0.02, "published target"), run);
+  }
+}
+
+void check_convergence(Sheet& sheet, const char* name, bool moving_plate, Profile profile) {
+  Row row{
+      .metric = std::string("order of convergence in the spacing, H/dx = 4, t = 0.1125, ") + name,
+      .reference = 1,
+      .tolerance = at_least("a slip of a part of a spacing at the walls, smoothing in the bulk")};
+  std::vector<Real> spacings;
+  std::vector<Real> errors;
+  for (const int layers : {10, 20, 40}) {
+    if (sheet.quick() && layers == 40) continue;
+    Run run =
+        sheet.start(with_step(channel(moving_plate, layers, 4), 0.00025 * 100 / (layers * layers)));
+    run.advance_to(0.1125);
+    spacings.push_back(1.0 / layers);
+    errors.push_back(profile_error(run, profile));
+    row.seconds += run.seconds();
+    row.state_hash = run.state_hash();
+  }
+  row.measured = observed_order(spacings, errors);
+  sheet.add(row);
+}
+
+void run_channel(Sheet& sheet) {
+  check_flow(sheet, "couette", true, couette);
+  check_flow(sheet, "poiseuille", false, poiseuille);
+  check_convergence(sheet, "couette", true, couette);
+  check_convergence(sheet, "poiseuille", false, poiseuille);
+}
+
+}  // namespace
+
+std::vector<Case> liquid_channel_cases() {
+  return {{"LIQ-7", "flow between two plates", "liquid", {"LIQ-7"}, run_channel}};
+}
+
+}  // namespace vat::validation
