@@ -194,11 +194,12 @@ std::vector<Index> held_particles(const Model& model, const ModelBody& body,
                                   const Configuration& at, Index particle) {
   if (body.kind == BodyKind::rigid) return {particle};
   const Index first = body.particles.begin;
-  const Vec3 center = at.position[first + particle];
+  const PeriodicBox& box = model.periodic;
+  const Vec3 center = box.wrap(at.position[first + particle]);
   const Real reach = kGrabReach * 2 * model.radius[first + particle];
   std::vector<Index> held;
   for (Index i = 0; i < body.particles.size(); ++i) {
-    if ((at.position[first + i] - center).norm() <= reach) held.push_back(i);
+    if (box.nearest(box.wrap(at.position[first + i]) - center).norm() <= reach) held.push_back(i);
   }
   return held;
 }

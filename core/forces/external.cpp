@@ -16,8 +16,9 @@ void add_applied_force(const AppliedForce& applied, StepContext& c) {
 void add_grab(const Grab& grab, StepContext& c) {
   const Index first = c.model.bodies[grab.body].particles.begin;
   const Index held = first + grab.particle;
-  Vec3 force = grab.stiffness * (grab.target - c.configuration.position[held]) -
-               grab.damping * c.configuration.velocity[held];
+  const PeriodicBox& box = c.model.periodic;
+  const Vec3 way = box.nearest(box.wrap(grab.target) - box.wrap(c.configuration.position[held]));
+  Vec3 force = grab.stiffness * way - grab.damping * c.configuration.velocity[held];
   const Real size = force.norm();
   if (size > grab.max_force) force *= grab.max_force / size;
   if (c.model.scene.dimensions == 2) force.y() = 0;  // the target may be anywhere
