@@ -187,7 +187,7 @@ Json write_scene(const Scene& scene) {
                {"materials", to_list(scene.materials)},
                {"default_interface", to_json(scene.default_interface)},
                {"interfaces", to_list(scene.interfaces)},
-               {"dimensions", scene.dimensions},
+               {"dimensions", static_cast<unsigned>(scene.dimensions)},
                {"forces", to_json(scene.forces)},
                {"numerics", to_json(scene.numerics)},
                {"bodies", to_list(scene.bodies)}};

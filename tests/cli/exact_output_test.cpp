@@ -155,6 +155,8 @@ void expect_body(const Table& table, std::size_t row, const BodyDiagnostics& bod
   expect_vector(table, row, body.name, {"x", "y", "z"}, body.center_of_mass);
   expect_vector(table, row, body.name, {"px", "py", "pz"}, body.linear_momentum);
   expect_vector(table, row, body.name, {"lx", "ly", "lz"}, body.angular_momentum);
+  expect_vector(table, row, body.name, {"fx", "fy", "fz"}, body.outer_force);
+  expect_vector(table, row, body.name, {"tx", "ty", "tz"}, body.outer_torque);
   if (!body.orientation) return;
   const Quat& q = *body.orientation;
   EXPECT_EQ(table.number(row, body.name + ".qw"), q.w());

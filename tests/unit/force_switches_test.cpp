@@ -1,0 +1,183 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/scene/step_limits.h"
+#include "core/scene/validate.h"
+#include "tests/support/force_probe.h"
+#include "tests/support/scenes.h"
+
+/// Forces that a scene turns off, and the central field.
+namespace vat {
+namespace {
+
+using testing::Contains;
+using testing::Not;
+
+/// A dense liquid in shear, a stretched pair of springs and a ball that touches both and the floor.
+Scene busy_scene() {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-5);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {test::make_liquid("water", 1000, {100, 1, 0.2}), test::make_material("wood")};
+  ParticleShape pool = test::make_particles(test::make_lattice(4, 4, 4, 0.08), 1);
+  for (const Vec3& p : pool.positions) pool.velocities.emplace_back(p.z(), 0, 0);
+  scene.bodies = {
+      test::make_body("pool", BodyKind::liquid, "water", pool, 0.05),
+      test::make_body("pair", BodyKind::deformable, "wood",
+                      test::make_particles({{0, 0, 0}, {0.2, 0, 0}}, 1), 0.05),
+      test::make_body("ball", BodyKind::rigid, "wood", test::make_particles({{0, 0, 0}}, 1), 0.05)};
+  scene.bodies[0].position = {0, 0, 0.15};
+  scene.bodies[1].position = {0.2, 0, 0.15};
+  scene.bodies[1].springs = {{0, 1, {100, 1}, 0.1}};
+  scene.bodies[2].position = {0.2, 0.05, 0.04};
+  scene.vat = Vat{{-1, -1, 0}, {1, 1, 1}, true, {}};
+  return scene;
+}
+
+std::vector<std::string> stages_of(const Scene& scene) {
+  const test::ForceProbe probe(scene);
+  std::vector<std::string> names;
+  for (const Stage& stage : probe.model().plan.stages) names.emplace_back(stage.name);
+  return names;
+}
+
+TEST(ForceSwitches, LeaveStagesOut) {
+  Scene scene = busy_scene();
+  scene.forces.pressure = false;
+  EXPECT_THAT(stages_of(scene), Not(Contains("liquid_pressure")));
+  EXPECT_THAT(stages_of(scene), Contains("liquid_viscosity"));
+  scene.forces = {};
+  scene.forces.viscosity = false;
+  EXPECT_THAT(stages_of(scene), Contains("liquid_forces_inviscid"));
+  scene.forces.pressure = false;
+  EXPECT_THAT(stages_of(scene), Not(Contains("liquid_density")));
+  scene.forces = {};
+  scene.forces.springs = false;
+  EXPECT_THAT(stages_of(scene), Not(Contains("springs")));
+  scene.forces = {};
+  scene.forces.contacts = false;
+  EXPECT_THAT(stages_of(scene), Not(Contains("contacts")));
+  EXPECT_THAT(stages_of(scene), Not(Contains("sort_solids")));
+  scene.forces = {};
+  scene.forces.walls = false;
+  EXPECT_THAT(stages_of(scene), Not(Contains("walls")));
+}
+
+/// All forces of the scene's particles, body after body.
+std::vector<Vec3> forces_of(const Scene& scene) {
+  test::ForceProbe probe(scene);
+  return probe.state().forces.particle;
+}
+
+Scene with_only(bool ForceSwitches::*kept) {
+  Scene scene = busy_scene();
+  scene.forces = {false, false, false, false, false, false};
+  scene.forces.*kept = true;
+  return scene;
+}
+
+// Each force adds its part, whichever others act, and none is empty here.
+TEST(ForceSwitches, PartsAddUpToTheWhole) {
+  const std::vector<Vec3> whole = forces_of(busy_scene());
+  std::vector<Vec3> sum(whole.size(), Vec3::Zero());
+  for (const auto kept :
+       {&ForceSwitches::gravity, &ForceSwitches::pressure, &ForceSwitches::viscosity,
+        &ForceSwitches::springs, &ForceSwitches::contacts, &ForceSwitches::walls}) {
+    const std::vector<Vec3> part = forces_of(with_only(kept));
+    Real greatest = 0;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += part[i];
+      greatest = std::max(greatest, part[i].norm());
+    }
+    EXPECT_GT(greatest, 1e-3);
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    EXPECT_LT((sum[i] - whole[i]).norm(), 1e-10 * (1 + whole[i].norm())) << i;
+  }
+}
+
+TEST(ForceSwitches, WithoutForcesBodiesGoStraight) {
+  for (const IntegratorId integrator : test::kIntegrators) {
+    Scene scene = busy_scene();
+    scene.numerics.integrator = integrator;
+    scene.forces = {false, false, false, false, false, false};
+    Simulation simulation = test::make_simulation(scene);
+    const std::vector<Vec3> before = forces_of(scene);
+    for (const Vec3& force : before) EXPECT_EQ(force, Vec3(0, 0, 0));
+    const Vec3 velocity = test::velocity_of(simulation, 0, 60);
+    test::advance_to(simulation, 1e-3);
+    EXPECT_EQ(test::velocity_of(simulation, 0, 60), velocity);
+  }
+}
+
+TEST(ForceSwitches, DiagnosticsKnowTheLiquidWithoutItsForces) {
+  Scene scene = busy_scene();
+  const Diagnostics with = test::make_simulation(scene).diagnostics();
+  EXPECT_GT(with.max_density_error, 0.1);
+  scene.forces.pressure = scene.forces.viscosity = false;
+  const Diagnostics without = test::make_simulation(scene).diagnostics();
+  EXPECT_EQ(without.max_density_error, with.max_density_error);
+  EXPECT_EQ(without.mean_density_error, with.mean_density_error);
+}
+
+TEST(ForceSwitches, EnergyOfAForceThatIsOffIsZero) {
+  Scene scene = busy_scene();
+  const Diagnostics with = test::make_simulation(scene).diagnostics();
+  EXPECT_GT(with.gravitational_energy, 1);
+  EXPECT_GT(with.elastic_energy, 0.1);
+  EXPECT_GT(with.contact_energy, 0.01);
+  scene.forces = {false, true, true, false, false, false};
+  const Diagnostics without = test::make_simulation(scene).diagnostics();
+  EXPECT_EQ(without.gravitational_energy, 0);
+  EXPECT_EQ(without.elastic_energy, 0);
+  EXPECT_EQ(without.contact_energy, 0);
+}
+
+TEST(ForceSwitches, StepLimitsSkipWhatIsOff) {
+  Scene scene = busy_scene();
+  const auto limits_of = [](const Scene& at) {
+    std::vector<SampledBody> samples;
+    for (const BodyDescription& body : at.bodies) {
+      samples.push_back(sample_body(body, at.materials[body.material == "water" ? 0 : 1]));
+    }
+    return find_step_limits(at, samples);
+  };
+  EXPECT_FALSE(limits_of(scene).empty());
+  scene.forces = {true, false, false, false, false, false};
+  EXPECT_TRUE(limits_of(scene).empty());
+}
+
+TEST(CentralField, PullsInProportionToTheDistance) {
+  Scene scene = with_only(&ForceSwitches::gravity);
+  scene.gravity = {1, 2, 3};
+  scene.central_field = CentralField{{0.5, -1, 2}, 3};
+  const test::ForceProbe probe(scene);
+  const Vec3 place(0.2, 0.05, 0.04);  // of the ball
+  const Vec3 expected = Vec3(1, 2, 3) - 9 * (place - Vec3(0.5, -1, 2));
+  EXPECT_LT((probe.force(2) - expected).norm(), 1e-13);
+  scene.forces.gravity = false;
+  EXPECT_EQ(test::ForceProbe(scene).force(2), Vec3(0, 0, 0));
+}
+
+TEST(CentralField, KeepsAnOrbitAndItsEnergy) {
+  Scene scene = test::make_scene(IntegratorId::runge_kutta_4, 1e-3);
+  scene.materials = {test::make_material("wood")};
+  scene.central_field = CentralField{{1, 2, 3}, 4};
+  scene.bodies = {test::make_body("planet", BodyKind::rigid, "wood",
+                                  test::make_particles({{0, 0, 0}}, 2), 0.1)};
+  scene.bodies[0].position = {2, 2, 3};
+  scene.bodies[0].velocity = {0, 2, 0};
+  Simulation simulation = test::make_simulation(scene);
+  const Diagnostics before = simulation.diagnostics();
+  EXPECT_DOUBLE_EQ(before.gravitational_energy, 0.5 * 2 * 16);
+  test::advance_to(simulation, 1);
+  // The ellipse cos(4 t), sin(4 t) / 2. The error of RK4 is (Omega dt)^5 / 120 a step.
+  const Vec3 expected(1 + std::cos(4.0), 2 + std::sin(4.0) / 2, 3);
+  EXPECT_LT((test::position_of(simulation, 0) - expected).norm(),
+            2 * std::pow(4e-3, 5) / 120 * 1e3);
+  const Diagnostics after = simulation.diagnostics();
+  EXPECT_NEAR(after.kinetic_energy + after.gravitational_energy,
+              before.kinetic_energy + before.gravitational_energy, 1e-8);
+}
+
+}  // namespace
+}  // namespace vat
