@@ -1,11 +1,13 @@
 // The stepping of Simulation, under the guard.
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/limits.h"
 #include "core/scene/error_model.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
+#include "core/step/wrap.h"
 
 namespace vat {
 namespace {
@@ -14,15 +16,32 @@ constexpr int kMaxHalvings = 3;
 
 }  // namespace
 
+void Simulation::Impl::take_unguarded_step(const ForceModel& force_model, Real start, Real dt,
+                                           AdvanceReport& report) {
+  const Numerics& numerics = model->scene.numerics;
+  if (numerics.control != StepControl::local) {
+    take_step(numerics.integrator, force_model, state, start, dt, scratch);
+    report.count_steps(1, dt, dt);
+    return;
+  }
+  local.take_step(force_model, state, start, dt, step_bounds, bounds);
+  report.count_steps(1U << local.finest(), std::ldexp(dt, -local.finest()),
+                     std::ldexp(dt, -local.coarsest()));
+}
+
+void Simulation::Impl::undo_step() {
+  state.now = step_start;
+  state.forces_current = false;
+  local.forget();
+}
+
 std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
                                                          const ForceModel& force_model, Real start,
                                                          Real whole, AdvanceReport& report) {
   const Real dt = whole / pieces;
   for (std::uint32_t piece = 0; piece < pieces; ++piece) {
-    take_step(model->scene.numerics.integrator, force_model, state, start + piece * dt, dt,
-              scratch);
-    report.count_step(dt);
-    auto fault = find_fault(*model, state.now, bounds, dt);
+    take_unguarded_step(force_model, start + piece * dt, dt, report);
+    auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()));
     if (work.too_many_pairs) {  // of liquids, whose particles come first
       fault = Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
     }
@@ -44,10 +63,15 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real sta
   step_start = state.now;
   for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
     const auto event = take_step_in(1U << halvings, force_model, start, dt, report);
-    if (!event) return true;
+    if (!event) {
+      // Local control chose the levels that open the next step for one of this length.
+      if (halvings > 0 && model->scene.numerics.control == StepControl::local) {
+        state.forces_current = false;
+      }
+      return true;
+    }
     report.add(*event);
-    state.now = step_start;
-    state.forces_current = false;
+    undo_step();
   }
   for (std::size_t e = std::min(earlier_events, report.events.size() - 1); e < report.events.size();
        ++e) {
@@ -58,6 +82,9 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real sta
 
 std::uint32_t Simulation::Impl::wanted_level(const ForceModel& force_model, Real start) {
   const Numerics& numerics = model->scene.numerics;
+  if (numerics.control == StepControl::local) {
+    return level_of(greatest_base_step(force_model, state, step_bounds), numerics.step);
+  }
   find_present_steps(force_model, state, start, numerics.step, step_bounds, bounds, present_steps);
   Real step = present_steps.least();
   if (state.history.observed_rate > 0) {
@@ -67,17 +94,20 @@ std::uint32_t Simulation::Impl::wanted_level(const ForceModel& force_model, Real
   return level_of(step, numerics.step);
 }
 
-bool Simulation::Impl::take_adaptive_step(ForceModel& force_model, AdvanceReport& report) {
+bool Simulation::Impl::take_varied_step(ForceModel& force_model, AdvanceReport& report) {
   constexpr std::uint32_t kParts = 1U << kMaxStepLevel;
   const Real part = step_size() / kParts;
-  force_model.probe = &probe;
+  const bool is_local = model->scene.numerics.control == StepControl::local;
+  if (!is_local) force_model.probe = &probe;
   for (std::uint32_t position = 0; position < kParts;) {
     const Real start = time() + position * part;
+    const std::uint32_t level = state.history.level;
     choose_level(wanted_level(force_model, start), position, state.history);
+    if (is_local && state.history.level != level) state.forces_current = false;
     const std::uint32_t parts = kParts >> state.history.level;
     probe.begin(state);
     if (!take_guarded_step(force_model, start, parts * part, report)) return false;
-    state.history.observed_rate = probe.observed_rate(*model);
+    if (!is_local) state.history.observed_rate = probe.observed_rate(*model);
     ++state.history.held;
     position += parts;
   }
@@ -91,9 +121,10 @@ bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& re
   for (std::uint32_t s = 0; s < steps; ++s) {
     force_model.step = state.step_count;
     const bool is_taken = is_fixed ? take_guarded_step(force_model, time(), step_size(), report)
-                                   : take_adaptive_step(force_model, report);
+                                   : take_varied_step(force_model, report);
     if (!is_taken) return false;
     ++state.step_count;
+    if (model->periodic.any()) wrap_liquid(*model, runner, state.now);
     for (const AppliedForce& applied : controls.applied_forces) {
       // The forces that velocity Verlet keeps for the next step still have this one in them.
       if (applied.end_step == state.step_count) state.forces_current = false;
@@ -114,9 +145,13 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
     report.failed = !impl.take_guarded_steps(steps, report);
   } catch (...) {  // out of memory
     impl.state = impl.call_start;
+    impl.local.forget();
     throw;
   }
-  if (report.failed) impl.state = impl.call_start;
+  if (report.failed) {
+    impl.state = impl.call_start;
+    impl.local.forget();
+  }
   std::erase_if(impl.controls.applied_forces, [&](const AppliedForce& applied) {
     return applied.end_step <= impl.state.step_count;
   });
@@ -124,10 +159,10 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   return report;
 }
 
-void AdvanceReport::count_step(Real step) {
-  least_step = steps == 0 ? step : std::min(least_step, step);
-  greatest_step = std::max(greatest_step, step);
-  ++steps;
+void AdvanceReport::count_steps(std::uint64_t count, Real least, Real greatest) {
+  least_step = steps == 0 ? least : std::min(least_step, least);
+  greatest_step = std::max(greatest_step, greatest);
+  steps += count;
 }
 
 void AdvanceReport::add(const GuardEvent& event) {

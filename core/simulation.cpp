@@ -65,6 +65,7 @@ void Simulation::Impl::adopt(Content content, GuardBounds content_bounds,
   bounds = std::move(content_bounds);
   step_bounds = std::move(content_step_bounds);
   work = {};
+  local.forget();
   measured = {};
 }
 
@@ -157,13 +158,19 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
     hash.add(rigid.momentum);
     hash.add(rigid.angular_momentum);
   }
-  if (model.scene.numerics.control == StepControl::adaptive) {
+  const StepControl control = model.scene.numerics.control;
+  if (control != StepControl::fixed) {
     hash.add(std::uint64_t{state.history.level});
     hash.add(std::uint64_t{state.history.held});
     hash.add(state.history.observed_rate);
   }
   hash.add(std::uint64_t{state.forces_current});
   if (!state.forces_current) return;
+  if (control == StepControl::local) {
+    for (const std::uint8_t level : state.levels.particle) hash.add(std::uint64_t{level});
+    hash.add(std::uint64_t{state.levels.liquid});
+    hash.add(state.levels.skin);
+  }
   for (Index i = 0; i < model.free_count; ++i) hash.add(state.forces.particle[i]);
   for (const Vec3& force : state.forces.rigid_force) hash.add(force);
   for (const Vec3& torque : state.forces.rigid_torque) hash.add(torque);

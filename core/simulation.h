@@ -81,7 +81,7 @@ struct AdvanceReport {
     ++force_evaluations;
     particle_evaluations += particles;
   }
-  void count_step(Real step);
+  void count_steps(std::uint64_t count, Real least, Real greatest);
 };
 
 /// Told when each stage of the step begins and ends; for profiles. The core has no clock.

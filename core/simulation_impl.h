@@ -5,6 +5,7 @@
 #include "core/simulation.h"
 #include "core/step/controls.h"
 #include "core/step/guard.h"
+#include "core/step/local_step.h"
 #include "core/step/step_control.h"
 
 namespace vat {
@@ -28,6 +29,7 @@ struct Simulation::Impl : Snapshot::Content {
   Configuration step_start;  ///< of its present step, or part of one
   PresentSteps present_steps;
   MotionProbe probe;
+  LocalStepper local;
   mutable Workspace measured;  ///< scratch of read-only questions
 
   Real step_size() const { return model->scene.numerics.step; }
@@ -45,9 +47,14 @@ struct Simulation::Impl : Snapshot::Content {
   void pose_rigid_particles();
 
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
-  /// One nominal step, in the parts that adaptive control chooses.
-  bool take_adaptive_step(ForceModel& force_model, AdvanceReport& report);
+  /// One nominal step, in the parts that adaptive or local control chooses.
+  bool take_varied_step(ForceModel& force_model, AdvanceReport& report);
   std::uint32_t wanted_level(const ForceModel& force_model, Real start);
+  /// Undoes whatever was done since the step began.
+  void undo_step();
+  /// One step with the scene's integrator and control, unguarded.
+  void take_unguarded_step(const ForceModel& force_model, Real start, Real dt,
+                           AdvanceReport& report);
   /// `dt` seconds from `start`, in as many equal parts as it takes; false where none helped.
   bool take_guarded_step(const ForceModel& force_model, Real start, Real dt, AdvanceReport& report);
   /// The same in `pieces` parts, up to the first fault.

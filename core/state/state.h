@@ -39,13 +39,23 @@ struct StepHistory {
   Real observed_rate = 0;   ///< of the motion of deformable bodies in the last step [rad/s]
 };
 
+/// The levels of local step control: a particle of level l takes steps of the whole one over 2^l.
+struct LocalLevels {
+  std::vector<std::uint8_t> particle;
+  std::uint8_t liquid = 0;  ///< of the liquids' own forces
+  Real skin = 0;            ///< how much beyond its threshold a contact is looked after [m]
+};
+
 /// All that is needed to go on with the same bits.
 struct State {
   Configuration now;
   std::uint64_t step_count = 0;  ///< nominal steps since time 0
-  Forces forces;                 ///< of the last evaluation; velocity Verlet opens a step with them
+  /// Of the last evaluation; velocity Verlet opens a step with them. With local control, each
+  /// connection's over 2^level.
+  Forces forces;
   bool forces_current = false;  ///< false: something but the integrator changed what they depend on
   StepHistory history;
+  LocalLevels levels;  ///< with which the forces were evaluated; local control only
 };
 
 /// The state at time 0.

@@ -80,8 +80,12 @@ struct Present {
   const StepBounds& bounds;
   const GuardBounds& guard;
 
+  /// With local control, forces are kept in parts.
+  bool forces_known() const {
+    return state.forces_current && model.scene.numerics.control != StepControl::local;
+  }
   Real acceleration(Index i) const {
-    return state.forces_current ? model.inverse_mass[i] * state.forces.particle[i].norm() : 0;
+    return forces_known() ? model.inverse_mass[i] * state.forces.particle[i].norm() : 0;
   }
 };
 
@@ -104,9 +108,9 @@ void limit_rigid_travel(const Present& present, std::vector<Real>& steps) {
     const Real turning = angular_velocity(rigid, state.orientation, state.angular_momentum).norm();
     const Real speed =
         rigid.inverse_mass * state.momentum.norm() + present.guard.extent[b] * turning;
-    const bool is_known = present.state.forces_current;
-    const Real acceleration =
-        is_known ? rigid.inverse_mass * present.state.forces.rigid_force[b].norm() : 0;
+    const Real acceleration = present.forces_known()
+                                  ? rigid.inverse_mass * present.state.forces.rigid_force[b].norm()
+                                  : 0;
     const Real way = kTravelShare * present.guard.travel[rigid.body];
     steps[b] = std::min({present.bounds.field_step, travel_time(way, speed, acceleration),
                          turning > 0 ? kGreatestTurn / turning : kInfinity});
@@ -173,6 +177,20 @@ Real greatest_approach(const Present& present, Real longest) {
 }
 
 }  // namespace
+
+Real greatest_base_step(const ForceModel& f, const State& state, const StepBounds& bounds) {
+  const Model& model = f.model;
+  Real step = bounds.field_step;
+  for (const Grab& grab : f.controls.grabs) {
+    step = std::min(step, safe_step(model.scene.numerics, {grab.stiffness / grab.held_mass,
+                                                           grab.damping / grab.held_mass}));
+  }
+  if (model.contact_reach <= 0) return step;
+  Real speed2 = 0;
+  for (const Vec3& velocity : state.now.velocity) speed2 = std::max(speed2, velocity.squaredNorm());
+  const Real pull = model.scene.forces.gravity ? model.scene.gravity.norm() : 0;
+  return std::min(step, travel_time(model.contact_reach / 2, std::sqrt(speed2), pull));
+}
 
 Real PresentSteps::least() const {
   Real least = liquid;

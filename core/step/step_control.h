@@ -43,6 +43,12 @@ struct PresentSteps {
 void find_present_steps(const ForceModel& force_model, State& state, Real time, Real longest,
                         const StepBounds& bounds, const GuardBounds& guard, PresentSteps& steps);
 
+/// The longest step in which local control can foresee contacts, and that users' grabs and the
+/// central field allow, which have no level of their own [s]: two particles that are no neighbours
+/// within twice the reach of contacts do not touch in it.
+Real greatest_base_step(const ForceModel& force_model, const State& state,
+                        const StepBounds& bounds);
+
 /// The least level l with nominal / 2^l <= step, at most kMaxStepLevel.
 std::uint32_t level_of(Real step, Real nominal);
 

@@ -1,0 +1,247 @@
+#include "core/step/local_step.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/forces/connection.h"
+#include "core/forces/contacts.h"
+#include "core/forces/external.h"
+#include "core/forces/liquid.h"
+#include "core/forces/pair_direction.h"
+#include "core/forces/rigid.h"
+#include "core/forces/springs.h"
+#include "core/forces/walls.h"
+#include "core/integrators/integrator.h"
+#include "core/limits.h"
+
+namespace vat {
+
+/// Where and when forces are evaluated.
+struct LocalStepper::Moment {
+  const ForceModel& force_model;
+  State& state;
+  Real time;
+
+  const Model& model() const { return force_model.model; }
+  const Configuration& at() const { return state.now; }
+  StepContext context(Forces& forces) const {
+    const ForceModel& f = force_model;
+    return {f.model, f.controls, time, f.step, state.now, forces, f.work, f.runner};
+  }
+  VatMotion vat() const {
+    return model().walls.empty() ? VatMotion{} : vat_motion(*model().scene.vat, time);
+  }
+};
+
+namespace {
+
+/// What a step of level 0 shrinks to.
+Real share_of(int level) {
+  return std::ldexp(Real{1}, -level);
+}
+
+Vec3 force_of(const Model& model, const Configuration& at, Index i, const LocalPair& pair) {
+  const Vec3 x = at.position[i] - at.position[pair.other] + pair.shift;
+  const Real distance = x.norm();
+  if (pair.is_contact && distance >= pair.rest_length) return Vec3::Zero();
+  const Vec3 n = pair_direction(x, distance, i, pair.other, model.scene.dimensions);
+  const Real speed = (at.velocity[i] - at.velocity[pair.other]).dot(n);
+  const Real push =
+      connection_push(pair.stiffness, pair.damping, pair.rest_length, distance, speed);
+  if (pair.is_contact && push <= 0) return Vec3::Zero();
+  return push * n;
+}
+
+/// Stages that the liquids' own forces consist of: all that are not replaced here.
+bool is_of_liquids(const Stage& stage) {
+  return stage.run != &pose_rigid_bodies && stage.run != &set_external_forces &&
+         stage.run != &sort_solids && stage.run != &add_contacts &&
+         stage.run != &add_spring_forces && stage.run != &add_wall_forces &&
+         stage.run != &gather_rigid_forces;
+}
+
+void resize(const Model& model, Forces& forces) {
+  forces.particle.resize(model.particle_count, Vec3::Zero());
+  forces.rigid_force.resize(model.rigid_bodies.size(), Vec3::Zero());
+  forces.rigid_torque.resize(model.rigid_bodies.size(), Vec3::Zero());
+}
+
+/// Short skins are rebuilt often, long ones find many that never touch.
+Real skin_for(const Model& model, const Configuration& at, Real dt) {
+  Real speed2 = 0;
+  for (const Vec3& velocity : at.velocity) speed2 = std::max(speed2, velocity.squaredNorm());
+  const Real way = 2.5 * std::sqrt(speed2) * dt;
+  return std::clamp(way, 0.05 * model.contact_reach, 0.5 * model.contact_reach);
+}
+
+}  // namespace
+
+void LocalStepper::set_levels(const Moment& now, State& state, Real dt, const StepBounds& bounds,
+                              const GuardBounds& guard) {
+  find_present_steps(now.force_model, state, now.time, dt, bounds, guard, present_);
+  choose_local_levels(now.model(), present_, dt, state.levels);
+  state.levels.skin = skin_for(now.model(), now.at(), dt);
+}
+
+void LocalStepper::build_pairs(const Moment& now) {
+  if (now.model().contact_reach > 0) {
+    StepContext context = now.context(due_);
+    if (now.model().liquid_count > 0) sort_liquid(context);
+    sort_solids(context);
+  }
+  pairs_.build(now.force_model, now.at(), now.state.levels);
+  pairs_current_ = true;
+}
+
+const std::vector<Vec3>& LocalStepper::evaluate_liquid(const Moment& now) {
+  std::fill_n(liquid_.particle.begin(), now.model().liquid_count, Vec3::Zero());
+  StepContext context = now.context(liquid_);
+  for (const Stage& stage : now.model().plan.stages) {
+    if (is_of_liquids(stage)) stage.run(context);
+  }
+  return liquid_.particle;
+}
+
+void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing,
+                                   const LocalLevels& opening, Forces& closing_forces,
+                                   Forces& opening_forces) {
+  const Model& model = now.model();
+  const VatMotion vat = now.vat();
+  const std::span<const Index> order = pairs_.due(0);
+  for_blocks(now.force_model.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Index i : order.subspan(begin, end - begin)) {
+      Vec3 close = Vec3::Zero();
+      Vec3 open = Vec3::Zero();
+      for (const LocalPair& pair : pairs_.of(i)) {
+        const Vec3 force = force_of(model, now.at(), i, pair);
+        close += share_of(std::max(closing.particle[i], closing.particle[pair.other])) * force;
+        open += share_of(pair.level) * force;
+      }
+      if (!model.walls.empty()) {
+        const Vec3 force = wall_force(model, vat, now.at(), i);
+        close += share_of(closing.particle[i]) * force;
+        open += share_of(opening.particle[i]) * force;
+      }
+      closing_forces.particle[i] += close;
+      opening_forces.particle[i] += open;
+    }
+  });
+}
+
+void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
+                                const LocalLevels& opening, Forces& closing_forces,
+                                Forces& opening_forces) {
+  const Model& model = now.model();
+  StepContext context = now.context(opening_forces);
+  set_external_forces(context);
+  closing_forces.particle = opening_forces.particle;
+  if (model.liquid_count > 0) {
+    const std::vector<Vec3>& own = evaluate_liquid(now);
+    for (Index i = 0; i < model.liquid_count; ++i) {
+      closing_forces.particle[i] += share_of(closing.liquid) * own[i];
+      opening_forces.particle[i] += share_of(opening.liquid) * own[i];
+    }
+  }
+  sum_connections(now, closing, opening, closing_forces, opening_forces);
+  for (Forces* forces : {&closing_forces, &opening_forces}) {
+    StepContext gathered = now.context(*forces);
+    gather_rigid_forces(gathered);
+  }
+  if (now.force_model.report != nullptr) {
+    now.force_model.report->count_evaluation(model.particle_count);
+  }
+}
+
+void LocalStepper::kick_liquid(const Moment& now, Real dt) {
+  const Model& model = now.model();
+  const std::vector<Vec3>& own = evaluate_liquid(now);
+  for (Index i = 0; i < model.liquid_count; ++i) {
+    now.state.now.velocity[i] +=
+        (dt * share_of(now.state.levels.liquid) * model.inverse_mass[i]) * own[i];
+  }
+  if (now.force_model.report != nullptr) {
+    now.force_model.report->particle_evaluations += model.liquid_count;
+  }
+}
+
+void LocalStepper::kick_rigid(const Moment& now, Real dt) {
+  StepContext context = now.context(due_);
+  gather_rigid_forces(context);
+  for (std::size_t b = 0; b < now.model().rigid_bodies.size(); ++b) {
+    now.state.now.rigid[b].momentum += dt * due_.rigid_force[b];
+    now.state.now.rigid[b].angular_momentum += dt * due_.rigid_torque[b];
+  }
+}
+
+/// The kick between two sub-steps: that of every connection of level `due` or finer, as long as its
+/// own step. All forces are summed before any velocity changes.
+void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
+  const Model& model = now.model();
+  const LocalLevels& levels = now.state.levels;
+  const VatMotion vat = now.vat();
+  const std::span<const Index> order = pairs_.due(due);
+  for_blocks(now.force_model.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    for (const Index i : order.subspan(begin, end - begin)) {
+      Vec3 sum = Vec3::Zero();
+      for (const LocalPair& pair : pairs_.of(i)) {
+        if (pair.level < due) break;
+        sum += share_of(pair.level) * force_of(model, now.at(), i, pair);
+      }
+      if (!model.walls.empty() && levels.particle[i] >= due) {
+        sum += share_of(levels.particle[i]) * wall_force(model, vat, now.at(), i);
+      }
+      due_.particle[i] = sum;
+    }
+  });
+  if (now.force_model.report != nullptr) {
+    now.force_model.report->particle_evaluations += order.size();
+  }
+  if (model.liquid_count > 0 && levels.liquid >= due) kick_liquid(now, dt);
+  for (const Index i : order) {
+    if (i < model.free_count) {
+      now.state.now.velocity[i] += (dt * model.inverse_mass[i]) * due_.particle[i];
+    }
+  }
+  if (pairs_.finest_rigid() >= due) kick_rigid(now, dt);
+  for (const Index i : order) due_.particle[i].setZero();
+}
+
+void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real dt,
+                             const StepBounds& bounds, const GuardBounds& guard) {
+  for (Forces* forces : {&closing_, &due_, &liquid_}) resize(f.model, *forces);
+  const Moment start{f, state, time};
+  if (!state.forces_current) {
+    set_levels(start, state, dt, bounds, guard);
+    build_pairs(start);
+    evaluate_all(start, state.levels, state.levels, closing_, state.forces);
+  } else if (!pairs_current_) {
+    build_pairs(start);
+  }
+  finest_ = pairs_.finest();
+  coarsest_ = pairs_.coarsest();
+  kick(f.model, f.runner, state.forces, state.now, dt / 2);
+
+  const std::uint32_t parts = 1U << finest_;
+  const Real part = dt / parts;
+  StepContext context = start.context(due_);
+  for (std::uint32_t n = 1; n < parts; ++n) {
+    drift(f.model, f.runner, state.now, part);
+    pose_rigid_bodies(context);
+    const Moment now{f, state, time + n * part};
+    if (pairs_.is_stale(f, state.now)) build_pairs(now);
+    kick_due(now, finest_ - std::countr_zero(n), dt);
+  }
+  drift(f.model, f.runner, state.now, part);
+  pose_rigid_bodies(context);
+
+  const Moment end{f, state, time + dt};
+  closing_levels_ = state.levels;
+  set_levels(end, state, dt, bounds, guard);
+  build_pairs(end);
+  evaluate_all(end, closing_levels_, state.levels, closing_, state.forces);
+  kick(f.model, f.runner, closing_, state.now, dt / 2);
+  state.forces_current = true;
+}
+
+}  // namespace vat
