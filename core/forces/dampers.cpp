@@ -1,6 +1,7 @@
 #include "core/forces/dampers.h"
 
 #include "core/forces/contact_search.h"
+#include "core/forces/no_slip.h"
 #include "core/forces/pair_direction.h"
 #include "core/forces/vat_motion.h"
 #include "core/step/force_model.h"
@@ -22,7 +23,8 @@ void add_contact_dampers(const Model& model, const Workspace& work, const Config
                          Index i, std::vector<Damper>& dampers) {
   for_each_contact(model, work, at, i, [&](const Contact& contact) {
     if (contact.damping == 0) return;
-    const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other);
+    const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
+                                  model.scene.dimensions);
     const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
     const Real push =
         contact.stiffness * (contact.threshold - contact.distance) - contact.damping * speed;
@@ -30,15 +32,13 @@ void add_contact_dampers(const Model& model, const Workspace& work, const Config
   });
 }
 
-void add_wall_dampers(const Model& model, const Configuration& at, Real time, Index i,
+void add_wall_dampers(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
                       std::vector<Damper>& dampers) {
   const ContactLaw& law = model.wall_laws[model.material[i]];
   if (law.damping == 0) return;
-  const Vat& vat = *model.scene.vat;
-  const VatMotion motion = vat_motion(vat, time);
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   for (const int wall : model.walls) {
-    const Real overlap = threshold - wall_distance(vat, motion, wall, at.position[i]);
+    const Real overlap = threshold - wall_distance(*model.scene.vat, motion, wall, at.position[i]);
     if (overlap <= 0) continue;
     const Vec3 n = wall_normal(wall);
     const Real speed = (at.velocity[i] - motion.velocity).dot(n);
@@ -48,10 +48,24 @@ void add_wall_dampers(const Model& model, const Configuration& at, Real time, In
   }
 }
 
+void add_no_slip_dampers(const Model& model, const Workspace& work, const VatMotion& motion,
+                         const Configuration& at, Index i, std::vector<Damper>& dampers) {
+  for (const int wall : model.no_slip_walls) {
+    const Real d = wall_distance(*model.scene.vat, motion, wall, at.position[i]);
+    const Real drag = no_slip_drag(model, work, i, d);
+    if (drag == 0) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis != wall / 2) dampers.push_back({kNoParticle, drag, Vec3(Vec3::Unit(axis))});
+    }
+  }
+}
+
 }  // namespace
 
 void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time) {
   const Model& model = f.model;
+  is_viscous_ = has_viscosity(model);
+  const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
   blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     DamperBlock& block = blocks_[begin / kBlockSize];
@@ -63,18 +77,20 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
         add_spring_dampers(model, at, i, block.dampers);
       }
       if (model.contact_reach > 0) add_contact_dampers(model, f.work, at, i, block.dampers);
-      if (!model.walls.empty()) add_wall_dampers(model, at, time, i, block.dampers);
+      add_wall_dampers(model, motion, at, i, block.dampers);
+      if (i < model.liquid_count && is_viscous_) {
+        add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
+      }
     }
     block.begin[end - begin] = static_cast<Index>(block.dampers.size());
   });
-  collect_viscosity(f);
+  if (is_viscous_) collect_viscosity(f);
 }
 
 void DampingMatrix::collect_viscosity(const ForceModel& f) {
   const Model& model = f.model;
-  const std::size_t blocks = (model.liquid_count + kBlockSize - 1) / kBlockSize;
-  viscosities_.resize(has_viscosity(model) ? blocks : 0);
-  if (viscosities_.empty()) return;
+  const bool is_filled = !model.no_slip_walls.empty();
+  viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
     std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
@@ -85,9 +101,10 @@ void DampingMatrix::collect_viscosity(const ForceModel& f) {
       const LiquidModel& liquid = *model.liquids[model.material[i]];
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
         const LiquidRecord& other = f.work.liquid_records[pairs.slots[k]];
-        const Real r = (own.position - other.position).norm();
+        const Real r = model.periodic.nearest(own.position - other.position).norm();
         viscosities[k] =
             liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
+        if (is_filled) viscosities[k] *= f.work.filling[s] * f.work.filling[pairs.slots[k]];
       }
     }
   });
@@ -110,7 +127,7 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
       force[i] = sum;
     }
   });
-  if (viscosities_.empty()) return;
+  if (!is_viscous_) return;
 
   const std::span<const Index> order = f.work.liquid.grid.order();
   by_slot_.resize(order.size());

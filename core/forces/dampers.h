@@ -37,6 +37,7 @@ class DampingMatrix {
  private:
   void collect_viscosity(const ForceModel& force_model);
 
+  bool is_viscous_ = false;
   std::vector<DamperBlock> blocks_;             ///< of particles
   std::vector<std::vector<Real>> viscosities_;  ///< mu V_i V_j laplacian W, as liquid_pairs [N s/m]
   std::vector<Vec3> by_slot_;                   ///< w of liquid slots

@@ -29,6 +29,12 @@ void fill_liquid_density(StepContext& c) {
   });
 }
 
+Real no_slip_drag(const Model& model, const Workspace& work, Index i, Real d) {
+  const LiquidModel& liquid = liquid_of(model, i);
+  const Real volume = model.mass[i] / work.filled_density[i];
+  return liquid.viscosity * volume * liquid.half_space.drag(d);
+}
+
 // The liquid beyond the wall has v(s) - v_i = -(v_i - v_wall) s/d at the distance s from the
 // particle along the wall's normal, so that it has the wall's velocity at the wall, s = d. Summed
 // as any other viscous force, with an integral for the sum over V_j: F_i = -mu V_i (v_i - v_wall) *
@@ -39,11 +45,9 @@ void add_no_slip_forces(StepContext& c) {
   const VatMotion motion = vat_motion(vat, c.time);
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const LiquidModel& liquid = liquid_of(c.model, i);
-      const Real volume = c.model.mass[i] / c.work.filled_density[i];
       for (const int wall : c.model.no_slip_walls) {
         const Real d = wall_distance(vat, motion, wall, c.configuration.position[i]);
-        const Real drag = liquid.viscosity * volume * liquid.half_space.drag(d);
+        const Real drag = no_slip_drag(c.model, c.work, static_cast<Index>(i), d);
         const Vec3 wall_velocity =
             motion.velocity + vat.walls[static_cast<std::size_t>(wall)].velocity;
         Vec3 slip = c.configuration.velocity[i] - wall_velocity;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr Real kSoundLimit = 0.96;     // c dt / h, velocity Verlet, cubic lattice, h = 2 spacings
 constexpr Real kViscousLimit = 0.126;  // nu dt / h^2, the same, 2 / (greatest eigenvalue)
+constexpr Real kNoSlipShare = 2.5;     // a wall's drag is up to 1.5 times the neighbours'
 constexpr Real kVerletLimit = 2;       // omega dt, and rate dt, at those
 
 const Material& material_of(const Scene& scene, const BodyDescription& body) {
@@ -81,7 +82,9 @@ void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPa
   const Real h = liquid.support_radius;
   const Real sound =
       kVerletLimit / kSoundLimit * std::sqrt(scene.forces.pressure ? liquid.stiffness : 0) / h;
-  const Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
+  Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
+  const auto is_no_slip = [](const Wall& wall) { return wall.no_slip; };
+  if (scene.vat && std::ranges::any_of(scene.vat->walls, is_no_slip)) viscosity *= kNoSlipShare;
   parts.push_back({body_path(index),
                    "sound or viscosity in the liquid becomes unstable",
                    "sound in an inviscid liquid gains energy with this integrator",

@@ -38,6 +38,25 @@ Scene make_viscous_drop() {
   return scene;
 }
 
+/// A channel of thick liquid between a floor and a lid that drag it along, without ends.
+Scene make_viscous_channel() {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
+  scene.materials = {test::make_liquid("tar", 1000, {1, 4000, 0.2})};
+  scene.dimensions = 2;
+  scene.periodic = Periodicity{Vec3::Zero(), Vec3(1, 1, 1), {true, false, false}};
+  scene.vat = Vat{Vec3::Zero(), Vec3(1, 1, 0.6), true, {}, {}};
+  scene.vat->walls[4] = {true, Vec3::Zero()};
+  scene.vat->walls[5] = {true, Vec3(2, 0, 0)};
+  ParticleShape shape;
+  for (int n = 0; n < 60; ++n) {
+    shape.positions.push_back({0.05 + 0.1 * (n % 10), 0, 0.05 + 0.1 * std::floor(n / 10)});
+    shape.velocities.push_back({std::sin(n), 0, std::cos(n)});
+  }
+  shape.masses.assign(60, 10);
+  scene.bodies = {test::make_body("channel", BodyKind::liquid, "tar", shape, 0.05)};
+  return scene;
+}
+
 /// Two rigid bars and a ball of the block's kind that press one another through strong dampers.
 Scene make_damped_contacts() {
   Scene scene = make_damped_block();
@@ -81,6 +100,7 @@ Real force_error(const Scene& scene) {
 TEST(DampingSolve, VelocitiesAreThoseThatTheirOwnDampingLeadsTo) {
   EXPECT_LT(force_error(make_damped_block()), 0.01);
   EXPECT_LT(force_error(make_viscous_drop()), 0.01);
+  EXPECT_LT(force_error(make_viscous_channel()), 0.01);
 }
 
 Vec3 momentum_of(const Diagnostics& d) {
@@ -116,6 +136,17 @@ TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
     }
     EXPECT_LT(energy, 0.5 * start.kinetic_energy);
   }
+}
+
+TEST(DampingSolve, LeavesAHeldBodyWhereItIs) {
+  Scene scene = make_damped_contacts();
+  scene.bodies[1].fixed = true;
+  scene.bodies[1].velocity = scene.bodies[1].angular_velocity = Vec3::Zero();
+  Simulation simulation = test::make_simulation(scene);
+  const Vec3 start = test::position_of(simulation, 1);
+  EXPECT_GT(simulation.diagnostics().bodies[1].outer_force.norm(), 0);
+  simulation.advance(50);
+  EXPECT_EQ(test::position_of(simulation, 1), start);
 }
 
 TEST(DampingSolve, LightDampingNeedsNone) {
