@@ -66,7 +66,7 @@ Scene make_damped_contacts() {
     ParticleShape bar = test::make_particles(test::make_lattice(5, 1, 1, 0.1), 0.2);
     scene.bodies.push_back(
         test::make_body(side < 0 ? "low" : "high", BodyKind::rigid, "steel", bar, 0.05));
-    scene.bodies.back().position = Vec3(0.03, 0.02, side * 0.155);
+    scene.bodies.back().position = Vec3(0.03, 0.02, side * 0.14);
     scene.bodies.back().velocity = Vec3(0, 0, -side);
     scene.bodies.back().angular_velocity = Vec3(0, side, 0.5);
   }
