@@ -30,7 +30,7 @@ Problem beam(TaskRunner*) {
           .error_name = "height of the tip at t = 1 s, in static deflections",
           .scene = validation::load_scene("DEF-5"),
           .end = 1,
-          .step_counts = doubled(500, 7),
+          .step_counts = doubled(500, 6),
           .error = [](const Run& run) {
             const Real expected = reference("/deformable/DEF-5/dynamic_release/tip_z/1.0");
             const Real size = std::abs(reference("/deformable/DEF-5/tip_deflection/2"));

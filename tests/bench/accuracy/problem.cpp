@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace vat::bench {
 
@@ -18,9 +17,17 @@ std::vector<Vec3> all_positions(const Run& run) {
   return positions;
 }
 
+/// Of the distances between two lists of the same particles.
+Real root_mean_square(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<Real>(a.size()));
+}
+
 std::vector<ProblemEntry> collect() {
   std::vector<ProblemEntry> problems;
-  for (const auto group : {deformable_problems, rigid_problems}) {
+  for (const auto group :
+       {deformable_problems, rigid_problems, liquid_problems, interaction_problems}) {
     std::ranges::move(group(), std::back_inserter(problems));
   }
   return problems;
@@ -39,19 +46,14 @@ std::vector<std::uint32_t> doubled(std::uint32_t first, int count) {
   return counts;
 }
 
-std::function<Real(const Run&)> error_against_fine_run(const Problem& problem, Real size,
-                                                       TaskRunner* runner) {
-  const Real step = problem.end / (4.0 * problem.step_counts.back());
+std::function<Real(const Run&)> error_against_fine_run(const Problem& problem, TaskRunner* runner) {
+  const Real step = problem.end / (static_cast<Real>(factor) * problem.step_counts.back());
   Run fine(validation::with_method(problem.scene, IntegratorId::runge_kutta_4, step), runner);
+  const std::vector<Vec3> start = all_positions(fine);
   fine.advance_to(problem.end);
-  return [expected = all_positions(fine), size](const Run& run) {
-    const std::vector<Vec3> positions = all_positions(run);
-    if (positions.size() != expected.size()) return std::numeric_limits<Real>::quiet_NaN();
-    Real sum = 0;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      sum += (positions[i] - expected[i]).squaredNorm();
-    }
-    return std::sqrt(sum / static_cast<Real>(positions.size())) / size;
+  const std::vector<Vec3> expected = all_positions(fine);
+  return [expected, size = root_mean_square(start, expected)](const Run& run) {
+    return root_mean_square(all_positions(run), expected) / size;
   };
 }
 

@@ -33,14 +33,16 @@ const std::vector<ProblemEntry>& all_problems();
 
 std::vector<ProblemEntry> deformable_problems();
 std::vector<ProblemEntry> rigid_problems();
+std::vector<ProblemEntry> liquid_problems();
+std::vector<ProblemEntry> interaction_problems();
 
 /// `count` numbers from `first` on, each twice the one before.
 std::vector<std::uint32_t> doubled(std::uint32_t first, int count);
 
-/// The error of positions against a fine solution of the same equations: Runge-Kutta with four
-/// times as many steps as the problem's finest. Root of the mean square over all particles,
-/// divided by `size` [m].
+/// The error of all particles' positions against a fine solution of the same equations, by
+/// Runge-Kutta with `factor` times as many steps as the problem's finest, relative to the ways from
+/// the start; roots of mean squares.
 std::function<Real(const validation::Run&)> error_against_fine_run(const Problem& problem,
-                                                                   Real size, TaskRunner* runner);
+                                                                   int factor, TaskRunner* runner);
 
 }  // namespace vat::bench
