@@ -43,6 +43,7 @@ std::string run_with_ledger(Simulation& simulation, std::uint32_t steps, Propert
     }
     const Diagnostics now = simulation.diagnostics();
     if (!is_finite(now)) return "not finite";
+    report.outside = now.particles_outside;
     if (now.particles_outside > 0) {
       return std::to_string(now.particles_outside) + " particles outside";
     }

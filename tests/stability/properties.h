@@ -13,6 +13,7 @@ struct PropertyReport {
   std::uint64_t attempts = 0;  ///< steps and parts of steps taken
   std::uint64_t undone = 0;    ///< of them, by the guard
   std::size_t particles = 0;
+  std::size_t outside = 0;           ///< beyond a wall, where that is the fault
   bool has_momentum_budget = false;  ///< the scene's walls and integrator let it close to round-off
   Real momentum_error = 0;           ///< greatest, over the impulses and momenta that there were
   Real energy_excess = 0;   ///< greatest, over the energy that there was; below 0: only losses

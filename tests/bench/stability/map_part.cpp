@@ -1,0 +1,152 @@
+// Maps of the largest stable step.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/bench/report/plot.h"
+#include "tests/bench/stability/stability_parts.h"
+#include "tests/stability/step_map.h"
+
+namespace vat::bench {
+namespace {
+
+using stability::LinearCase;
+using stability::StepMapPoint;
+
+constexpr IntegratorId kIntegrators[] = {
+    IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::velocity_verlet,
+    IntegratorId::heun, IntegratorId::runge_kutta_4};
+constexpr Real kLeastPart = 0.95;  // of theory
+
+Table map_table(const std::vector<StepMapPoint>& points) {
+  Table table{{"body", "integrator", "stiffness [N/m]", "mass ratio", "damping ratio",
+               "frequency [rad/s]", "theory [s]", "measured [s]", "measured / theory"},
+              {}};
+  for (const StepMapPoint& point : points) {
+    table.rows.push_back({point.body, std::string(to_string(point.integrator)), point.stiffness,
+                          point.mass_ratio, point.damping_ratio, point.frequency, point.theory,
+                          point.measured,
+                          point.theory > 0 ? point.measured / point.theory
+                                           : std::numeric_limits<Real>::quiet_NaN()});
+  }
+  return table;
+}
+
+/// Place of `name` in `names`, which it is added to where it is new.
+std::size_t place_of(const std::string& name, std::vector<std::string>& names) {
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  names.push_back(name);
+  return names.size() - 1;
+}
+
+/// A field for each damping ratio and each body; of points that share one, the least.
+GridPlot grid_of(const std::vector<StepMapPoint>& points, IntegratorId integrator) {
+  GridPlot plot;
+  plot.title = std::string("Largest stable step over theory: ") + to_string(integrator);
+  plot.x_label = "damping ratio";
+  plot.y_label = "body, mass ratio";
+  plot.value_label = "measured / theory";
+  plot.min = 0.9;
+  plot.max = 1.1;
+  for (const StepMapPoint& point : points) {
+    place_of(short_text(point.damping_ratio), plot.x_names);
+    place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names);
+  }
+  plot.values.assign(plot.y_names.size(),
+                     std::vector<Real>(plot.x_names.size(), std::numeric_limits<Real>::infinity()));
+  for (const StepMapPoint& point : points) {
+    if (point.integrator != integrator || point.theory == 0) continue;
+    Real& value =
+        plot.values[place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names)]
+                   [place_of(short_text(point.damping_ratio), plot.x_names)];
+    value = std::min(value, point.measured / point.theory);
+  }
+  return plot;
+}
+
+/// omega dt by damping ratio and integrator, of the oscillator.
+GridPlot limits_of(const std::vector<StepMapPoint>& points) {
+  GridPlot plot;
+  plot.title = "Largest stable omega dt of a damped oscillator";
+  plot.x_label = "damping ratio";
+  plot.y_label = "integrator";
+  plot.value_label = "omega dt";
+  plot.max = 3;
+  for (const IntegratorId integrator : kIntegrators) {
+    plot.y_names.emplace_back(to_string(integrator));
+    plot.values.emplace_back();
+  }
+  for (const StepMapPoint& point : points) {
+    if (point.body != "oscillator") continue;
+    const std::size_t x = place_of(short_text(point.damping_ratio), plot.x_names);
+    std::vector<Real>& row = plot.values[place_of(to_string(point.integrator), plot.y_names)];
+    row.resize(std::max(row.size(), x + 1));
+    row[x] = point.measured * point.frequency;
+  }
+  return plot;
+}
+
+LogPlot measured_against_theory(const std::vector<StepMapPoint>& points) {
+  LogPlot plot{"Largest stable step", "theory [s]", "measured [s]", {}};
+  Series line{"theory", {}, 0, 0, true};
+  for (std::size_t i = 0; i < std::size(kIntegrators); ++i) {
+    Series series{to_string(kIntegrators[i]), {}, i, 0, false};
+    for (const StepMapPoint& point : points) {
+      if (point.integrator != kIntegrators[i] || point.theory == 0) continue;
+      series.points.push_back({point.theory, point.measured});
+      line.points.push_back({point.theory, point.theory});
+    }
+    std::ranges::sort(series.points);
+    plot.series.push_back(std::move(series));
+  }
+  std::ranges::sort(line.points);
+  plot.series.insert(plot.series.begin(), std::move(line));
+  return plot;
+}
+
+Status write_maps(const std::vector<StepMapPoint>& points, const Options& options) {
+  Status written =
+      write_table(map_table(points), options.output, "step-map", "# The largest stable step");
+  for (const IntegratorId integrator : kIntegrators) {
+    if (!written) return written;
+    const bool has_any = std::ranges::any_of(points, [&](const StepMapPoint& point) {
+      return point.integrator == integrator && point.theory > 0;
+    });
+    if (has_any) {
+      written = write_plot(grid_of(points, integrator), options.output,
+                           std::string("step-map-") + to_string(integrator));
+    }
+  }
+  if (!written) return written;
+  written = write_plot(limits_of(points), options.output, "step-limits");
+  if (!written) return written;
+  return write_plot(measured_against_theory(points), options.output, "step-map");
+}
+
+}  // namespace
+
+Result<StabilityCount> run_map_part(const Options& options) {
+  StabilityCount count;
+  std::vector<StepMapPoint> points;
+  for (const LinearCase& linear : stability::linear_cases(options.quick)) {
+    ++count.scenes;
+    for (const IntegratorId integrator : kIntegrators) {
+      points.push_back(stability::map_point(linear, integrator));
+      const StepMapPoint& point = points.back();
+      const bool good =
+          point.theory > 0 ? point.measured >= kLeastPart * point.theory : point.measured == 0;
+      if (good) continue;
+      ++count.faults;
+      print_fault(point.body + ", " + to_string(integrator) + ", damping ratio " +
+                      short_text(point.damping_ratio),
+                  short_text(point.measured) + " s of " + short_text(point.theory) + " s");
+    }
+  }
+  const Status written = write_maps(points, options);
+  if (!written) return written.errors();
+  return count;
+}
+
+}  // namespace vat::bench
