@@ -46,7 +46,8 @@ std::vector<std::uint32_t> doubled(std::uint32_t first, int count) {
   return counts;
 }
 
-std::function<Real(const Run&)> error_against_fine_run(const Problem& problem, TaskRunner* runner) {
+std::function<Real(const Run&)> error_against_fine_run(const Problem& problem, int factor,
+                                                       TaskRunner* runner) {
   const Real step = problem.end / (static_cast<Real>(factor) * problem.step_counts.back());
   Run fine(validation::with_method(problem.scene, IntegratorId::runge_kutta_4, step), runner);
   const std::vector<Vec3> start = all_positions(fine);
