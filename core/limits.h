@@ -64,6 +64,8 @@ inline constexpr Real kMaxForceTime = 3600;    // [s] of an applied force
 inline constexpr Real kMinStep = 1e-7;         // [s]
 inline constexpr Real kMaxStep = 0.1;          // [s]
 inline constexpr Real kMaxTick = 1.0;          // [s]
+inline constexpr Real kMinAccuracy = 1e-8;     // of a tolerance too: rounding is not far below
+inline constexpr Real kMaxAccuracy = 0.1;      // error models are for small errors
 inline constexpr int kMaxStepLevel = 10;       // halvings of a step: a nominal step must end
 
 }  // namespace vat

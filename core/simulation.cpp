@@ -6,6 +6,7 @@
 #include "core/forces/vat_motion.h"
 #include "core/model/compile.h"
 #include "core/rigid/rigid_motion.h"
+#include "core/scene/choose_numerics.h"
 #include "core/scene/validate.h"
 #include "core/simulation_impl.h"
 #include "core/step/measure.h"
@@ -47,12 +48,15 @@ Simulation::~Simulation() = default;
 Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
   Errors errors = find_errors(scene);
   if (!errors.empty()) return errors;
+  Scene resolved = scene;
+  resolve_accuracy(resolved);
   Simulation simulation;
   Impl& impl = *simulation.impl_;
   impl.runner = runner;
   std::vector<BodyId> ids;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(impl.next_id++);
-  impl.model = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
+  std::vector<std::shared_ptr<const SampledBody>> samples(ids.size());
+  impl.model = compile(std::move(resolved), ids, std::move(samples));
   impl.bounds = guard_bounds(*impl.model);
   impl.step_bounds = find_step_bounds(*impl.model);
   impl.state = initial_state(*impl.model);

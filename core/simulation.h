@@ -99,7 +99,8 @@ class Snapshot;
 /// any TaskRunner.
 class Simulation {
  public:
-  /// Fails with every error of the scene. `runner` may be null (serial) and must outlive this.
+  /// Fails with every error of the scene. `runner` may be null (serial) and must outlive this. An
+  /// accuracy chooses the numerics once: commands do not change them.
   static Result<Simulation> create(const Scene& scene, TaskRunner* runner = nullptr);
 
   Simulation(Simulation&&) noexcept;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/limits.h"
+#include "core/scene/choose_numerics.h"
 #include "core/scene/validate.h"
 #include "protocol/scene_parts.h"
 
@@ -163,6 +164,7 @@ Result<Scene> read_scene(const Json& document, const MeshSource& meshes) {
     add_error(errors, std::move(error.code), std::move(path), std::move(error.message));
   }
   if (!errors.empty()) return errors;
+  resolve_accuracy(partial.scene);
   return std::move(partial.scene);
 }
 

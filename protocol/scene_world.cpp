@@ -121,6 +121,15 @@ Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
   // In the order of StepControl.
   numerics.control = static_cast<StepControl>(reader.choice(
       "control", {"fixed", "adaptive", "local"}, static_cast<std::size_t>(numerics.control)));
+  numerics.tolerance = reader.real("tolerance", kMinAccuracy, kMaxAccuracy, numerics.tolerance);
+  if (reader.has("accuracy")) {
+    numerics.accuracy = reader.real("accuracy", kMinAccuracy, kMaxAccuracy, kMaxAccuracy);
+    for (const char* chosen : {"integrator", "step", "control", "tolerance"}) {
+      if (!reader.has(chosen)) continue;
+      add_error(errors, "not_allowed", reader.path_of(chosen),
+                "must be left out beside \"accuracy\", which chooses it");
+    }
+  }
   reader.refuse_unknown();
   return numerics;
 }

@@ -84,10 +84,12 @@ Json to_json(const ForceSwitches& forces) {
 }
 
 Json to_json(const Numerics& numerics) {
+  if (numerics.accuracy) return {{"accuracy", *numerics.accuracy}, {"tick", numerics.tick}};
   return {{"integrator", to_string(numerics.integrator)},
           {"step", numerics.step},
           {"tick", numerics.tick},
-          {"control", to_string(numerics.control)}};
+          {"control", to_string(numerics.control)},
+          {"tolerance", numerics.tolerance}};
 }
 
 Json to_json(const VectorField& field) {

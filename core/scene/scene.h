@@ -217,6 +217,9 @@ struct Numerics {
   StepControl control = StepControl::fixed;
   /// Of varied steps: the phase error per radian, relative, of the motion that they resolve.
   Real tolerance = 1e-3;
+  /// The relative error that integrator, step, control and tolerance are chosen for, in place of
+  /// those given here; see core/scene/choose_numerics.h.
+  std::optional<Real> accuracy{};
 };
 
 /// All that a simulation starts from.

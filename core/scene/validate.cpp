@@ -173,6 +173,7 @@ Errors find_errors(const Scene& scene) {
   std::vector<SampledBody> samples;
   check_bodies(scene, check, samples);
   if (!errors.empty()) return errors;
+  check_accuracy(scene, samples, check);
   const Present present = present_of(samples);
   const std::vector<PairBody> pairs = pair_bodies(scene, present);
   if (check_periods(scene, pairs, "/periodic/max", check)) {

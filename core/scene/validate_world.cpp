@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "core/limits.h"
+#include "core/scene/choose_numerics.h"
 #include "core/scene/validate_parts.h"
 
 namespace vat {
@@ -106,8 +108,19 @@ void check_central_field(const CentralField& field, RangeCheck& check) {
 
 void check_numerics(const Numerics& numerics, RangeCheck& check) {
   constexpr Real kWhole = 1e-9;  // rounding of tick / step
-  const bool step = check.real(numerics.step, kMinStep, kMaxStep, "/numerics/step");
   const bool tick = check.real(numerics.tick, kMinStep, kMaxTick, "/numerics/tick");
+  if (numerics.accuracy) {
+    check.real(*numerics.accuracy, kMinAccuracy, kMaxAccuracy, "/numerics/accuracy");
+    return;
+  }
+  check.real(numerics.tolerance, kMinAccuracy, kMaxAccuracy, "/numerics/tolerance");
+  if (numerics.control == StepControl::local &&
+      numerics.integrator != IntegratorId::velocity_verlet) {
+    check.add("not_allowed", "/numerics/control",
+              std::string("\"local\" needs the integrator \"velocity_verlet\", not \"") +
+                  to_string(numerics.integrator) + '"');
+  }
+  const bool step = check.real(numerics.step, kMinStep, kMaxStep, "/numerics/step");
   if (!step || !tick) return;
   const Real steps = numerics.tick / numerics.step;
   const Real whole = std::round(steps);
@@ -116,6 +129,22 @@ void check_numerics(const Numerics& numerics, RangeCheck& check) {
     check.add("out_of_range", "/numerics/tick",
               "must be a whole number of steps, 1 to " + std::to_string(kMaxStepsPerTick));
   }
+}
+
+void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples,
+                    RangeCheck& check) {
+  if (!scene.numerics.accuracy) return;
+  std::vector<const SampledBody*> bodies;
+  for (const SampledBody& body : samples) bodies.push_back(&body);
+  const Numerics chosen = choose_numerics(scene, bodies);
+  if (chosen.step >= kMinStep &&
+      chosen.tick <= chosen.step * (static_cast<Real>(kMaxStepsPerTick) + 0.5)) {
+    return;
+  }
+  std::ostringstream message;
+  message << "needs steps of " << chosen.step << " s: they must be at least " << kMinStep
+          << " s, and at most " << kMaxStepsPerTick << " in a tick";
+  check.add("out_of_range", "/numerics/accuracy", message.str());
 }
 
 }  // namespace vat

@@ -142,7 +142,8 @@ void warn_of_loose_particles(const Scene& scene, const Start& start,
 
 void warn_of_steps(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
   for (const StepLimit& limit : find_step_limits(scene, start.bodies)) {
-    if (scene.numerics.step <= limit.step) continue;
+    const bool is_fixed = scene.numerics.control == StepControl::fixed;
+    if (limit.step > 0 && (!is_fixed || scene.numerics.step <= limit.step)) continue;
     const std::string remedy =
         limit.step > 0 ? "is longer than " + number(limit.step) + " s, at which " + limit.reason
                        : "is too long whatever it is: " + limit.reason;
@@ -154,6 +155,7 @@ void warn_of_steps(const Scene& scene, const Start& start, std::vector<Warning>&
 /// followed.
 void warn_of_rotation(const Scene& scene, std::vector<Warning>& warnings) {
   constexpr Real kMostTurn = 0.5;
+  if (scene.numerics.control != StepControl::fixed) return;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
     if (body.kind != BodyKind::rigid) continue;
@@ -207,7 +209,8 @@ void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>&
         least_notice(scene, table, partners, scene.bodies[b], std::ranges::min(sample.radii));
     Real speed = 0;
     for (const Vec3& velocity : sample.velocities) speed = std::max(speed, velocity.norm());
-    if (speed * scene.numerics.step <= notice) continue;
+    const bool is_fixed = scene.numerics.control == StepControl::fixed;
+    if (!is_fixed || speed * scene.numerics.step <= notice) continue;
     warnings.push_back({"too_fast", body_path(b) + "/velocity",
                         "starts with " + number(speed) + " m/s: in a step it goes further than " +
                             number(notice) + " m, at which it meets others"});

@@ -179,6 +179,7 @@ Result<Scene> load_scene_for(const Options& options, Schedule& schedule) {
   schedule =
       make_schedule(options.step.value_or(numerics.step), options.every.value_or(numerics.tick),
                     options.until.value_or(kDefaultUntil));
+  if (options.step || !options.integrator.empty()) numerics.accuracy.reset();
   numerics = with_step(numerics, schedule.step);
   if (!options.integrator.empty()) numerics.integrator = integrator_names().at(options.integrator);
   return scene;

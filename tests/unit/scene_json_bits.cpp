@@ -95,8 +95,8 @@ class BitWriter {
     put_all(center, Vec3(gradient.col(0)), Vec3(gradient.col(1)), Vec3(gradient.col(2)), waves);
   }
   void put(const Numerics& numerics) {
-    const auto& [integrator, step, tick, control, tolerance] = numerics;
-    put_all(integrator, step, tick, control, tolerance);
+    const auto& [integrator, step, tick, control, tolerance, accuracy] = numerics;
+    put_all(integrator, step, tick, control, tolerance, accuracy);
   }
   void put(const BoxShape& box) {
     const auto& [center, size] = box;
