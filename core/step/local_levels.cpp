@@ -39,6 +39,9 @@ void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
               levels.particle.begin() + rigid.particles.end, level);
   }
   levels.liquid = model.liquid_count > 0 ? small_level_of(steps.liquid, dt) : 0;
+  if (model.spring_ends.empty()) return;
+  const auto [coarsest, finest] = std::ranges::minmax(levels.particle);
+  if (finest - coarsest <= kMaxLevelDifference) return;
   while (raise_neighbours(model, levels.particle)) {
   }
 }

@@ -27,79 +27,108 @@ void sort_by_level(std::span<LocalPair> pairs) {
 
 }  // namespace
 
-void LocalPairs::collect(const ForceModel& f, const Configuration& at, const LocalLevels& levels,
-                         Index i, std::vector<LocalPair>& pairs) {
+template <class Collect>
+void LocalPairs::fill(const ForceModel& f, std::vector<Block>& blocks, Collect&& collect) {
   const Model& model = f.model;
-  const auto level_with = [&](Index j) { return std::max(levels.particle[i], levels.particle[j]); };
-  if (i >= model.liquid_count && i < model.free_count) {
-    for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
-      const SpringEnd& spring = model.spring_ends[s];
-      pairs.push_back({spring.other, level_with(spring.other), false, spring.stiffness,
-                       spring.damping, spring.rest_length, Vec3::Zero()});
-    }
-  }
-  if (model.contact_reach <= 0) return;
-  for_each_contact(
-      model, f.work, at, i,
-      [&](const Contact& contact) {
-        const Index j = contact.other;
-        Vec3 shift = Vec3::Zero();
-        if (model.periodic.any()) shift = contact.x - (at.position[i] - at.position[j]);
-        pairs.push_back(
-            {j, level_with(j), true, contact.stiffness, contact.damping, contact.threshold, shift});
-      },
-      skin_);
-}
-
-void LocalPairs::build(const ForceModel& f, const Configuration& at, const LocalLevels& levels) {
-  const Model& model = f.model;
-  skin_ = levels.skin;
-  built_at_ = at.position;
-  blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
-  finest_of_.resize(model.particle_count);
+  blocks.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
-    Block& block = blocks_[begin / kBlockSize];
+    Block& block = blocks[begin / kBlockSize];
     block.pairs.clear();
     for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<Index>(k);
       const std::size_t first = block.pairs.size();
       block.begin[k - begin] = first;
-      finest_of_[i] = -1;
-      if (!is_moved(model, i)) continue;
-      collect(f, at, levels, i, block.pairs);
+      if (!is_moved(model, static_cast<Index>(k))) continue;
+      collect(static_cast<Index>(k), block.pairs);
       sort_by_level(std::span(block.pairs).subspan(first));
-      finest_of_[i] = levels.particle[i];
-      if (block.pairs.size() > first) {
-        finest_of_[i] = std::max<int>(finest_of_[i], block.pairs[first].level);
-      }
     }
     block.begin[end - begin] = block.pairs.size();
   });
-  sort_particles(model, levels);
 }
 
-void LocalPairs::sort_particles(const Model& model, const LocalLevels& levels) {
-  due_count_.assign(kMaxStepLevel + 1, 0);
-  order_.clear();
-  finest_rigid_ = -1;
-  for (int level = kMaxStepLevel; level >= 0; --level) {
-    for (Index i = 0; i < model.particle_count; ++i) {
-      if (finest_of_[i] == level) order_.push_back(i);
+void LocalPairs::build_springs(const ForceModel& f, const LocalLevels& levels) {
+  const Model& model = f.model;
+  fill(f, springs_, [&](Index i, std::vector<LocalPair>& pairs) {
+    if (i < model.liquid_count || i >= model.free_count) return;
+    for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+      const SpringEnd& spring = model.spring_ends[s];
+      const std::uint8_t level = std::max(levels.particle[i], levels.particle[spring.other]);
+      pairs.push_back(
+          {spring.other, level, false, spring.stiffness, spring.damping, spring.rest_length});
     }
-    due_count_[static_cast<std::size_t>(level)] = order_.size();
-  }
-  finest_ = levels.liquid;
-  coarsest_ = order_.empty() ? 0 : kMaxStepLevel;
-  for (const Index i : order_) coarsest_ = std::min<int>(coarsest_, levels.particle[i]);
+  });
+  spring_levels_ = levels.particle;
+}
+
+void LocalPairs::build_contacts(const ForceModel& f, const Configuration& at,
+                                const LocalLevels& levels) {
+  const Model& model = f.model;
+  fill(f, contacts_, [&](Index i, std::vector<LocalPair>& pairs) {
+    if (model.contact_reach <= 0) return;
+    for_each_contact(
+        model, f.work, at, i,
+        [&](const Contact& contact) {
+          const std::uint8_t level = std::max(levels.particle[i], levels.particle[contact.other]);
+          pairs.push_back(
+              {contact.other, level, true, contact.stiffness, contact.damping, contact.threshold});
+        },
+        skin_);
+  });
+}
+
+void LocalPairs::build(const ForceModel& f, const Configuration& at, const LocalLevels& levels,
+                       bool model_changed) {
+  skin_ = levels.skin;
+  const bool same_levels = !model_changed && levels.particle == spring_levels_;
+  if (!same_levels) build_springs(f, levels);
+  if (same_levels && f.model.contact_reach <= 0) return;
+  built_at_ = at.position;
+  build_contacts(f, at, levels);
+  sort_particles(f.model, levels);
+}
+
+/// By counting: from the finest level to the coarsest, and within one by index.
+void LocalPairs::sort_particles(const Model& model, const LocalLevels& levels) {
+  finest_of_.resize(model.particle_count);
+  std::array<std::size_t, kMaxStepLevel + 2> count{};  // of the levels, and of what does not move
+  finest_ = 0;
+  coarsest_ = kMaxStepLevel;
+  finest_rigid_ = -1;
   for (Index i = 0; i < model.particle_count; ++i) {
-    finest_ = std::max(finest_, finest_of_[i]);
-    if (i >= model.free_count) finest_rigid_ = std::max(finest_rigid_, finest_of_[i]);
+    int finest = -1;
+    if (is_moved(model, i)) {
+      finest = levels.particle[i];
+      for (const std::vector<Block>* blocks : {&springs_, &contacts_}) {
+        const Block& block = (*blocks)[i / kBlockSize];
+        const std::size_t first = block.begin[i % kBlockSize];
+        if (first == block.begin[i % kBlockSize + 1]) continue;
+        finest = std::max<int>(finest, block.pairs[first].level);
+      }
+      coarsest_ = std::min<int>(coarsest_, levels.particle[i]);
+    }
+    finest_of_[i] = finest;
+    finest_ = std::max(finest_, finest);
+    if (i >= model.free_count) finest_rigid_ = std::max(finest_rigid_, finest);
+    ++count[static_cast<std::size_t>(kMaxStepLevel - finest)];
+  }
+  coarsest_ = std::min(coarsest_, finest_);
+  finest_ = std::max<int>(finest_, levels.liquid);
+
+  due_count_.resize(kMaxStepLevel + 1);
+  std::array<std::size_t, kMaxStepLevel + 2> next{};
+  for (std::size_t k = 0; k <= kMaxStepLevel; ++k) {
+    next[k + 1] = next[k] + count[k];
+    due_count_[kMaxStepLevel - k] = next[k + 1];
+  }
+  order_.resize(due_count_[0]);
+  for (Index i = 0; i < model.particle_count; ++i) {
+    if (finest_of_[i] < 0) continue;
+    order_[next[static_cast<std::size_t>(kMaxStepLevel - finest_of_[i])]++] = i;
   }
 }
 
 bool LocalPairs::is_stale(const ForceModel& f, const Configuration& at) {
   if (f.model.contact_reach <= 0) return false;
-  farthest_.resize(blocks_.size());
+  farthest_.resize(contacts_.size());
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     Real farthest = 0;
     for (std::size_t i = begin; i < end; ++i) {

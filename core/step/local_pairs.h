@@ -16,24 +16,33 @@ struct LocalPair {
   Real stiffness = 0;
   Real damping = 0;
   Real rest_length = 0;
-  Vec3 shift;  ///< to the nearest image of `other` in a periodic world [m]
 };
 
-/// Every connection that can act as long as no particle moves by more than half a skin, by particle
-/// and from the finest level to the coarsest; and the particles from the finest of their
-/// connections to the coarsest. So what is due in a sub-step comes first in either order.
+/// Every connection that can act as long as no particle moves by more than half a skin, by
+/// particle: its springs, then its contacts, either from the finest level to the coarsest; and the
+/// particles from the finest of their connections to the coarsest. So what is due in a sub-step
+/// comes first.
 class LocalPairs {
  public:
   /// Positions and cells must be those of `at`. Particles that nothing moves get no entries.
-  void build(const ForceModel& force_model, const Configuration& at, const LocalLevels& levels);
+  /// The first time, or after commands, `model_changed`.
+  void build(const ForceModel& force_model, const Configuration& at, const LocalLevels& levels,
+             bool model_changed);
 
   /// Whether a particle has moved so far that connections may be missing.
   bool is_stale(const ForceModel& force_model, const Configuration& at);
 
-  std::span<const LocalPair> of(Index i) const {
-    const Block& block = blocks_[i / kBlockSize];
-    const std::size_t k = i % kBlockSize;
-    return std::span(block.pairs).subspan(block.begin[k], block.begin[k + 1] - block.begin[k]);
+  /// Calls f(pair) for the connections of particle i of level `due` or finer.
+  template <class F>
+  void for_each_due(Index i, int due, F&& f) const {
+    for (const std::vector<Block>* blocks : {&springs_, &contacts_}) {
+      const Block& block = (*blocks)[i / kBlockSize];
+      const std::size_t k = i % kBlockSize;
+      for (std::size_t p = block.begin[k]; p < block.begin[k + 1]; ++p) {
+        if (block.pairs[p].level < due) break;
+        f(block.pairs[p]);
+      }
+    }
   }
   /// The particles with a connection of `level` or finer, or of such a level themselves.
   std::span<const Index> due(int level) const {
@@ -50,11 +59,17 @@ class LocalPairs {
     std::vector<LocalPair> pairs;
     std::array<std::size_t, kBlockSize + 1> begin;
   };
-  void collect(const ForceModel& force_model, const Configuration& at, const LocalLevels& levels,
-               Index i, std::vector<LocalPair>& pairs);
+  /// Fills `blocks` with what collect(i, pairs) appends for each particle that moves.
+  template <class Collect>
+  static void fill(const ForceModel& force_model, std::vector<Block>& blocks, Collect&& collect);
+  void build_springs(const ForceModel& force_model, const LocalLevels& levels);
+  void build_contacts(const ForceModel& force_model, const Configuration& at,
+                      const LocalLevels& levels);
   void sort_particles(const Model& model, const LocalLevels& levels);
 
-  std::vector<Block> blocks_;
+  std::vector<Block> springs_;
+  std::vector<Block> contacts_;
+  std::vector<std::uint8_t> spring_levels_;  ///< with which springs_ were built
   std::vector<Index> order_;
   std::vector<std::size_t> due_count_;  ///< by level
   std::vector<int> finest_of_;          ///< by particle; -1: nothing moves it

@@ -38,11 +38,15 @@ namespace {
 
 /// What a step of level 0 shrinks to.
 Real share_of(int level) {
-  return std::ldexp(Real{1}, -level);
+  return Real{1} / static_cast<Real>(1U << level);
 }
 
 Vec3 force_of(const Model& model, const Configuration& at, Index i, const LocalPair& pair) {
-  const Vec3 x = at.position[i] - at.position[pair.other] + pair.shift;
+  Vec3 x = at.position[i] - at.position[pair.other];
+  if (pair.is_contact && model.periodic.any()) {
+    x = model.periodic.nearest(model.periodic.wrap(at.position[i]) -
+                               model.periodic.wrap(at.position[pair.other]));
+  }
   const Real distance = x.norm();
   if (pair.is_contact && distance >= pair.rest_length) return Vec3::Zero();
   const Vec3 n = pair_direction(x, distance, i, pair.other, model.scene.dimensions);
@@ -90,7 +94,7 @@ void LocalStepper::build_pairs(const Moment& now) {
     if (now.model().liquid_count > 0) sort_liquid(context);
     sort_solids(context);
   }
-  pairs_.build(now.force_model, now.at(), now.state.levels);
+  pairs_.build(now.force_model, now.at(), now.state.levels, !pairs_current_);
   pairs_current_ = true;
 }
 
@@ -113,11 +117,11 @@ void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing
     for (const Index i : order.subspan(begin, end - begin)) {
       Vec3 close = Vec3::Zero();
       Vec3 open = Vec3::Zero();
-      for (const LocalPair& pair : pairs_.of(i)) {
+      pairs_.for_each_due(i, 0, [&](const LocalPair& pair) {
         const Vec3 force = force_of(model, now.at(), i, pair);
         close += share_of(std::max(closing.particle[i], closing.particle[pair.other])) * force;
         open += share_of(pair.level) * force;
-      }
+      });
       if (!model.walls.empty()) {
         const Vec3 force = wall_force(model, vat, now.at(), i);
         close += share_of(closing.particle[i]) * force;
@@ -184,10 +188,9 @@ void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
   for_blocks(now.force_model.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (const Index i : order.subspan(begin, end - begin)) {
       Vec3 sum = Vec3::Zero();
-      for (const LocalPair& pair : pairs_.of(i)) {
-        if (pair.level < due) break;
+      pairs_.for_each_due(i, due, [&](const LocalPair& pair) {
         sum += share_of(pair.level) * force_of(model, now.at(), i, pair);
-      }
+      });
       if (!model.walls.empty() && levels.particle[i] >= due) {
         sum += share_of(levels.particle[i]) * wall_force(model, vat, now.at(), i);
       }
