@@ -89,7 +89,10 @@ void run_created(const AdversarialCase& adversarial, Simulation& simulation, Out
   outcome.ending = Ending::ran;
   if (!has_walls(simulation.scene())) outcome.most_outside = 0;
   if (outcome.most_outside > 0) {
-    outcome.fault = std::to_string(outcome.most_outside) + " particles outside the vat";
+    outcome.ending = Ending::left;
+    if (adversarial.expected == Expected::runs) {
+      outcome.fault = std::to_string(outcome.most_outside) + " particles outside the vat";
+    }
   } else if (adversarial.judge) {
     outcome.fault = adversarial.judge(simulation);
   }
@@ -103,6 +106,8 @@ const char* to_string(Ending ending) {
       return "ran";
     case Ending::stopped:
       return "stopped";
+    case Ending::left:
+      return "left";
     case Ending::refused:
       return "refused";
     case Ending::broken:

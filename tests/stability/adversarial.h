@@ -14,6 +14,7 @@ namespace vat::stability {
 enum class Ending : std::uint8_t {
   ran,      ///< to its end
   stopped,  ///< by the guard, with an event, at the last good state
+  left,     ///< to its end, with particles beyond walls that are too soft for them
   refused,  ///< before it began, with a message
   broken,   ///< none of these: see Outcome::fault
 };
@@ -22,7 +23,7 @@ const char* to_string(Ending ending);
 /// What a scene is expected to end in.
 enum class Expected : std::uint8_t {
   runs,
-  may_stop,  ///< its step or its walls cannot bear it: the guard may end it
+  may_stop,  ///< its step or its walls cannot bear it: the guard may end it, or particles leave
   refusal,
 };
 

@@ -34,6 +34,7 @@ void count_outcome(const stability::Outcome& outcome, StabilityCount& count) {
   count.events += outcome.undone;
   count.retries += outcome.attempts - outcome.steps;
   count.stopped += outcome.ending == stability::Ending::stopped ? 1 : 0;
+  count.left += outcome.ending == stability::Ending::left ? 1 : 0;
   count.refused += outcome.ending == stability::Ending::refused ? 1 : 0;
   count.faults += outcome.fault.empty() ? 0 : 1;
 }

@@ -19,6 +19,7 @@ struct StabilityCount {
   std::uint64_t events = 0;      ///< of the guard, each with a step undone
   std::uint64_t retries = 0;     ///< steps and parts of steps beyond those asked for
   std::uint64_t stopped = 0;     ///< scenes that the guard ended, as it may
+  std::uint64_t left = 0;        ///< scenes whose soft walls particles passed, as they may
   std::uint64_t refused = 0;     ///< scenes that were refused, as they must be
   std::uint64_t faults = 0;      ///< scenes, or figures, that are not as they must be
   Real seconds = 0;
