@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <stdexcept>
 
 #include "tests/validation/order.h"
@@ -126,10 +127,15 @@ std::vector<Solution> pareto_front(const std::vector<Solution>& solutions,
 
 std::optional<Solution> cheapest(const std::vector<Solution>& solutions, Real error,
                                  double (*cost)(const Solution&)) {
-  for (const Solution& solution : pareto_front(solutions, cost)) {
-    if (solution.error <= error) return solution;
+  std::optional<Solution> best;
+  for (const Method& method : all_methods()) {
+    for (const Solution& solution : std::views::reverse(solutions)) {
+      if (name_of(solution.method) != name_of(method)) continue;
+      if (!is_solved(solution) || !(solution.error <= error)) break;
+      if (!best || cost(solution) < cost(*best)) best = solution;
+    }
   }
-  return std::nullopt;
+  return best;
 }
 
 double seconds_of(const Solution& solution) {

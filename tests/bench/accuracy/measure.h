@@ -47,7 +47,8 @@ std::vector<Solution> sweep(const Problem& problem, const Method& method,
 std::vector<Solution> pareto_front(const std::vector<Solution>& solutions,
                                    double (*cost)(const Solution&));
 
-/// The cheapest one whose error is at most `error`.
+/// The cheapest one with an error of at most `error` that its method also keeps with every finer
+/// solution: errors of opposite signs cancel here and there. `solutions` are as sweep() gives them.
 std::optional<Solution> cheapest(const std::vector<Solution>& solutions, Real error,
                                  double (*cost)(const Solution&));
 

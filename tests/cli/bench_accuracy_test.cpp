@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/bench/accuracy/accuracy_report.h"
+#include "tests/bench/report/plot.h"
+#include "tests/cli/program.h"
+
+namespace vat::bench {
+namespace {
+
+constexpr Method kVerlet{IntegratorId::velocity_verlet, StepControl::fixed};
+constexpr Method kHeun{IntegratorId::heun, StepControl::adaptive};
+
+Solution solution(const Method& method, Real step, Real error, Real evaluations, double seconds) {
+  return {.method = method,
+          .step = step,
+          .error = error,
+          .seconds = seconds,
+          .evaluations_per_particle = evaluations,
+          .failure = {}};
+}
+
+std::vector<Solution> some_solutions() {
+  Solution failed = solution(kVerlet, 1, std::numeric_limits<Real>::quiet_NaN(), 0, 0);
+  failed.failure = "the guard undid a step";
+  return {failed,
+          solution(kVerlet, 0.5, 1e-3, 10, 5),  // by chance
+          solution(kVerlet, 0.25, 1e-2, 20, 9),
+          solution(kVerlet, 0.125, 1e-4, 40, 18),
+          solution(kHeun, 0.5, 1e-2, 30, 4),
+          solution(kHeun, 0.25, 1e-3, 60, 30)};
+}
+
+std::vector<Real> steps_of(const std::vector<Solution>& solutions) {
+  std::vector<Real> steps;
+  for (const Solution& one : solutions) steps.push_back(one.step);
+  return steps;
+}
+
+TEST(BenchAccuracy, FrontHasWhatNothingBeats) {
+  const auto by_count = pareto_front(some_solutions(), evaluations_of);
+  EXPECT_THAT(steps_of(by_count), testing::ElementsAre(0.5, 0.125));
+  const auto by_time = pareto_front(some_solutions(), seconds_of);
+  EXPECT_THAT(steps_of(by_time), testing::ElementsAre(0.5, 0.5, 0.125));
+}
+
+TEST(BenchAccuracy, CheapestDoesNotTrustLuck) {
+  const auto rough = cheapest(some_solutions(), 1e-2, evaluations_of);
+  ASSERT_TRUE(rough);
+  EXPECT_EQ(rough->step, 0.5);
+  const auto finer = cheapest(some_solutions(), 1e-3, evaluations_of);
+  ASSERT_TRUE(finer);
+  EXPECT_EQ(finer->step, 0.125);
+  EXPECT_EQ(cheapest(some_solutions(), 1e-2, seconds_of)->method.integrator, IntegratorId::heun);
+  EXPECT_FALSE(cheapest(some_solutions(), 1e-5, evaluations_of));
+}
+
+TEST(BenchAccuracy, PlotHasTheFrontAndEveryMethodThatWorked) {
+  const LogPlot plot = error_against_evaluations({"X", "t", "e", some_solutions()});
+  ASSERT_EQ(plot.series.size(), 3u);
+  EXPECT_TRUE(plot.series[0].broad);
+  EXPECT_EQ(plot.series[1].label, "velocity_verlet, fixed");
+  EXPECT_EQ(plot.series[1].points.size(), 3u);
+  EXPECT_EQ(plot.series[2].label, "heun, adaptive");
+}
+
+TEST(BenchAccuracy, RowsAreTheSameButForTheSeconds) {
+  const auto entry = std::ranges::find(all_problems(), "RIG-5", &ProblemEntry::name);
+  ASSERT_NE(entry, all_problems().end());
+  const Problem problem = entry->make(nullptr);
+  const SweepSettings settings{.repetitions = 1, .stride = 4};
+  const auto table = [&] {
+    Table result = solutions_table({{entry->name, problem.title, problem.error_name,
+                                     sweep(problem, kHeun, settings, nullptr)}});
+    for (std::vector<Cell>& row : result.rows) row.at(6) = 0.0;
+    return result;
+  };
+  const Table first = table();
+  ASSERT_EQ(first.columns[6], "seconds");
+  ASSERT_EQ(first.rows.size(), 3u);
+  EXPECT_EQ(to_csv(first), to_csv(table()));
+}
+
+TEST(BenchAccuracy, CommandWritesTablesAndPlots) {
+  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
+  const test::TemporaryFolder folder;
+  const test::ProgramResult result = test::run_bench(
+      {"accuracy", "--quick", "--case", "RIG-5", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* name : {"accuracy.csv", "accuracy.json", "accuracy.md", "cheapest.md",
+                           "RIG-5-time.svg", "RIG-5-evaluations.svg", "RIG-5-time.dat"}) {
+    EXPECT_THAT(folder.names(), testing::Contains(name));
+  }
+}
+
+}  // namespace
+}  // namespace vat::bench
