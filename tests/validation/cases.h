@@ -22,5 +22,11 @@ std::vector<Case> rigid_contact_cases();
 std::vector<Case> rigid_sampling_cases();
 std::vector<Case> liquid_lattice_cases();
 std::vector<Case> liquid_channel_cases();
+std::vector<Case> liquid_drop_cases();
+std::vector<Case> liquid_column_cases();
+std::vector<Case> liquid_dam_break_cases();
+std::vector<Case> liquid_tank_cases();
+std::vector<Case> liquid_vortex_cases();
+std::vector<Case> interaction_impact_cases();
 
 }  // namespace vat::validation

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tests/validation/cases.h"
+#include "tests/validation/cases/liquid_rest.h"
+#include "tests/validation/order.h"
+#include "tests/validation/reference.h"
+
+namespace vat::validation {
+
+namespace {
+
+constexpr Real kGravity = 9.81;
+constexpr Real kDepth = 0.5;  // before it is compressed [m]
+constexpr const char* kWalls =
+    "the walls push, but are no part of the density: at the floor the liquid lacks neighbours";
+
+/// A line fitted to pressure over height, and how far all pressures are from the gas law's.
+struct PressureFit {
+  Real slope = 0;     ///< [Pa/m]
+  Real at_floor = 0;  ///< [Pa]
+  Real distance = 0;  ///< relative, L2
+};
+
+Real gas_pressure(Real c, Real z) {
+  const Real level = reference("/liquid/LIQ-3/H0=0.5,c=10/gas_height");
+  return z < level ? c * c * 1000 * std::expm1(kGravity * (level - z) / (c * c)) : 0;
+}
+
+/// Heights and mean pressures of the particles over the last second of a run.
+struct MeanPressure {
+  std::vector<Real> heights;
+  std::vector<Real> pressures;
+};
+
+MeanPressure mean_pressure(Run& run, Real from, Real until) {
+  MeanPressure mean;
+  run.advance_to(from);
+  const std::size_t count = run.body().positions.size();
+  mean.heights.assign(count, 0);
+  mean.pressures.assign(count, 0);
+  int samples = 0;
+  run.observe_until(until, 0.02, [&] {
+    const BodyView body = run.body();
+    const std::vector<Real> now = run.simulation().liquid_fields(body.id).value().pressure;
+    for (std::size_t i = 0; i < count; ++i) {
+      mean.heights[i] += body.positions[i].z();
+      mean.pressures[i] += now[i];
+    }
+    ++samples;
+  });
+  for (Real& height : mean.heights) height /= samples;
+  for (Real& pressure : mean.pressures) pressure /= samples;
+  return mean;
+}
+
+PressureFit fit(const MeanPressure& mean) {
+  Real n = 0, z1 = 0, p1 = 0, zz = 0, zp = 0, error = 0, scale = 0;
+  for (std::size_t i = 0; i < mean.heights.size(); ++i) {
+    const Real z = mean.heights[i];
+    const Real p = mean.pressures[i];
+    const Real exact = gas_pressure(10, z);
+    error += (p - exact) * (p - exact);
+    scale += exact * exact;
+    if (z < 0.1 * kDepth || z > 0.8 * kDepth) continue;
+    n += 1;
+    z1 += z;
+    p1 += p;
+    zz += z * z;
+    zp += z * p;
+  }
+  const Real slope = (n * zp - z1 * p1) / (n * zz - z1 * z1);
+  return {slope, (p1 - slope * z1) / n, std::sqrt(error / scale)};
+}
+
+Real greatest_speed(const Run& run) {
+  Real speed = 0;
+  for (const Vec3& v : run.body().velocities) speed = std::max(speed, v.norm());
+  return speed;
+}
+
+Scene column(int layers) {
+  Scene scene = load_scene("LIQ-3");
+  set_spacing(scene, kDepth / layers);
+  set_walls_like_liquid(scene);
+  const LiquidConstants& liquid = *scene.materials[0].liquid;
+  const Real viscous = 0.05 * std::pow(liquid.support_radius, 2) * 1000 / liquid.viscosity;
+  return with_step(scene, std::min(acoustic_step(scene, 0.02), 0.02 / std::ceil(0.02 / viscous)));
+}
+
+void check_column(Sheet& sheet, int layers) {
+  const std::string target = "published target of this method";
+  const std::string of = ", " + std::to_string(layers) + " layers";
+  const bool fine = layers >= 20;  // as published
+  Run run = sheet.start(column(layers));
+  const PressureFit found = fit(mean_pressure(run, 3, 4));
+  sheet.add("slope of the pressure / (-rho g)" + of, 1, -found.slope / (1000 * kGravity),
+            fine ? within(0.2, target) : reported(kWalls), run);
+  sheet.add("greatest speed / sqrt(g H)" + of, 0.05,
+            greatest_speed(run) / std::sqrt(kGravity * kDepth), at_most(target), run);
+  sheet.add("pressure at the floor by the fitted line / (rho g H)" + of, 1,
+            found.at_floor / reference("/liquid/LIQ-3/H0=0.5,c=10/gas_p_bottom"),
+            fine ? within(0.2, "slope and depth") : reported(kWalls), run);
+  Real mean = 0;
+  for (const Vec3& x : run.body().positions) mean += x.z();
+  mean /= static_cast<Real>(run.body().positions.size());
+  // The gas law's liquid has its middle a little below half its height.
+  sheet.add("twice the mean height [m]" + of, reference("/liquid/LIQ-3/H0=0.5,c=10/gas_height"),
+            2 * mean, reported(kWalls), run);
+  sheet.add("relative L2 error of the pressure" + of,
+            reference("/measured_yardsticks/hydrostatic/mcg03 factor corrected N=20 H=2dx/L2p"),
+            found.distance, reported(kWalls), run);
+}
+
+void run_column(Sheet& sheet) {
+  for (const int layers : {10, 20, 40}) {
+    if (sheet.quick() && layers == 40) continue;
+    check_column(sheet, layers);
+  }
+}
+
+}  // namespace
+
+std::vector<Case> liquid_column_cases() {
+  return {{"LIQ-3", "column of liquid at rest", "liquid", {"LIQ-3"}, run_column}};
+}
+
+}  // namespace vat::validation
