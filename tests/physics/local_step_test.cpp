@@ -169,6 +169,57 @@ TEST(LocalStep, NeighboursDifferByOneLevelAtMost) {
   EXPECT_THAT(levels.particle, ::testing::ElementsAre(3, 4, 5, 6));
 }
 
+Real energy_of(const Simulation& simulation) {
+  const Diagnostics d = simulation.diagnostics();
+  return d.kinetic_energy + d.gravitational_energy + d.elastic_energy + d.contact_energy;
+}
+
+/// Two masses on a swinging spring fall onto a stiff floor.
+Scene make_dumbbell_above_floor() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {make_material("m")};
+  scene.interfaces = {{{"m", kVatMaterial}, {1e5, 0}, 0.1}};
+  scene.vat = Vat{Vec3(-5, -5, 0), Vec3(5, 5, 50), false, {}};
+  scene.bodies = {make_body("dumbbell", BodyKind::deformable, "m",
+                            make_particles({{0, 0, 0.5}, {0.3, 0, 0.9}}, 1), 0.01)};
+  scene.bodies[0].springs = {{0, 1, {200, 0}, 0.45}};
+  return make_local(scene);
+}
+
+// The floor's steps are a hundredth of the spring's. Each time that levels change, the spring's
+// kick that opens a step must be of the level that the step has.
+TEST(LocalStep, KeepsEnergyWhereLevelsChange) {
+  Simulation simulation = make_simulation(make_dumbbell_above_floor());
+  const Real before = energy_of(simulation);
+  const AdvanceReport report = simulation.advance(300);
+  EXPECT_EQ(report.undone_steps, 0U);
+  EXPECT_LT(report.least_step, 1e-3);
+  EXPECT_EQ(report.greatest_step, 0.01);
+  EXPECT_NEAR(energy_of(simulation), before, 2e-2 * 9.81);
+}
+
+// Bodies that pass their skins within a step meet what they could not have met at its start.
+TEST(LocalStep, LetsNoProjectilePassAThinWall) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
+  scene.materials = {make_material("steel")};
+  scene.interfaces = {{{"steel", "steel"}, {1e5, 0}, 0.05}};
+  scene.bodies = {
+      make_body("wall", BodyKind::rigid, "steel", make_particles(make_lattice(1, 9, 9, 0.03), 10),
+                0.015),
+      make_body("shot", BodyKind::rigid, "steel", make_particles({{-1.013, 0, 0}}, 0.001), 0.01)};
+  for (const Real speed : {20.0, 50.0, 150.0}) {
+    scene.bodies[0].velocity = {-speed, 0, 0};
+    scene.bodies[1].velocity = {speed, 0, 0};
+    Simulation simulation = make_simulation(make_local(scene));
+    const AdvanceReport report =
+        simulation.advance(static_cast<std::uint32_t>(std::lround(250 / speed)));
+    EXPECT_EQ(report.undone_steps, 0U);
+    // The wall weighs 810 000 times as much.
+    EXPECT_NEAR(velocity_of(simulation, 1).x(), -3 * speed, 2e-3 * speed);
+  }
+}
+
 /// A soft cube hangs on a stiff small one, held by a corner: 1000 and 8 particles.
 Scene make_soft_and_stiff(Real step) {
   constexpr Real kSpacing = 0.1;
