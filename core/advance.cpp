@@ -42,6 +42,9 @@ std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
   for (std::uint32_t piece = 0; piece < pieces; ++piece) {
     take_unguarded_step(force_model, start + piece * dt, dt, report);
     auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()));
+    if (!fault && model->scene.numerics.control == StepControl::local) {
+      fault = local.find_fast(*model, state.now, dt, bounds);
+    }
     if (work.too_many_pairs) {  // of liquids, whose particles come first
       fault = Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
     }

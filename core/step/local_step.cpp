@@ -210,6 +210,20 @@ void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
   for (const Index i : order) due_.particle[i].setZero();
 }
 
+std::optional<Fault> LocalStepper::find_fast(const Model& model, const Configuration& at, Real dt,
+                                             const GuardBounds& guard) const {
+  for (Index b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+      const Real way = at.velocity[i].norm() * dt * share_of(closing_levels_.particle[i]);
+      if (way <= guard.travel[b]) continue;
+      const Index particle = body.kind == BodyKind::rigid ? 0 : i - body.particles.begin;
+      return Fault{GuardEvent::Cause::too_fast, b, particle};
+    }
+  }
+  return {};
+}
+
 void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real dt,
                              const StepBounds& bounds, const GuardBounds& guard) {
   for (Forces* forces : {&closing_, &due_, &liquid_}) resize(f.model, *forces);

@@ -22,6 +22,10 @@ class LocalStepper {
   /// are chosen now where the forces of the state are not current.
   void take_step(const ForceModel& force_model, State& state, Real time, Real dt,
                  const StepBounds& bounds, const GuardBounds& guard);
+  /// The first particle or rigid body that moved further in a step of its level than the guard
+  /// allows, as it is after a step of `dt`.
+  std::optional<Fault> find_fast(const Model& model, const Configuration& at, Real dt,
+                                 const GuardBounds& guard) const;
   /// Something else than a step has changed the state.
   void forget() { pairs_current_ = false; }
 

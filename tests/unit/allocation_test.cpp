@@ -30,5 +30,20 @@ TEST(Allocation, NoneInASteadyStep) {
   }
 }
 
+TEST(Allocation, NoneInASteadyStepOfVariedLength) {
+  for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
+    Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
+    scene.vat->motion.reset();
+    scene.numerics.control = control;
+    Simulation simulation = make_simulation(scene);
+    for (int n = 0; n < 2; ++n) {  // the second call copies what the first has added to the state
+      ASSERT_TRUE(simulation.advance(1500).events.empty());
+    }
+    const std::size_t before = allocation_count();
+    simulation.advance(200);
+    EXPECT_EQ(allocation_count(), before) << to_string(control);
+  }
+}
+
 }  // namespace
 }  // namespace vat
