@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tests/stability/builders.h"
@@ -71,7 +72,7 @@ Real pressure_energy(const Scene& scene, const Diagnostics& now) {
 Ledger::Outside Ledger::outside(const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   const VatPose pose = scene.vat ? vat_pose(*scene.vat, simulation.time()) : VatPose{};
-  Outside sum{Vec3::Zero(), 0};
+  Outside sum{Vec3::Zero(), 0, 0};
   for (const BodyView& body : simulation.bodies()) {
     const SpringConstants law = wall_constants(scene, body.material);
     for (std::size_t i = 0; i < body.positions.size(); ++i) {
@@ -80,6 +81,10 @@ Ledger::Outside Ledger::outside(const Simulation& simulation) {
       const Vec3 force =
           wall_force(*scene.vat, pose, law, body.radii[i], body.positions[i], body.velocities[i]);
       sum.force += force;
+      if (force != Vec3::Zero()) {
+        const Real unit = std::numeric_limits<Real>::epsilon() / 2 * body.positions[i].norm();
+        sum.rounding2 += std::pow(law.stiffness * unit, 2);
+      }
       sum.power += force.dot(pose.velocity);
     }
   }
@@ -116,6 +121,7 @@ void Ledger::add_step(const Simulation& simulation, const Diagnostics& now) {
     momentum_ += dt / 2 * (last_.force + next.force);
     moved_ += dt / 2 * (last_.force + next.force).norm();
     energy_ += dt / 2 * (last_.power + next.power);
+    rounding2_ += dt * dt * next.rounding2;
   }
   last_ = next;
   Real motion = 0;
@@ -131,6 +137,11 @@ void Ledger::add_step(const Simulation& simulation, const Diagnostics& now) {
   energy_scale_ =
       std::max(energy_scale_, now.kinetic_energy + now.elastic_energy + now.contact_energy);
   liquid_energy_ = std::max(liquid_energy_, pressure_energy(scene_, now));
+}
+
+Real Ledger::momentum_bound() const {
+  constexpr Real kSums = 1e-12;
+  return kSums + 6 * std::sqrt(rounding2_) / moved_;
 }
 
 Real Ledger::energy_bound() const {

@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/stability/builders.h"
 #include "tests/stability/step_map.h"
@@ -180,6 +181,7 @@ std::vector<LinearCase> linear_cases(bool quick) {
       }
     }
   }
+  for (LinearCase& liquid : liquid_cases(quick)) cases.push_back(std::move(liquid));
   return cases;
 }
 

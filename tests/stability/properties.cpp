@@ -12,9 +12,6 @@
 namespace vat::stability {
 namespace {
 
-/// Of sums of some hundred thousand terms of either sign, half a unit of round-off each.
-constexpr Real kRoundOff = 1e-12;
-
 bool is_finite(const Diagnostics& now) {
   const bool energies = std::isfinite(now.kinetic_energy) && std::isfinite(now.elastic_energy) &&
                         std::isfinite(now.contact_energy) && std::isfinite(now.max_density_error);
@@ -54,6 +51,7 @@ std::string run_with_ledger(Simulation& simulation, std::uint32_t steps, Propert
     }
   }
   report.momentum_error = ledger.momentum_error();
+  report.momentum_bound = ledger.momentum_bound();
   report.energy_excess = ledger.energy_excess();
   report.energy_bound = ledger.energy_bound();
   return {};
@@ -62,7 +60,7 @@ std::string run_with_ledger(Simulation& simulation, std::uint32_t steps, Propert
 std::string judge_budgets(const Scene& scene, const PropertyReport& report) {
   // What the guard took in parts has other quadratures than the ledger.
   if (report.undone > 0) return {};
-  if (report.has_momentum_budget && report.momentum_error > kRoundOff) {
+  if (report.has_momentum_budget && report.momentum_error > report.momentum_bound) {
     return "momentum does not add up: " + number(report.momentum_error);
   }
   const IntegratorId integrator = scene.numerics.integrator;

@@ -16,6 +16,7 @@ struct PropertyReport {
   std::size_t outside = 0;           ///< beyond a wall, where that is the fault
   bool has_momentum_budget = false;  ///< the scene's walls and integrator let it close to round-off
   Real momentum_error = 0;           ///< greatest, over the impulses and momenta that there were
+  Real momentum_bound = 0;           ///< what of it round-off explains
   Real energy_excess = 0;   ///< greatest, over the energy that there was; below 0: only losses
   Real energy_bound = 0;    ///< what of it the integrator and the liquids explain
   Real contact_energy = 0;  ///< where the snapshot was taken [J]

@@ -60,7 +60,10 @@ Real largest_stable_part(const LinearCase& linear, IntegratorId integrator, Real
 
 StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator) {
   Real fastest = 0;
-  for (const Oscillation& mode : linear.modes) fastest = std::max(fastest, mode.omega2);
+  for (const Oscillation& mode : linear.modes) {
+    fastest = std::max({fastest, mode.omega2, mode.rate * mode.rate / 4});
+  }
+  constexpr Real kGrowing = 1.5;  // omega dt
   StepMapPoint point{linear.body,
                      integrator,
                      linear.stiffness,
@@ -68,11 +71,11 @@ StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator) {
                      linear.damping_ratio,
                      std::sqrt(fastest),
                      theoretical_step(linear, integrator)};
-  constexpr int kSteps = 3000;
   if (point.theory > 0) {
-    point.measured = point.theory * largest_stable_part(linear, integrator, point.theory, kSteps);
-  } else if (is_stable(linear, integrator, 1 / point.frequency, kSteps)) {
-    point.measured = 1 / point.frequency;  // which is not what theory says
+    point.measured =
+        point.theory * largest_stable_part(linear, integrator, point.theory, linear.steps);
+  } else if (is_stable(linear, integrator, kGrowing / point.frequency, linear.steps)) {
+    point.measured = kGrowing / point.frequency;  // which is not what theory says
   }
   return point;
 }

