@@ -27,6 +27,8 @@ std::vector<Case> liquid_column_cases();
 std::vector<Case> liquid_dam_break_cases();
 std::vector<Case> liquid_tank_cases();
 std::vector<Case> liquid_vortex_cases();
+std::vector<Case> liquid_outlet_cases();
 std::vector<Case> interaction_impact_cases();
+std::vector<Case> interaction_buoyancy_cases();
 
 }  // namespace vat::validation
