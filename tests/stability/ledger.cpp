@@ -83,7 +83,7 @@ Ledger::Outside Ledger::outside(const Simulation& simulation) {
       sum.force += force;
       if (force != Vec3::Zero()) {
         const Real unit = std::numeric_limits<Real>::epsilon() / 2 * body.positions[i].norm();
-        sum.rounding2 += std::pow(law.stiffness * unit, 2);
+        sum.rounding += law.stiffness * unit;
       }
       sum.power += force.dot(pose.velocity);
     }
@@ -121,7 +121,7 @@ void Ledger::add_step(const Simulation& simulation, const Diagnostics& now) {
     momentum_ += dt / 2 * (last_.force + next.force);
     moved_ += dt / 2 * (last_.force + next.force).norm();
     energy_ += dt / 2 * (last_.power + next.power);
-    rounding2_ += dt * dt * next.rounding2;
+    rounding_ += dt * next.rounding;
   }
   last_ = next;
   Real motion = 0;
@@ -141,7 +141,7 @@ void Ledger::add_step(const Simulation& simulation, const Diagnostics& now) {
 
 Real Ledger::momentum_bound() const {
   constexpr Real kSums = 1e-12;
-  return kSums + 6 * std::sqrt(rounding2_) / moved_;
+  return kSums + rounding_ / moved_;
 }
 
 Real Ledger::energy_bound() const {

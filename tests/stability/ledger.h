@@ -20,8 +20,8 @@ class Ledger {
 
   /// Greatest |P - P_0 - impulses| over the sum of what was moved, both ways.
   Real momentum_error() const { return momentum_error_; }
-  /// What of momentum_error() round-off explains: 1e-12 of sums, and six standard deviations of
-  /// overlaps that are differences of coordinates, times the walls' stiffness.
+  /// What of momentum_error() round-off explains: 1e-12 of sums, and that of overlaps, which are
+  /// differences of coordinates, times the walls' stiffness: a body at rest rounds alike each time.
   Real momentum_bound() const;
   /// Greatest E - E_0 - work of the walls, over the greatest energy in motion and springs.
   Real energy_excess() const { return energy_excess_ / energy_scale_; }
@@ -34,9 +34,9 @@ class Ledger {
 
  private:
   struct Outside {
-    Vec3 force;      ///< of gravity and walls on everything [N]
-    Real power;      ///< of the walls [W]
-    Real rounding2;  ///< sum of the squares of the round-off of the walls' forces [N^2]
+    Vec3 force;     ///< of gravity and walls on everything [N]
+    Real power;     ///< of the walls [W]
+    Real rounding;  ///< greatest round-off of the walls' forces [N]
   };
   static Outside outside(const Simulation& simulation);
   static Real mechanical(const Diagnostics& now);
@@ -45,9 +45,9 @@ class Ledger {
   Vec3 momentum_;  ///< of the start and all impulses since
   Real energy_;    ///< of the start and the walls' work since
   Outside last_;
-  Real moved_ = 0;      ///< sum of the magnitudes of what was added to momentum
-  Real rounding2_ = 0;  ///< sum of the squares of the impulses' round-off
-  Real phase_ = 0;      ///< omega dt of the fastest part
+  Real moved_ = 0;     ///< sum of the magnitudes of what was added to momentum
+  Real rounding_ = 0;  ///< greatest round-off of the walls' impulses
+  Real phase_ = 0;     ///< omega dt of the fastest part
   Real momentum_error_ = 0;
   Real energy_excess_ = -1e300;
   Real energy_scale_ = 1e-300;

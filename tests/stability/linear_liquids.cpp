@@ -42,7 +42,7 @@ LinearCase make_liquid(bool is_viscous, Real spacings) {
   linear.scene = make_scene();
   linear.scene.gravity = Vec3::Zero();
   Material& water = linear.scene.materials[0];
-  water.liquid = LiquidConstants{is_viscous ? 0.0 : 100.0, is_viscous ? 10.0 : 0.0, support};
+  water.liquid = LiquidConstants{is_viscous ? 0.0 : 100.0, is_viscous ? 100.0 : 0.0, support};
   const Real edge = kEdge * kSpacing;
   linear.scene.periodic = Periodicity{Vec3::Zero(), Vec3::Constant(edge), {true, true, true}};
 
