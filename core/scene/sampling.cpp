@@ -65,9 +65,10 @@ void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeI
   }
 }
 
-/// What one lattice point stands for [m^3]; in two dimensions [m^2].
-Real cell_size(Real spacing, int dimensions) {
-  return dimensions == 2 ? spacing * spacing : spacing * spacing * spacing;
+/// Of one lattice point [kg]; in two dimensions [kg/m].
+Real point_mass(Real density, Real spacing, int dimensions) {
+  const Real layer = density * spacing * spacing;
+  return dimensions == 2 ? layer : layer * spacing;
 }
 
 void shift_at_random(const BodyDescription& body, int dimensions, SampledBody& sample) {
@@ -78,7 +79,7 @@ void shift_at_random(const BodyDescription& body, int dimensions, SampledBody& s
 Real lattice_mass(const BodyDescription& body, const Material& material, int dimensions,
                   std::size_t count) {
   if (body.mass) return *body.mass / static_cast<Real>(count);
-  if (body.kind == BodyKind::liquid) return material.density * cell_size(body.spacing, dimensions);
+  if (body.kind == BodyKind::liquid) return point_mass(material.density, body.spacing, dimensions);
   const Real size = dimensions == 2 ? shape_area(body.shape) : shape_volume(body.shape);
   return material.density * size / static_cast<Real>(count);
 }
@@ -105,7 +106,7 @@ void take_particles(const ParticleShape& shape, const BodyDescription& body,
                     const Material& material, int dimensions, SampledBody& sample) {
   const std::size_t count = shape.positions.size();
   const Real equal_mass = body.mass ? *body.mass / static_cast<Real>(count)
-                                    : material.density * cell_size(body.spacing, dimensions);
+                                    : point_mass(material.density, body.spacing, dimensions);
   sample.positions = shape.positions;
   sample.velocities = shape.velocities;
   sample.masses = shape.masses;
