@@ -3,7 +3,6 @@
 
 #include "tests/validation/cases.h"
 #include "tests/validation/cases/liquid_rest.h"
-#include "tests/validation/order.h"
 #include "tests/validation/reference.h"
 
 namespace vat::validation {
