@@ -19,7 +19,7 @@ void set_support(Scene& scene, const std::string& over_spacing) {
 
 // --- LIQ-1 ---
 
-/// Points of the unit cell of a lattice, and the volume of one of them in cells.
+/// A lattice, by the points of its unit cell.
 struct Cell {
   const char* name;
   std::vector<Vec3> points;
@@ -37,9 +37,14 @@ Scene lattice_scene(const Cell& cell) {
   Scene scene = load_scene("LIQ-1");
   const Real edge = kSpacing * std::cbrt(static_cast<Real>(cell.points.size()));
   ParticleShape shape;
-  for (int i = 0; i < kCells * kCells * kCells; ++i) {
-    const Vec3 corner(i % kCells, i / kCells % kCells, i / (kCells * kCells));
-    for (const Vec3& point : cell.points) shape.positions.push_back(edge * (corner + point));
+  for (int x = 0; x < kCells; ++x) {
+    for (int y = 0; y < kCells; ++y) {
+      for (int z = 0; z < kCells; ++z) {
+        for (const Vec3& point : cell.points) {
+          shape.positions.push_back(edge * (Vec3(x, y, z) + point));
+        }
+      }
+    }
   }
   scene.bodies[0].shape = shape;
   scene.periodic->max = Vec3::Constant(kCells * edge);
@@ -62,7 +67,7 @@ void run_sums(Sheet& sheet) {
 
 // --- LIQ-2 ---
 
-/// A wave of `count` particles and four supports, at most 16 particles, across.
+/// A world as long as a wave of `count` spacings, and two supports across.
 Scene wave_scene(const std::string& name, int count, const std::string& reach) {
   Scene scene = load_scene(name);
   set_support(scene, reach);
