@@ -106,9 +106,10 @@ void check_dam_break(Sheet& sheet, int layers) {
   const std::string of = ", a/dx = " + std::to_string(layers);
   const Tolerance target = within(0.04, "published target");
   const bool fine = layers >= 40;
-  const char* kCoarse = "with few layers, the viscosity that keeps the method calm slows the front";
+  const std::string coarse =
+      "with few layers, the viscosity that keeps the method calm slows the front";
   sheet.add("RMS error of the front, experiment 0.175 later" + of, 0,
-            front_error(seen.front, 0.175), fine ? target : reported(kCoarse), run);
+            front_error(seen.front, 0.175), fine ? target : reported(coarse), run);
   sheet.add("RMS error of the front, best delay up to 0.35" + of, 0, best_front_error(seen.front),
             target, run);
   sheet.add("RMS error of the front, no delay" + of, 0, front_error(seen.front, 0),
