@@ -175,6 +175,8 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
     hash.add(std::uint64_t{state.levels.liquid});
     hash.add(state.levels.skin);
   }
+  hash.add(state.bound.omega2);
+  hash.add(state.bound.rate);
   for (Index i = 0; i < model.free_count; ++i) hash.add(state.forces.particle[i]);
   for (const Vec3& force : state.forces.rigid_force) hash.add(force);
   for (const Vec3& torque : state.forces.rigid_torque) hash.add(torque);

@@ -12,21 +12,44 @@ void sort_solids(StepContext& c) {
                       c.model.periodic);
 }
 
-void add_contacts(StepContext& c) {
+namespace {
+
+template <bool keep_dampers>
+void add_block(StepContext& c, std::size_t begin, std::size_t end) {
   const Configuration& at = c.configuration;
+  DamperBlock* const kept = keep_dampers ? &c.work.contact_dampers[begin / kBlockSize] : nullptr;
+  if constexpr (keep_dampers) kept->dampers.clear();
+  for (std::size_t i = begin; i < end; ++i) {
+    Vec3 sum = Vec3::Zero();
+    ContactLoad load;
+    if constexpr (keep_dampers) kept->begin[i - begin] = static_cast<Index>(kept->dampers.size());
+    for_each_contact(c.model, c.work, at, static_cast<Index>(i), [&](const Contact& contact) {
+      const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
+                                    c.model.scene.dimensions);
+      const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
+      const Real push = connection_push(contact.stiffness, contact.damping, contact.threshold,
+                                        contact.distance, speed);
+      if (push <= 0) return;
+      sum += push * n;
+      load.stiffness += 2 * contact.stiffness;
+      load.damping += 2 * contact.damping;
+      if constexpr (keep_dampers) kept->dampers.push_back({contact.other, contact.damping, n});
+    });
+    c.forces.particle[i] += sum;
+    c.work.contact_loads[i] = load;
+  }
+  if constexpr (keep_dampers) kept->begin[end - begin] = static_cast<Index>(kept->dampers.size());
+}
+
+}  // namespace
+
+void add_contacts(StepContext& c) {
+  c.work.contact_loads.resize(c.model.particle_count);
+  if (c.work.keep_dampers) {
+    c.work.contact_dampers.resize((c.model.particle_count + kBlockSize - 1) / kBlockSize);
+  }
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Vec3 sum = Vec3::Zero();
-      for_each_contact(c.model, c.work, at, static_cast<Index>(i), [&](const Contact& contact) {
-        const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
-                                      c.model.scene.dimensions);
-        const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
-        const Real push = connection_push(contact.stiffness, contact.damping, contact.threshold,
-                                          contact.distance, speed);
-        if (push > 0) sum += push * n;
-      });
-      c.forces.particle[i] += sum;
-    }
+    c.work.keep_dampers ? add_block<true>(c, begin, end) : add_block<false>(c, begin, end);
   });
 }
 

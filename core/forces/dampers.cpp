@@ -1,6 +1,5 @@
 #include "core/forces/dampers.h"
 
-#include "core/forces/contact_search.h"
 #include "core/forces/no_slip.h"
 #include "core/forces/pair_direction.h"
 #include "core/forces/vat_motion.h"
@@ -15,21 +14,9 @@ void add_spring_dampers(const Model& model, const Configuration& at, Index i,
     const SpringEnd& spring = model.spring_ends[s];
     if (spring.damping == 0) continue;
     const Vec3 x = at.position[i] - at.position[spring.other];
-    dampers.push_back({spring.other, spring.damping, pair_direction(x, x.norm(), i, spring.other)});
+    const Vec3 n = pair_direction(x, x.norm(), i, spring.other, model.scene.dimensions);
+    dampers.push_back({spring.other, spring.damping, n});
   }
-}
-
-void add_contact_dampers(const Model& model, const Workspace& work, const Configuration& at,
-                         Index i, std::vector<Damper>& dampers) {
-  for_each_contact(model, work, at, i, [&](const Contact& contact) {
-    if (contact.damping == 0) return;
-    const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
-                                  model.scene.dimensions);
-    const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);
-    const Real push =
-        contact.stiffness * (contact.threshold - contact.distance) - contact.damping * speed;
-    if (push > 0) dampers.push_back({contact.other, contact.damping, n});
-  });
 }
 
 void add_wall_dampers(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
@@ -62,9 +49,10 @@ void add_no_slip_dampers(const Model& model, const Workspace& work, const VatMot
 
 }  // namespace
 
-void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time) {
+void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time,
+                            bool viscosity) {
   const Model& model = f.model;
-  is_viscous_ = has_viscosity(model);
+  is_viscous_ = viscosity;
   const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
   blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
@@ -76,7 +64,6 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
       if (i >= model.liquid_count && i < model.free_count) {
         add_spring_dampers(model, at, i, block.dampers);
       }
-      if (model.contact_reach > 0) add_contact_dampers(model, f.work, at, i, block.dampers);
       add_wall_dampers(model, motion, at, i, block.dampers);
       if (i < model.liquid_count && is_viscous_) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
@@ -110,21 +97,29 @@ void DampingMatrix::collect_viscosity(const ForceModel& f) {
   });
 }
 
+namespace {
+
+/// What the dampers of the block's k-th particle, `i`, do to it.
+Vec3 damp(const DamperBlock& block, std::size_t k, const std::vector<Vec3>& w, std::size_t i) {
+  Vec3 sum = Vec3::Zero();
+  for (Index d = block.begin[k]; d < block.begin[k + 1]; ++d) {
+    const Damper& damper = block.dampers[d];
+    const Vec3 change = damper.other == kNoParticle ? w[i] : Vec3(w[i] - w[damper.other]);
+    sum -= damper.strength * change.dot(damper.direction) * damper.direction;
+  }
+  return sum;
+}
+
+}  // namespace
+
 void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
                              std::vector<Vec3>& force) {
+  const bool has_contacts = f.model.contact_reach > 0;
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    const DamperBlock& block = blocks_[begin / kBlockSize];
+    const std::size_t block = begin / kBlockSize;
     for (std::size_t i = begin; i < end; ++i) {
-      Vec3 sum = Vec3::Zero();
-      for (Index k = block.begin[i - begin]; k < block.begin[i - begin + 1]; ++k) {
-        const Damper& damper = block.dampers[k];
-        Real speed = w[i].dot(damper.direction);
-        if (damper.other != kNoParticle) {
-          speed = (w[i] - w[damper.other]).dot(damper.direction);
-        }
-        sum -= damper.strength * speed * damper.direction;
-      }
-      force[i] = sum;
+      force[i] = damp(blocks_[block], i - begin, w, i);
+      if (has_contacts) force[i] += damp(f.work.contact_dampers[block], i - begin, w, i);
     }
   });
   if (!is_viscous_) return;

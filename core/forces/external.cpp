@@ -46,6 +46,7 @@ void set_external_forces(StepContext& c) {
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
   });
+  c.work.contact_loads.assign(c.model.particle_count, {});
   if (scene.forces.gravity && scene.central_field) add_central_field(*scene.central_field, c);
   for (const AppliedForce& applied : c.controls.applied_forces) add_applied_force(applied, c);
   for (const Grab& grab : c.controls.grabs) add_grab(grab, c);

@@ -24,9 +24,15 @@ Vec3 wall_force(const Model& model, const VatMotion& motion, const Configuration
 
 void add_wall_forces(StepContext& c) {
   const VatMotion motion = vat_motion(*c.model.scene.vat, c.time);
+  c.work.contact_loads.resize(c.model.particle_count);
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      c.forces.particle[i] += wall_force(c.model, motion, c.configuration, static_cast<Index>(i));
+      const Vec3 force = wall_force(c.model, motion, c.configuration, static_cast<Index>(i));
+      if (force.isZero(0)) continue;
+      c.forces.particle[i] += force;
+      const ContactLaw& law = c.model.wall_laws[c.model.material[i]];
+      c.work.contact_loads[i].stiffness += law.stiffness;
+      c.work.contact_loads[i].damping += law.damping;
     }
   });
 }

@@ -7,7 +7,7 @@
 namespace vat {
 namespace {
 
-constexpr Real kTolerance = 1e-3;  // of the change of velocities, in the norm of M
+constexpr Real kTolerance = 1e-2;  // of the change of velocities, in the norm of M
 constexpr int kMaxIterations = 200;
 
 /// The solve's constants.
@@ -131,7 +131,9 @@ void iterate(const Equation& eq) {
     apply_damping(eq, direction, product);
     apply_mass(eq, direction, inertia);
     for_entries(eq, product, inertia, [&](Vec3& q, const Vec3& m) { q = m - eq.half_step * q; });
-    const Real length = error / dot(eq, direction, product);
+    const Real curvature = dot(eq, direction, product);
+    if (!(curvature > 0)) return;  // too small for numbers
+    const Real length = error / curvature;
     for_entries(eq, w, direction, [&](Vec3& x, const Vec3& p) { x += length * p; });
     for_entries(eq, residual, product, [&](Vec3& r, const Vec3& q) { r -= length * q; });
     apply_inverse_mass(eq, residual, product);
@@ -144,22 +146,58 @@ void iterate(const Equation& eq) {
 
 }  // namespace
 
-bool must_solve_damping(const Model& model, Real dt) {
-  constexpr Real kEnough = 4;
-  return std::ranges::any_of(model.damping.bounds, [&](const Oscillation& bound) {
-    return bound.omega2 * dt * dt + 4 * bound.rate * dt > kEnough;
-  });
+Oscillation find_bound(const ForceModel& f, const Configuration& at) {
+  const Model& model = f.model;
+  const std::vector<ContactLoad>& loads = f.work.contact_loads;
+  Oscillation bound;
+  const auto take = [&](const Oscillation& o) {
+    bound = {std::max(bound.omega2, o.omega2), std::max(bound.rate, o.rate)};
+  };
+  for (Index i = 0; i < model.free_count; ++i) {
+    const Real mobility = model.inverse_mass[i];
+    if (mobility == 0) continue;
+    take(model.damping.own[model.body[i]] +
+         Oscillation{mobility * loads[i].stiffness, mobility * loads[i].damping});
+  }
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
+    const RigidModel& rigid = model.rigid_bodies[r];
+    Oscillation sum;
+    for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
+      if (loads[e].stiffness == 0 && loads[e].damping == 0) continue;
+      const Real arm2 = (at.position[e] - at.rigid[r].center_of_mass).squaredNorm();
+      const Real mobility = rigid.inverse_mass + arm2 * rigid.inverse_moments.maxCoeff();
+      sum = sum + Oscillation{mobility * loads[e].stiffness, mobility * loads[e].damping};
+    }
+    take(sum);
+  }
+  return bound;
 }
 
-void solve_damping(const ForceModel& f, const Configuration& at, Real time, Real dt, Forces& forces,
-                   DampingScratch& scratch) {
+bool must_solve_damping(const Oscillation& bound, Real dt) {
+  return bound.rate > 0 && bound.omega2 * dt * dt + 4 * bound.rate * dt > 4;
+}
+
+bool must_solve_viscosity(const Model& model, Real dt) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (model.bodies[b].kind == BodyKind::liquid && must_solve_damping(model.damping.own[b], dt)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void solve_damping(const ForceModel& f, const Configuration& half, const Configuration& at,
+                   Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
   const Equation eq{f, at, dt / 2, scratch};
   auto& [matrix, w, residual, direction, inertia, product, partial_sums] = scratch;
-  matrix.collect(f, at, time);
+  matrix.collect(f, at, time, viscosity);
   for (Motion* motion : {&w, &residual, &direction, &inertia, &product}) resize(f.model, *motion);
   product = {forces.particle, forces.rigid_force, forces.rigid_torque};
   apply_inverse_mass(eq, product, w);
   for_entries(eq, w, w, [&](Vec3& x, const Vec3&) { x *= eq.half_step; });
+  for (Index i = 0; i < f.model.free_count; ++i) {
+    w.particle[i] += half.velocity[i] - at.velocity[i];
+  }
   iterate(eq);
   apply_damping(eq, w, product);
   for (Index i = 0; i < f.model.particle_count; ++i) forces.particle[i] += product.particle[i];

@@ -24,15 +24,25 @@ struct DampingScratch {
   std::vector<Real> partial_sums;  ///< of dot products, by block
 };
 
-/// Whether velocity Verlet must solve for the damping in a step of `dt`; where it need not, forces
-/// at predicted velocities are stable too, which needs (omega dt)^2 + 4 rate dt <= 4 of every part.
-bool must_solve_damping(const Model& model, Real dt);
+/// An upper bound of the oscillations that springs, liquids and the contacts of the last evaluation
+/// allow: of each particle, or rigid body, the sum of its own and of all its contacts.
+Oscillation find_bound(const ForceModel& force_model, const Configuration& at);
 
-/// Changes `forces`, evaluated at `at` with the velocities at the half of a step, into those at the
-/// velocities that they lead to at its end: the change w obeys M w = dt/2 (f + D w). Linear in what
-/// acts at `at`; by conjugate gradients on (M - dt/2 D) w = dt/2 f, from dt/2 M^-1 f on. D w is a
-/// sum of equal and opposite forces, so momentum is conserved after any number of iterations.
-void solve_damping(const ForceModel& force_model, const Configuration& at, Real time, Real dt,
-                   Forces& forces, DampingScratch& scratch);
+/// Whether velocity Verlet must solve for the damping in a step of `dt`; where it need not, forces
+/// at predicted velocities are stable too, which takes (omega dt)^2 + 4 rate dt <= 4.
+bool must_solve_damping(const Oscillation& bound, Real dt);
+
+/// Changes `forces`, evaluated at `at` with velocities near those at the end of a step, into those
+/// at the velocities v that they lead to: M (v - half) = dt/2 (f + D (v - at)), with `half` the
+/// velocities at the half step. Linear in what acts at `at`; by conjugate gradients for w = v - at.
+/// D w is a sum of equal and opposite forces, so momentum is conserved after any number of
+/// iterations. Needs the dampers that the workspace kept; the rigid bodies of `at` move as at the
+/// half step.
+void solve_damping(const ForceModel& force_model, const Configuration& half,
+                   const Configuration& at, Real time, Real dt, bool viscosity, Forces& forces,
+                   DampingScratch& scratch);
+
+/// Whether the viscosity of some liquid takes part in that.
+bool must_solve_viscosity(const Model& model, Real dt);
 
 }  // namespace vat

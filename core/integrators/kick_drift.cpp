@@ -64,22 +64,46 @@ void evaluate_at_prediction(const ForceModel& f, State& state, Real time, Real d
   restore_velocities(f.model, scratch.start, state.now);
 }
 
+/// The forces that close a step, at the velocities that they lead to. Liquids whose viscosity needs
+/// no solving are predicted.
+void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
+                         IntegratorScratch& scratch) {
+  const bool viscosity = must_solve_viscosity(f.model, dt);
+  keep_velocities(state.now, scratch.start);
+  if (!viscosity) {
+    for (Index i = 0; i < f.model.liquid_count; ++i) {
+      state.now.velocity[i] += (dt / 2 * f.model.inverse_mass[i]) * state.forces.particle[i];
+    }
+  }
+  f.work.keep_dampers = true;
+  f.evaluate(state.now, time, state.forces);
+  f.work.keep_dampers = false;
+  if (f.observer != nullptr) f.observer->stage_begins("solve_damping");
+  solve_damping(f, scratch.start, state.now, time, dt, viscosity, state.forces, scratch.damping);
+  if (f.observer != nullptr) f.observer->stage_ends("solve_damping");
+  restore_velocities(f.model, scratch.start, state.now);
+}
+
 // Kick, drift, kick: the closing kick's forces open the next step, so a step costs one evaluation.
 // Forces that depend on velocities are those at the end of the step, or at what is predicted for it
 // where that is stable: order 2 either way.
 void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Real dt,
                                IntegratorScratch& scratch) {
-  if (!state.forces_current) f.evaluate(state.now, time, state.forces);
+  const bool is_damped = f.model.damping.any;
+  if (!state.forces_current) {
+    f.evaluate(state.now, time, state.forces);
+    if (is_damped) state.bound = find_bound(f, state.now);
+  }
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
   drift(f.model, f.runner, state.now, dt);
-  if (must_solve_damping(f.model, dt)) {
-    f.evaluate(state.now, time + dt, state.forces);
-    solve_damping(f, state.now, time + dt, dt, state.forces, scratch.damping);
-  } else if (f.model.damping.any || !f.controls.grabs.empty()) {
+  if (is_damped && must_solve_damping(state.bound, dt)) {
+    evaluate_with_solve(f, state, time + dt, dt, scratch);
+  } else if (is_damped || !f.controls.grabs.empty()) {
     evaluate_at_prediction(f, state, time + dt, dt, scratch);
   } else {
     f.evaluate(state.now, time + dt, state.forces);
   }
+  if (is_damped) state.bound = find_bound(f, state.now);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
   state.forces_current = true;
 }

@@ -158,10 +158,13 @@ ModelDamping find_damping(const Model& model) {
   std::vector<const SampledBody*> samples;
   for (const ModelBody& body : model.bodies) samples.push_back(body.sample.get());
   ModelDamping damping;
+  damping.own.resize(model.bodies.size());
   for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples)) {
-    if (part.bound.rate > 0) damping.bounds.push_back(part.bound);
+    if (part.bound.rate > 0) damping.any = true;
+    if (!part.body) continue;
+    Oscillation& own = damping.own[*part.body];
+    own = {std::max(own.omega2, part.bound.omega2), std::max(own.rate, part.bound.rate)};
   }
-  damping.any = !damping.bounds.empty();
   return damping;
 }
 

@@ -84,7 +84,7 @@ struct RigidModel {
 /// The forces of a model that depend on velocities.
 struct ModelDamping {
   bool any = false;
-  std::vector<Oscillation> bounds;  ///< of the parts that have such forces
+  std::vector<Oscillation> own;  ///< by body: of its springs, or of its liquid
 };
 
 /// A compiled scene: constant while it is stepped. Particles are ordered liquid, deformable, rigid,

@@ -199,7 +199,8 @@ void add_contacts(const Scene& scene, std::span<const SampledBody* const> sample
         {law.path,
          "contacts of " + names + " may become unstable",
          "undamped contacts gain energy with this integrator",
-         {law.constants.stiffness * law.inverse_mass, law.constants.damping * law.inverse_mass}});
+         {law.constants.stiffness * law.inverse_mass, law.constants.damping * law.inverse_mass},
+         {}});
   }
 }
 

@@ -68,7 +68,7 @@ void add_springs(std::size_t index, const SampledBody& body, std::vector<Oscilla
   const SpringBound bound = bound_springs(body);
   const auto add = [&](const Oscillation& oscillation) {
     parts.push_back({body_path(index), "its springs may become unstable",
-                     "undamped springs gain energy with this integrator", oscillation});
+                     "undamped springs gain energy with this integrator", oscillation, index});
   };
   add(bound.greatest);
   if (bound.greatest.omega2 > 0) {
@@ -88,7 +88,8 @@ void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPa
   parts.push_back({body_path(index),
                    "sound or viscosity in the liquid becomes unstable",
                    "sound in an inviscid liquid gains energy with this integrator",
-                   {sound * sound, kVerletLimit / kViscousLimit * viscosity / (h * h)}});
+                   {sound * sound, kVerletLimit / kViscousLimit * viscosity / (h * h)},
+                   index});
 }
 
 }  // namespace

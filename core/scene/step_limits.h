@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct OscillatingPart {
   std::string reason;  ///< "... become unstable", where a step is too long
   std::string gains;   ///< "... gain energy", with an integrator for which no step is short enough
   Oscillation bound;
+  std::optional<std::size_t> body{};  ///< where it is one body's springs or liquid
 };
 
 /// The parts of the scene that limit its steps; see find_step_limits().

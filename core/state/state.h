@@ -53,6 +53,8 @@ struct State {
   /// Of the last evaluation; velocity Verlet opens a step with them. With local control, each
   /// connection's over 2^level.
   Forces forces;
+  /// Upper bound of the oscillations that those forces allow; read by velocity Verlet.
+  Oscillation bound;
   bool forces_current = false;  ///< false: something but the integrator changed what they depend on
   StepHistory history;
   LocalLevels levels;  ///< with which the forces were evaluated; local control only

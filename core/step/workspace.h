@@ -41,6 +41,26 @@ struct PairBlock {
   std::array<Index, kBlockSize + 1> begin;
 };
 
+/// The constants of the contacts that act on a particle, one whose other end moves too twice.
+struct ContactLoad {
+  Real stiffness = 0;  ///< [N/m]
+  Real damping = 0;    ///< [N s/m]
+};
+
+/// What dampers see of two particles, or of one and a wall: f_i = -strength ((w_i - w_j).n) n.
+struct Damper {
+  Index other;     ///< kNoParticle: a wall
+  Real strength;   ///< [N s/m]
+  Vec3 direction;  ///< n
+};
+inline constexpr Index kNoParticle = ~Index{0};
+
+/// Dampers of one block of particles: those of the block's k-th are [begin[k], begin[k + 1]).
+struct DamperBlock {
+  std::vector<Damper> dampers;
+  std::array<Index, kBlockSize + 1> begin;
+};
+
 /// Scratch of force evaluations, kept from one to the next so that nothing is allocated in a steady
 /// step. Nothing here outlives an evaluation in meaning.
 struct Workspace {
@@ -54,6 +74,9 @@ struct Workspace {
   std::vector<Real> filling;   ///< by liquid slot: density over filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
   CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
+  std::vector<ContactLoad> contact_loads;  ///< by particle
+  bool keep_dampers = false;               ///< asks for the next line
+  std::vector<DamperBlock> contact_dampers;
 };
 
 /// What a stage sees.

@@ -78,7 +78,6 @@ Scene make_damped_contacts() {
 Real force_error(const Scene& scene) {
   test::ForceProbe probe(scene);
   const Model& model = probe.model();
-  EXPECT_TRUE(must_solve_damping(model, kStep));
   const Controls controls;
   Workspace work;
   const ForceModel force_model{model, controls, work};
@@ -86,6 +85,7 @@ Real force_error(const Scene& scene) {
   State state = probe.state();
   state.forces_current = false;
   take_step(IntegratorId::velocity_verlet, force_model, state, 0, kStep, scratch);
+  EXPECT_TRUE(must_solve_damping(state.bound, kStep));
   const std::vector<Vec3> kept = state.forces.particle;
   force_model.evaluate(state.now, kStep, state.forces);
   Real wrong = 0;
@@ -97,10 +97,12 @@ Real force_error(const Scene& scene) {
   return std::sqrt(wrong / whole);
 }
 
+// Velocities are solved for to 1 %, and the damping of what is left out is at most half of rate *
+// dt = 16 of that.
 TEST(DampingSolve, VelocitiesAreThoseThatTheirOwnDampingLeadsTo) {
-  EXPECT_LT(force_error(make_damped_block()), 0.01);
-  EXPECT_LT(force_error(make_viscous_drop()), 0.01);
-  EXPECT_LT(force_error(make_viscous_channel()), 0.01);
+  EXPECT_LT(force_error(make_damped_block()), 0.08);
+  EXPECT_LT(force_error(make_viscous_drop()), 0.08);
+  EXPECT_LT(force_error(make_viscous_channel()), 0.08);
 }
 
 Vec3 momentum_of(const Diagnostics& d) {
@@ -153,7 +155,14 @@ TEST(DampingSolve, LightDampingNeedsNone) {
   Scene scene = make_damped_block();
   scene.bodies[0].springs =
       test::join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.15, {1, 0.01});
-  EXPECT_FALSE(must_solve_damping(test::ForceProbe(scene).model(), kStep));
+  test::ForceProbe probe(scene);
+  const Controls controls;
+  Workspace work;
+  const ForceModel force_model{probe.model(), controls, work};
+  force_model.evaluate(probe.state().now, 0, probe.state().forces);
+  const Oscillation bound = find_bound(force_model, probe.state().now);
+  EXPECT_GT(bound.rate, 0);
+  EXPECT_FALSE(must_solve_damping(bound, kStep));
 }
 
 TEST(DampingSolve, GivesTheSameBitsForAnyNumberOfThreads) {
