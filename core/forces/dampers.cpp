@@ -1,23 +1,11 @@
 #include "core/forces/dampers.h"
 
 #include "core/forces/no_slip.h"
-#include "core/forces/pair_direction.h"
 #include "core/forces/vat_motion.h"
 #include "core/step/force_model.h"
 
 namespace vat {
 namespace {
-
-void add_spring_dampers(const Model& model, const Configuration& at, Index i,
-                        std::vector<Damper>& dampers) {
-  for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
-    const SpringEnd& spring = model.spring_ends[s];
-    if (spring.damping == 0) continue;
-    const Vec3 x = at.position[i] - at.position[spring.other];
-    const Vec3 n = pair_direction(x, x.norm(), i, spring.other, model.scene.dimensions);
-    dampers.push_back({spring.other, spring.damping, n});
-  }
-}
 
 void add_wall_dampers(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
                       std::vector<Damper>& dampers) {
@@ -61,9 +49,6 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Index>(k);
       block.begin[k - begin] = static_cast<Index>(block.dampers.size());
-      if (i >= model.liquid_count && i < model.free_count) {
-        add_spring_dampers(model, at, i, block.dampers);
-      }
       add_wall_dampers(model, motion, at, i, block.dampers);
       if (i < model.liquid_count && is_viscous_) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
@@ -110,15 +95,30 @@ Vec3 damp(const DamperBlock& block, std::size_t k, const std::vector<Vec3>& w, s
   return sum;
 }
 
+Vec3 damp_springs(const Model& model, const std::vector<Vec3>& directions,
+                  const std::vector<Vec3>& w, std::size_t i) {
+  Vec3 sum = Vec3::Zero();
+  for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+    const SpringEnd& spring = model.spring_ends[s];
+    const Vec3& n = directions[s];
+    sum -= spring.damping * (w[i] - w[spring.other]).dot(n) * n;
+  }
+  return sum;
+}
+
 }  // namespace
 
 void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
                              std::vector<Vec3>& force) {
   const bool has_contacts = f.model.contact_reach > 0;
+  const bool has_springs = !f.model.spring_ends.empty();
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     const std::size_t block = begin / kBlockSize;
     for (std::size_t i = begin; i < end; ++i) {
       force[i] = damp(blocks_[block], i - begin, w, i);
+      if (has_springs && i < f.model.free_count) {
+        force[i] += damp_springs(f.model, f.work.spring_directions, w, i);
+      }
       if (has_contacts) force[i] += damp(f.work.contact_dampers[block], i - begin, w, i);
     }
   });

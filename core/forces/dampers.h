@@ -25,7 +25,7 @@ class DampingMatrix {
   void collect_viscosity(const ForceModel& force_model);
 
   bool is_viscous_ = false;
-  std::vector<DamperBlock> blocks_;             ///< of particles, without contacts
+  std::vector<DamperBlock> blocks_;             ///< of particles, without springs and contacts
   std::vector<std::vector<Real>> viscosities_;  ///< mu V_i V_j laplacian W, as liquid_pairs [N s/m]
   std::vector<Vec3> by_slot_;                   ///< w of liquid slots
 };

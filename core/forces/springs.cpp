@@ -8,10 +8,12 @@ namespace vat {
 namespace {
 
 // f = -(k (|p_e - p_i| - l) + c v_ei.n) n with n = (p_e - p_i) / |p_e - p_i|.      Boldt eq. 3
-Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int dimensions) {
+Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int dimensions,
+                  Vec3* direction) {
   const Vec3 x = at.position[e] - at.position[spring.other];
   const Real r = x.norm();
   const Vec3 n = pair_direction(x, r, e, spring.other, dimensions);
+  if (direction != nullptr) *direction = n;
   const Real speed = (at.velocity[e] - at.velocity[spring.other]).dot(n);
   return connection_push(spring.stiffness, spring.damping, spring.rest_length, r, speed) * n;
 }
@@ -22,12 +24,15 @@ Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int
 // one writer, and the two are opposite to the bit.
 void add_spring_forces(StepContext& c) {
   const Index first = c.model.liquid_count;
+  const bool keep = c.work.keep_dampers;
+  if (keep) c.work.spring_directions.resize(c.model.spring_ends.size());
   for_blocks(c.runner, c.model.free_count - first, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Index e = first + static_cast<Index>(k);
       Vec3 sum = Vec3::Zero();
       for (Index s = c.model.spring_begin[e]; s < c.model.spring_begin[e + 1]; ++s) {
-        sum += spring_force(c.configuration, e, c.model.spring_ends[s], c.model.scene.dimensions);
+        sum += spring_force(c.configuration, e, c.model.spring_ends[s], c.model.scene.dimensions,
+                            keep ? &c.work.spring_directions[s] : nullptr);
       }
       c.forces.particle[e] += sum;
     }

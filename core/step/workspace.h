@@ -75,7 +75,8 @@ struct Workspace {
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
   CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
   std::vector<ContactLoad> contact_loads;  ///< by particle
-  bool keep_dampers = false;               ///< asks for the next line
+  bool keep_dampers = false;               ///< asks for the next two lines
+  std::vector<Vec3> spring_directions;     ///< by end: n of Boldt eq. 3
   std::vector<DamperBlock> contact_dampers;
 };
 
