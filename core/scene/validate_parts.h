@@ -22,8 +22,7 @@ void check_periodicity(const Periodicity& periodic, RangeCheck& check);
 void check_central_field(const CentralField& field, RangeCheck& check);
 void check_numerics(const Numerics& numerics, RangeCheck& check);
 /// Whether the accuracy, if any, can be met. The rest of the scene must be without errors.
-void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples,
-                    RangeCheck& check);
+void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check);
 
 /// That a scene of two dimensions, but its bodies, stays in its plane. Code: off_plane.
 void check_plane(const Scene& scene, RangeCheck& check);
