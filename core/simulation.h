@@ -84,7 +84,7 @@ struct AdvanceReport {
   void count_steps(std::uint64_t count, Real least, Real greatest);
 };
 
-/// Told when each stage of the step begins and ends; for profiles. The core has no clock.
+/// Told when each stage of the plan, and solve_damping, begins and ends. The core has no clock.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

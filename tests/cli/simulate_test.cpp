@@ -165,7 +165,8 @@ TEST(Simulate, ProfileNamesTheStagesOfThePlan) {
     if (!line.ends_with(" %")) continue;
     const std::string name = line.substr(0, line.find("  "));
     if (name != "(between stages)") {
-      EXPECT_THAT(plan.out, HasSubstr(name));
+      // The solve for the damping is the integrator's, not a stage of the plan.
+      if (name != "solve_damping") EXPECT_THAT(plan.out, HasSubstr(name));
       ++stages;
     }
     const std::string percent = line.substr(0, line.size() - 2);
