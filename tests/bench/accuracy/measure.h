@@ -35,7 +35,7 @@ struct Solution {
 struct SweepSettings {
   int repetitions = 5;     ///< timed, after one that warms the caches
   std::size_t stride = 1;  ///< every how-manieth step of the problem is tried
-  double longest_run = 1;  ///< [s]; a method's sweep ends with the run that takes longer
+  double longest_run = 0.4;  ///< [s]; a method's sweep ends with the run that takes longer
 };
 
 /// Solves the problem with ever finer steps; those with which the scene is not valid are left out.

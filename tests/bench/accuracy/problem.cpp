@@ -26,8 +26,8 @@ Real root_mean_square(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 std::vector<ProblemEntry> collect() {
   std::vector<ProblemEntry> problems;
-  for (const auto group :
-       {deformable_problems, rigid_problems, liquid_problems, interaction_problems}) {
+  for (const auto group : {deformable_problems, rigid_problems, liquid_problems,
+                           interaction_problems, catalogue_problems}) {
     std::ranges::move(group(), std::back_inserter(problems));
   }
   return problems;

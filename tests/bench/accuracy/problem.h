@@ -19,6 +19,8 @@ struct Problem {
   std::vector<std::uint32_t> step_counts;  ///< of fixed steps from start to end, rising
   /// Number of the longest steps of varied control; 0: as with fixed steps.
   std::uint32_t longest_step_count = 0;
+  /// How many times as many there are with each finer tolerance.
+  std::uint32_t longest_step_growth = 1;
   std::function<Real(const validation::Run&)> error;
 };
 
@@ -28,13 +30,14 @@ struct ProblemEntry {
   std::function<Problem(TaskRunner*)> make;
 };
 
-/// All problems: deformable, rigid, liquid and interaction.
+/// All problems: deformable, rigid, liquid, interaction, and scenes of the catalogue.
 const std::vector<ProblemEntry>& all_problems();
 
 std::vector<ProblemEntry> deformable_problems();
 std::vector<ProblemEntry> rigid_problems();
 std::vector<ProblemEntry> liquid_problems();
 std::vector<ProblemEntry> interaction_problems();
+std::vector<ProblemEntry> catalogue_problems();
 
 /// `count` numbers from `first` on, each twice the one before.
 std::vector<std::uint32_t> doubled(std::uint32_t first, int count);

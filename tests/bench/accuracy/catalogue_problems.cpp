@@ -1,0 +1,66 @@
+#include <cmath>
+#include <stdexcept>
+
+#include "protocol/scene_json.h"
+#include "tests/bench/accuracy/problem.h"
+
+namespace vat::bench {
+
+using validation::Run;
+
+namespace {
+
+std::vector<Vec3> centers_of(const Run& run) {
+  std::vector<Vec3> centers;
+  for (const BodyDiagnostics& body : run.diagnostics().bodies) {
+    centers.push_back(body.center_of_mass);
+  }
+  return centers;
+}
+
+Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum);
+}
+
+Scene load(const std::string& name) {
+  Result<Scene> scene = read_scene_file(VAT_DEFAULT_SCENES_DIR "/" + name + ".json");
+  if (!scene) throw std::runtime_error(name + " is not a scene of the catalogue");
+  return std::move(scene).value();
+}
+
+/// A scene of the catalogue over its first impacts. Later its particles go ways of their own, with
+/// every method.
+Problem first_impacts(const std::string& name, TaskRunner* runner) {
+  Problem problem{.title = "Scene " + name + ", its first 0.3 s",
+                  .error_name = "centres of mass against a fine run, in ways from the start",
+                  .scene = load(name),
+                  .end = 0.3,
+                  .step_counts = doubled(75, 5),
+                  .longest_step_count = 75,
+                  .error = {}};
+  constexpr int kFiner = 2;  // than the finest steps, and of order 4 but for contacts
+  const Real step = problem.end / (static_cast<Real>(kFiner) * problem.step_counts.back());
+  Run fine(validation::with_method(problem.scene, IntegratorId::runge_kutta_4, step), runner);
+  const std::vector<Vec3> start = centers_of(fine);
+  fine.advance_to(problem.end);
+  const std::vector<Vec3> expected = centers_of(fine);
+  problem.error = [expected, size = distance(start, expected)](const Run& run) {
+    return distance(centers_of(run), expected) / size;
+  };
+  return problem;
+}
+
+}  // namespace
+
+std::vector<ProblemEntry> catalogue_problems() {
+  std::vector<ProblemEntry> problems;
+  for (const std::string name : {"rigid-stack", "deformable-drop", "sliding-vat-solids",
+                                 "dam-break", "sliding-vat-liquid"}) {
+    problems.push_back({name, [name](TaskRunner* runner) { return first_impacts(name, runner); }});
+  }
+  return problems;
+}
+
+}  // namespace vat::bench
