@@ -9,6 +9,7 @@
 #include "server/cli/command.h"
 #include "server/task_runner.h"
 #include "tests/bench/accuracy/accuracy_report.h"
+#include "tests/bench/accuracy/control_report.h"
 #include "tests/bench/options.h"
 
 namespace vat::bench {
@@ -56,7 +57,8 @@ int accuracy(const Options& options) {
   const Status written = write_accuracy(results, options.output);
   if (!written) return fail(options.output, written.errors());
   std::cout << '\n'
-            << to_markdown(cheapest_table(results)) << "\nwritten to " << options.output << '\n';
+            << to_markdown(cheapest_table(results)) << '\n'
+            << to_markdown(control_table(results)) << "\nwritten to " << options.output << '\n';
   return kExitOk;
 }
 

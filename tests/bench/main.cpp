@@ -4,6 +4,7 @@
 
 #include "server/cli/command.h"
 #include "tests/bench/accuracy.h"
+#include "tests/bench/document.h"
 #include "tests/bench/speed.h"
 #include "tests/bench/stability.h"
 #include "tests/bench/validate.h"
@@ -22,6 +23,7 @@ int run(int argc, char** argv) {
   vat::bench::add_validate_command(app, exit_code);
   vat::bench::add_accuracy_command(app, exit_code);
   vat::bench::add_stability_command(app, exit_code);
+  vat::bench::add_document_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,11 +4,12 @@
 #include <array>
 #include <limits>
 
+#include "tests/bench/accuracy/control_report.h"
+
 namespace vat::bench {
 
 namespace {
 
-constexpr std::array<Real, 4> kTargets = {1e-2, 1e-3, 1e-4, 1e-6};
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 
 /// Errors above the size of the problem say nothing but that the method failed.
@@ -76,7 +77,7 @@ Table cheapest_table(const std::vector<ProblemResult>& results) {
        "evaluations per particle", "least time", "its step [s]", "its tolerance", "seconds"},
       {}};
   for (const ProblemResult& result : results) {
-    for (const Real target : kTargets) {
+    for (const Real target : kTargetErrors) {
       const auto by_count = cheapest(result.solutions, target, evaluations_of);
       const auto by_time = cheapest(result.solutions, target, seconds_of);
       std::vector<Cell> row = {result.name, target};
@@ -107,6 +108,11 @@ Status write_accuracy(const std::vector<ProblemResult>& results,
   }
   if (Status done = write_table(cheapest_table(results), folder, "cheapest",
                                 "# Run time against error: the cheapest methods");
+      !done) {
+    return done;
+  }
+  if (Status done = write_table(control_table(results), folder, "control",
+                                "# Run time against error: varied steps against the best fixed");
       !done) {
     return done;
   }

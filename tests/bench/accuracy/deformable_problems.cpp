@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "tests/bench/accuracy/problem.h"
+#include "tests/support/scenes.h"
 #include "tests/validation/reference.h"
 
 namespace vat::bench {
@@ -50,10 +51,60 @@ Problem cube(TaskRunner*) {
           }};
 }
 
+constexpr Real kLampSpacing = 0.1;  // [m]
+constexpr Real kSoft = 1e3;         // [N/m]
+constexpr Real kStiff = 1e6;
+
+/// A soft cube of 512 particles hangs on a stiff one of 8, which is held by a corner.
+BodyDescription make_lamp() {
+  std::vector<Vec3> points = test::make_lattice(8, 8, 8, kLampSpacing);
+  std::vector<SpringDescription> springs = test::join_near(points, 1.5 * kLampSpacing, {kSoft, 0});
+  const auto first = static_cast<Index>(points.size());
+  std::vector<Vec3> holder = test::make_lattice(2, 2, 2, kLampSpacing);
+  for (SpringDescription spring : test::join_near(holder, 1.5 * kLampSpacing, {kStiff, 0})) {
+    spring.a += first;
+    spring.b += first;
+    springs.push_back(spring);
+  }
+  for (Vec3& point : holder) {
+    point.z() += 5 * kLampSpacing;
+    points.push_back(point);
+  }
+  for (Index a = 0; a < first; ++a) {
+    for (Index b = first; b < points.size(); ++b) {
+      if ((points[a] - points[b]).norm() > 1.1 * kLampSpacing) continue;
+      springs.push_back({a, b, {kSoft, 0}, {}});
+    }
+  }
+  BodyDescription lamp = test::make_body("lamp", BodyKind::deformable, "rubber",
+                                         test::make_particles(points, 0.01), 0.01);
+  lamp.springs = std::move(springs);
+  std::get<ParticleShape>(lamp.shape).fixed = {first + 4};
+  return lamp;
+}
+
+/// One part in 65 needs steps 30 times as short as the rest.
+Problem lamp(TaskRunner* runner) {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 5e-5);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {test::make_material("rubber")};
+  scene.bodies = {make_lamp()};
+  Problem problem{.title = "Soft cube that hangs on a small stiff one",
+                  .error_name = "places against a fine run, in ways from the start",
+                  .scene = std::move(scene),
+                  .end = 0.1,
+                  .step_counts = doubled(2000, 3),
+                  .longest_step_count = 100,
+                  .longest_step_growth = 2,
+                  .error = {}};
+  problem.error = error_against_fine_run(problem, 1, runner);
+  return problem;
+}
+
 }  // namespace
 
 std::vector<ProblemEntry> deformable_problems() {
-  return {{"DEF-4", pendulum}, {"DEF-5", beam}, {"DEF-6b", cube}};
+  return {{"DEF-4", pendulum}, {"DEF-5", beam}, {"DEF-6b", cube}, {"lamp", lamp}};
 }
 
 }  // namespace vat::bench

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "tests/bench/accuracy/problem.h"
+#include "tests/support/scenes.h"
 #include "tests/validation/reference.h"
 
 namespace vat::bench {
@@ -37,10 +38,48 @@ Problem impact(TaskRunner* runner) {
   return problem;
 }
 
+constexpr Real kPoolSpacing = 0.05;  // [m]
+
+/// A jelly of 27 particles, stiff enough to need steps 20 times as short as the liquid's, falls
+/// into a pool of 320.
+Scene make_pool() {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-4);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {test::make_liquid("water", 1000, {100, 5, 2 * kPoolSpacing}),
+                     test::make_material("jelly")};
+  scene.default_interface = {1000, 1};
+  scene.vat = Vat{Vec3(-0.2, -0.2, -0.125), Vec3(0.2, 0.2, 0.6), false, {}};
+  const std::vector<Vec3> block = test::make_lattice(3, 3, 3, kPoolSpacing);
+  BodyDescription jelly = test::make_body("jelly", BodyKind::deformable, "jelly",
+                                          test::make_particles(block, 0.1), kPoolSpacing / 2);
+  jelly.springs = test::join_near(block, 1.5 * kPoolSpacing, {1e6, 1});
+  jelly.position = {0.01, -0.005, 0.25};
+  jelly.velocity = {0, 0, -1};
+  scene.bodies = {
+      test::make_body("pool", BodyKind::liquid, "water",
+                      test::make_particles(test::make_lattice(8, 8, 5, kPoolSpacing), 0.125),
+                      kPoolSpacing / 2),
+      std::move(jelly)};
+  return scene;
+}
+
+Problem pool(TaskRunner* runner) {
+  Problem problem{.title = "Stiff jelly that falls into a pool",
+                  .error_name = "places against a fine run, in ways from the start",
+                  .scene = make_pool(),
+                  .end = 0.1,
+                  .step_counts = doubled(1000, 3),
+                  .longest_step_count = 50,
+                  .longest_step_growth = 2,
+                  .error = {}};
+  problem.error = error_against_fine_run(problem, 1, runner);
+  return problem;
+}
+
 }  // namespace
 
 std::vector<ProblemEntry> interaction_problems() {
-  return {{"INT-6", push}, {"INT-impact", impact}};
+  return {{"INT-6", push}, {"INT-impact", impact}, {"pool", pool}};
 }
 
 }  // namespace vat::bench

@@ -20,10 +20,16 @@ Real tolerance_of(std::size_t index) {
   return 0.1 * std::pow(0.25, static_cast<Real>(index));
 }
 
+std::uint32_t step_count_of(const Problem& problem, bool varied, std::size_t index) {
+  if (!varied || problem.longest_step_count == 0) return problem.step_counts[index];
+  std::uint32_t count = problem.longest_step_count;
+  for (std::size_t i = 0; i < index; ++i) count *= problem.longest_step_growth;
+  return count;
+}
+
 Scene scene_for(const Problem& problem, const Method& method, std::size_t index) {
   const bool varied = method.control != StepControl::fixed;
-  const std::uint32_t count = varied && problem.longest_step_count > 0 ? problem.longest_step_count
-                                                                       : problem.step_counts[index];
+  const std::uint32_t count = step_count_of(problem, varied, index);
   Scene scene = validation::with_method(problem.scene, method.integrator, problem.end / count);
   scene.numerics.control = method.control;
   if (varied) scene.numerics.tolerance = tolerance_of(index);
@@ -55,8 +61,10 @@ void time_runs(const Problem& problem, const Scene& scene, const SweepSettings& 
   std::vector<double> seconds;
   const double first = run_once(problem, scene, runner, solution);
   const std::uint64_t hash = solution.state_hash;
-  for (int i = 0; i < settings.repetitions; ++i) {
+  double total = 0;
+  for (int i = 0; i < settings.repetitions && total < settings.longest_run; ++i) {
     seconds.push_back(run_once(problem, scene, runner, solution));
+    total += seconds.back();
     if (solution.state_hash == hash) continue;
     throw std::logic_error(problem.title + ": two equal runs end in different states");
   }

@@ -33,8 +33,8 @@ struct Solution {
 };
 
 struct SweepSettings {
-  int repetitions = 5;     ///< timed, after one that warms the caches
-  std::size_t stride = 1;  ///< every how-manieth step of the problem is tried
+  int repetitions = 5;       ///< timed, after one that warms the caches; fewer of long runs
+  std::size_t stride = 1;    ///< every how-manieth step of the problem is tried
   double longest_run = 0.4;  ///< [s]; a method's sweep ends with the run that takes longer
 };
 

@@ -1,0 +1,117 @@
+#include "tests/bench/document/page_tables.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+namespace vat::bench {
+
+namespace {
+
+std::string text(const Json& row, const char* column) {
+  return row.at(column).get<std::string>();
+}
+
+/// With three digits; a dash where the value is absent.
+std::string number(const Json& row, const char* column) {
+  const Json& value = row.at(column);
+  if (value.is_null()) return "–";
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3g", value.get<Real>());
+  return buffer;
+}
+
+bool is_judged(const Json& row) {
+  return !row.at("passed").is_null();
+}
+
+Real share(const Json& row) {
+  const Json& value = row.at("share of tolerance");
+  return value.is_null() ? 0 : value.get<Real>();
+}
+
+/// Consecutive rows with the same case.
+std::vector<std::vector<Json>> by_case(const Json& rows) {
+  std::vector<std::vector<Json>> groups;
+  for (const Json& row : rows) {
+    if (groups.empty() || groups.back().front().at("case") != row.at("case")) groups.emplace_back();
+    groups.back().push_back(row);
+  }
+  return groups;
+}
+
+std::string method_cell(const Json& row) {
+  const std::string method = text(row, "fewest evaluations");
+  if (row.at("evaluations per particle").is_null()) return "–";
+  return method + ": " + number(row, "evaluations per particle");
+}
+
+}  // namespace
+
+Table cases_table(const Json& validation, const std::map<std::string, std::string>& titles) {
+  Table table{
+      {"case", "what", "metrics", "the one nearest to its tolerance", "measured", "must be"}, {}};
+  for (const std::vector<Json>& rows : by_case(validation)) {
+    const Json& main = *std::ranges::max_element(rows, [](const Json& a, const Json& b) {
+      return std::pair(is_judged(a), share(a)) < std::pair(is_judged(b), share(b));
+    });
+    const std::string name = text(main, "case");
+    table.rows.push_back({name, titles.at(name), std::uint64_t{rows.size()}, text(main, "metric"),
+                          main.at("measured").get<Real>(), text(main, "must be")});
+  }
+  return table;
+}
+
+Table limits_table(const Json& validation) {
+  Table table{{"case", "metric", "measured", "exact, or published", "why"}, {}};
+  for (const Json& row : validation) {
+    if (is_judged(row)) continue;
+    table.rows.push_back({text(row, "case"), text(row, "metric"), number(row, "measured"),
+                          number(row, "reference"), text(row, "tolerance from")});
+  }
+  return table;
+}
+
+Table methods_table(const Json& cheapest) {
+  Table table{{"problem"}, {}};
+  for (const std::vector<Json>& rows : by_case(cheapest)) {
+    std::vector<Cell> cells = {text(rows.front(), "case")};
+    for (const Json& row : rows) {
+      if (table.rows.empty()) table.columns.push_back("error " + number(row, "error at most"));
+      cells.emplace_back(method_cell(row));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table steps_table(const Json& control) {
+  Table table{{"problem", "error", "best fixed", "evaluations", "best adaptive", "its evaluations",
+               "time", "local: evaluations", "time"},
+              {}};
+  for (const Json& row : control) {
+    if (row.at("its evaluations per particle").is_null()) continue;
+    table.rows.push_back({text(row, "case"), number(row, "error at most"), text(row, "best fixed"),
+                          number(row, "its evaluations per particle"), text(row, "best adaptive"),
+                          number(row, "evaluations / fixed"), number(row, "time / fixed"),
+                          number(row, "local: evaluations / fixed"),
+                          number(row, "local: time / fixed")});
+  }
+  return table;
+}
+
+Table counts_table(const Json& stability) {
+  Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
+               "stopped", "left", "refused", "faults"},
+              {}};
+  for (const Json& row : stability) {
+    std::vector<Cell> cells = {text(row, "part")};
+    for (auto column = table.columns.begin() + 1; column != table.columns.end(); ++column) {
+      cells.emplace_back(row.at(*column).get<std::uint64_t>());
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+}  // namespace vat::bench
