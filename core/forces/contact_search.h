@@ -70,8 +70,8 @@ void search_contacts(const Model& model, const Workspace& work, const Configurat
   const Vec3 p = periodic ? model.periodic.wrap(at.position[i]) : at.position[i];
   const Real reach = model.contact_reach + slack;
   const Real reach2 = reach * reach;
-  const auto visit = [&](const CellSortedPoints& points, Index slot, Index j, const Vec3& shift,
-                         auto&& wanted) {
+  const auto visit = [&](const CellSortedPoints& points, Index slot, Index j,
+                         [[maybe_unused]] const Vec3& shift, auto&& wanted) {
     Vec3 x(p.x() - points.x[slot], p.y() - points.y[slot], p.z() - points.z[slot]);
     if constexpr (periodic) x += shift;
     const Real r2 = x.squaredNorm();

@@ -258,10 +258,10 @@ void add_liquid_forces(StepContext& c) {
   }
 }
 
-template void add_liquid_forces<{true, true, false}>(StepContext&);
-template void add_liquid_forces<{true, true, true}>(StepContext&);
-template void add_liquid_forces<{true, false, false}>(StepContext&);
-template void add_liquid_forces<{false, true, false}>(StepContext&);
-template void add_liquid_forces<{false, true, true}>(StepContext&);
+template void add_liquid_forces<LiquidTerms{true, true, false}>(StepContext&);
+template void add_liquid_forces<LiquidTerms{true, true, true}>(StepContext&);
+template void add_liquid_forces<LiquidTerms{true, false, false}>(StepContext&);
+template void add_liquid_forces<LiquidTerms{false, true, false}>(StepContext&);
+template void add_liquid_forces<LiquidTerms{false, true, true}>(StepContext&);
 
 }  // namespace vat
