@@ -216,7 +216,7 @@ struct Numerics {
   Real tick = 0.02;  ///< [s]
   StepControl control = StepControl::fixed;
   /// Of varied steps: the phase error per radian, relative, of the motion that they resolve.
-  Real tolerance = 1e-3;
+  Real tolerance = 0.01;
   /// The relative error that integrator, step, control and tolerance are chosen for, in place of
   /// those given here; see core/scene/choose_numerics.h.
   std::optional<Real> accuracy{};

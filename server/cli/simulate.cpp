@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "core/limits.h"
+#include "core/scene/choose_numerics.h"
+#include "core/scene/validate.h"
 #include "core/simulation.h"
 #include "server/cli/command.h"
 #include "server/cli/option_checks.h"
@@ -64,6 +66,15 @@ std::map<std::string, IntegratorId> integrator_names() {
   return names;
 }
 
+std::map<std::string, StepControl> control_names() {
+  std::map<std::string, StepControl> names;
+  for (const StepControl control :
+       {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
+    names.emplace(to_string(control), control);
+  }
+  return names;
+}
+
 struct Options {
   std::string scene;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
@@ -71,6 +82,8 @@ struct Options {
   std::optional<Real> every;
   std::optional<Real> step;
   std::string integrator;  ///< empty: the scene's
+  std::string control;     ///< empty: the scene's
+  std::optional<Real> accuracy;
   std::size_t threads = 1;
   std::string output;
   std::string diagnostics;
@@ -176,12 +189,21 @@ Result<Scene> load_scene_for(const Options& options, Schedule& schedule) {
   Result<Scene> scene = load_scene(options.scene, options.scenes_folder);
   if (!scene) return scene;
   Numerics& numerics = scene.value().numerics;
+  if (options.accuracy) {
+    numerics.accuracy = options.accuracy;
+    Errors errors = find_errors(scene.value());
+    if (!errors.empty()) return errors;
+    resolve_accuracy(scene.value());
+  }
   schedule =
       make_schedule(options.step.value_or(numerics.step), options.every.value_or(numerics.tick),
                     options.until.value_or(kDefaultUntil));
-  if (options.step || !options.integrator.empty()) numerics.accuracy.reset();
+  if (options.step || !options.integrator.empty() || !options.control.empty()) {
+    numerics.accuracy.reset();
+  }
   numerics = with_step(numerics, schedule.step);
   if (!options.integrator.empty()) numerics.integrator = integrator_names().at(options.integrator);
+  if (!options.control.empty()) numerics.control = control_names().at(options.control);
   return scene;
 }
 
@@ -225,10 +247,20 @@ void add_options(CLI::App& command, Options& options) {
       ->check(real_in(0, kMaxUntil));
   command.add_option("--every", options.every, "Output interval [s]; default: the scene's tick")
       ->check(real_in(kMinStep, kMaxUntil));
-  command.add_option("--integrator", options.integrator, "Default: the scene's")
-      ->check(CLI::IsMember(integrator_names()));
-  command.add_option("--dt", options.step, "Step [s]; default: the scene's")
-      ->check(real_in(kMinStep, kMaxStep));
+  CLI::Option* const integrator =
+      command.add_option("--integrator", options.integrator, "Default: the scene's")
+          ->check(CLI::IsMember(integrator_names()));
+  CLI::Option* const step =
+      command.add_option("--dt", options.step, "Step [s], the longest of varied ones")
+          ->check(real_in(kMinStep, kMaxStep));
+  CLI::Option* const control =
+      command.add_option("--control", options.control, "Of the steps; default: the scene's")
+          ->check(CLI::IsMember(control_names()));
+  command.add_option("--accuracy", options.accuracy, "Error that chooses the three above")
+      ->check(real_in(kMinAccuracy, kMaxAccuracy))
+      ->excludes(integrator)
+      ->excludes(step)
+      ->excludes(control);
   command.add_option("--threads", options.threads, "Threads of one step; never change a result")
       ->check(CLI::Range(std::size_t{1}, kMaxThreads))
       ->capture_default_str();

@@ -67,6 +67,9 @@ TEST(Simulate, HashDependsOnStepAndIntegrator) {
   EXPECT_NE(hash_of({"--until", "0.1", "--dt", "0.0005"}), scene);
   EXPECT_EQ(hash_of({"--until", "0.1", "--integrator", "velocity_verlet"}), scene);
   EXPECT_NE(hash_of({"--until", "0.1", "--integrator", "heun"}), scene);
+  EXPECT_EQ(hash_of({"--until", "0.1", "--control", "fixed"}), scene);
+  EXPECT_NE(hash_of({"--until", "0.1", "--control", "adaptive"}), scene);
+  EXPECT_NE(hash_of({"--until", "0.1", "--accuracy", "1e-6"}), scene);
 }
 
 // Two masses m on a spring: the distance is l + a cos(w t) with w^2 = 2 k / m. Velocity Verlet's
