@@ -7,6 +7,7 @@
 
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
+#include "tests/support/totals.h"
 
 // Without gravity and vat nothing outside acts: what one body gains another loses, to round-off.
 
@@ -16,30 +17,6 @@ namespace {
 using namespace test;
 
 constexpr BodyKind kKinds[] = {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid};
-
-struct Totals {
-  Vec3 momentum = Vec3::Zero();
-  Vec3 angular_momentum = Vec3::Zero();
-};
-Totals totals_of(const Diagnostics& diagnostics) {
-  Totals totals;
-  for (const BodyDiagnostics& body : diagnostics.bodies) {
-    totals.momentum += body.linear_momentum;
-    totals.angular_momentum += body.angular_momentum;
-  }
-  return totals;
-}
-
-/// Sum of m |v|, what the drift of momentum is measured against.
-Real motion_of(const Simulation& simulation) {
-  Real sum = 0;
-  for (const BodyView& body : simulation.bodies()) {
-    for (std::size_t i = 0; i < body.masses.size(); ++i) {
-      sum += body.masses[i] * body.velocities[i].norm();
-    }
-  }
-  return sum;
-}
 
 struct Drift {
   Real momentum = 0;          ///< over the sum of m |v|
@@ -53,7 +30,7 @@ Drift collide(const Scene& scene, int ticks = 40) {
   Simulation simulation = make_simulation(scene);
   const Diagnostics start = simulation.diagnostics();
   const Totals before = totals_of(start);
-  const Real motion = motion_of(simulation);
+  const Real motion = motion_of(simulation).momentum;
   Drift drift;
   for (int n = 0; n < ticks; ++n) {
     const AdvanceReport report = simulation.advance(10);
@@ -137,7 +114,7 @@ TEST(Conservation, ExplicitEulerGainsAngularMomentumAsTheorySays) {
       SCOPED_TRACE(std::string(to_string(first)) + " and " + to_string(second));
       Simulation simulation =
           make_simulation(make_collision(first, second, IntegratorId::explicit_euler));
-      const Real motion = motion_of(simulation);
+      const Real motion = motion_of(simulation).momentum;
       Real greatest_gain = 0;
       for (int step = 0; step < 150; ++step) {
         const std::vector<MovingMass> before = moving_masses(simulation);

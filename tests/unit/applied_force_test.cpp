@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/support/shaken_vat.h"
+#include "tests/support/totals.h"
 
 // An applied force acts for whole steps, and its impulse is force times duration.
 
@@ -20,9 +21,7 @@ const Vec3 kForce(3, -20, 7);
 constexpr Real kRoundOff = 4 * 200 * std::numeric_limits<Real>::epsilon();
 
 Vec3 total_momentum(const Simulation& simulation) {
-  Vec3 total = Vec3::Zero();
-  for (const BodyDiagnostics& body : simulation.diagnostics().bodies) total += body.linear_momentum;
-  return total;
+  return totals_of(simulation.diagnostics()).momentum;
 }
 
 Scene make_moving_block(IntegratorId integrator, BodyKind kind) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/totals.h"
 #include "tests/validation/cases.h"
 #include "tests/validation/reference.h"
 
@@ -58,42 +59,18 @@ Scene scene_of(const Pairing& pairing, bool viscous) {
   return scene;
 }
 
-struct Momenta {
-  Vec3 linear = Vec3::Zero();
-  Vec3 angular = Vec3::Zero();
-};
-
-Momenta momenta(const Diagnostics& now) {
-  Momenta sum;
-  for (const BodyDiagnostics& body : now.bodies) {
-    sum.linear += body.linear_momentum;
-    sum.angular += body.angular_momentum;
-  }
-  return sum;
-}
-
-Real sum_of_speeds(const Run& run) {
-  Real sum = 0;
-  for (const BodyView& body : run.simulation().bodies()) {
-    for (std::size_t i = 0; i < body.masses.size(); ++i) {
-      sum += body.masses[i] * body.velocities[i].norm();
-    }
-  }
-  return sum;
-}
-
 void check_pairing(Sheet& sheet, const Pairing& pairing, bool viscous) {
   const Real until = sheet.quick() ? 1 : 10;  // 1e4 steps
   Run run = sheet.start(scene_of(pairing, viscous));
-  const Real scale = sum_of_speeds(run);
+  const Real scale = test::motion_of(run.simulation()).momentum;
   const Diagnostics start = run.diagnostics();
-  const Momenta before = momenta(start);
+  const test::Totals before = test::totals_of(start);
   Real linear = 0;
   Real angular = 0;
   run.observe_until(until, until / 100, [&] {
-    const Momenta now = momenta(run.diagnostics());
-    linear = std::max(linear, (now.linear - before.linear).norm());
-    angular = std::max(angular, (now.angular - before.angular).norm());
+    const test::Totals now = test::totals_of(run.diagnostics());
+    linear = std::max(linear, (now.momentum - before.momentum).norm());
+    angular = std::max(angular, (now.angular_momentum - before.angular_momentum).norm());
   });
   const std::string of = std::string(", ") + pairing.name + (viscous ? ", viscous" : "");
   const Real exchanged =
