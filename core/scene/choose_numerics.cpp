@@ -91,9 +91,7 @@ void resolve_accuracy(Scene& scene) {
     const Material& material = *std::ranges::find(scene.materials, body.material, &Material::name);
     bodies.push_back(sample_body(body, material, scene.dimensions));
   }
-  std::vector<const SampledBody*> samples;
-  for (const SampledBody& body : bodies) samples.push_back(&body);
-  scene.numerics = choose_numerics(scene, samples);
+  scene.numerics = choose_numerics(scene, pointers_to(bodies));
 }
 
 }  // namespace vat

@@ -194,6 +194,13 @@ SampledBody sample_body(const BodyDescription& body, const Material& material, i
   return sample;
 }
 
+std::vector<const SampledBody*> pointers_to(const std::vector<SampledBody>& bodies) {
+  std::vector<const SampledBody*> pointers;
+  pointers.reserve(bodies.size());
+  for (const SampledBody& body : bodies) pointers.push_back(&body);
+  return pointers;
+}
+
 Real shape_volume(const Shape& shape) {
   return std::visit([](const auto& s) { return volume_of(s); }, shape);
 }

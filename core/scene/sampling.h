@@ -35,6 +35,9 @@ struct SampledBody {
 /// The body must be valid.
 SampledBody sample_body(const BodyDescription& body, const Material& material, int dimensions = 3);
 
+/// Where each of `bodies` is.
+std::vector<const SampledBody*> pointers_to(const std::vector<SampledBody>& bodies);
+
 /// Exact volume of a sampled shape [m^3]; zero for explicit particles.
 Real shape_volume(const Shape& shape);
 

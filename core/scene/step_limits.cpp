@@ -110,10 +110,8 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
 
 std::vector<StepLimit> find_step_limits(const Scene& scene,
                                         const std::vector<SampledBody>& samples) {
-  std::vector<const SampledBody*> bodies;
-  for (const SampledBody& sample : samples) bodies.push_back(&sample);
   std::vector<StepLimit> limits;
-  for (OscillatingPart& part : find_oscillating_parts(scene, bodies)) {
+  for (OscillatingPart& part : find_oscillating_parts(scene, pointers_to(samples))) {
     const Real step = stable_step(scene.numerics.integrator, part.bound);
     if (!std::isfinite(step)) continue;
     const bool is_same = !limits.empty() && limits.back().path == part.path;

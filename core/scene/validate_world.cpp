@@ -134,9 +134,7 @@ void check_numerics(const Numerics& numerics, RangeCheck& check) {
 void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples,
                     RangeCheck& check) {
   if (!scene.numerics.accuracy) return;
-  std::vector<const SampledBody*> bodies;
-  for (const SampledBody& body : samples) bodies.push_back(&body);
-  const Numerics chosen = choose_numerics(scene, bodies);
+  const Numerics chosen = choose_numerics(scene, pointers_to(samples));
   if (chosen.step >= kMinStep &&
       chosen.tick <= chosen.step * (static_cast<Real>(kMaxStepsPerTick) + 0.5)) {
     return;
