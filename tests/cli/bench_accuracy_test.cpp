@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "tests/bench/accuracy/accuracy_report.h"
+#include "tests/bench/accuracy/control_report.h"
 #include "tests/bench/report/plot.h"
 #include "tests/cli/program.h"
 
@@ -55,6 +57,28 @@ TEST(BenchAccuracy, CheapestDoesNotTrustLuck) {
   EXPECT_EQ(finer->step, 0.125);
   EXPECT_EQ(cheapest(some_solutions(), 1e-2, seconds_of)->method.integrator, IntegratorId::heun);
   EXPECT_FALSE(cheapest(some_solutions(), 1e-5, evaluations_of));
+}
+
+// Between 20 evaluations at 1e-2 and 40 at 1e-4; those at 10 were luck.
+TEST(BenchAccuracy, PriceIsReadBetweenSolutions) {
+  const auto price = [](StepControl control, Real error) {
+    return least_price(some_solutions(), control, error, evaluations_of);
+  };
+  EXPECT_NEAR(price(StepControl::fixed, 1e-3)->cost, 20 * std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(price(StepControl::fixed, 1e-2)->cost, 10);
+  EXPECT_EQ(price(StepControl::fixed, 1e-2)->method.integrator, IntegratorId::velocity_verlet);
+  EXPECT_EQ(price(StepControl::adaptive, 1e-3)->cost, 60);
+  EXPECT_FALSE(price(StepControl::fixed, 1e-5));
+  EXPECT_FALSE(price(StepControl::local, 1));
+}
+
+TEST(BenchAccuracy, VariedStepsAreComparedWithFixedOnes) {
+  const Table table = control_table({{"X", "t", "e", some_solutions()}});
+  ASSERT_EQ(table.rows.size(), kTargetErrors.size());
+  EXPECT_EQ(to_csv({table.columns, {table.rows[0]}}),
+            "case,error at most,best fixed,its evaluations per particle,best adaptive,"
+            "evaluations / fixed,time / fixed,local: evaluations / fixed,local: time / fixed\n"
+            "X,0.01,velocity_verlet,10,heun,3,0.8,,\n");
 }
 
 TEST(BenchAccuracy, PlotHasTheFrontAndEveryMethodThatWorked) {

@@ -105,9 +105,9 @@ TEST(BenchPlot, GridHasOneFieldAPair) {
                       .max = 2};
   EXPECT_EQ(plot_data(grid), "0 0 0.5\n1 0 NaN\n");
   const std::string script = plot_script(grid, "g");
-  for (const char* line :
-       {"set xtics ('a' 0, 'b' 1)\n", "set ytics ('c' 0)\n", "set xrange [-0.5:1.5]\n",
-        "set cbrange [0:2]\n", "set cblabel 'v'\n", "plot 'g.dat' using 1:2:3 with image"}) {
+  for (const char* line : {"set xtics ('a' 0, 'b' 1)\n", "set ytics ('c' 0)\n",
+                           "set xrange [-0.5:1.5]\n", "set cbrange [0:2]\n", "set cblabel 'v'\n",
+                           "plot 'g.dat' using 1:2:(0.5):(0.5):3 with boxxyerror"}) {
     EXPECT_THAT(script, HasSubstr(line));
   }
 }

@@ -132,8 +132,9 @@ std::string plot_script(const GridPlot& plot, const std::string& name) {
          "set palette defined (0 '#7f3b08', 0.5 '#f7f7f7', 1 '#2d8a57')\n"
          "set datafile missing 'NaN'\n"
          "plot " +
-         file + " using 1:2:3 with image notitle, \\\n  " + file +
-         " using 1:2:(sprintf('%.3g', $3)) with labels notitle\n";
+         file +
+         " using 1:2:(0.5):(0.5):3 with boxxyerror fillstyle solid linecolor palette notitle" +
+         ", \\\n  " + file + " using 1:2:(sprintf('%.3g', $3)) with labels notitle\n";
 }
 
 }  // namespace vat::bench

@@ -1,0 +1,188 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/bench/document.h"
+#include "tests/bench/document/markers.h"
+#include "tests/bench/document/page_tables.h"
+#include "tests/bench/report/table.h"
+#include "tests/bench/validate_table.h"
+#include "tests/cli/program.h"
+#include "tests/validation/cases.h"
+
+namespace vat::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_file;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+const fs::path kPage = fs::path(VAT_SOURCE_DIR) / "core/ACCURACY.md";
+
+TEST(BenchDocument, FillsWhatStandsBetweenMarkers) {
+  const Result<std::string> filled = fill_markers(
+      "# Page\n<!-- begin a -->\nold\n| x |\n<!-- end a -->\nWords.\n"
+      "<!-- begin b -->\n<!-- end b -->\n",
+      {{"a", "new\n"}, {"b", "no line end"}});
+  ASSERT_TRUE(filled);
+  EXPECT_EQ(filled.value(),
+            "# Page\n<!-- begin a -->\nnew\n<!-- end a -->\nWords.\n"
+            "<!-- begin b -->\nno line end\n<!-- end b -->\n");
+}
+
+TEST(BenchDocument, RefusesMarkersThatDoNotFit) {
+  const std::map<std::string, std::string> contents = {{"a", "new\n"}};
+  const std::string good = "<!-- begin a -->\n<!-- end a -->\n";
+  for (const auto& [page, message] : std::map<std::string, std::string>{
+           {"", "has no place in the page"},
+           {"<!-- begin a -->\n", "has a beginning but no end"},
+           {"<!-- end a -->\n" + good, "has an end but no beginning"},
+           {good + good, "comes twice"},
+           {good + "<!-- begin c -->\n<!-- end c -->\n", "is nothing that can be filled in"},
+           {"<!-- begin a -->\n" + good, "begins within a"}}) {
+    const Result<std::string> filled = fill_markers(page, contents);
+    ASSERT_FALSE(filled) << page;
+    EXPECT_THAT(filled.errors(), testing::Contains(testing::Field(&Error::message, message)))
+        << page;
+  }
+}
+
+TEST(BenchDocument, FindsEachPictureOnce) {
+  EXPECT_THAT(
+      pictures_of("![A b](figures/a.svg) [no](c.svg)\n![](figures/d.svg) ![](figures/a.svg)"),
+      testing::ElementsAre("figures/a.svg", "figures/d.svg"));
+}
+
+/// What the commands would have written.
+class Results {
+ public:
+  Results() {
+    write(
+        "validate/validation.json",
+        R"([{"case": "DEF-1", "metric": "x [m]", "measured": 1.5, "reference": 1, "must be": "1 +- 1",
+               "share of tolerance": 0.5, "tolerance from": "theory", "passed": true},
+              {"case": "DEF-1", "metric": "y [m]", "measured": 2.75, "reference": 2, "must be": "2 +- 1",
+               "share of tolerance": 0.75, "tolerance from": "theory", "passed": true},
+              {"case": "DEF-1", "metric": "z [m]", "measured": 4, "reference": 3,
+               "must be": "reported: 3", "share of tolerance": null, "tolerance from": "too soft",
+               "passed": null}])");
+    write("accuracy/cheapest.json",
+          R"([{"case": "P", "error at most": 0.01, "fewest evaluations": "heun, fixed",
+               "evaluations per particle": 100},
+              {"case": "P", "error at most": 1e-6, "fewest evaluations": "none reaches it",
+               "evaluations per particle": null}])");
+    write("accuracy/control.json",
+          R"([{"case": "P", "error at most": 0.01, "best fixed": "heun",
+               "its evaluations per particle": 100, "best adaptive": "heun",
+               "evaluations / fixed": 0.5, "time / fixed": 0.625,
+               "local: evaluations / fixed": null, "local: time / fixed": null}])");
+    write("stability/stability.json",
+          R"([{"part": "random", "scenes": 30, "not finite": 0, "aborts": 0, "outside": 0,
+               "guard events": 5, "retries": 6, "stopped": 0, "left": 0, "refused": 0,
+               "faults": 0, "seconds": 1.5}])");
+    write("accuracy/P-time.svg", "<svg></svg>");
+    write("page/page.md", kEmptyPage);
+  }
+
+  Status document() const { return write_document(folder_.path(), file("page/page.md")); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  void write(const std::string& name, const std::string& text) const {
+    fs::create_directories(fs::path(file(name)).parent_path());
+    std::ofstream(file(name)) << text;
+  }
+
+  static constexpr const char* kEmptyPage =
+      "<!-- begin cases -->\n<!-- end cases -->\n<!-- begin limits -->\n<!-- end limits -->\n"
+      "<!-- begin methods -->\n<!-- end methods -->\n<!-- begin steps -->\n<!-- end steps -->\n"
+      "<!-- begin counts -->\n<!-- end counts -->\n![P](figures/P-time.svg)\n";
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST(BenchDocument, WritesTablesAndCopiesPictures) {
+  const Results results;
+  const Status done = results.document();
+  ASSERT_TRUE(done) << done.errors()[0].path << done.errors()[0].message;
+  const std::string title = validation::all_cases().front().title;
+  EXPECT_EQ(
+      read_file(results.file("page/page.md")),
+      "<!-- begin cases -->\n"
+      "| case | what | metrics | the one nearest to its tolerance | measured | must be |\n"
+      "|---|---|---|---|---|---|\n"
+      "| DEF-1 | " +
+          title +
+          " | 3 | y [m] | 2.75 | 2 +- 1 |\n"
+          "<!-- end cases -->\n"
+          "<!-- begin limits -->\n"
+          "| case | metric | measured | exact, or published | why |\n"
+          "|---|---|---|---|---|\n"
+          "| DEF-1 | z [m] | 4 | 3 | too soft |\n"
+          "<!-- end limits -->\n"
+          "<!-- begin methods -->\n"
+          "| problem | error 0.01 | error 1e-06 |\n"
+          "|---|---|---|\n"
+          "| P | heun, fixed: 100 | – |\n"
+          "<!-- end methods -->\n"
+          "<!-- begin steps -->\n"
+          "| problem | error | best fixed | evaluations | best adaptive | its evaluations | time "
+          "| local: evaluations | time |\n"
+          "|---|---|---|---|---|---|---|---|---|\n"
+          "| P | 0.01 | heun | 100 | heun | 0.5 | 0.625 | – | – |\n"
+          "<!-- end steps -->\n"
+          "<!-- begin counts -->\n"
+          "| part | scenes | not finite | aborts | outside | guard events | retries | stopped | "
+          "left "
+          "| refused | faults |\n"
+          "|---|---|---|---|---|---|---|---|---|---|---|\n"
+          "| random | 30 | 0 | 0 | 0 | 5 | 6 | 0 | 0 | 0 | 0 |\n"
+          "<!-- end counts -->\n"
+          "![P](figures/P-time.svg)\n");
+  EXPECT_EQ(read_file(results.file("page/figures/P-time.svg")), "<svg></svg>");
+}
+
+TEST(BenchDocument, MissingResultChangesNothing) {
+  const Results results;
+  fs::remove(results.file("stability/stability.json"));
+  const Status done = results.document();
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.errors()[0].message, HasSubstr("./vat bench stability writes it"));
+  EXPECT_EQ(read_file(results.file("page/page.md")), Results::kEmptyPage);
+}
+
+TEST(BenchDocument, PageHasEveryMarkerFigureAndCase) {
+  const std::string page = read_file(kPage);
+  const Result<std::string> filled = fill_markers(
+      page, {{"cases", ""}, {"limits", ""}, {"methods", ""}, {"steps", ""}, {"counts", ""}});
+  EXPECT_TRUE(filled) << filled.errors()[0].path << ' ' << filled.errors()[0].message;
+  EXPECT_GE(pictures_of(page).size(), 6u);
+  constexpr std::uintmax_t kLargest = 60'000;  // bytes
+  for (const std::string& picture : pictures_of(page)) {
+    const fs::path file = kPage.parent_path() / picture;
+    ASSERT_TRUE(fs::exists(file)) << picture;
+    EXPECT_LE(fs::file_size(file), kLargest) << picture;
+  }
+  for (const validation::Case& one : validation::all_cases()) {
+    EXPECT_THAT(page, HasSubstr("\n| " + one.name + " | " + one.title + " |"));
+  }
+}
+
+TEST(BenchDocument, ShareOfTheToleranceIsOneAtItsEnd) {
+  using namespace validation;
+  const auto share = [](Real reference, Real measured, Tolerance tolerance) {
+    return share_of_tolerance({"m", reference, measured, std::move(tolerance)});
+  };
+  EXPECT_EQ(share(2, 2.5, within(0.5, "")), 1);
+  EXPECT_EQ(share(-2, -3, within_relative(0.5, "")), 1);
+  EXPECT_EQ(share(4, 1, at_most("")), 0.25);
+  EXPECT_EQ(share(4, 16, at_least("")), 0.25);
+  EXPECT_TRUE(std::isnan(share(1, 1, within(0, ""))));
+  EXPECT_TRUE(std::isnan(share(1, 2, reported(""))));
+}
+
+}  // namespace
+}  // namespace vat::bench
