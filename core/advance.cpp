@@ -7,6 +7,7 @@
 #include "core/scene/error_model.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
+#include "core/step/hold_inside.h"
 #include "core/step/wrap.h"
 
 namespace vat {
@@ -35,19 +36,38 @@ void Simulation::Impl::undo_step() {
   local.forget();
 }
 
+bool Simulation::Impl::hold_inside_vat(Real end, AdvanceReport& report) {
+  // Parts of a step need not add up to the bit, but at its end the vat is where a view sees it.
+  const Real nominal_end = static_cast<Real>(state.step_count + 1) * step_size();
+  const Real least_part = std::ldexp(step_size(), -kMaxStepLevel - kMaxHalvings);
+  if (std::abs(end - nominal_end) < least_part / 2) end = nominal_end;
+  const std::uint64_t stops =
+      hold_inside(*model, bounds, {end, state.step_count}, step_start, runner, state.now);
+  if (stops == 0) return false;
+  report.wall_stops += stops;
+  state.forces_current = false;
+  local.forget();
+  return true;
+}
+
+std::optional<Fault> Simulation::Impl::find_step_fault(Real dt) const {
+  if (work.too_many_pairs) {  // of liquids, whose particles come first
+    return Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
+  }
+  const auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()));
+  if (fault || model->scene.numerics.control != StepControl::local) return fault;
+  return local.find_fast(*model, state.now, dt, bounds);
+}
+
 std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
                                                          const ForceModel& force_model, Real start,
                                                          Real whole, AdvanceReport& report) {
   const Real dt = whole / pieces;
   for (std::uint32_t piece = 0; piece < pieces; ++piece) {
     take_unguarded_step(force_model, start + piece * dt, dt, report);
-    auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()));
-    if (!fault && model->scene.numerics.control == StepControl::local) {
-      fault = local.find_fast(*model, state.now, dt, bounds);
-    }
-    if (work.too_many_pairs) {  // of liquids, whose particles come first
-      fault = Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
-    }
+    // What left is judged as it left, and again as the plane returns it.
+    std::optional<Fault> fault = find_step_fault(dt);
+    if (!fault && hold_inside_vat(start + (piece + 1) * dt, report)) fault = find_step_fault(dt);
     if (fault) {
       return GuardEvent{fault->cause,
                         start + (piece + 1) * dt,

@@ -66,8 +66,12 @@ struct AdvanceReport {
 
   std::uint64_t steps = 0;         ///< steps taken, parts and undone ones included
   std::uint64_t undone_steps = 0;  ///< each had an event
-  Real least_step = 0;             ///< [s] the shortest and the longest of them; of local control
-  Real greatest_step = 0;          ///< the steps of particles
+  /// How often a wall of the vat put back a particle or a rigid body that a step had taken beyond
+  /// it (see core/step/hold_inside.h), undone steps included: its springs are too soft for the
+  /// load.
+  std::uint64_t wall_stops = 0;
+  Real least_step = 0;     ///< [s] the shortest and the longest of them; of local control
+  Real greatest_step = 0;  ///< the steps of particles
   std::uint64_t force_evaluations = 0;  ///< of all particles at once
   /// How often the forces on one particle were summed, in part or whole: the measure on which local
   /// control compares with the others, whose evaluations count every particle.

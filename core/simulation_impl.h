@@ -55,6 +55,11 @@ struct Simulation::Impl : Snapshot::Content {
   /// One step with the scene's integrator and control, unguarded.
   void take_unguarded_step(const ForceModel& force_model, Real start, Real dt,
                            AdvanceReport& report);
+  /// Puts back what left the vat in a step, or part of one, that ends at `end`; true where anything
+  /// did.
+  bool hold_inside_vat(Real end, AdvanceReport& report);
+  /// What the guard has against a step of `dt` that was taken.
+  std::optional<Fault> find_step_fault(Real dt) const;
   /// `dt` seconds from `start`, in as many equal parts as it takes; false where none helped.
   bool take_guarded_step(const ForceModel& force_model, Real start, Real dt, AdvanceReport& report);
   /// The same in `pieces` parts, up to the first fault.

@@ -167,7 +167,9 @@ void print_summary(const Simulation& simulation, const RunTotals& totals) {
   std::cerr << std::setprecision(6) << simulation.time() << " s simulated in " << totals.steps
             << " steps and " << std::setprecision(3) << totals.stepping.count()
             << " s of wall time: " << real_time_factor(simulation, totals)
-            << " times real time, guard events: " << totals.guard_events << '\n';
+            << " times real time, guard events: " << totals.guard_events;
+  if (totals.wall_stops > 0) std::cerr << ", wall stops: " << totals.wall_stops;
+  std::cerr << '\n';
 }
 
 void print_profile(const StageProfile& profile, const Simulation& simulation,

@@ -1,0 +1,176 @@
+#include "core/step/hold_inside.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+
+#include "core/rigid/rigid_motion.h"
+
+namespace vat {
+namespace {
+
+/// The model's walls as they are at the end of a step.
+struct Walls {
+  const Model& model;
+  VatMotion motion;
+
+  Real distance(int wall, const Vec3& p) const {
+    return wall_distance(*model.scene.vat, motion, wall, p);
+  }
+};
+
+constexpr Real inward(int wall) {
+  return wall % 2 == 0 ? 1 : -1;
+}
+
+/// Round-off of positions about the walls across an axis [m].
+Real round_off(const Walls& walls, int axis) {
+  const Vat& vat = *walls.model.scene.vat;
+  const Real offset = std::abs(walls.motion.offset[axis]);
+  const Real place = std::max(std::abs(vat.min[axis]), std::abs(vat.max[axis]));
+  return std::numeric_limits<Real>::epsilon() * (place + offset);
+}
+
+/// The first coordinate at or inside the wall that counts as inside.
+Real plane_of(const Walls& walls, int wall, Vec3 p) {
+  const Vat& vat = *walls.model.scene.vat;
+  const int axis = wall / 2;
+  const Real plane = (wall % 2 == 0 ? vat.min : vat.max)[axis] + walls.motion.offset[axis];
+  p[axis] = plane;
+  for (Real inset = round_off(walls, axis); walls.distance(wall, p) < 0; inset *= 2) {
+    p[axis] = plane + inward(wall) * inset;
+  }
+  return p[axis];
+}
+
+bool hold_particle(const Walls& walls, Vec3& position, Vec3& velocity) {
+  bool is_stopped = false;
+  for (const int wall : walls.model.walls) {
+    if (!(walls.distance(wall, position) < 0)) continue;
+    is_stopped = true;
+    const int axis = wall / 2;
+    position[axis] = plane_of(walls, wall, position);
+    const Real speed = walls.motion.velocity[axis];
+    if (inward(wall) * (velocity[axis] - speed) < 0) velocity[axis] = speed;
+  }
+  return is_stopped;
+}
+
+/// Of a rigid body's particles, seen from one wall.
+struct Reach {
+  Real distance = std::numeric_limits<Real>::infinity();  ///< the least [m]
+  Real depth = 0;                                         ///< sum over those beyond [m]
+  Vec3 arm = Vec3::Zero();                                ///< sum of depth times arm [m^2]
+};
+using Reaches = std::array<Reach, kWallCount>;
+
+Reaches find_reaches(const Walls& walls, const RigidModel& rigid, const Vec3& center,
+                     const Configuration& at) {
+  Reaches reaches;
+  for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
+    for (const int wall : walls.model.walls) {
+      const Real distance = walls.distance(wall, at.position[i]);
+      Reach& reach = reaches[static_cast<std::size_t>(wall)];
+      reach.distance = std::min(reach.distance, distance);
+      if (!(distance < 0)) continue;
+      reach.depth -= distance;
+      reach.arm -= distance * (at.position[i] - center);
+    }
+  }
+  return reaches;
+}
+
+bool is_inside(const Reaches& reaches) {
+  return std::ranges::none_of(reaches, [](const Reach& reach) { return reach.distance < 0; });
+}
+
+bool fits(const Walls& walls, const Reaches& reaches) {
+  for (std::size_t low = 0; low < kWallCount; low += 2) {
+    const Real slack = reaches[low].distance + reaches[low + 1].distance;
+    if (slack < -4 * round_off(walls, static_cast<int>(low) / 2)) return false;
+  }
+  return true;
+}
+
+/// Takes away the outward velocity of the body's point at `arm` by an impulse along the normal.
+void stop_point(const Walls& walls, int wall, const RigidModel& rigid, const Vec3& arm,
+                RigidState& state) {
+  const Vec3 normal = wall_normal(wall);
+  const Vec3 omega = angular_velocity(rigid, state.orientation, state.angular_momentum);
+  const Vec3 velocity =
+      rigid.inverse_mass * state.momentum + omega.cross(arm) - walls.motion.velocity;
+  const Real speed = velocity.dot(normal);
+  if (!(speed < 0)) return;
+  const Vec3 lever = arm.cross(normal);
+  const Real yielding =
+      rigid.inverse_mass + lever.dot(angular_velocity(rigid, state.orientation, lever));
+  const Real impulse = -speed / yielding;
+  state.momentum += impulse * normal;
+  state.angular_momentum += impulse * lever;
+}
+
+/// True where the body is far enough from every wall for its pose not to matter.
+bool is_clear(const Walls& walls, const Vec3& center, Real extent) {
+  constexpr Real kMargin = 1.001;
+  return std::ranges::all_of(
+      walls.model.walls, [&](int wall) { return walls.distance(wall, center) > kMargin * extent; });
+}
+
+bool hold_body(const Walls& walls, const RigidModel& rigid, const Quat& earlier_orientation,
+               RigidState& state, Configuration& now) {
+  // The first round does the work, unless the body is in a corner that is narrow for it; the others
+  // are for its rounding.
+  constexpr int kRounds = 8;
+  for (int round = 0; round < kRounds; ++round) {
+    pose_rigid_body(walls.model, rigid, state, now);
+    Reaches reaches = find_reaches(walls, rigid, state.center_of_mass, now);
+    if (is_inside(reaches)) return round > 0;
+    if (!fits(walls, reaches)) {
+      state.orientation = earlier_orientation;
+      state.angular_momentum.setZero();
+      pose_rigid_body(walls.model, rigid, state, now);
+      reaches = find_reaches(walls, rigid, state.center_of_mass, now);
+    }
+    const Vec3 center = state.center_of_mass;
+    for (const int wall : walls.model.walls) {
+      const Reach& reach = reaches[static_cast<std::size_t>(wall)];
+      if (!(reach.distance < 0)) continue;
+      const int axis = wall / 2;
+      const Real unit =
+          round_off(walls, axis) + std::numeric_limits<Real>::epsilon() * std::abs(center[axis]);
+      state.center_of_mass[axis] += inward(wall) * (round * unit - reach.distance);
+      stop_point(walls, wall, rigid, reach.arm / reach.depth, state);
+    }
+  }
+  pose_rigid_body(walls.model, rigid, state, now);
+  return true;
+}
+
+}  // namespace
+
+std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const StepEnd& end,
+                          const Configuration& before, TaskRunner* runner, Configuration& now) {
+  if (model.walls.empty()) return 0;
+  const Walls walls{model, vat_motion(*model.scene.vat, end.time)};
+  std::atomic<std::uint64_t> stops = 0;
+  for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t stop) {
+    for (std::size_t i = begin; i < stop; ++i) {
+      if (model.inverse_mass[i] == 0) continue;
+      if (hold_particle(walls, now.position[i], now.velocity[i])) {
+        stops.fetch_add(1, std::memory_order_relaxed);
+      }
+    }
+  });
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = model.rigid_bodies[b];
+    RigidState& state = now.rigid[b];
+    if (rigid.is_held(end.step) || is_clear(walls, state.center_of_mass, bounds.extent[b])) {
+      continue;
+    }
+    if (hold_body(walls, rigid, before.rigid[b].orientation, state, now)) ++stops;
+  }
+  return stops;
+}
+
+}  // namespace vat
