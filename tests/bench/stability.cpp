@@ -21,12 +21,12 @@ constexpr std::pair<const char*, Part> kParts[] = {{"adversarial", run_adversari
 
 Table counts_table(const std::vector<StabilityCount>& counts) {
   Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
-               "stopped", "left", "refused", "faults", "seconds"},
+               "wall stops", "stopped", "refused", "faults", "seconds"},
               {}};
   for (const StabilityCount& count : counts) {
     table.rows.push_back({count.part, count.scenes, count.non_finite, count.aborts, count.outside,
-                          count.events, count.retries, count.stopped, count.left, count.refused,
-                          count.faults, count.seconds});
+                          count.events, count.retries, count.wall_stops, count.stopped,
+                          count.refused, count.faults, count.seconds});
   }
   return table;
 }

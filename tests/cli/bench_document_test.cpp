@@ -82,7 +82,7 @@ class Results {
                "local: evaluations / fixed": null, "local: time / fixed": null}])");
     write("stability/stability.json",
           R"([{"part": "random", "scenes": 30, "not finite": 0, "aborts": 0, "outside": 0,
-               "guard events": 5, "retries": 6, "stopped": 0, "left": 0, "refused": 0,
+               "guard events": 5, "retries": 6, "wall stops": 0, "stopped": 0, "refused": 0,
                "faults": 0, "seconds": 1.5}])");
     write("accuracy/P-time.svg", "<svg></svg>");
     write("page/page.md", kEmptyPage);
@@ -135,8 +135,8 @@ TEST(BenchDocument, WritesTablesAndCopiesPictures) {
           "| P | 0.01 | heun | 100 | heun | 0.5 | 0.625 | – | – |\n"
           "<!-- end steps -->\n"
           "<!-- begin counts -->\n"
-          "| part | scenes | not finite | aborts | outside | guard events | retries | stopped | "
-          "left "
+          "| part | scenes | not finite | aborts | outside | guard events | retries | wall "
+          "stops | stopped "
           "| refused | faults |\n"
           "|---|---|---|---|---|---|---|---|---|---|---|\n"
           "| random | 30 | 0 | 0 | 0 | 5 | 6 | 0 | 0 | 0 | 0 |\n"

@@ -42,6 +42,9 @@ void observe(const Simulation& simulation, Outcome& outcome) {
   outcome.hash = simulation.state_hash();
   if (outcome.non_finite > 0) outcome.fault = "a value that is not finite";
   if (!std::isfinite(now.kinetic_energy)) outcome.fault = "an energy that is not finite";
+  if (now.particles_outside > 0) {
+    outcome.fault = std::to_string(now.particles_outside) + " particles outside the vat";
+  }
 }
 
 /// One tick. True where the run may go on.
@@ -52,6 +55,7 @@ bool take_tick(const AdversarialCase& adversarial, Simulation& simulation, Outco
   const AdvanceReport report = simulation.advance(steps);
   outcome.attempts += report.steps;
   outcome.undone += report.undone_steps;
+  outcome.wall_stops += report.wall_stops;
   if (report.steps > kMostAttempts * steps) outcome.fault = "too many attempts";
   if (!report.events.empty() && outcome.message.empty()) {
     outcome.message = describe(report.events.front());
@@ -71,13 +75,6 @@ bool take_tick(const AdversarialCase& adversarial, Simulation& simulation, Outco
   return outcome.fault.empty();
 }
 
-/// Walls without stiffness hold nobody.
-bool has_walls(const Scene& scene) {
-  return std::ranges::none_of(scene.interfaces, [](const InterfaceDescription& interface) {
-    return interface.materials[1] == kVatMaterial && interface.constants.stiffness == 0;
-  });
-}
-
 void run_created(const AdversarialCase& adversarial, Simulation& simulation, Outcome& outcome) {
   observe(simulation, outcome);
   const Real tick = simulation.step_size() * simulation.steps_per_tick();
@@ -87,15 +84,7 @@ void run_created(const AdversarialCase& adversarial, Simulation& simulation, Out
     if (!take_tick(adversarial, simulation, outcome)) return;
   }
   outcome.ending = Ending::ran;
-  if (!has_walls(simulation.scene())) outcome.most_outside = 0;
-  if (outcome.most_outside > 0) {
-    outcome.ending = Ending::left;
-    if (adversarial.expected == Expected::runs) {
-      outcome.fault = std::to_string(outcome.most_outside) + " particles outside the vat";
-    }
-  } else if (adversarial.judge) {
-    outcome.fault = adversarial.judge(simulation);
-  }
+  if (adversarial.judge) outcome.fault = adversarial.judge(simulation);
 }
 
 }  // namespace
@@ -106,8 +95,6 @@ const char* to_string(Ending ending) {
       return "ran";
     case Ending::stopped:
       return "stopped";
-    case Ending::left:
-      return "left";
     case Ending::refused:
       return "refused";
     case Ending::broken:

@@ -14,7 +14,6 @@ namespace vat::stability {
 enum class Ending : std::uint8_t {
   ran,      ///< to its end
   stopped,  ///< by the guard, with an event, at the last good state
-  left,     ///< to its end, with particles beyond walls that are too soft for them
   refused,  ///< before it began, with a message
   broken,   ///< none of these: see Outcome::fault
 };
@@ -23,7 +22,7 @@ const char* to_string(Ending ending);
 /// What a scene is expected to end in.
 enum class Expected : std::uint8_t {
   runs,
-  may_stop,  ///< its step or its walls cannot bear it: the guard may end it, or particles leave
+  may_stop,  ///< its step cannot bear it: the guard may end it
   refusal,
 };
 
@@ -46,7 +45,8 @@ struct Outcome {
   std::uint64_t undone = 0;      ///< steps and parts undone, each with an event
   std::size_t particles = 0;     ///< at the end
   std::size_t non_finite = 0;    ///< values of the state seen
-  std::size_t most_outside = 0;  ///< particles beyond a wall at the end of a tick
+  std::uint64_t wall_stops = 0;  ///< of particles and rigid bodies that a step took beyond a wall
+  std::size_t most_outside = 0;  ///< particles beyond a wall at the end of a tick: a fault
   std::uint64_t hash = 0;        ///< of the last state
 };
 

@@ -32,8 +32,8 @@ TEST_P(Adversarial, EndsAsItMust) {
     const Outcome outcome = run(adversarial);
     EXPECT_EQ(outcome.fault, "") << adversarial.name;
     std::cout << adversarial.name << ": " << to_string(outcome.ending) << ", " << outcome.undone
-              << " undone of " << outcome.attempts << " steps, " << outcome.most_outside
-              << " outside. " << outcome.message << '\n';
+              << " undone of " << outcome.attempts << " steps, " << outcome.wall_stops
+              << " wall stops. " << outcome.message << '\n';
   }
 }
 

@@ -103,6 +103,26 @@ void add_liquids(Cases& cases) {
   }
 }
 
+/// Walls that give way to everything, and a load that no wall of these scenes is made for.
+void add_soft_walls(Cases& cases) {
+  constexpr Real kGravities = 50;
+  for (const BodyKind kind : kKinds) {
+    for (const IntegratorId integrator : test::kIntegrators) {
+      Scene scene = make_tank();
+      scene.numerics.integrator = integrator;
+      scene.gravity = kGravities * 9.81 * Vec3(0.6, 0, -0.8);
+      scene.vat->motion = SlideMotion{{1, 1, 0}, 0.2, 0.5};
+      for (auto& interface : scene.interfaces) interface.constants = {1e-3, 0};
+      scene.bodies = {make_block("block", kind, 4, {0.5, 0.5, 0.3})};
+      cases.push_back({.group = std::string("soft walls under 50 g: ") + to_string(kind),
+                       .name = std::string("soft walls under 50 g: ") + to_string(kind) + ", " +
+                               vat::to_string(integrator),
+                       .scene = scene,
+                       .expected = kind == BodyKind::liquid ? Expected::may_stop : Expected::runs});
+    }
+  }
+}
+
 }  // namespace
 
 void add_compression_cases(Cases& cases) {
@@ -110,6 +130,7 @@ void add_compression_cases(Cases& cases) {
   add_lattices(cases);
   add_contacts(cases);
   add_liquids(cases);
+  add_soft_walls(cases);
 }
 
 }  // namespace vat::stability

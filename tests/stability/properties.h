@@ -9,9 +9,10 @@ namespace vat::stability {
 
 /// What became of a scene that should be stable.
 struct PropertyReport {
-  std::string fault;           ///< the first property that does not hold; empty: all do
-  std::uint64_t attempts = 0;  ///< steps and parts of steps taken
-  std::uint64_t undone = 0;    ///< of them, by the guard
+  std::string fault;             ///< the first property that does not hold; empty: all do
+  std::uint64_t attempts = 0;    ///< steps and parts of steps taken
+  std::uint64_t undone = 0;      ///< of them, by the guard
+  std::uint64_t wall_stops = 0;  ///< as AdvanceReport counts them
   std::size_t particles = 0;
   std::size_t outside = 0;           ///< beyond a wall, where that is the fault
   bool has_momentum_budget = false;  ///< the scene's walls and integrator let it close to round-off

@@ -102,7 +102,7 @@ Table steps_table(const Json& control) {
 
 Table counts_table(const Json& stability) {
   Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
-               "stopped", "left", "refused", "faults"},
+               "wall stops", "stopped", "refused", "faults"},
               {}};
   for (const Json& row : stability) {
     std::vector<Cell> cells = {text(row, "part")};

@@ -34,7 +34,7 @@ void count_outcome(const stability::Outcome& outcome, StabilityCount& count) {
   count.events += outcome.undone;
   count.retries += outcome.attempts - outcome.steps;
   count.stopped += outcome.ending == stability::Ending::stopped ? 1 : 0;
-  count.left += outcome.ending == stability::Ending::left ? 1 : 0;
+  count.wall_stops += outcome.wall_stops;
   count.refused += outcome.ending == stability::Ending::refused ? 1 : 0;
   count.faults += outcome.fault.empty() ? 0 : 1;
 }
@@ -52,7 +52,7 @@ Result<StabilityCount> run_adversarial_part(const Options& options) {
   ThreadPoolRunner runner(options.threads);
   StabilityCount count;
   Table table{{"case", "expected", "ended", "particles", "steps", "attempts", "guard events",
-               "outside", "message", "hash", "fault"},
+               "wall stops", "outside", "message", "hash", "fault"},
               {}};
   for (const stability::AdversarialCase& adversarial : cases) {
     const stability::Outcome outcome = stability::run(adversarial, &runner);
@@ -60,7 +60,7 @@ Result<StabilityCount> run_adversarial_part(const Options& options) {
     if (!outcome.fault.empty()) print_fault(adversarial.name, outcome.fault);
     table.rows.push_back({adversarial.name, std::string(text_of(adversarial.expected)),
                           std::string(to_string(outcome.ending)), std::uint64_t{outcome.particles},
-                          outcome.steps, outcome.attempts, outcome.undone,
+                          outcome.steps, outcome.attempts, outcome.undone, outcome.wall_stops,
                           std::uint64_t{outcome.most_outside}, outcome.message,
                           hash_text(outcome.hash), outcome.fault});
   }
@@ -100,6 +100,7 @@ Result<StabilityCount> run_random_part(const Options& options) {
     ++count.scenes;
     count.events += report.undone;
     count.retries += report.undone;
+    count.wall_stops += report.wall_stops;
     count.non_finite += report.fault == "not finite" ? 1 : 0;
     count.aborts += report.fault.starts_with("threw") ? 1 : 0;
     count.outside += report.outside;

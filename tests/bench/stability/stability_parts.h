@@ -15,11 +15,11 @@ struct StabilityCount {
   std::uint64_t scenes = 0;
   std::uint64_t non_finite = 0;  ///< scenes in which a value was not finite
   std::uint64_t aborts = 0;      ///< scenes that threw
-  std::uint64_t outside = 0;     ///< particles beyond walls
+  std::uint64_t outside = 0;     ///< particles beyond walls: a fault
   std::uint64_t events = 0;      ///< of the guard, each with a step undone
   std::uint64_t retries = 0;     ///< steps and parts of steps beyond those asked for
+  std::uint64_t wall_stops = 0;  ///< of particles and rigid bodies, see AdvanceReport
   std::uint64_t stopped = 0;     ///< scenes that the guard ended, as it may
-  std::uint64_t left = 0;        ///< scenes whose soft walls particles passed, as they may
   std::uint64_t refused = 0;     ///< scenes that were refused, as they must be
   std::uint64_t faults = 0;      ///< scenes, or figures, that are not as they must be
   Real seconds = 0;
