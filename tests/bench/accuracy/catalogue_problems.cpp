@@ -58,7 +58,8 @@ std::vector<ProblemEntry> catalogue_problems() {
   std::vector<ProblemEntry> problems;
   for (const std::string name : {"rigid-stack", "deformable-drop", "sliding-vat-solids",
                                  "dam-break", "sliding-vat-liquid"}) {
-    problems.push_back({name, [name](TaskRunner* runner) { return first_impacts(name, runner); }});
+    problems.push_back(
+        {name, [name](TaskRunner* runner) { return first_impacts(name, runner); }, true});
   }
   return problems;
 }

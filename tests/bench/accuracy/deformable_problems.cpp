@@ -104,7 +104,7 @@ Problem lamp(TaskRunner* runner) {
 }  // namespace
 
 std::vector<ProblemEntry> deformable_problems() {
-  return {{"DEF-4", pendulum}, {"DEF-5", beam}, {"DEF-6b", cube}, {"lamp", lamp}};
+  return {{"DEF-4", pendulum}, {"DEF-5", beam}, {"DEF-6b", cube}, {"lamp", lamp, true}};
 }
 
 }  // namespace vat::bench

@@ -79,7 +79,7 @@ Problem pool(TaskRunner* runner) {
 }  // namespace
 
 std::vector<ProblemEntry> interaction_problems() {
-  return {{"INT-6", push}, {"INT-impact", impact}, {"pool", pool}};
+  return {{"INT-6", push}, {"INT-impact", impact}, {"pool", pool, true}};
 }
 
 }  // namespace vat::bench

@@ -28,6 +28,7 @@ struct Problem {
 struct ProblemEntry {
   std::string name;  ///< of the validation case where there is one
   std::function<Problem(TaskRunner*)> make;
+  bool is_long = false;  ///< left out of quick runs that do not name it
 };
 
 /// All problems: deformable, rigid, liquid, interaction, and scenes of the catalogue.
