@@ -67,6 +67,14 @@ Real extent_of(const Model& model, const RigidModel& rigid) {
   return extent;
 }
 
+Vec3 half_sizes_of(const Model& model, const RigidModel& rigid) {
+  Vec3 half = Vec3::Zero();
+  for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
+    half = half.cwiseMax(model.local_position[i - model.free_count].cwiseAbs());
+  }
+  return half;
+}
+
 bool is_inside(const Vec3& position, const GuardBounds& bounds) {
   return (position.array() >= bounds.min.array()).all() &&
          (position.array() <= bounds.max.array()).all();
@@ -105,13 +113,14 @@ std::optional<Fault> find_rigid_fault(const RigidModel& rigid, const RigidState&
 }  // namespace
 
 GuardBounds guard_bounds(const Model& model) {
-  GuardBounds bounds{Vec3::Constant(-kMaxLength), Vec3::Constant(kMaxLength), {}, {}};
+  GuardBounds bounds{Vec3::Constant(-kMaxLength), Vec3::Constant(kMaxLength), {}, {}, {}};
   const auto bodies = bodies_by_material(model);
   for (const ModelBody& body : model.bodies) {
     bounds.travel.push_back(travel_of(model, body, bodies));
   }
   for (const RigidModel& rigid : model.rigid_bodies) {
     bounds.extent.push_back(extent_of(model, rigid));
+    bounds.half_sizes.push_back(half_sizes_of(model, rigid));
   }
   if (!model.scene.vat) return bounds;
 

@@ -24,6 +24,8 @@ struct GuardBounds {
   std::vector<Real> travel;
   /// By rigid body: from the centre of mass to the furthest particle [m].
   std::vector<Real> extent;
+  /// By rigid body: half the sides of a box about its particles' centres, in body axes [m].
+  std::vector<Vec3> half_sizes;
 };
 
 /// The domain is, with a vat, its box and twice its longest side around it, a hundred times above

@@ -44,6 +44,32 @@ Real plane_of(const Walls& walls, int wall, Vec3 p) {
   return p[axis];
 }
 
+/// A box inside the walls by more than round-off, unbounded where there is none: what is in it
+/// needs no closer look.
+struct ClearBox {
+  explicit ClearBox(const Walls& walls) {
+    constexpr Real kUnits = 8;
+    const Vat& vat = *walls.model.scene.vat;
+    for (const int wall : walls.model.walls) {
+      const int axis = wall / 2;
+      const Real inset = kUnits * round_off(walls, axis);
+      const Real offset = walls.motion.offset[axis];
+      if (wall % 2 == 0) {
+        min[axis] = vat.min[axis] + offset + inset;
+      } else {
+        max[axis] = vat.max[axis] + offset - inset;
+      }
+    }
+  }
+  bool has(const Vec3& p) const {
+    return p.x() >= min.x() && p.y() >= min.y() && p.z() >= min.z() && p.x() <= max.x() &&
+           p.y() <= max.y() && p.z() <= max.z();
+  }
+
+  Vec3 min = Vec3::Constant(-std::numeric_limits<Real>::infinity());
+  Vec3 max = Vec3::Constant(std::numeric_limits<Real>::infinity());
+};
+
 bool hold_particle(const Walls& walls, Vec3& position, Vec3& velocity) {
   bool is_stopped = false;
   for (const int wall : walls.model.walls) {
@@ -110,11 +136,14 @@ void stop_point(const Walls& walls, int wall, const RigidModel& rigid, const Vec
   state.angular_momentum += impulse * lever;
 }
 
-/// True where the body is far enough from every wall for its pose not to matter.
-bool is_clear(const Walls& walls, const Vec3& center, Real extent) {
+/// True where the box about the body's particles is inside every wall by more than round-off.
+bool is_clear(const Walls& walls, const RigidState& state, const Vec3& half_sizes) {
   constexpr Real kMargin = 1.001;
-  return std::ranges::all_of(
-      walls.model.walls, [&](int wall) { return walls.distance(wall, center) > kMargin * extent; });
+  const Vec3 reach =
+      state.orientation.normalized().toRotationMatrix().cwiseAbs() * (kMargin * half_sizes);
+  return std::ranges::all_of(walls.model.walls, [&](int wall) {
+    return walls.distance(wall, state.center_of_mass) > reach[wall / 2];
+  });
 }
 
 bool hold_body(const Walls& walls, const RigidModel& rigid, const Quat& earlier_orientation,
@@ -153,10 +182,11 @@ std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const S
                           const Configuration& before, TaskRunner* runner, Configuration& now) {
   if (model.walls.empty()) return 0;
   const Walls walls{model, vat_motion(*model.scene.vat, end.time)};
+  const ClearBox clear(walls);
   std::atomic<std::uint64_t> stops = 0;
   for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t stop) {
     for (std::size_t i = begin; i < stop; ++i) {
-      if (model.inverse_mass[i] == 0) continue;
+      if (clear.has(now.position[i]) || model.inverse_mass[i] == 0) continue;
       if (hold_particle(walls, now.position[i], now.velocity[i])) {
         stops.fetch_add(1, std::memory_order_relaxed);
       }
@@ -165,7 +195,7 @@ std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const S
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = now.rigid[b];
-    if (rigid.is_held(end.step) || is_clear(walls, state.center_of_mass, bounds.extent[b])) {
+    if (rigid.is_held(end.step) || is_clear(walls, state, bounds.half_sizes[b])) {
       continue;
     }
     if (hold_body(walls, rigid, before.rigid[b].orientation, state, now)) ++stops;
