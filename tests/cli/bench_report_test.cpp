@@ -122,7 +122,10 @@ TEST(BenchPlot, NothingToDrawIsAnError) {
 /// Hides the programs of the machine while it lives.
 class EmptyPath {
  public:
-  EmptyPath() : old_(std::getenv("PATH")) { setenv("PATH", "/nowhere", 1); }
+  EmptyPath() {
+    if (const char* path = std::getenv("PATH")) old_ = path;
+    setenv("PATH", "/nowhere", 1);
+  }
   ~EmptyPath() { setenv("PATH", old_.c_str(), 1); }
   EmptyPath(const EmptyPath&) = delete;
   EmptyPath& operator=(const EmptyPath&) = delete;

@@ -12,8 +12,8 @@ namespace {
 class Adversarial : public testing::TestWithParam<std::string> {};
 
 const std::vector<AdversarialCase>& all_cases() {
-  static const std::vector<AdversarialCase> cases = adversarial_cases();
-  return cases;
+  static const std::vector<AdversarialCase> kCases = adversarial_cases();
+  return kCases;
 }
 
 std::vector<std::string> all_groups() {

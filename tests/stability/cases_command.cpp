@@ -22,7 +22,7 @@ Scene make_crowded_tank() {
   return scene;
 }
 
-void add_case(Cases& cases, std::string name, Expected expected, Command command) {
+void add_case(Cases& cases, const std::string& name, Expected expected, Command command) {
   cases.push_back({.group = name,
                    .name = name,
                    .scene = make_crowded_tank(),

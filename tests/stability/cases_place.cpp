@@ -132,7 +132,8 @@ Scene make_crowd(int n, int layers) {
       make_block("pool", BodyKind::liquid, n, Vec3(width / 2, width / 2, width / 2 + kSpacing))};
   const int row = n / 4;
   for (int b = 0; b < layers * row * row; ++b) {
-    const Vec3 cell(b % row, b / row % row, b / (row * row));
+    const int layer = b / (row * row);
+    const Vec3 cell(b % row, b / row % row, layer);
     const Vec3 center = (0.11 + kSpacing) * Vec3::Ones() + 4 * kSpacing * cell;
     scene.bodies.push_back(make_block("cube " + std::to_string(b), BodyKind::rigid, 3,
                                       center + Vec3(0, 0, width + 2 * kSpacing)));

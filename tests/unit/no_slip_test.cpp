@@ -163,7 +163,7 @@ TEST(NoSlip, MovesWithTheVat) {
 TEST(NoSlip, CostsNothingWhereItDoesNothing) {
   const auto has_stage = [](const Scene& scene) {
     const ForceProbe probe(scene);
-    return probe.work().filled_density.size() > 0;
+    return !probe.work().filled_density.empty();
   };
   Scene scene = make_wall_scene(4, {0.5, 0.5, 0.05}, {1, 0, 0});
   EXPECT_TRUE(has_stage(scene));
