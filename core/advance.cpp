@@ -103,36 +103,39 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real sta
   return false;
 }
 
-std::uint32_t Simulation::Impl::wanted_level(const ForceModel& force_model, Real start) {
+Real Simulation::Impl::wanted_step(const ForceModel& force_model, Real start) {
   const Numerics& numerics = model->scene.numerics;
   if (numerics.control == StepControl::local) {
-    return level_of(greatest_base_step(force_model, state, step_bounds), numerics.step);
+    return greatest_base_step(force_model, state, step_bounds);
   }
-  find_present_steps(force_model, state, start, numerics.step, step_bounds, bounds, present_steps);
+  // Nobody need look further ahead: a step is at most twice as long as the one before.
+  const Real last = state.history.step;
+  const Real longest = last > 0 ? std::min(numerics.step, 2 * last) : numerics.step;
+  find_present_steps(force_model, state, start, longest, step_bounds, bounds, present_steps);
   Real step = present_steps.least();
   if (state.history.observed_rate > 0) {
     step = std::min(step, resolving_phase(numerics.integrator, numerics.tolerance) /
                               state.history.observed_rate);
   }
-  return level_of(step, numerics.step);
+  return step;
 }
 
 bool Simulation::Impl::take_varied_step(ForceModel& force_model, AdvanceReport& report) {
-  constexpr std::uint32_t kParts = 1U << kMaxStepLevel;
-  const Real part = step_size() / kParts;
   const bool is_local = model->scene.numerics.control == StepControl::local;
   if (!is_local) force_model.probe = &probe;
-  for (std::uint32_t position = 0; position < kParts;) {
-    const Real start = time() + position * part;
-    const std::uint32_t level = state.history.level;
-    choose_level(wanted_level(force_model, start), position, state.history);
-    if (is_local && state.history.level != level) state.forces_current = false;
-    const std::uint32_t parts = kParts >> state.history.level;
+  for (Real left = step_size(); left > 0;) {
+    const Real start = time() + (step_size() - left);
+    const Real last = state.history.step;
+    const std::uint32_t count =
+        choose_step_count(wanted_step(force_model, start), left, step_size(), state.history);
+    const Real dt = state.history.step;
+    const bool is_same = std::abs(dt - last) <= 1e-9 * dt;  // but for rounding
+    if (is_local && !is_same) state.forces_current = false;
     probe.begin(state);
-    if (!take_guarded_step(force_model, start, parts * part, report)) return false;
+    if (!take_guarded_step(force_model, start, dt, report)) return false;
     if (!is_local) state.history.observed_rate = probe.observed_rate(*model);
     ++state.history.held;
-    position += parts;
+    left = count == 1 ? 0 : left - dt;
   }
   return true;
 }

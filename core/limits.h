@@ -66,6 +66,7 @@ inline constexpr Real kMaxStep = 0.1;          // [s]
 inline constexpr Real kMaxTick = 1.0;          // [s]
 inline constexpr Real kMinAccuracy = 1e-8;     // of a tolerance too: rounding is not far below
 inline constexpr Real kMaxAccuracy = 0.1;      // error models are for small errors
+inline constexpr Real kMaxTolerance = 1;       // only stability and contacts unseen limit steps
 inline constexpr int kMaxStepLevel = 10;       // halvings of a step: a nominal step must end
 
 }  // namespace vat

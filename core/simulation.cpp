@@ -164,7 +164,7 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
   }
   const StepControl control = model.scene.numerics.control;
   if (control != StepControl::fixed) {
-    hash.add(std::uint64_t{state.history.level});
+    hash.add(state.history.step);
     hash.add(std::uint64_t{state.history.held});
     hash.add(state.history.observed_rate);
   }

@@ -49,7 +49,7 @@ struct Simulation::Impl : Snapshot::Content {
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
   /// One nominal step, in the parts that adaptive or local control chooses.
   bool take_varied_step(ForceModel& force_model, AdvanceReport& report);
-  std::uint32_t wanted_level(const ForceModel& force_model, Real start);
+  Real wanted_step(const ForceModel& force_model, Real start);
   /// Undoes whatever was done since the step began.
   void undo_step();
   /// One step with the scene's integrator and control, unguarded.

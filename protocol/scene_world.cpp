@@ -121,7 +121,7 @@ Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
   // In the order of StepControl.
   numerics.control = static_cast<StepControl>(reader.choice(
       "control", {"fixed", "adaptive", "local"}, static_cast<std::size_t>(numerics.control)));
-  numerics.tolerance = reader.real("tolerance", kMinAccuracy, kMaxAccuracy, numerics.tolerance);
+  numerics.tolerance = reader.real("tolerance", kMinAccuracy, kMaxTolerance, numerics.tolerance);
   if (reader.has("accuracy")) {
     numerics.accuracy = reader.real("accuracy", kMinAccuracy, kMaxAccuracy, kMaxAccuracy);
     for (const char* chosen : {"integrator", "step", "control", "tolerance"}) {

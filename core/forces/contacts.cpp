@@ -1,15 +1,20 @@
 #include "core/forces/contacts.h"
 
 #include "core/forces/connection.h"
-#include "core/forces/contact_search.h"
 #include "core/forces/pair_direction.h"
+#include "core/model/model.h"
+#include "core/step/workspace.h"
 
 namespace vat {
 
-void sort_solids(StepContext& c) {
+void sort_solids(StepContext& c, Real slack) {
   const std::span<const Vec3> points(c.configuration.position);
-  c.work.solids.build(points.subspan(c.model.liquid_count), c.model.contact_reach,
+  c.work.solids.build(points.subspan(c.model.liquid_count), c.model.contact_reach + slack,
                       c.model.periodic);
+}
+
+void find_contacts(StepContext& c) {
+  c.work.contacts.update(c, 0);
 }
 
 namespace {
@@ -23,7 +28,7 @@ void add_block(StepContext& c, std::size_t begin, std::size_t end) {
     Vec3 sum = Vec3::Zero();
     ContactLoad load;
     if constexpr (keep_dampers) kept->begin[i - begin] = static_cast<Index>(kept->dampers.size());
-    for_each_contact(c.model, c.work, at, static_cast<Index>(i), [&](const Contact& contact) {
+    c.work.contacts.for_each(c.model, at, static_cast<Index>(i), [&](const Contact& contact) {
       const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
                                     c.model.scene.dimensions);
       const Real speed = (at.velocity[i] - at.velocity[contact.other]).dot(n);

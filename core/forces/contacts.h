@@ -1,11 +1,17 @@
 #pragma once
 
+#include "core/types.h"
+
 namespace vat {
 
 struct StepContext;
 
-/// Stage: cell order of the deformable and rigid particles.
-void sort_solids(StepContext& context);
+/// Cell order of the deformable and rigid particles, for searches up to `slack` [m] beyond the
+/// reach of contacts.
+void sort_solids(StepContext& context, Real slack);
+
+/// Stage: which pairs may be in contact.
+void find_contacts(StepContext& context);
 
 /// Stage: dynamic connections between bodies (interfaces, Boldt def. 0.6) and within deformable
 /// ones. Boldt eq. 3 with l = threshold, a dashpot, and no pull.

@@ -17,7 +17,7 @@ namespace vat {
 ///
 /// - Where liquids flow or bodies may touch: velocity Verlet, since forces with kinks are of order
 ///   2 with any method, in adaptive steps with the tolerance e; the step is the longest that
-///   springs and the central field allow, and sound: 0.4 h_s / c.
+///   springs and the central field allow, and that is stable for sound.
 /// - Elsewhere fixed steps, of velocity Verlet or of Runge-Kutta 4, whichever evaluates forces less
 ///   often: 1 / step against 4 / step.
 ///

@@ -113,7 +113,7 @@ void check_numerics(const Numerics& numerics, RangeCheck& check) {
     check.real(*numerics.accuracy, kMinAccuracy, kMaxAccuracy, "/numerics/accuracy");
     return;
   }
-  check.real(numerics.tolerance, kMinAccuracy, kMaxAccuracy, "/numerics/tolerance");
+  check.real(numerics.tolerance, kMinAccuracy, kMaxTolerance, "/numerics/tolerance");
   if (numerics.control == StepControl::local &&
       numerics.integrator != IntegratorId::velocity_verlet) {
     check.add("not_allowed", "/numerics/control",

@@ -60,7 +60,7 @@ Vec3 force_of(const Model& model, const Configuration& at, Index i, const LocalP
 /// Stages that the liquids' own forces consist of: all that are not replaced here.
 bool is_of_liquids(const Stage& stage) {
   return stage.run != &pose_rigid_bodies && stage.run != &set_external_forces &&
-         stage.run != &sort_solids && stage.run != &add_contacts &&
+         stage.run != &find_contacts && stage.run != &add_contacts &&
          stage.run != &add_spring_forces && stage.run != &add_wall_forces &&
          stage.run != &gather_rigid_forces;
 }
@@ -92,7 +92,7 @@ void LocalStepper::build_pairs(const Moment& now) {
   if (now.model().contact_reach > 0) {
     StepContext context = now.context(due_);
     if (now.model().liquid_count > 0) sort_liquid(context);
-    sort_solids(context);
+    sort_solids(context, now.state.levels.skin);
   }
   pairs_.build(now.force_model, now.at(), now.state.levels, !pairs_current_);
   pairs_current_ = true;

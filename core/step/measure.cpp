@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/forces/contact_search.h"
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
 #include "core/forces/vat_motion.h"
@@ -70,7 +69,7 @@ Real elastic_energy(const Model& model, const Configuration& at) {
 Real pair_contact_energy(const Model& model, const Workspace& work, const Configuration& at) {
   Real energy = 0;
   for (Index i = 0; i < model.particle_count; ++i) {
-    for_each_contact(model, work, at, i, [&](const Contact& contact) {
+    work.contacts.for_each(model, at, i, [&](const Contact& contact) {
       const Real overlap = contact.threshold - contact.distance;
       energy += 0.25 * contact.stiffness * overlap * overlap;  // each contact is found twice
     });

@@ -16,8 +16,9 @@ namespace vat {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
-constexpr Real kTravelShare = 0.5;   // of the guard's: two bodies may approach each other
-constexpr Real kGreatestTurn = 0.5;  // [rad] a step; the guard's is 1
+constexpr Real kTravelShare = 0.5;         // of the guard's: two bodies may approach each other
+constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, by each of two particles
+constexpr Real kGreatestTurn = 0.5;        // [rad] a step; the guard's is 1
 
 /// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they lie in `at`.
 template <class Constant>
@@ -48,14 +49,22 @@ StepBounds find_step_bounds(const Model& model) {
   StepBounds bounds;
   if (model.scene.numerics.control == StepControl::fixed) return bounds;
   const std::vector<Vec3> at = starting_places(model);
-  bounds.spring_step.assign(model.free_count, kInfinity);
+  bounds.own.resize(model.free_count);
   for (Index i = 0; i < model.free_count; ++i) {
-    if (model.spring_begin[i] == model.spring_begin[i + 1] || model.inverse_mass[i] == 0) continue;
-    const Oscillation bound{
-        spring_load(model, at, i, [](const SpringEnd& spring) { return spring.stiffness; }),
-        spring_load(model, at, i, [](const SpringEnd& spring) { return spring.damping; })};
-    bounds.spring_step[i] = safe_step(model.scene.numerics, bound);
+    if (model.inverse_mass[i] == 0) continue;
+    if (i < model.liquid_count) {
+      if (model.scene.numerics.control == StepControl::local) continue;  // a level of their own
+      bounds.own[i] = model.damping.own[model.body[i]];
+    } else if (model.spring_begin[i] != model.spring_begin[i + 1]) {
+      bounds.own[i] = {
+          spring_load(model, at, i, [](const SpringEnd& spring) { return spring.stiffness; }),
+          spring_load(model, at, i, [](const SpringEnd& spring) { return spring.damping; })};
+    }
   }
+  bounds.own_step.resize(model.free_count);
+  std::ranges::transform(bounds.own, bounds.own_step.begin(), [&](const Oscillation& own) {
+    return safe_step(model.scene.numerics, own);
+  });
   bounds.field_step = kInfinity;
   if (model.scene.forces.gravity && model.scene.central_field &&
       model.scene.central_field->angular_frequency > 0) {
@@ -95,7 +104,7 @@ void limit_free_travel(const Present& present, TaskRunner* runner, std::vector<R
       const auto i = static_cast<Index>(k);
       const Real way = kTravelShare * present.guard.travel[present.model.body[i]];
       const Real speed = present.state.now.velocity[i].norm();
-      steps[i] = std::min({present.bounds.spring_step[i], present.bounds.field_step,
+      steps[i] = std::min({present.bounds.own_step[i], present.bounds.field_step,
                            travel_time(way, speed, present.acceleration(i))});
     }
   });
@@ -117,24 +126,27 @@ void limit_rigid_travel(const Present& present, std::vector<Real>& steps) {
   }
 }
 
+Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
+  Vec3 sum = Vec3::Zero();
+  for (Index i = 0; i < model.liquid_count; ++i) sum += now.velocity[i];
+  return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
+}
+
 Real liquid_step(const Present& present) {
+  const Vec3 mean = mean_liquid_velocity(present.model, present.state.now);
   Real step = kInfinity;
-  for (const ModelBody& body : present.model.bodies) {
+  for (std::size_t b = 0; b < present.model.bodies.size(); ++b) {
+    const ModelBody& body = present.model.bodies[b];
     if (body.kind != BodyKind::liquid) continue;
-    const LiquidModel& liquid = *present.model.liquids[body.material];
     Real speed2 = 0;
     Real acceleration = 0;
     for (Index i = body.particles.begin; i < body.particles.end; ++i) {
-      speed2 = std::max(speed2, present.state.now.velocity[i].squaredNorm());
+      speed2 = std::max(speed2, (present.state.now.velocity[i] - mean).squaredNorm());
       acceleration = std::max(acceleration, present.acceleration(i));
     }
-    const Real h_s = liquid.support_radius / 2;
-    const Real fastest = std::sqrt(liquid.stiffness) + std::sqrt(speed2);
-    if (fastest > 0) step = std::min(step, 0.4 * h_s / fastest);
-    if (acceleration > 0) step = std::min(step, 0.25 * std::sqrt(h_s / acceleration));
-    if (liquid.viscosity > 0) {
-      step = std::min(step, 0.125 * h_s * h_s * liquid.rest_density / liquid.viscosity);
-    }
+    const Real way = kLiquidTravelShare * present.model.liquids[body.material]->support_radius;
+    step = std::min({step, safe_step(present.model.scene.numerics, present.model.damping.own[b]),
+                     travel_time(way, std::sqrt(speed2), acceleration)});
   }
   return step;
 }
@@ -211,12 +223,13 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   limit_rigid_travel(present, steps.rigid);
   steps.liquid = liquid_step(present);
   limit_grabs(f, steps);
-  if (model.contact_reach > 0) {
+  const Real approach = greatest_approach(present, longest);
+  if (model.contact_reach > 0 && !f.work.contacts.is_current(context, approach)) {
     if (model.liquid_count > 0) sort_liquid(context);
-    sort_solids(context);
+    f.work.contacts.update(context, approach);
   }
-  find_contact_steps(f, state.now, time, longest, greatest_approach(present, longest),
-                     steps.contacts, steps.particle, steps.rigid);
+  find_contact_steps(f, state.now, time, longest, approach, bounds, steps.contacts, steps.particle,
+                     steps.rigid);
 }
 
 std::uint32_t level_of(Real step, Real nominal) {
@@ -225,17 +238,29 @@ std::uint32_t level_of(Real step, Real nominal) {
   return level;
 }
 
-void choose_level(std::uint32_t wanted, std::uint32_t position, StepHistory& history) {
-  if (wanted > history.level) {
-    history.level = wanted;
+namespace {
+
+std::uint32_t steps_of(Real step, Real left, Real nominal) {
+  constexpr Real kRounding = 1e-9;
+  if (!(step < left)) return 1;  // nor is what is not a number: the guard deals with such states
+  const Real longest = std::max(step, std::ldexp(nominal, -kMaxStepLevel));
+  return static_cast<std::uint32_t>(std::ceil(left / longest * (1 - kRounding)));
+}
+
+}  // namespace
+
+std::uint32_t choose_step_count(Real wanted, Real left, Real nominal, StepHistory& history) {
+  const std::uint32_t needed = steps_of(wanted, left, nominal);
+  std::uint32_t count = history.step > 0 ? steps_of(history.step, left, nominal) : needed;
+  if (needed > count) {
+    count = needed;
     history.held = 0;
-    return;
-  }
-  const std::uint32_t longer = 1U << (kMaxStepLevel - history.level + 1);
-  if (wanted < history.level && history.held >= kHeldSteps && position % longer == 0) {
-    --history.level;
+  } else if (needed < count && history.held >= kHeldSteps) {
+    count = std::max(needed, (count + 1) / 2);
     history.held = 0;
   }
+  history.step = left / count;
+  return count;
 }
 
 }  // namespace vat

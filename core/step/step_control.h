@@ -7,14 +7,9 @@
 #include "core/step/guard.h"
 #include "core/step/step_control_contacts.h"
 
-/// What steps a state allows, and the choice of a power-of-two part of the nominal step.
+/// What steps a state allows, and the choice of a part of the nominal step.
 namespace vat {
 
-/// What bounds the steps of a model whatever its state.
-struct StepBounds {
-  std::vector<Real> spring_step;  ///< by free particle, where its springs are stable [s]
-  Real field_step = 0;            ///< that resolves the central field [s]; infinite without one
-};
 /// Empty where steps are fixed.
 StepBounds find_step_bounds(const Model& model);
 
@@ -30,14 +25,19 @@ struct PresentSteps {
 
 /// Fills `steps` for the present state; for local control and for adaptive control alike:
 ///
-/// - springs: 0.9 of the stable step, omega^2 <= 2 lambda_max(sum_j k_ij n n^T) / m_i;
-/// - contacts that act, or may before the step's end: see ContactOutlook;
-/// - travel: half the way at which the guard interferes, at the present speed and force;
+/// - stability, with a margin, of the springs, contacts, sound and viscosity that act together: see
+///   find_step_limits() for those of springs and liquids, and ContactOutlook;
+/// - contacts that act, or may before the step's end, are resolved to the tolerance;
+/// - travel, at the present speed and force: half the way at which the guard interferes; in a
+/// liquid
+///   a quarter of its support radius, measured in the liquids' mean motion;
 /// - rigid bodies turn by at most half a radian;
-/// - liquids, with h_s = h / 2: 0.4 h_s / (c + |v|), 0.25 sqrt(h_s / |a|) and 0.125 h_s^2 / nu
-///   (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; J. P. Morris, P. J. Fox, Y. Zhu,
-///   J. Comput. Phys. 136 (1997) 214);
 /// - users' grabs are stable, and the central field is resolved to the tolerance.
+///
+/// The usual criteria of SPH, 0.4 h_s / (c + |v|), 0.25 sqrt(h_s / |a|) and 0.125 h_s^2 / nu with
+/// h_s = h / 2 (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; J. P. Morris, P. J.
+/// Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214), stay four times below the stable step whatever
+/// the tolerance; here sound is stable, and as accurate as MotionProbe's estimate asks for.
 ///
 /// `longest` [s] is the step beyond which nobody asks. Sorts the cells of the workspace.
 void find_present_steps(const ForceModel& force_model, State& state, Real time, Real longest,
@@ -52,11 +52,11 @@ Real greatest_base_step(const ForceModel& force_model, const State& state,
 /// The least level l with nominal / 2^l <= step, at most kMaxStepLevel.
 std::uint32_t level_of(Real step, Real nominal);
 
-/// The level of the next step of adaptive control, `position` steps of level kMaxStepLevel into the
-/// nominal one. It rises to `wanted` at once; it falls by one where the longer step is aligned, and
-/// not within kHeldSteps steps of the last change: steps that change often gain or lose energy
-/// even in symplectic methods.
-void choose_level(std::uint32_t wanted, std::uint32_t position, StepHistory& history);
+/// In how many equal steps to go on for what is left of a nominal one, all at most `wanted` long
+/// but no less than nominal / 2^kMaxStepLevel; notes their length. Steps get shorter at once; they
+/// get longer, at most twice as long, not within kHeldSteps steps of the last change: steps that
+/// change often gain or lose energy even in symplectic methods.
+std::uint32_t choose_step_count(Real wanted, Real left, Real nominal, StepHistory& history);
 inline constexpr std::uint32_t kHeldSteps = 4;
 
 }  // namespace vat

@@ -1,10 +1,10 @@
 #include "core/step/step_control_contacts.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/forces/contact_search.h"
 #include "core/forces/pair_direction.h"
 #include "core/forces/vat_motion.h"
 #include "core/scene/error_model.h"
@@ -35,6 +35,10 @@ void find_inverse_masses(const Search& search, std::vector<Real>& inverse_mass) 
   inverse_mass.assign(model.inverse_mass.begin(), model.inverse_mass.end());
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
+    if (rigid.is_held(search.force_model.step)) {
+      std::fill_n(inverse_mass.begin() + rigid.particles.begin, rigid.particles.size(), 0);
+      continue;
+    }
     const Real turning = rigid.inverse_moments.maxCoeff();
     for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
       inverse_mass[i] =
@@ -43,53 +47,62 @@ void find_inverse_masses(const Search& search, std::vector<Real>& inverse_mass) 
   }
 }
 
-/// A connection whose two ends are `gap` [m] from touching, seen from an end where forces have
-/// `weight` [1/kg] and approaching at most at `approach` [m/s].
-ContactOutlook look_out(const Search& search, const SpringConstants& law, Real threshold, Real gap,
-                        Real weight, Real approach, Real normal_speed) {
-  ContactOutlook outlook;
-  if (law.stiffness == 0 && law.damping == 0) return outlook;
-  const Real time = gap <= 0 ? 0 : gap / std::max(approach, std::numeric_limits<Real>::min());
-  if (time > search.longest) return outlook;
-  outlook.time = time;
-  outlook.bound = {law.stiffness * weight, law.damping * weight};
-  outlook.speed = normal_speed;
-  outlook.threshold = threshold;
-  return outlook;
+bool acts(const SpringConstants& law) {
+  return law.stiffness > 0 || law.damping > 0;
+}
+
+/// The time until two ends that are `gap` [m] from touching may do so, approaching at most at
+/// `approach` [m/s].
+Real time_to_touch(Real gap, Real approach) {
+  return gap <= 0 ? 0 : gap / std::max(approach, std::numeric_limits<Real>::min());
+}
+
+/// A connection along `normal` seen from an end that bears `share` of it.
+ContactOutlook look_at(const SpringConstants& law, Real threshold, Real time, Real share,
+                       const Vec3& normal, Real normal_speed) {
+  const Mat3 along = normal * normal.transpose();
+  return {share * law.stiffness * along, share * law.damping * along, time, normal_speed,
+          threshold};
 }
 
 ContactOutlook look_at_pairs(const Search& search, const std::vector<Real>& inverse_mass, Index i) {
   ContactOutlook sum;
-  for_each_contact(
-      search.model(), search.force_model.work, search.at, i,
+  if (inverse_mass[i] == 0) return sum;
+  search.force_model.work.contacts.for_each(
+      search.model(), search.at, i,
       [&](const Contact& contact) {
+        const SpringConstants law{contact.stiffness, contact.damping};
         const Index j = contact.other;
         const Vec3 velocity = search.at.velocity[i] - search.at.velocity[j];
-        const Real distance = contact.distance;
-        const Real normal_speed =
-            distance > 0 ? std::abs(velocity.dot(contact.x)) / distance : velocity.norm();
-        const Real weight = inverse_mass[i] + std::sqrt(inverse_mass[i] * inverse_mass[j]);
-        sum.add(look_out(search, {contact.stiffness, contact.damping}, contact.threshold,
-                         distance - contact.threshold, weight,
-                         velocity.norm() + search.gained_speed, normal_speed));
+        const Real time = time_to_touch(contact.distance - contact.threshold,
+                                        velocity.norm() + search.gained_speed);
+        if (time > search.longest || !acts(law)) return;
+        const Vec3 normal =
+            pair_direction(contact.x, contact.distance, i, j, search.model().scene.dimensions);
+        sum.add(look_at(law, contact.threshold, time,
+                        1 + std::sqrt(inverse_mass[j] / inverse_mass[i]), normal,
+                        contact.distance > 0 ? std::abs(velocity.dot(normal)) : velocity.norm()));
       },
       search.reach);
   return sum;
 }
 
-ContactOutlook look_at_walls(const Search& search, const std::vector<Real>& inverse_mass, Index i) {
+ContactOutlook look_at_walls(const Search& search, Index i) {
   const Model& model = search.model();
   const Vat& vat = *model.scene.vat;
   const ContactLaw& law = model.wall_laws[model.material[i]];
-  const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   ContactOutlook sum;
+  if (!acts({law.stiffness, law.damping})) return sum;
+  const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   for (const int wall : model.walls) {
     const Vec3 normal = wall_normal(wall);
     const Real speed = -search.at.velocity[i].dot(normal);
     const Real gap = wall_distance(vat, search.vat_motion, wall, search.at.position[i]) - threshold;
-    sum.add(look_out(search, {law.stiffness, law.damping}, threshold, gap, inverse_mass[i],
-                     std::max(Real{0}, speed + search.gained_speed + search.vat_speed),
-                     std::abs(speed + search.vat_motion.velocity.dot(normal))));
+    const Real time =
+        time_to_touch(gap, std::max(Real{0}, speed + search.gained_speed + search.vat_speed));
+    if (time > search.longest) continue;
+    sum.add(look_at({law.stiffness, law.damping}, threshold, time, 1, normal,
+                    std::abs(speed + search.vat_motion.velocity.dot(normal))));
   }
   return sum;
 }
@@ -101,16 +114,88 @@ Real contact_phase(const Numerics& numerics) {
                   std::sqrt(8 * numerics.tolerance));
 }
 
-Real allowed_step(const Numerics& numerics, const ContactOutlook& outlook) {
-  if (outlook.time == kInfinity) return kInfinity;
-  const Real rate = std::sqrt(outlook.bound.omega2 + outlook.bound.rate * outlook.bound.rate);
+/// `contacts` alone, and with all other forces.
+Real allowed_step(const Numerics& numerics, const ContactOutlook& outlook,
+                  const Oscillation& contacts, const Oscillation& all) {
+  const Real rate = std::sqrt(contacts.omega2 + contacts.rate * contacts.rate);
   if (rate == 0) return kInfinity;
   const Real amplitude = outlook.speed / rate;
   const Real share = std::min(Real{1}, amplitude / (kFullAmplitude * outlook.threshold));
   const Real resolving = contact_phase(numerics) / (rate * std::sqrt(share));
-  const Real step = std::min(safe_step(numerics, outlook.bound), resolving);
+  const Real step = std::min(safe_step(numerics, all), resolving);
   // Local levels are for a whole step, whenever in it the contact begins.
   return numerics.control == StepControl::local ? step : std::max(outlook.time, step);
+}
+
+using Mat6 = Eigen::Matrix<Real, 6, 6>;
+
+Real greatest_eigenvalue(const Mat6& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Mat6> solver(matrix, Eigen::EigenvaluesOnly);
+  return std::max(Real{0}, solver.eigenvalues()[5]);
+}
+
+/// An upper bound of a symmetric matrix's eigenvalues; exact where springs act along the axes.
+Real greatest_row(const Mat3& matrix) {
+  return matrix.cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+Real particle_step(const Numerics& numerics, const ContactOutlook& outlook, Real inverse_mass,
+                   const Oscillation& own) {
+  const Oscillation contacts{inverse_mass * greatest_row(outlook.stiffness),
+                             inverse_mass * greatest_row(outlook.damping)};
+  return allowed_step(numerics, outlook, contacts, own + contacts);
+}
+
+/// What contacts' constants K at arms a from the centre of mass add up to for a rigid body's
+/// motions (u, theta), of which the particle's is u + theta x a: the matrix of J^T K J.
+struct RigidLoad {
+  Mat3 linear = Mat3::Zero();
+  Mat3 mixed = Mat3::Zero();
+  Mat3 angular = Mat3::Zero();
+
+  void add(const Mat3& constants, const Mat3& cross) {
+    const Mat3 turned = cross * constants;
+    linear += constants;
+    mixed += turned;
+    angular += turned * cross.transpose();
+  }
+  /// The greatest eigenvalue of M^-1 J^T K J, with I^-1 = turning turning^T.
+  Real greatest(Real inverse_mass, const Mat3& turning) const {
+    const Mat3 scaled = std::sqrt(inverse_mass) * turning.transpose() * mixed;
+    Mat6 matrix;
+    matrix << inverse_mass * linear, scaled.transpose(), scaled,
+        turning.transpose() * angular * turning;
+    return greatest_eigenvalue(matrix);
+  }
+};
+
+Mat3 cross_matrix(const Vec3& a) {
+  Mat3 cross;
+  cross << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return cross;
+}
+
+Real rigid_step(const Search& search, const std::vector<ContactOutlook>& outlooks,
+                std::size_t body) {
+  const RigidModel& rigid = search.model().rigid_bodies[body];
+  const RigidState& now = search.at.rigid[body];
+  ContactOutlook sum;
+  RigidLoad stiffness;
+  RigidLoad damping;
+  for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
+    const ContactOutlook& own = outlooks[i];
+    if (own.is_empty()) continue;
+    sum.add(own);
+    const Mat3 cross = cross_matrix(search.at.position[i] - now.center_of_mass);
+    stiffness.add(own.stiffness, cross);
+    damping.add(own.damping, cross);
+  }
+  if (sum.is_empty()) return kInfinity;
+  const Mat3 turning = (now.orientation * rigid.principal_axes).toRotationMatrix() *
+                       rigid.inverse_moments.cwiseSqrt().asDiagonal();
+  const Oscillation contacts{stiffness.greatest(rigid.inverse_mass, turning),
+                             damping.greatest(rigid.inverse_mass, turning)};
+  return allowed_step(search.model().scene.numerics, sum, contacts, contacts);
 }
 
 Real greatest_vat_speed(const Model& model) {
@@ -130,17 +215,17 @@ Real safe_step(const Numerics& numerics, const Oscillation& oscillation) {
 }
 
 void ContactOutlook::add(const ContactOutlook& other) {
-  bound = bound + other.bound;
+  stiffness += other.stiffness;
+  damping += other.damping;
   time = std::min(time, other.time);
   speed = std::max(speed, other.speed);
   threshold = std::min(threshold, other.threshold);
 }
 
 void find_contact_steps(const ForceModel& f, const Configuration& at, Real time, Real longest,
-                        Real reach, ContactScratch& scratch, std::vector<Real>& particle_step,
-                        std::vector<Real>& rigid_step) {
+                        Real reach, const StepBounds& bounds, ContactScratch& scratch,
+                        std::vector<Real>& particle_steps, std::vector<Real>& rigid_steps) {
   const Model& model = f.model;
-  if (model.contact_reach <= 0 && model.walls.empty()) return;
   const Search search{f,
                       at,
                       longest,
@@ -155,17 +240,17 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
       const auto i = static_cast<Index>(k);
       ContactOutlook outlook;
       if (model.contact_reach > 0) outlook = look_at_pairs(search, scratch.inverse_mass, i);
-      if (!model.walls.empty()) outlook.add(look_at_walls(search, scratch.inverse_mass, i));
+      if (!model.walls.empty()) outlook.add(look_at_walls(search, i));
       scratch.outlook[i] = outlook;
-      if (i >= model.free_count || model.inverse_mass[i] == 0) continue;
-      particle_step[i] = std::min(particle_step[i], allowed_step(model.scene.numerics, outlook));
+      if (i >= model.free_count || model.inverse_mass[i] == 0 || outlook.is_empty()) continue;
+      particle_steps[i] = std::min(
+          particle_steps[i],
+          particle_step(model.scene.numerics, outlook, model.inverse_mass[i], bounds.own[i]));
     }
   });
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
-    const IndexRange particles = model.rigid_bodies[b].particles;
-    ContactOutlook sum;
-    for (Index i = particles.begin; i < particles.end; ++i) sum.add(scratch.outlook[i]);
-    rigid_step[b] = std::min(rigid_step[b], allowed_step(model.scene.numerics, sum));
+    if (model.rigid_bodies[b].is_held(f.step)) continue;
+    rigid_steps[b] = std::min(rigid_steps[b], rigid_step(search, scratch.outlook, b));
   }
 }
 

@@ -16,12 +16,16 @@ namespace vat {
 /// of amplitude speed / omega, and in full from kFullAmplitude of the threshold on, below in
 /// proportion. So a pile at rest needs only stability.
 struct ContactOutlook {
-  Oscillation bound;                                       ///< by Gershgorin's theorem
+  /// sum of k n n^T and of b n n^T, by Young's inequality in the share of the pair's motion that
+  /// makes the bound least: (a - b)^2 <= (1 + s) a^2 + (1 + 1/s) b^2 [N/m], [N s/m].
+  Mat3 stiffness = Mat3::Zero();
+  Mat3 damping = Mat3::Zero();
   Real time = std::numeric_limits<Real>::infinity();       ///< to the first; 0: one acts [s]
   Real speed = 0;                                          ///< along the normal, the greatest [m/s]
   Real threshold = std::numeric_limits<Real>::infinity();  ///< the least [m]
 
   void add(const ContactOutlook& other);
+  bool is_empty() const { return time == std::numeric_limits<Real>::infinity(); }
 };
 inline constexpr Real kFullAmplitude = 0.01;
 
@@ -31,11 +35,18 @@ struct ContactScratch {
   std::vector<Real> inverse_mass;       ///< of the motion that a force on the particle starts
 };
 
-/// Lowers the steps by free particle and by rigid body to those that their contacts allow.
-/// Positions and cells must be those of the present state. `reach` [m] is how far any two particles
-/// may approach each other within `longest` [s].
+/// What bounds the steps of a model whatever its state.
+struct StepBounds {
+  std::vector<Oscillation> own;  ///< by free particle: of its springs, or of its liquid
+  std::vector<Real> own_step;    ///< by free particle: that is stable for them [s]
+  Real field_step = 0;           ///< that resolves the central field [s]; infinite without one
+};
+
+/// Lowers the steps by free particle and by rigid body to those that their contacts, together with
+/// the other forces on the free particles, allow. Positions and cells must be those of the present
+/// state. `reach` [m] is how far any two particles may approach each other within `longest` [s].
 void find_contact_steps(const ForceModel& force_model, const Configuration& at, Real time,
-                        Real longest, Real reach, ContactScratch& scratch,
+                        Real longest, Real reach, const StepBounds& bounds, ContactScratch& scratch,
                         std::vector<Real>& particle_step, std::vector<Real>& rigid_step);
 
 /// The stable step of the scene's integrator, with a margin; infinite where it has none.

@@ -8,8 +8,8 @@
 namespace vat {
 
 /// Sees the force evaluations of a step, and estimates from the first and the last of them how fast
-/// the motion in it is: over each deformable body, in the norm of its masses and relative to its
-/// mean, omega^2 = |change of acceleration| / |change of place|.
+/// the motion in it is: over each deformable or liquid body, in the norm of its masses and relative
+/// to its mean, omega^2 = |change of acceleration| / |change of place|.
 ///
 /// That is the error estimate that the methods embed, which costs no evaluation: Heun's step
 /// differs from the embedded Euler step by dt/2 (a_2 - a_1), velocity Verlet misses dt^2/12 (a_2 -

@@ -16,8 +16,8 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position", "velocity",       "rigid_state", "force",       "liquid_cells", "liquid_pairs",
-    "density",  "filled_density", "pressure",    "solid_cells", "rigid_force"};
+    "position", "velocity",       "rigid_state", "force",        "liquid_cells", "liquid_pairs",
+    "density",  "filled_density", "pressure",    "contact_list", "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -73,13 +73,12 @@ void add_liquid_stages(const Model& model, PlanBuilder& plan) {
 
 void add_contact_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
-  plan.add("sort_solids", {position}, {solid_cells}, &sort_solids);
   if (model.liquid_count > 0) {
-    plan.add("contacts", {position, velocity, solid_cells, liquid_cells, force}, {force},
-             &add_contacts);
+    plan.add("find_contacts", {position, liquid_cells}, {contact_list}, &find_contacts);
   } else {
-    plan.add("contacts", {position, velocity, solid_cells, force}, {force}, &add_contacts);
+    plan.add("find_contacts", {position}, {contact_list}, &find_contacts);
   }
+  plan.add("contacts", {position, velocity, contact_list, force}, {force}, &add_contacts);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ enum class Column : std::uint8_t {
   density,
   filled_density,
   pressure,
-  solid_cells,
+  contact_list,
   rigid_force,
 };
 inline constexpr std::size_t kColumnCount = 11;

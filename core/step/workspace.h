@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/forces/contact_list.h"
 #include "core/neighbours/periodic_box.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/state/state.h"
@@ -62,7 +63,8 @@ struct DamperBlock {
 };
 
 /// Scratch of force evaluations, kept from one to the next so that nothing is allocated in a steady
-/// step. Nothing here outlives an evaluation in meaning.
+/// step. Nothing here outlives an evaluation in meaning, but lists that tell when they are out of
+/// date.
 struct Workspace {
   CellSortedPoints liquid;
   std::vector<LiquidRecord> liquid_records;  ///< by slot
@@ -74,6 +76,7 @@ struct Workspace {
   std::vector<Real> filling;   ///< by liquid slot: density over filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
   CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
+  ContactList contacts;
   std::vector<ContactLoad> contact_loads;  ///< by particle
   bool keep_dampers = false;               ///< asks for the next two lines
   std::vector<Vec3> spring_directions;     ///< by end: n of Boldt eq. 3

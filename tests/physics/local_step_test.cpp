@@ -98,7 +98,7 @@ std::vector<Vec3> run_chain(int steps) {
   Workspace work;
   const ForceModel force_model{*model, controls, work};
   StepBounds bounds = find_step_bounds(*model);
-  bounds.spring_step = {dt, dt, dt / 2, dt / 8};
+  bounds.own_step = {dt, dt, dt / 2, dt / 8};
   const GuardBounds guard = guard_bounds(*model);
   LocalStepper stepper;
   for (int n = 0; n < steps; ++n) {

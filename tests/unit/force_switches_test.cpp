@@ -56,7 +56,7 @@ TEST(ForceSwitches, LeaveStagesOut) {
   scene.forces = {};
   scene.forces.contacts = false;
   EXPECT_THAT(stages_of(scene), Not(Contains("contacts")));
-  EXPECT_THAT(stages_of(scene), Not(Contains("sort_solids")));
+  EXPECT_THAT(stages_of(scene), Not(Contains("find_contacts")));
   scene.forces = {};
   scene.forces.walls = false;
   EXPECT_THAT(stages_of(scene), Not(Contains("walls")));

@@ -62,8 +62,8 @@ void spoil(Column column, Columns& columns) {
     case Column::pressure:
       std::ranges::fill(columns.work.pressure, kNan);
       return;
-    case Column::solid_cells:
-      columns.work.solids = {};
+    case Column::contact_list:
+      columns.work.contacts = {};
       return;
     case Column::rigid_force:
       spoil_vectors(forces.rigid_force);
@@ -108,7 +108,7 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.filled_density);
     case Column::pressure:
       return bytes_of(columns.work.pressure);
-    case Column::solid_cells:
+    case Column::contact_list:
       return bytes_of(columns.work.solids.x);
     case Column::rigid_force:
       return bytes_of(forces.rigid_force);

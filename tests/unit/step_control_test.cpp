@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/limits.h"
 #include "core/scene/error_model.h"
@@ -23,24 +24,37 @@ TEST(StepLevel, IsTheLeastThatIsShortEnough) {
   EXPECT_EQ(level_of(std::nan(""), 1), 0U);  // the guard deals with such states
 }
 
-TEST(StepLevel, RisesAtOnceAndFallsSlowlyAtAlignedPlaces) {
-  constexpr std::uint32_t kParts = 1U << kMaxStepLevel;
+TEST(StepCount, IsTheLeastThatIsShortEnough) {
+  const auto count = [](Real wanted, Real left) {
+    StepHistory history;
+    return choose_step_count(wanted, left, 1, history);
+  };
+  EXPECT_EQ(count(1, 1), 1U);
+  EXPECT_EQ(count(100, 1), 1U);
+  EXPECT_EQ(count(0.999, 1), 2U);
+  EXPECT_EQ(count(Real{1} / 3, 1), 3U);
+  EXPECT_EQ(count(0.3, 1), 4U);
+  EXPECT_EQ(count(0.3, 0.5), 2U);
+  EXPECT_EQ(count(0, 1), 1U << kMaxStepLevel);
+  EXPECT_EQ(count(0, 0.25), 1U << (kMaxStepLevel - 2));
+  EXPECT_EQ(count(std::nan(""), 1), 1U);  // the guard deals with such states
+}
+
+TEST(StepCount, StepsShortenAtOnceAndLengthenSlowly) {
   StepHistory history;
-  choose_level(3, 0, history);
-  EXPECT_EQ(history.level, 3U);
-  std::uint32_t steps_at_level[4] = {};
-  std::uint32_t position = 0;
-  while (history.level > 0) {
-    choose_level(0, position, history);
-    const std::uint32_t step = kParts >> history.level;
-    EXPECT_EQ(position % step, 0U);
-    if (history.level > 0) ++steps_at_level[history.level];
-    position += step;
+  EXPECT_EQ(choose_step_count(0.125, 1, 1, history), 8U);
+  EXPECT_EQ(choose_step_count(0.0625, 0.875, 1, history), 14U);
+  std::vector<Real> steps;
+  for (Real left = 1; left > 1e-12; left -= steps.back()) {
+    choose_step_count(1, left, 1, history);
+    EXPECT_LE(history.step, steps.empty() ? 0.0625 : 2 * steps.back() + 1e-12);
+    steps.push_back(history.step);
     ++history.held;
   }
-  EXPECT_EQ(steps_at_level[3], kHeldSteps);
-  EXPECT_EQ(steps_at_level[2], kHeldSteps);
-  EXPECT_EQ(steps_at_level[1], kHeldSteps + 1);  // after four it is in the middle of a whole step
+  const std::vector<Real> expected{1. / 16, 1. / 16, 1. / 16, 1. / 16, 1. / 8,
+                                   1. / 8,  1. / 8,  1. / 8,  1. / 4};
+  ASSERT_EQ(steps.size(), expected.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_NEAR(steps[i], expected[i], 1e-12) << i;
 }
 
 // Each integrator, on x'' = -x with steps of the phase that the model gives for an error.

@@ -78,7 +78,7 @@ TEST(StepPlan, OfTwoBodiesOfOneLiquidHasNoContacts) {
 TEST(StepPlan, OfTwoLiquidsHasContacts) {
   EXPECT_THAT(stages_of(scene_of({kPool, body_of("film", BodyKind::liquid, "oil")})),
               ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
-                          "liquid_forces_inviscid", "sort_solids", "contacts"));
+                          "liquid_forces_inviscid", "find_contacts", "contacts"));
 }
 
 TEST(StepPlan, OfOneDeformableBodyHasItsSpringsOnly) {
@@ -90,7 +90,7 @@ TEST(StepPlan, OfSelfContactHasContacts) {
   Scene scene = scene_of({make_spring_body()});
   scene.materials[2].self_contact = SpringConstants{100, 0};
   EXPECT_THAT(stages_of(scene),
-              ElementsAre("external_forces", "sort_solids", "contacts", "springs"));
+              ElementsAre("external_forces", "find_contacts", "contacts", "springs"));
 }
 
 TEST(StepPlan, OfOneRigidBodyPosesAndGathers) {
@@ -109,7 +109,7 @@ TEST(StepPlan, OfEverythingIsInOrder) {
   scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
   EXPECT_THAT(stages_of(scene),
               ElementsAre("pose_rigid_bodies", "external_forces", "sort_liquid", "liquid_density",
-                          "liquid_pressure", "liquid_forces", "sort_solids", "contacts", "springs",
+                          "liquid_pressure", "liquid_forces", "find_contacts", "contacts", "springs",
                           "walls", "gather_rigid_forces"));
 }
 

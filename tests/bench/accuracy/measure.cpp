@@ -6,6 +6,7 @@
 #include <ranges>
 #include <stdexcept>
 
+#include "core/limits.h"
 #include "tests/validation/order.h"
 
 namespace vat::bench {
@@ -14,10 +15,10 @@ using validation::Run;
 
 namespace {
 
-/// A phase error of a tenth per radian, and a quarter of it for each next solution: errors of
-/// second order fall like that where steps are halved.
+/// From steps that are as long as stability allows, and a quarter of the tolerance for each next
+/// solution: errors of second order fall like that where steps are halved.
 Real tolerance_of(std::size_t index) {
-  return 0.1 * std::pow(0.25, static_cast<Real>(index));
+  return kMaxTolerance * std::pow(0.25, static_cast<Real>(index));
 }
 
 std::uint32_t step_count_of(const Problem& problem, bool varied, std::size_t index) {

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "core/model/model.h"
+
+namespace vat {
+
+/// One dynamic connection (Boldt def. 0.2) seen from particle `self`; distance < threshold.
+struct Contact {
+  Index self = 0;
+  Index other = 0;
+  Vec3 x;          ///< position of self minus position of other [m]
+  Real distance;   ///< |x| [m]
+  Real threshold;  ///< and rest length l [m]
+  Real stiffness;  ///< [N/m]
+  Real damping;    ///< [N s/m]
+};
+
+/// Which law joins particles i and j, if any, as a Contact without its geometry: not two particles
+/// of one rigid body, nor of liquids of one material (they meet by SPH), nor excluded pairs of a
+/// deformable body, wherever their images are.
+class ContactRules {
+ public:
+  ContactRules(const Model& model, Index i)
+      : model_(model), i_(i), body_(model.body[i]), material_(model.material[i]) {}
+
+  /// False: no law. Otherwise fills threshold and constants.
+  bool find_law(Index j, Contact& contact) const {
+    if (model_.body[j] == body_) return find_self_law(j, contact);
+    const ContactLaw& law = model_.contact_law(material_, model_.material[j]);
+    contact.threshold = law.threshold > 0 ? law.threshold : model_.radius[i_] + model_.radius[j];
+    contact.stiffness = law.stiffness;
+    contact.damping = law.damping;
+    return true;
+  }
+
+  /// Asked only of pairs within reach: exclusions cost a search.
+  bool excluded(Index j) const {
+    if (model_.body[j] != body_) return false;
+    const auto begin = model_.exclusions.begin();
+    return std::binary_search(begin + model_.exclusion_begin[i_],
+                              begin + model_.exclusion_begin[i_ + 1], j);
+  }
+
+ private:
+  bool find_self_law(Index j, Contact& contact) const {
+    if (i_ == j || model_.bodies[body_].kind != BodyKind::deformable) return false;
+    const std::optional<SpringConstants>& law = model_.self_contacts[material_];
+    if (!law) return false;
+    contact.threshold = model_.radius[i_] + model_.radius[j];
+    contact.stiffness = law->stiffness;
+    contact.damping = law->damping;
+    return true;
+  }
+
+  const Model& model_;
+  Index i_;
+  Index body_;
+  Index material_;
+};
+
+}  // namespace vat
