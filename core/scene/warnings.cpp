@@ -6,6 +6,7 @@
 
 #include "core/limits.h"
 #include "core/neighbours/uniform_grid.h"
+#include "core/scene/choose_numerics.h"
 #include "core/scene/idle_settings.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/sampling.h"
@@ -219,8 +220,10 @@ void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>&
 
 }  // namespace
 
-std::vector<Warning> find_warnings(const Scene& scene) {
-  const Start start = sample_all(scene);
+std::vector<Warning> find_warnings(const Scene& given) {
+  const Start start = sample_all(given);
+  Scene scene = given;
+  scene.numerics = choose_numerics(given, pointers_to(start.bodies));
   std::vector<Warning> warnings;
   warn_of_overlaps(scene, start, warnings);
   warn_of_walls(scene, start, warnings);

@@ -43,6 +43,13 @@ Scene oscillator(Real stiffness, Real damping) {
   return scene;
 }
 
+TEST(Warnings, AreOfTheStepThatAnAccuracyChooses) {
+  Scene scene = oscillator(1e8, 0);
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("unstable_step /numerics/step"));
+  scene.numerics.accuracy = 0.1;
+  EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
+}
+
 TEST(Warnings, OfBodiesThatOverlap) {
   EXPECT_THAT(warnings_of(two_balls(0.2)), testing::IsEmpty());
   EXPECT_THAT(warnings_of(two_balls(0.12)), testing::ElementsAre("bodies_overlap /bodies/1"));
