@@ -35,6 +35,13 @@ Real spring_load(const Model& model, const std::vector<Vec3>& at, Index i, Const
   return 2 * solver.eigenvalues()[2] * model.inverse_mass[i];
 }
 
+/// Sound in a liquid that is compressed by up to an eighth, where lattices of h / 2 are stable up
+/// to 0.71 h / c in the plane and 0.78 h / c in space: nine tenths of this one's stable step.
+Oscillation compressed(const Model& model, const Oscillation& liquid) {
+  const Real share = model.scene.dimensions == 2 ? 0.82 : 0.9;
+  return {liquid.omega2 / (share * share), liquid.rate};
+}
+
 std::vector<Vec3> starting_places(const Model& model) {
   std::vector<Vec3> at(model.particle_count);
   for (const ModelBody& body : model.bodies) {
@@ -54,7 +61,7 @@ StepBounds find_step_bounds(const Model& model) {
     if (model.inverse_mass[i] == 0) continue;
     if (i < model.liquid_count) {
       if (model.scene.numerics.control == StepControl::local) continue;  // a level of their own
-      bounds.own[i] = model.damping.own[model.body[i]];
+      bounds.own[i] = compressed(model, model.damping.own[model.body[i]]);
     } else if (model.spring_begin[i] != model.spring_begin[i + 1]) {
       bounds.own[i] = {
           spring_load(model, at, i, [](const SpringEnd& spring) { return spring.stiffness; }),
@@ -145,7 +152,9 @@ Real liquid_step(const Present& present) {
       acceleration = std::max(acceleration, present.acceleration(i));
     }
     const Real way = kLiquidTravelShare * present.model.liquids[body.material]->support_radius;
-    step = std::min({step, safe_step(present.model.scene.numerics, present.model.damping.own[b]),
+    step = std::min({step,
+                     safe_step(present.model.scene.numerics,
+                               compressed(present.model, present.model.damping.own[b])),
                      travel_time(way, std::sqrt(speed2), acceleration)});
   }
   return step;

@@ -1,6 +1,5 @@
 #include "core/step/step_control_contacts.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -129,9 +128,14 @@ Real allowed_step(const Numerics& numerics, const ContactOutlook& outlook,
 
 using Mat6 = Eigen::Matrix<Real, 6, 6>;
 
-Real greatest_eigenvalue(const Mat6& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Mat6> solver(matrix, Eigen::EigenvaluesOnly);
-  return std::max(Real{0}, solver.eigenvalues()[5]);
+/// An upper bound of a symmetric, positive semi-definite matrix's eigenvalues, (tr A^8)^(1/8): a
+/// quarter too great at most, and cheaper than they are.
+Real greatest_eigenvalue(Mat6 matrix) {
+  const Real trace = matrix.trace();
+  if (!(trace > 0)) return 0;
+  matrix /= trace;
+  for (int squaring = 0; squaring < 3; ++squaring) matrix = (matrix * matrix).eval();
+  return trace * std::sqrt(std::sqrt(std::sqrt(matrix.trace())));
 }
 
 /// An upper bound of a symmetric matrix's eigenvalues; exact where springs act along the axes.
@@ -159,7 +163,7 @@ struct RigidLoad {
     mixed += turned;
     angular += turned * cross.transpose();
   }
-  /// The greatest eigenvalue of M^-1 J^T K J, with I^-1 = turning turning^T.
+  /// Bounds the eigenvalues of M^-1 J^T K J, with I^-1 = turning turning^T.
   Real greatest(Real inverse_mass, const Mat3& turning) const {
     const Mat3 scaled = std::sqrt(inverse_mass) * turning.transpose() * mixed;
     Mat6 matrix;
