@@ -34,9 +34,9 @@ struct Forces {
 
 /// What adaptive step control remembers from one step to the next.
 struct StepHistory {
-  Real step = 0;            ///< the last one; 0: there was none [s]
-  std::uint32_t held = 0;   ///< steps since it changed
-  Real observed_rate = 0;   ///< of motion in bodies, in the last step [rad/s]
+  Real step = 0;           ///< the last one; 0: there was none [s]
+  std::uint32_t held = 0;  ///< steps since it changed
+  Real observed_rate = 0;  ///< of motion in bodies, in the last step [rad/s]
 };
 
 /// The levels of local step control: a particle of level l takes steps of the whole one over 2^l.

@@ -109,8 +109,8 @@ TEST(StepPlan, OfEverythingIsInOrder) {
   scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
   EXPECT_THAT(stages_of(scene),
               ElementsAre("pose_rigid_bodies", "external_forces", "sort_liquid", "liquid_density",
-                          "liquid_pressure", "liquid_forces", "find_contacts", "contacts", "springs",
-                          "walls", "gather_rigid_forces"));
+                          "liquid_pressure", "liquid_forces", "find_contacts", "contacts",
+                          "springs", "walls", "gather_rigid_forces"));
 }
 
 TEST(StepPlan, AsTextNamesStagesAndColumns) {

@@ -21,6 +21,13 @@ Real tolerance_of(std::size_t index) {
   return kMaxTolerance * std::pow(0.25, static_cast<Real>(index));
 }
 
+/// The first tolerances leave the steps at the stable ones.
+constexpr std::size_t kFinerTolerances = 2;
+
+bool is_varied(const Method& method) {
+  return method.control != StepControl::fixed;
+}
+
 std::uint32_t step_count_of(const Problem& problem, bool varied, std::size_t index) {
   if (!varied || problem.longest_step_count == 0) return problem.step_counts[index];
   std::uint32_t count = problem.longest_step_count;
@@ -29,7 +36,7 @@ std::uint32_t step_count_of(const Problem& problem, bool varied, std::size_t ind
 }
 
 Scene scene_for(const Problem& problem, const Method& method, std::size_t index) {
-  const bool varied = method.control != StepControl::fixed;
+  const bool varied = is_varied(method);
   const std::uint32_t count = step_count_of(problem, varied, index);
   Scene scene = validation::with_method(problem.scene, method.integrator, problem.end / count);
   scene.numerics.control = method.control;
@@ -113,7 +120,9 @@ std::string name_of(const Method& method) {
 std::vector<Solution> sweep(const Problem& problem, const Method& method,
                             const SweepSettings& settings, TaskRunner* runner) {
   std::vector<Solution> solutions;
-  for (std::size_t i = 0; i < problem.step_counts.size(); i += settings.stride) {
+  const bool has_own_steps = is_varied(method) && problem.longest_step_count > 0;
+  const std::size_t count = problem.step_counts.size() + (has_own_steps ? kFinerTolerances : 0);
+  for (std::size_t i = 0; i < count; i += settings.stride) {
     const Scene scene = scene_for(problem, method, i);
     if (!Simulation::create(scene, runner)) continue;  // too long a step, or a method not offered
     solutions.push_back(solve(problem, scene, settings, runner));
