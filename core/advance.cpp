@@ -103,6 +103,22 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real sta
   return false;
 }
 
+Real Simulation::Impl::probe_start(const ForceModel& force_model, Real start, Real dt) {
+  step_start = state.now;
+  state.forces_current = false;
+  probe.begin(state);
+  force_model.evaluate(state.now, start, state.forces);
+  const Forces forces = state.forces;
+  if (model->damping.any) state.bound = find_bound(force_model, state.now);
+  kick(*model, runner, forces, state.now, dt / 2);
+  drift(*model, runner, state.now, dt);
+  force_model.evaluate(state.now, start + dt, state.forces);
+  state.now = step_start;
+  state.forces = forces;
+  state.forces_current = model->scene.numerics.integrator == IntegratorId::velocity_verlet;
+  return probe.observed_rate(*model);
+}
+
 Real Simulation::Impl::wanted_step(const ForceModel& force_model, Real start) {
   const Numerics& numerics = model->scene.numerics;
   if (numerics.control == StepControl::local) {
@@ -113,6 +129,11 @@ Real Simulation::Impl::wanted_step(const ForceModel& force_model, Real start) {
   const Real longest = last > 0 ? std::min(numerics.step, 2 * last) : numerics.step;
   find_present_steps(force_model, state, start, longest, step_bounds, bounds, present_steps);
   Real step = present_steps.least();
+  if (last == 0) {
+    constexpr Real kShort = 0.1;  // of the first step
+    state.history.observed_rate =
+        probe_start(force_model, start, kShort * std::min(step, numerics.step));
+  }
   if (state.history.observed_rate > 0) {
     step = std::min(step, resolving_phase(numerics.integrator, numerics.tolerance) /
                               state.history.observed_rate);

@@ -50,6 +50,8 @@ struct Simulation::Impl : Snapshot::Content {
   /// One nominal step, in the parts that adaptive or local control chooses.
   bool take_varied_step(ForceModel& force_model, AdvanceReport& report);
   Real wanted_step(const ForceModel& force_model, Real start);
+  /// What a step just taken would have shown, before the first one: from forces here and `dt` on.
+  Real probe_start(const ForceModel& force_model, Real start, Real dt);
   /// Undoes whatever was done since the step began.
   void undo_step();
   /// One step with the scene's integrator and control, unguarded.

@@ -33,6 +33,22 @@ void warn_of_vat_walls(const Scene& scene, std::vector<Warning>& warnings) {
   }
 }
 
+void warn_of_tolerance(const Numerics& numerics, std::vector<Warning>& warnings) {
+  if (numerics.accuracy || numerics.tolerance == Numerics{}.tolerance) return;
+  if (numerics.control == StepControl::fixed) {
+    warn("/numerics/tolerance", "steps are fixed", warnings);
+  } else if (numerics.control == StepControl::local) {
+    warnings.push_back({"no_effect", "/numerics/tolerance",
+                        "has an effect on contacts only: local control keeps the rest stable"});
+  } else if (numerics.integrator == IntegratorId::explicit_euler ||
+             numerics.integrator == IntegratorId::symplectic_euler) {
+    warnings.push_back({"no_effect", "/numerics/tolerance",
+                        "has an effect on contacts only: with one evaluation a step, " +
+                            std::string(to_string(numerics.integrator)) +
+                            " cannot tell its error"});
+  }
+}
+
 }  // namespace
 
 void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
@@ -40,6 +56,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   if (scene.central_field && !scene.forces.gravity) {
     warn("/central_field", "gravity is off, and the central field with it", warnings);
   }
+  warn_of_tolerance(scene.numerics, warnings);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
     const std::string path = "/bodies/" + std::to_string(b);

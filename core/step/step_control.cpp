@@ -69,13 +69,12 @@ StepBounds find_step_bounds(const Model& model) {
     }
   }
   bounds.own_step.resize(model.free_count);
-  std::ranges::transform(bounds.own, bounds.own_step.begin(), [&](const Oscillation& own) {
-    return safe_step(model.scene.numerics, own);
-  });
+  const Numerics& numerics = model.scene.numerics;
+  std::ranges::transform(bounds.own, bounds.own_step.begin(),
+                         [&](const Oscillation& own) { return safe_step(numerics, own); });
   bounds.field_step = kInfinity;
   if (model.scene.forces.gravity && model.scene.central_field &&
       model.scene.central_field->angular_frequency > 0) {
-    const Numerics& numerics = model.scene.numerics;
     bounds.field_step = resolving_phase(numerics.integrator, numerics.tolerance) /
                         model.scene.central_field->angular_frequency;
   }

@@ -160,7 +160,7 @@ TEST(BenchDocument, PageHasEveryMarkerFigureAndCase) {
       page, {{"cases", ""}, {"limits", ""}, {"methods", ""}, {"steps", ""}, {"counts", ""}});
   EXPECT_TRUE(filled) << filled.errors()[0].path << ' ' << filled.errors()[0].message;
   EXPECT_GE(pictures_of(page).size(), 6u);
-  constexpr std::uintmax_t kLargest = 60'000;  // bytes
+  constexpr std::uintmax_t kLargest = 160'000;  // bytes
   for (const std::string& picture : pictures_of(page)) {
     const fs::path file = kPage.parent_path() / picture;
     ASSERT_TRUE(fs::exists(file)) << picture;

@@ -110,6 +110,28 @@ TEST(AdaptiveStep, OfABodyAtRestIsOnlyStable) {
   EXPECT_NEAR(position_of(simulation, 0).z(), kReach - kGravity / kStiffness, 1e-12);
 }
 
+// An oscillator that starts at its turning point, of 100 radians, with a nominal step of one: the
+// tolerance is an error per radian.
+TEST(AdaptiveStep, KeepsTheToleranceFromTheFirstStepOn) {
+  for (const IntegratorId integrator :
+       {IntegratorId::velocity_verlet, IntegratorId::heun, IntegratorId::runge_kutta_4}) {
+    for (const Real tolerance : {1e-3, 1e-5}) {
+      Scene scene = make_scene(integrator, 0.1);
+      scene.materials = {make_material("m")};
+      BodyDescription body = make_body("oscillator", BodyKind::deformable, "m",
+                                       make_particles({{0, 0, 0}, {1.2, 0, 0}}, 1), 0.01);
+      body.springs = {{0, 1, {100, 0}, 1.0}};
+      std::get<ParticleShape>(body.shape).fixed = {0};
+      scene.bodies = {body};
+      Simulation simulation = make_simulation(make_adaptive(scene, tolerance));
+      simulation.advance(100);
+      const Real expected = 1 + 0.2 * std::cos(100);
+      EXPECT_LT(std::abs(position_of(simulation, 0, 1).x() - expected), 0.2 * 100 * tolerance)
+          << to_string(integrator) << ' ' << tolerance;
+    }
+  }
+}
+
 /// A lattice of h / 2 in a periodic box, compressed by a ninth and a little out of order.
 Scene make_compressed_liquid(int dimensions) {
   constexpr Real kSpacing = 0.05;

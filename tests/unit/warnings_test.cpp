@@ -79,6 +79,20 @@ TEST(Warnings, OfNoContactWhereThereIsNone) {
   EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
 }
 
+TEST(Warnings, OfATolerance) {
+  Scene scene = oscillator(1, 0);
+  EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
+  scene.numerics.tolerance = 1e-3;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /numerics/tolerance"));
+  scene.numerics.control = StepControl::adaptive;
+  EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /numerics/tolerance"));
+  scene.numerics.integrator = IntegratorId::velocity_verlet;
+  scene.numerics.control = StepControl::local;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /numerics/tolerance"));
+}
+
 TEST(Warnings, OfSettingsWithoutEffect) {
   Scene scene = two_balls(0.3);
   scene.vat = Vat{{-1, -1, -1}, {2, 1, 1}, true, {}, {}};
