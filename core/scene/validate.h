@@ -50,8 +50,8 @@ Errors find_interface_errors(const Scene& scene, const Present& present,
 
 /// Things that are allowed and likely to disappoint: settings without effect, bodies that overlap
 /// one another or the walls at the start, spacing against support radius, motion that is too fast
-/// for the step, and stiffness, damping, viscosity and speed of sound against the step. The scene
-/// must be without errors.
+/// for the step, stiffness, damping, viscosity and speed of sound against the step, and an estimate
+/// of run time and memory that is high. The scene must be without errors.
 std::vector<Warning> find_warnings(const Scene& scene);
 
 }  // namespace vat

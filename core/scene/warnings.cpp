@@ -7,6 +7,7 @@
 #include "core/limits.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/scene/choose_numerics.h"
+#include "core/scene/cost_estimate.h"
 #include "core/scene/idle_settings.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/sampling.h"
@@ -218,6 +219,20 @@ void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>&
   }
 }
 
+void warn_of_cost(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
+  constexpr Real kMuchMemory = 1e9;
+  const CostEstimate cost = estimate_cost(scene, pointers_to(start.bodies));
+  if (cost.seconds > 1) {
+    warnings.push_back({"slow", "/numerics/step",
+                        "needs about " + number(cost.seconds) +
+                            " s of one core for a simulated second, without contacts"});
+  }
+  if (cost.memory > kMuchMemory) {
+    warnings.push_back(
+        {"much_memory", "/bodies", "need about " + number(cost.memory / 1e9) + " GB of memory"});
+  }
+}
+
 }  // namespace
 
 std::vector<Warning> find_warnings(const Scene& given) {
@@ -233,6 +248,7 @@ std::vector<Warning> find_warnings(const Scene& given) {
   warn_of_rotation(scene, warnings);
   warn_of_speed(scene, start, warnings);
   warn_of_steps(scene, start, warnings);
+  warn_of_cost(scene, start, warnings);
   return warnings;
 }
 

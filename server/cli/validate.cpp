@@ -1,10 +1,13 @@
 #include "server/cli/validate.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <string>
 
+#include "core/scene/cost_estimate.h"
 #include "core/simulation.h"
 #include "server/cli/command.h"
 #include "server/cli/scene_argument.h"
@@ -18,6 +21,18 @@ struct Options {
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
 };
 
+/// In round numbers, for it is an estimate.
+void print_cost(const Scene& scene) {
+  std::vector<SampledBody> bodies;
+  for (const BodyDescription& body : scene.bodies) {
+    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
+    bodies.push_back(sample_body(body, *material, scene.dimensions));
+  }
+  const CostEstimate cost = estimate_cost(scene, pointers_to(bodies));
+  std::cout << std::setprecision(2) << "about " << cost.memory / 1e6 << " MB, and " << cost.seconds
+            << " s of one core for a simulated second, without contacts\n";
+}
+
 void print_summary(const std::string& argument, const Simulation& simulation) {
   const Numerics& numerics = simulation.scene().numerics;
   std::cout << argument << ": valid; bodies: " << simulation.bodies().size()
@@ -25,6 +40,7 @@ void print_summary(const std::string& argument, const Simulation& simulation) {
             << ", springs: " << simulation.spring_count()
             << ", steps per tick: " << simulation.steps_per_tick() << " of "
             << simulation.step_size() << " s (" << to_string(numerics.integrator) << ")\n";
+  print_cost(simulation.scene());
 }
 
 int validate(const Options& options) {

@@ -4,16 +4,18 @@
 #include <cmath>
 
 #include "core/scene/contact_limits.h"
+#include "core/scene/cost_estimate.h"
 #include "core/scene/validate.h"
 
 namespace vat {
 namespace {
 
+/// All but that of run time, for scenes here are of any size.
 std::vector<std::string> warnings_of(const Scene& scene) {
   EXPECT_TRUE(find_errors(scene).empty());
   std::vector<std::string> found;
   for (const Warning& warning : find_warnings(scene)) {
-    found.push_back(warning.code + ' ' + warning.path);
+    if (warning.code != "slow") found.push_back(warning.code + ' ' + warning.path);
   }
   return found;
 }
@@ -77,6 +79,44 @@ TEST(Warnings, OfNoContactWhereThereIsNone) {
   Scene scene = two_balls(0.12);
   scene.forces.contacts = false;
   EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
+}
+
+/// A cube of water, 40 particles along each edge.
+Scene sea(Real step) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.materials[0].name = "water";
+  scene.materials[0].liquid = LiquidConstants{1, 1, 0.1};
+  scene.bodies = {
+      {"sea", BodyKind::liquid, "water", BoxShape{Vec3::Zero(), Vec3::Constant(2)}, 0.05}};
+  scene.numerics.step = step;
+  scene.numerics.tick = 0.1;
+  return scene;
+}
+
+TEST(Warnings, OfRunTime) {
+  const auto is_slow = [](const Scene& scene) {
+    return std::ranges::any_of(find_warnings(scene), [](const Warning& warning) {
+      return warning.code == "slow" && warning.path == "/numerics/step";
+    });
+  };
+  EXPECT_FALSE(is_slow(sea(0.1)));
+  EXPECT_TRUE(is_slow(sea(0.001)));
+}
+
+TEST(CostEstimate, AddsUpWhatBodiesNeed) {
+  const auto cost = [](const Scene& scene) {
+    const SampledBody body = sample_body(scene.bodies[0], scene.materials[0]);
+    const SampledBody* pointer = &body;
+    return estimate_cost(scene, {&pointer, 1});
+  };
+  Scene scene = sea(0.001);
+  const CostEstimate once = cost(scene);
+  scene.numerics.integrator = IntegratorId::runge_kutta_4;
+  EXPECT_DOUBLE_EQ(cost(scene).seconds, 4 * once.seconds);
+  scene.numerics.step = 0.002;
+  EXPECT_DOUBLE_EQ(cost(scene).seconds, 2 * once.seconds);
+  EXPECT_EQ(cost(scene).memory, once.memory);
 }
 
 TEST(Warnings, OfATolerance) {
