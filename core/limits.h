@@ -48,6 +48,7 @@ inline constexpr Real kMaxMass = 1e12;         // [kg]
 inline constexpr Real kMaxForce = 1e12;        // [N] of an applied force
 inline constexpr Real kMaxStiffness = 1e12;    // [N/m], [m^2/s^2]
 inline constexpr Real kMaxDamping = 1e12;      // [N s/m]
+inline constexpr Real kMaxFriction = 10;       // coefficient; rubber on rubber has 1 to 2
 inline constexpr Real kMinDensity = 1e-6;      // [kg/m^3]
 inline constexpr Real kMaxDensity = 1e9;       // [kg/m^3]
 inline constexpr Real kMaxViscosity = 1e9;     // [Pa s]

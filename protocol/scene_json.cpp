@@ -118,7 +118,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   read_materials(reader, partial, errors);
   read_part(reader, "default_interface", scene.default_interface, errors,
             [&](const Json& value, std::string path) {
-              return scene_parts::to_spring_constants(value, std::move(path), errors);
+              return scene_parts::to_interface_constants(value, std::move(path), errors);
             });
   read_interfaces(reader, partial, errors);
   read_part(reader, "vat", scene.vat, errors, [&](const Json& value, std::string path) {

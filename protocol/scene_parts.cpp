@@ -46,6 +46,18 @@ SpringConstants to_spring_constants(const Json& value, std::string path, Errors&
   return constants;
 }
 
+InterfaceConstants to_interface_constants(ObjectReader& reader) {
+  const SpringConstants spring = to_spring_constants(reader);
+  return {spring.stiffness, spring.damping, reader.real("friction", kAnyMin, kAnyMax, 0)};
+}
+
+InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  const InterfaceConstants constants = to_interface_constants(reader);
+  reader.refuse_unknown();
+  return constants;
+}
+
 Material to_material(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Material material;
@@ -77,7 +89,7 @@ InterfaceDescription to_interface(const Json& value, std::string path, Errors& e
       }
     }
   }
-  interface.constants = to_spring_constants(reader);
+  interface.constants = to_interface_constants(reader);
   if (reader.has("threshold")) interface.threshold = reader.real("threshold", 0, kMaxLength);
   reader.refuse_unknown();
   return interface;

@@ -39,6 +39,12 @@ Json to_json(const Material& material) {
   return json;
 }
 
+Json to_json(const InterfaceConstants& constants) {
+  Json json = to_json(constants.spring());
+  json["friction"] = constants.friction;
+  return json;
+}
+
 Json to_json(const InterfaceDescription& interface) {
   Json json = to_json(interface.constants);
   json["materials"] = interface.materials;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/forces/friction.h"
 #include "core/model/model.h"
 
 namespace vat {
@@ -60,5 +61,21 @@ class ContactRules {
   Index body_;
   Index material_;
 };
+
+/// Friction of a contact of particles i and j with this stiffness [N/m]: none within a body.
+inline Friction pair_friction(const Model& model, Index i, Index j, Real stiffness) {
+  if (model.body[i] == model.body[j]) return {};
+  const Real coefficient = model.contact_law(model.material[i], model.material[j]).friction;
+  if (coefficient == 0) return {};
+  const Real mass = model.mass[i] * model.mass[j] / (model.mass[i] + model.mass[j]);
+  return {coefficient, sticking_drag(stiffness, mass)};
+}
+
+/// Friction of particle i at a wall.
+inline Friction wall_friction(const Model& model, Index i) {
+  const ContactLaw& law = model.wall_laws[model.material[i]];
+  if (law.friction == 0) return {};
+  return {law.friction, sticking_drag(law.stiffness, model.mass[i])};
+}
 
 }  // namespace vat

@@ -14,7 +14,8 @@ void sort_solids(StepContext& context, Real slack);
 void find_contacts(StepContext& context);
 
 /// Stage: dynamic connections between bodies (interfaces, Boldt def. 0.6) and within deformable
-/// ones. Boldt eq. 3 with l = threshold, a dashpot, and no pull.
+/// ones. Boldt eq. 3 with l = threshold, a dashpot, and no pull; with the friction of
+/// core/forces/friction.h.
 void add_contacts(StepContext& context);
 
 }  // namespace vat

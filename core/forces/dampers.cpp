@@ -1,7 +1,8 @@
 #include "core/forces/dampers.h"
 
+#include "core/forces/contact_rules.h"
 #include "core/forces/no_slip.h"
-#include "core/forces/vat_motion.h"
+#include "core/forces/walls.h"
 #include "core/step/force_model.h"
 
 namespace vat {
@@ -10,16 +11,20 @@ namespace {
 void add_wall_dampers(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
                       std::vector<Damper>& dampers) {
   const ContactLaw& law = model.wall_laws[model.material[i]];
-  if (law.damping == 0) return;
+  const Friction friction = wall_friction(model, i);
+  if (law.damping == 0 && !friction.acts()) return;
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   for (const int wall : model.walls) {
     const Real overlap = threshold - wall_distance(*model.scene.vat, motion, wall, at.position[i]);
     if (overlap <= 0) continue;
     const Vec3 n = wall_normal(wall);
     const Real speed = (at.velocity[i] - motion.velocity).dot(n);
-    if (law.stiffness * overlap > law.damping * speed) {
-      dampers.push_back({kNoParticle, law.damping, n});
-    }
+    const Real push = law.stiffness * overlap - law.damping * speed;
+    if (push <= 0) continue;
+    dampers.push_back({kNoParticle, law.damping, n});
+    if (!friction.acts()) continue;
+    const Vec3 slip = wall_slip(*model.scene.vat, motion, wall, at.velocity[i]);
+    add_drag(friction.drag(push, slip), kNoParticle, n, dampers);
   }
 }
 
@@ -36,6 +41,10 @@ void add_no_slip_dampers(const Model& model, const Workspace& work, const VatMot
 }
 
 }  // namespace
+
+void add_drag(Real drag, Index other, const Vec3& normal, std::vector<Damper>& dampers) {
+  for_each_across(normal, [&](const Vec3& across) { dampers.push_back({other, drag, across}); });
+}
 
 void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time,
                             bool viscosity) {

@@ -8,6 +8,11 @@ namespace vat {
 
 struct ForceModel;
 
+/// Adds what a friction of `drag` [N s/m] (see core/forces/friction.h) across the unit vector
+/// `normal` is to a solve: the drag is kept as it is, so that what it solves for loses energy and
+/// does not turn round, and may pass mu F_n by as much as the slip grows within half a step.
+void add_drag(Real drag, Index other, const Vec3& normal, std::vector<Damper>& dampers);
+
 /// Forces that depend on velocities, at one configuration, as a symmetric, negative semi-definite
 /// matrix D: when velocities change by w, forces change by D w. Contacts that do not push are left
 /// out, as are users' grabs.

@@ -3,37 +3,81 @@
 #include <algorithm>
 
 #include "core/forces/connection.h"
+#include "core/forces/contact_rules.h"
 #include "core/step/workspace.h"
 
 namespace vat {
-Vec3 wall_force(const Model& model, const VatMotion& motion, const Configuration& at, Index i) {
+namespace {
+
+/// What the walls do to one particle.
+struct WallForce {
+  Vec3 force = Vec3::Zero();  ///< [N]
+  int count = 0;              ///< of the walls that push
+};
+
+template <bool has_friction>
+WallForce sum_walls(const Model& model, const VatMotion& motion, const Configuration& at, Index i) {
   const ContactLaw& law = model.wall_laws[model.material[i]];
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
-  Vec3 force = Vec3::Zero();
+  WallForce sum;
   for (const int wall : model.walls) {
     const Real distance = wall_distance(*model.scene.vat, motion, wall, at.position[i]);
     if (distance >= threshold) continue;
     const int axis = wall / 2;
     const Real side = wall % 2 == 0 ? 1 : -1;
     const Real speed = side * (at.velocity[i][axis] - motion.velocity[axis]);
-    force[axis] += side * std::max(Real{0}, connection_push(law.stiffness, law.damping, threshold,
-                                                            distance, speed));
+    const Real push = connection_push(law.stiffness, law.damping, threshold, distance, speed);
+    if (push <= 0) continue;
+    sum.force[axis] += side * push;
+    ++sum.count;
+    if constexpr (has_friction) {
+      const Friction friction = wall_friction(model, i);
+      if (!friction.acts()) continue;
+      const Vec3 slip = wall_slip(*model.scene.vat, motion, wall, at.velocity[i]);
+      sum.force -= friction.drag(push, slip) * slip;
+    }
   }
-  return force;
+  return sum;
+}
+
+template <bool has_friction>
+void add_block(StepContext& c, const VatMotion& motion, std::size_t begin, std::size_t end) {
+  for (std::size_t k = begin; k < end; ++k) {
+    const auto i = static_cast<Index>(k);
+    const auto [force, count] = sum_walls<has_friction>(c.model, motion, c.configuration, i);
+    if (count == 0) continue;
+    c.forces.particle[i] += force;
+    const ContactLaw& law = c.model.wall_laws[c.model.material[i]];
+    c.work.contact_loads[i].stiffness += law.stiffness;
+    Real damping = law.damping;
+    if constexpr (has_friction) {  // walls are at right angles: each drags along the others'
+                                   // normals
+      const Real sticking = wall_friction(c.model, i).sticking;
+      damping = std::max(damping, sticking) + (count - 1) * sticking;
+    }
+    c.work.contact_loads[i].damping += damping;
+  }
+}
+
+}  // namespace
+
+Vec3 wall_slip(const Vat& vat, const VatMotion& motion, int wall, const Vec3& velocity) {
+  Vec3 slip = velocity - motion.velocity - vat.walls[static_cast<std::size_t>(wall)].velocity;
+  slip[wall / 2] = 0;
+  return slip;
+}
+
+Vec3 wall_force(const Model& model, const VatMotion& motion, const Configuration& at, Index i) {
+  return model.has_friction ? sum_walls<true>(model, motion, at, i).force
+                            : sum_walls<false>(model, motion, at, i).force;
 }
 
 void add_wall_forces(StepContext& c) {
   const VatMotion motion = vat_motion(*c.model.scene.vat, c.time);
   c.work.contact_loads.resize(c.model.particle_count);
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 force = wall_force(c.model, motion, c.configuration, static_cast<Index>(i));
-      if (force.isZero(0)) continue;
-      c.forces.particle[i] += force;
-      const ContactLaw& law = c.model.wall_laws[c.model.material[i]];
-      c.work.contact_loads[i].stiffness += law.stiffness;
-      c.work.contact_loads[i].damping += law.damping;
-    }
+    c.model.has_friction ? add_block<true>(c, motion, begin, end)
+                         : add_block<false>(c, motion, begin, end);
   });
 }
 

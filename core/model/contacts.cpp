@@ -12,9 +12,10 @@ void fill_laws(Model& model) {
   const Scene& scene = model.scene;
   const InterfaceTable table(scene.materials, scene.interfaces);
   const auto law = [&](std::optional<std::size_t> interface) -> ContactLaw {
-    if (!interface) return {scene.default_interface.stiffness, scene.default_interface.damping, 0};
-    const InterfaceDescription& found = scene.interfaces[*interface];
-    return {found.constants.stiffness, found.constants.damping, found.threshold.value_or(0)};
+    const InterfaceConstants& constants =
+        interface ? scene.interfaces[*interface].constants : scene.default_interface;
+    const Real threshold = interface ? scene.interfaces[*interface].threshold.value_or(0) : 0;
+    return {constants.stiffness, constants.damping, threshold, constants.friction};
   };
   for (std::size_t a = 0; a < scene.materials.size(); ++a) {
     for (std::size_t b = 0; b < scene.materials.size(); ++b) {
@@ -23,6 +24,9 @@ void fill_laws(Model& model) {
     model.wall_laws.push_back(law(table.with_walls(a)));
     model.self_contacts.push_back(scene.materials[a].self_contact);
   }
+  const auto is_rough = [](const ContactLaw& each) { return each.friction > 0; };
+  model.has_friction = std::ranges::any_of(model.contact_laws, is_rough) ||
+                       std::ranges::any_of(model.wall_laws, is_rough);
 }
 
 /// Whether two bodies can be joined by dynamic connections. Liquids of one material are one liquid.

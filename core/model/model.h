@@ -56,6 +56,7 @@ struct ContactLaw {
   Real stiffness = 0;  ///< [N/m]
   Real damping = 0;    ///< [N s/m]
   Real threshold = 0;  ///< [m]; 0 means the sum of the radii (against a wall: the radius)
+  Real friction = 0;   ///< coefficient mu
 };
 
 /// A static connection seen from one of its particles.
@@ -129,6 +130,7 @@ struct Model {
   Real contact_reach = 0;      ///< [m] no contact between particles further apart than this
   bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
+  bool has_friction = false;  ///< some law of bodies or walls has
   ModelDamping damping;
 
   StepPlan plan;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/forces/friction.h"
 #include "core/scene/interface_table.h"
 
 namespace vat {
@@ -64,7 +65,7 @@ Real load(const ContactBody& body, const ContactBody& other, Real threshold) {
 
 /// A law of contact, and the worst of the pairs that it joins.
 struct LawInUse {
-  SpringConstants constants;
+  InterfaceConstants constants;
   Real threshold = 0;  ///< 0: the sum of the radii
   std::string path;
 
@@ -100,8 +101,9 @@ std::vector<LawInUse> list_laws(const Scene& scene) {
   }
   laws.push_back({scene.default_interface, 0, "/default_interface"});
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    laws.push_back({scene.materials[m].self_contact.value_or(SpringConstants{}), 0,
-                    "/materials/" + std::to_string(m) + "/self_contact"});
+    const SpringConstants own = scene.materials[m].self_contact.value_or(SpringConstants{});
+    laws.push_back(
+        {{own.stiffness, own.damping, 0}, 0, "/materials/" + std::to_string(m) + "/self_contact"});
   }
   return laws;
 }
@@ -129,6 +131,20 @@ std::vector<LawInUse> find_worst(const Scene& scene, const std::vector<ContactBo
     }
   }
   return laws;
+}
+
+/// The mass of one particle, on the whole.
+Real particle_mass(const ContactBody& body) {
+  return body.kind == BodyKind::rigid ? body.mass / body.count : body.mass;
+}
+
+/// The greatest of a contact's damping along its normal and, by friction, across it [N s/m].
+Real greatest_damping(const LawInUse& law, const std::vector<ContactBody>& bodies) {
+  const auto [first, second] = law.worst;
+  if (law.constants.friction == 0) return law.constants.damping;
+  // No reduced mass is above the lesser of the two.
+  const Real mass = std::min(particle_mass(bodies[first]), particle_mass(bodies[second]));
+  return std::max(law.constants.damping, sticking_drag(law.constants.stiffness, mass));
 }
 
 /// Unit vectors, one of each opposite pair, in the body's axes.
@@ -195,12 +211,12 @@ void add_contacts(const Scene& scene, std::span<const SampledBody* const> sample
     if (law.inverse_mass == 0) continue;
     std::string names = '"' + scene.bodies[law.worst[0]].name + '"';
     if (law.worst[1] != law.worst[0]) names += " and \"" + scene.bodies[law.worst[1]].name + '"';
-    parts.push_back(
-        {law.path,
-         "contacts of " + names + " may become unstable",
-         "undamped contacts gain energy with this integrator",
-         {law.constants.stiffness * law.inverse_mass, law.constants.damping * law.inverse_mass},
-         {}});
+    parts.push_back({law.path,
+                     "contacts of " + names + " may become unstable",
+                     "undamped contacts gain energy with this integrator",
+                     {law.constants.stiffness * law.inverse_mass,
+                      greatest_damping(law, bodies) * law.inverse_mass},
+                     {}});
   }
 }
 

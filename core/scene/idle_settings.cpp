@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "core/scene/interface_table.h"
+
 namespace vat {
 namespace {
 
@@ -19,16 +21,35 @@ bool has_viscous_liquid(const Scene& scene) {
          });
 }
 
+bool has_wall_friction(const Scene& scene) {
+  const InterfaceTable table(scene.materials, scene.interfaces);
+  return scene.forces.walls && std::ranges::any_of(scene.bodies, [&](const BodyDescription& body) {
+           const auto found = table.with_walls(material_index(scene.materials, body.material));
+           const InterfaceConstants& law =
+               found ? scene.interfaces[*found].constants : scene.default_interface;
+           return law.friction > 0;
+         });
+}
+
+/// Friction is that of a spring's push, and sticks as hard as the spring.
+void warn_of_friction(const InterfaceConstants& constants, const std::string& path,
+                      std::vector<Warning>& warnings) {
+  if (constants.friction > 0 && constants.stiffness == 0) {
+    warn(path + "/friction", "the stiffness is 0", warnings);
+  }
+}
+
 void warn_of_vat_walls(const Scene& scene, std::vector<Warning>& warnings) {
   const bool has_drag = has_viscous_liquid(scene);
+  const bool has_friction = has_wall_friction(scene);
   for (std::size_t i = 0; i < kWallNames.size(); ++i) {
     const Wall& wall = scene.vat->walls[i];
     const std::string path = std::string("/vat/walls/") + kWallNames[i];
     if (wall.no_slip && !has_drag) {
       warn(path + "/no_slip", "no liquid of the scene is viscous", warnings);
     }
-    if (!wall.no_slip && !wall.velocity.isZero(0)) {
-      warn(path + "/velocity", "a wall without no_slip drags nothing along", warnings);
+    if (!wall.no_slip && !has_friction && !wall.velocity.isZero(0)) {
+      warn(path + "/velocity", "a wall without no_slip or friction drags nothing along", warnings);
     }
   }
 }
@@ -57,6 +78,10 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
     warn("/central_field", "gravity is off, and the central field with it", warnings);
   }
   warn_of_tolerance(scene.numerics, warnings);
+  warn_of_friction(scene.default_interface, "/default_interface", warnings);
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    warn_of_friction(scene.interfaces[i].constants, "/interfaces/" + std::to_string(i), warnings);
+  }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
     const std::string path = "/bodies/" + std::to_string(b);

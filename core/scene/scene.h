@@ -36,6 +36,16 @@ struct SpringConstants {
   Real damping = 0;
 };
 
+/// What happens where bodies touch: a spring and dashpot along the line between the two particles,
+/// which only push, and Coulomb friction across it (see core/forces/friction.h).
+struct InterfaceConstants {
+  Real stiffness = 0;  ///< [N/m]
+  Real damping = 0;    ///< [N s/m]
+  Real friction = 0;   ///< coefficient mu; 0: surfaces are smooth
+
+  SpringConstants spring() const { return {stiffness, damping}; }
+};
+
 /// SPH constants of a liquid material.
 struct LiquidConstants {
   Real stiffness = 0;       ///< k of Boldt eq. 14 [m^2/s^2], the square of the speed of sound
@@ -152,7 +162,7 @@ inline constexpr const char* kVatMaterial = "vat";
 /// walls: dynamic connections of rest length `threshold`, present while the distance is below it.
 struct InterfaceDescription {
   std::array<std::string, 2> materials;
-  SpringConstants constants;
+  InterfaceConstants constants;
   std::optional<Real> threshold;  ///< [m]; default: the sum of the two particles' radii
 };
 
@@ -168,7 +178,7 @@ inline constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
 inline constexpr std::array<const char*, 6> kWallNames{"x_min", "x_max", "y_min",
                                                        "y_max", "z_min", "z_max"};
 
-/// What one wall of the vat does to liquids that flow along it.
+/// What one wall of the vat does to what moves along it.
 struct Wall {
   bool no_slip = false;          ///< the liquid at the wall has the wall's velocity
   Vec3 velocity = Vec3::Zero();  ///< of the wall's surface, along the wall [m/s]
@@ -230,7 +240,7 @@ struct Scene {
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
   std::vector<Material> materials;
   std::vector<InterfaceDescription> interfaces;
-  SpringConstants default_interface{1000, 1};  ///< for pairs that `interfaces` does not list
+  InterfaceConstants default_interface{1000, 1};  ///< for pairs that `interfaces` does not list
   std::vector<BodyDescription> bodies;
   std::optional<Vat> vat;
   std::optional<Periodicity> periodic;

@@ -67,8 +67,14 @@ bool is_known(const Scene& scene, const std::string& material) {
          std::ranges::find(scene.materials, material, &Material::name) != scene.materials.end();
 }
 
+void check_interface_constants(const InterfaceConstants& constants, const std::string& path,
+                               RangeCheck& check) {
+  check_constants(constants.spring(), path, check);
+  check.real(constants.friction, 0, kMaxFriction, path + "/friction");
+}
+
 void check_interfaces(const Scene& scene, RangeCheck& check) {
-  check_constants(scene.default_interface, "/default_interface", check);
+  check_interface_constants(scene.default_interface, "/default_interface", check);
   std::set<std::pair<std::string, std::string>> pairs;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const std::string path = element("/interfaces", i);
@@ -147,7 +153,7 @@ void check_interface(const Scene& scene, const InterfaceDescription& interface,
   if (interface.materials[0] == kVatMaterial && interface.materials[1] == kVatMaterial) {
     check.add("unknown_name", path + "/materials", "must name at least one of the materials");
   }
-  check_constants(interface.constants, path, check);
+  check_interface_constants(interface.constants, path, check);
   if (interface.threshold) {
     check_threshold(scene, interface, path + "/threshold", check);
   }

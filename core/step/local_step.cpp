@@ -50,11 +50,17 @@ Vec3 force_of(const Model& model, const Configuration& at, Index i, const LocalP
   const Real distance = x.norm();
   if (pair.is_contact && distance >= pair.rest_length) return Vec3::Zero();
   const Vec3 n = pair_direction(x, distance, i, pair.other, model.scene.dimensions);
-  const Real speed = (at.velocity[i] - at.velocity[pair.other]).dot(n);
+  const Vec3 velocity = at.velocity[i] - at.velocity[pair.other];
+  const Real speed = velocity.dot(n);
   const Real push =
       connection_push(pair.stiffness, pair.damping, pair.rest_length, distance, speed);
-  if (pair.is_contact && push <= 0) return Vec3::Zero();
-  return push * n;
+  if (!pair.is_contact) return push * n;
+  if (push <= 0) return Vec3::Zero();
+  if (!model.has_friction) return push * n;
+  const Friction friction = pair_friction(model, i, pair.other, pair.stiffness);
+  if (!friction.acts()) return push * n;
+  const Vec3 slip = slip_velocity(velocity, speed, n);
+  return push * n - friction.drag(push, slip) * slip;
 }
 
 /// Stages that the liquids' own forces consist of: all that are not replaced here.

@@ -56,12 +56,13 @@ Real time_to_touch(Real gap, Real approach) {
   return gap <= 0 ? 0 : gap / std::max(approach, std::numeric_limits<Real>::min());
 }
 
-/// A connection along `normal` seen from an end that bears `share` of it.
-ContactOutlook look_at(const SpringConstants& law, Real threshold, Real time, Real share,
-                       const Vec3& normal, Real normal_speed) {
+/// A connection along `normal`, with friction across it, seen from an end that bears `share` of it.
+ContactOutlook look_at(const SpringConstants& law, const Friction& friction, Real threshold,
+                       Real time, Real share, const Vec3& normal, Real normal_speed) {
   const Mat3 along = normal * normal.transpose();
-  return {share * law.stiffness * along, share * law.damping * along, time, normal_speed,
-          threshold};
+  Mat3 damping = law.damping * along;
+  if (friction.acts()) damping += friction.sticking * (Mat3::Identity() - along);
+  return {share * law.stiffness * along, share * damping, time, normal_speed, threshold};
 }
 
 ContactOutlook look_at_pairs(const Search& search, const std::vector<Real>& inverse_mass, Index i) {
@@ -78,8 +79,8 @@ ContactOutlook look_at_pairs(const Search& search, const std::vector<Real>& inve
         if (time > search.longest || !acts(law)) return;
         const Vec3 normal =
             pair_direction(contact.x, contact.distance, i, j, search.model().scene.dimensions);
-        sum.add(look_at(law, contact.threshold, time,
-                        1 + std::sqrt(inverse_mass[j] / inverse_mass[i]), normal,
+        sum.add(look_at(law, pair_friction(search.model(), i, j, law.stiffness), contact.threshold,
+                        time, 1 + std::sqrt(inverse_mass[j] / inverse_mass[i]), normal,
                         contact.distance > 0 ? std::abs(velocity.dot(normal)) : velocity.norm()));
       },
       search.reach);
@@ -100,8 +101,8 @@ ContactOutlook look_at_walls(const Search& search, Index i) {
     const Real time =
         time_to_touch(gap, std::max(Real{0}, speed + search.gained_speed + search.vat_speed));
     if (time > search.longest) continue;
-    sum.add(look_at({law.stiffness, law.damping}, threshold, time, 1, normal,
-                    std::abs(speed + search.vat_motion.velocity.dot(normal))));
+    sum.add(look_at({law.stiffness, law.damping}, wall_friction(model, i), threshold, time, 1,
+                    normal, std::abs(speed + search.vat_motion.velocity.dot(normal))));
   }
   return sum;
 }

@@ -18,7 +18,7 @@ constexpr Real kReach = 0.1;  // threshold of the walls' interface [m]
 
 /// Particles of radius 1e-6, so that they are points, above a floor at z = 0 that begins to push
 /// at kReach.
-Scene make_floor_scene(IntegratorId integrator, Real step, const SpringConstants& floor) {
+Scene make_floor_scene(IntegratorId integrator, Real step, const InterfaceConstants& floor) {
   Scene scene = make_scene(integrator, step);
   scene.materials = {make_material("steel")};
   scene.interfaces = {{{"steel", kVatMaterial}, floor, kReach}};

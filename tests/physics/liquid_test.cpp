@@ -165,7 +165,7 @@ Real slope_of(const std::vector<Real>& x, const std::vector<Real>& y) {
 constexpr Real kGravity = 9.81;
 constexpr Real kColumnSpacing = 0.05;
 constexpr Real kColumnDepth = 0.488;  // of the gas rho0 exp(g (H - z) / c^2), c = 10, 0.5 deep
-constexpr SpringConstants kFloor{5000, 10};
+constexpr InterfaceConstants kFloor{5000, 10};
 
 /// Ten layers of eight by eight particles in a vat that they just fill.
 Simulation make_column() {

@@ -17,7 +17,7 @@ constexpr Real kMass = 2;
 constexpr Real kStroke = 0.2;
 constexpr Real kPeriod = 0.8;
 constexpr Real kRate = 2 * std::numbers::pi / kPeriod;
-constexpr SpringConstants kWall{400, 3};
+constexpr InterfaceConstants kWall{400, 3};
 
 /// One particle that both end walls press from the start to the end.
 Scene make_pressed_particle(BodyKind kind, IntegratorId integrator) {

@@ -17,10 +17,10 @@ const Material& find_material(const Scene& scene, std::string_view name) {
 SpringConstants wall_constants(const Scene& scene, std::string_view material) {
   for (const InterfaceDescription& interface : scene.interfaces) {
     if (interface.materials[0] == material && interface.materials[1] == kVatMaterial) {
-      return interface.constants;
+      return interface.constants.spring();
     }
   }
-  return scene.default_interface;
+  return scene.default_interface.spring();
 }
 
 struct VatPose {

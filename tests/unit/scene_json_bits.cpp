@@ -46,6 +46,10 @@ class BitWriter {
     const auto& [stiffness, damping] = constants;
     put_all(stiffness, damping);
   }
+  void put(const InterfaceConstants& constants) {
+    const auto& [stiffness, damping, friction] = constants;
+    put_all(stiffness, damping, friction);
+  }
   void put(const LiquidConstants& liquid) {
     const auto& [stiffness, viscosity, support_radius] = liquid;
     put_all(stiffness, viscosity, support_radius);

@@ -25,9 +25,10 @@ const char* const kFullDocument = R"json({
      "self_contact": {"stiffness": 300.5, "damping": 2.5}},
     {"name": "wood", "density": 600.125}
   ],
-  "default_interface": {"stiffness": 1500.5, "damping": 3.5},
+  "default_interface": {"stiffness": 1500.5, "damping": 3.5, "friction": 0.375},
   "interfaces": [
-    {"materials": ["water", "vat"], "stiffness": 2000.5, "damping": 5.5, "threshold": 0.0625},
+    {"materials": ["water", "vat"], "stiffness": 2000.5, "damping": 5.5, "friction": 1.25,
+     "threshold": 0.0625},
     {"materials": ["rubber", "wood"], "stiffness": 800.5, "damping": 4.5, "threshold": 0.03125}
   ],
   "vat": {"min": [-2, -1.5, -0.5], "max": [3, 1.75, 2.5], "lid": true,
@@ -155,8 +156,8 @@ Scene full_scene() {
   scene.description = "One body of each kind and shape";
   scene.gravity = {0.125, -0.25, -1.625};
   scene.materials = full_materials();
-  scene.default_interface = {1500.5, 3.5};
-  scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5}, 0.0625},
+  scene.default_interface = {1500.5, 3.5, 0.375};
+  scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5, 1.25}, 0.0625},
                       {{"rubber", "wood"}, {800.5, 4.5}, 0.03125}};
   scene.vat = Vat{{-2, -1.5, -0.5}, {3, 1.75, 2.5}, true, SlideMotion{{0, 2, 0}, 0.2, 2.5}, {}};
   scene.vat->walls[2] = {true, {0.5, 0, -0.25}};

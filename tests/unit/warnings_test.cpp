@@ -142,6 +142,10 @@ TEST(Warnings, OfSettingsWithoutEffect) {
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /vat/walls/x_min/no_slip",
                                                        "no_effect /vat/walls/z_max/velocity",
                                                        "no_effect /bodies/1/seed"));
+  scene.default_interface = {0, 1, 0.5};
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /vat/walls/x_min/no_slip",
+                                                       "no_effect /default_interface/friction",
+                                                       "no_effect /bodies/1/seed"));
   scene = two_balls(0.3);
   scene.central_field = CentralField{{0, 0, 0}, 1};
   EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
@@ -216,7 +220,7 @@ TEST(Warnings, OfDampedSpringsBeyondTheStep) {
 }
 
 /// Two rigid particles of 1 kg, so that one contact has mu = 1/2.
-Scene two_grains(const SpringConstants& contact) {
+Scene two_grains(const InterfaceConstants& contact) {
   Scene scene;
   scene.materials.emplace_back();
   scene.materials[0].name = "wood";

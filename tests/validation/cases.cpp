@@ -8,12 +8,26 @@ namespace {
 
 std::vector<Case> collect() {
   std::vector<Case> cases;
-  for (const auto group :
-       {oscillator_cases, chain_cases, static_cases, pendulum_cases, cantilever_cases,
-        free_spin_cases, rigid_top_cases, rigid_contact_cases, rigid_sampling_cases,
-        liquid_lattice_cases, liquid_channel_cases, liquid_drop_cases, liquid_column_cases,
-        liquid_dam_break_cases, liquid_tank_cases, liquid_vortex_cases, liquid_outlet_cases,
-        interaction_impact_cases, interaction_buoyancy_cases}) {
+  for (const auto group : {oscillator_cases,
+                           chain_cases,
+                           static_cases,
+                           pendulum_cases,
+                           cantilever_cases,
+                           free_spin_cases,
+                           rigid_top_cases,
+                           rigid_contact_cases,
+                           rigid_friction_cases,
+                           rigid_sampling_cases,
+                           liquid_lattice_cases,
+                           liquid_channel_cases,
+                           liquid_drop_cases,
+                           liquid_column_cases,
+                           liquid_dam_break_cases,
+                           liquid_tank_cases,
+                           liquid_vortex_cases,
+                           liquid_outlet_cases,
+                           interaction_impact_cases,
+                           interaction_buoyancy_cases}) {
     std::ranges::move(group(), std::back_inserter(cases));
   }
   return cases;

@@ -19,6 +19,7 @@ std::vector<Case> cantilever_cases();
 std::vector<Case> free_spin_cases();
 std::vector<Case> rigid_top_cases();
 std::vector<Case> rigid_contact_cases();
+std::vector<Case> rigid_friction_cases();
 std::vector<Case> rigid_sampling_cases();
 std::vector<Case> liquid_lattice_cases();
 std::vector<Case> liquid_channel_cases();
