@@ -113,6 +113,9 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.name = reader.text("name", kMaxNameLength, "");
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");
+  // In the order of PressureSolver.
+  scene.pressure_solver = static_cast<PressureSolver>(reader.choice(
+      "pressure_solver", {"gas", "tait"}, static_cast<std::size_t>(scene.pressure_solver)));
   scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);

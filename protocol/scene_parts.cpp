@@ -11,6 +11,8 @@ LiquidConstants to_liquid(const Json& value, std::string path, Errors& errors) {
   liquid.stiffness = reader.real("stiffness", 0, kMaxStiffness);
   liquid.viscosity = reader.real("viscosity", kAnyMin, kAnyMax);
   liquid.support_radius = reader.real("support_radius", kMinLength, kMaxLength);
+  liquid.artificial_viscosity =
+      reader.real("artificial_viscosity", 0, kMaxArtificialViscosity, liquid.artificial_viscosity);
   reader.refuse_unknown();
   return liquid;
 }

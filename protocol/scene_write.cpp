@@ -32,7 +32,8 @@ Json to_json(const Material& material) {
   if (material.liquid) {
     json["liquid"] = {{"stiffness", material.liquid->stiffness},
                       {"viscosity", material.liquid->viscosity},
-                      {"support_radius", material.liquid->support_radius}};
+                      {"support_radius", material.liquid->support_radius},
+                      {"artificial_viscosity", material.liquid->artificial_viscosity}};
   }
   if (material.springs) json["springs"] = to_json(*material.springs);
   if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
@@ -196,6 +197,7 @@ Json write_scene(const Scene& scene) {
                {"default_interface", to_json(scene.default_interface)},
                {"interfaces", to_list(scene.interfaces)},
                {"dimensions", static_cast<unsigned>(scene.dimensions)},
+               {"pressure_solver", to_string(scene.pressure_solver)},
                {"forces", to_json(scene.forces)},
                {"numerics", to_json(scene.numerics)},
                {"bodies", to_list(scene.bodies)}};

@@ -48,7 +48,9 @@ void search_contacts(const Model& model, const Workspace& work, const Configurat
     }
   };
 
+  if (model.is_coupled && i < model.liquid_count) return;
   search(work.solids, model.liquid_count, [](Index) { return true; });
+  if (model.is_coupled) return;
   if (i >= model.liquid_count) {
     search(work.liquid, 0, [](Index) { return true; });
   } else if (model.liquids_touch) {

@@ -1,8 +1,10 @@
 #include "core/forces/dampers.h"
 
 #include "core/forces/contact_rules.h"
+#include "core/forces/liquid_pairs.h"
 #include "core/forces/no_slip.h"
 #include "core/forces/walls.h"
+#include "core/forces/weakly_compressible_pairs.h"
 #include "core/step/force_model.h"
 
 namespace vat {
@@ -58,7 +60,8 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Index>(k);
       block.begin[k - begin] = static_cast<Index>(block.dampers.size());
-      add_wall_dampers(model, motion, at, i, block.dampers);
+      const bool is_mirrored = model.is_coupled && i < model.liquid_count;
+      if (!is_mirrored) add_wall_dampers(model, motion, at, i, block.dampers);
       if (i < model.liquid_count && is_viscous_) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
       }
@@ -70,6 +73,10 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
 
 void DampingMatrix::collect_viscosity(const ForceModel& f) {
   const Model& model = f.model;
+  if (model.is_coupled) {
+    collect_central_viscosity(f);
+    return;
+  }
   const bool is_filled = !model.no_slip_walls.empty();
   viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
@@ -86,6 +93,29 @@ void DampingMatrix::collect_viscosity(const ForceModel& f) {
         viscosities[k] =
             liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
         if (is_filled) viscosities[k] *= f.work.filling[s] * f.work.filling[pairs.slots[k]];
+      }
+    }
+  });
+}
+
+void DampingMatrix::collect_central_viscosity(const ForceModel& f) {
+  const Model& model = f.model;
+  viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
+  for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
+    std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
+    viscosities.resize(pairs.begin[end - begin]);
+    for (std::size_t s = begin; s < end; ++s) {
+      const LiquidRecord& own = f.work.liquid_records[s];
+      const std::span<const Index> order = f.work.liquid.grid.order();
+      const LiquidModel& liquid = liquid_of(model, order[s]);
+      const Real h = liquid.support_radius;
+      for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
+        const LiquidRecord& other = f.work.liquid_records[pairs.slots[k]];
+        const Real r = model.periodic.nearest(own.position - other.position).norm();
+        const Real viscosity = mean_viscosity(liquid, liquid_of(model, order[pairs.slots[k]]));
+        viscosities[k] = -viscosity * liquid.slope_scale * own.volume * other.volume *
+                         liquid.kernel.slope_over_r(r) / (r * r + Real{0.01} * h * h);
       }
     }
   });
@@ -142,7 +172,14 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
     for (std::size_t s = begin; s < end; ++s) {
       Vec3 sum = Vec3::Zero();
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
-        sum += viscosities[k] * (by_slot_[pairs.slots[k]] - by_slot_[s]);
+        const Vec3 change = by_slot_[pairs.slots[k]] - by_slot_[s];
+        if (f.model.is_coupled) {
+          const Vec3 x = f.model.periodic.nearest(f.work.liquid_records[s].position -
+                                                  f.work.liquid_records[pairs.slots[k]].position);
+          sum += viscosities[k] * change.dot(x) * x;
+        } else {
+          sum += viscosities[k] * change;
+        }
       }
       force[order[s]] += sum;
     }

@@ -1,17 +1,10 @@
 #include "core/forces/no_slip.h"
 
+#include "core/forces/liquid_pairs.h"
 #include "core/forces/vat_motion.h"
 #include "core/step/workspace.h"
 
 namespace vat {
-namespace {
-
-const LiquidModel& liquid_of(const Model& model, std::size_t particle) {
-  return *model.liquids[model.material[particle]];
-}
-
-}  // namespace
-
 void fill_liquid_density(StepContext& c) {
   const Vat& vat = *c.model.scene.vat;
   const VatMotion motion = vat_motion(vat, c.time);

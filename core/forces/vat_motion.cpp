@@ -12,7 +12,8 @@ VatMotion vat_motion(const Vat& vat, Real time) {
   const Real rate = 2 * std::numbers::pi / slide.period;
   const Real half_stroke = slide.stroke / 2;
   return {axis * (half_stroke * (1 - std::cos(rate * time))),
-          axis * (half_stroke * rate * std::sin(rate * time))};
+          axis * (half_stroke * rate * std::sin(rate * time)),
+          axis * (half_stroke * rate * rate * std::cos(rate * time))};
 }
 
 }  // namespace vat

@@ -7,8 +7,9 @@ namespace vat {
 
 /// Where a moving vat is: a function of time alone.
 struct VatMotion {
-  Vec3 offset = Vec3::Zero();    ///< from its place at time 0 [m]
-  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+  Vec3 offset = Vec3::Zero();        ///< from its place at time 0 [m]
+  Vec3 velocity = Vec3::Zero();      ///< [m/s]
+  Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 };
 VatMotion vat_motion(const Vat& vat, Real time);
 

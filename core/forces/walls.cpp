@@ -76,8 +76,12 @@ void add_wall_forces(StepContext& c) {
   const VatMotion motion = vat_motion(*c.model.scene.vat, c.time);
   c.work.contact_loads.resize(c.model.particle_count);
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    c.model.has_friction ? add_block<true>(c, motion, begin, end)
-                         : add_block<false>(c, motion, begin, end);
+    // Walls push a coupled liquid by its own pressure.
+    const std::size_t first =
+        c.model.is_coupled ? std::max<std::size_t>(begin, c.model.liquid_count) : begin;
+    if (first >= end) return;
+    c.model.has_friction ? add_block<true>(c, motion, first, end)
+                         : add_block<false>(c, motion, first, end);
   });
 }
 

@@ -147,11 +147,50 @@ void add_rigid_bodies(Model& model) {
 }
 
 /// A force that is off has the constant zero.
-LiquidModel make_liquid(const Material& material, const Scene& scene) {
-  LiquidModel liquid(material, scene.dimensions);
+/// Of the first liquid's particles at rest density, for all liquids share one kernel; half a
+/// support radius where there are none.
+Real spacing_of(const Model& model, Index material) {
+  for (const ModelBody& body : model.bodies) {
+    if (body.kind != BodyKind::liquid) continue;
+    const Real density = model.scene.materials[body.material].density;
+    const Real volume = body.sample->masses.front() / density;
+    const Real spacing = model.scene.dimensions == 3 ? std::cbrt(volume) : std::sqrt(volume);
+    // Masses may be anything; sums over a lattice may not.
+    return std::max(spacing, model.scene.materials[material].liquid->support_radius / 8);
+  }
+  return model.scene.materials[material].liquid->support_radius / 2;
+}
+
+LiquidModel make_liquid(const Model& model, Index material) {
+  const Scene& scene = model.scene;
+  LiquidModel liquid(scene.materials[material], scene.dimensions, spacing_of(model, material));
+  if (!scene.forces.viscosity) liquid.central_viscosity = 0;
   if (!scene.forces.pressure) liquid.stiffness = 0;
   if (!scene.forces.viscosity) liquid.viscosity = 0;
   return liquid;
+}
+
+/// Of one particle of a solid body in a liquid: its part of the shape, or a ball's cube.
+Real solid_volume(const Model& model, std::size_t body, Index particle) {
+  const BodyDescription& description = model.scene.bodies[body];
+  const SampledBody& sample = *model.bodies[body].sample;
+  const bool is_plane = model.scene.dimensions == 2;
+  const Real shape = is_plane ? shape_area(description.shape) : shape_volume(description.shape);
+  if (shape > 0) return shape / static_cast<Real>(sample.positions.size());
+  return std::pow(2 * sample.radii[particle], model.scene.dimensions);
+}
+
+void find_rest_volumes(Model& model) {
+  model.rest_volume.resize(model.particle_count);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    const Real density = model.scene.materials[body.material].density;
+    for (Index i = 0; i < body.particles.size(); ++i) {
+      const Index particle = body.particles.begin + i;
+      model.rest_volume[particle] = body.kind == BodyKind::liquid ? model.mass[particle] / density
+                                                                  : solid_volume(model, b, i);
+    }
+  }
 }
 
 ModelDamping find_damping(const Model& model) {
@@ -170,7 +209,24 @@ ModelDamping find_damping(const Model& model) {
 
 }  // namespace
 
-LiquidModel::LiquidModel(const Material& material, int dimensions)
+namespace {
+
+WendlandC2 calibrated_kernel(Real h, int dimensions, Real spacing) {
+  const WendlandC2 kernel(h, dimensions);
+  const Real sum = lattice_sum(kernel, h, spacing, dimensions);
+  return WendlandC2(h, dimensions, 1 / sum);
+}
+
+Real central_viscosity_of(const Material& material, int dimensions) {
+  const LiquidConstants& liquid = *material.liquid;
+  return 2 * (dimensions + 2) * liquid.viscosity + liquid.artificial_viscosity * material.density *
+                                                       std::sqrt(liquid.stiffness) *
+                                                       liquid.support_radius / 2;
+}
+
+}  // namespace
+
+LiquidModel::LiquidModel(const Material& material, int dimensions, Real particle_spacing)
     : support_radius(material.liquid->support_radius),
       rest_density(material.density),
       stiffness(material.liquid->stiffness),
@@ -178,6 +234,10 @@ LiquidModel::LiquidModel(const Material& material, int dimensions)
       density_kernel(support_radius, dimensions),
       pressure_kernel(support_radius, dimensions),
       viscosity_kernel(support_radius, dimensions),
+      kernel(calibrated_kernel(support_radius, dimensions, particle_spacing)),
+      spacing(particle_spacing),
+      slope_scale(1 / lattice_slope(kernel, support_radius, particle_spacing, dimensions)),
+      central_viscosity(central_viscosity_of(material, dimensions)),
       half_space(support_radius, dimensions) {}
 
 std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids,
@@ -189,10 +249,13 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
   if (model->scene.vat) add_walls(*model);
   add_bodies(*model, ids, std::move(samples));
   lay_out_particles(*model);
-  for (const Material& material : model->scene.materials) {
+  for (Index m = 0; m < model->scene.materials.size(); ++m) {
     model->liquids.emplace_back();
-    if (material.liquid) model->liquids.back() = make_liquid(material, model->scene);
+    if (model->scene.materials[m].liquid) model->liquids.back() = make_liquid(*model, m);
   }
+  model->is_coupled =
+      model->scene.pressure_solver == PressureSolver::tait && model->liquid_count > 0;
+  if (model->is_coupled) find_rest_volumes(*model);
   add_springs(*model);
   add_rigid_bodies(*model);
   compile_contacts(*model);

@@ -30,7 +30,8 @@ void fill_laws(Model& model) {
 }
 
 /// Whether two bodies can be joined by dynamic connections. Liquids of one material are one liquid.
-bool can_touch(const ModelBody& a, const ModelBody& b) {
+bool can_touch(const Model& model, const ModelBody& a, const ModelBody& b) {
+  if (model.is_coupled && (a.kind == BodyKind::liquid || b.kind == BodyKind::liquid)) return false;
   return a.kind != BodyKind::liquid || b.kind != BodyKind::liquid || a.material != b.material;
 }
 
@@ -48,7 +49,7 @@ void find_reach(Model& model) {
     }
     for (std::size_t b = 0; b < a; ++b) {
       const ModelBody& second = model.bodies[b];
-      if (!can_touch(first, second)) continue;
+      if (!can_touch(model, first, second)) continue;
       const Real threshold = model.contact_law(first.material, second.material).threshold;
       const Real reach = threshold > 0 ? threshold : greatest_radius[a] + greatest_radius[b];
       model.contact_reach = std::max(model.contact_reach, reach);

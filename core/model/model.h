@@ -10,6 +10,7 @@
 #include "core/kernels/poly6.h"
 #include "core/kernels/spiky.h"
 #include "core/kernels/viscosity_kernel.h"
+#include "core/kernels/wendland_c2.h"
 #include "core/neighbours/periodic_box.h"
 #include "core/scene/sampling.h"
 #include "core/scene/scene.h"
@@ -39,7 +40,8 @@ struct ModelBody {
 
 /// One material's SPH constants with everything that depends on h alone.
 struct LiquidModel {
-  LiquidModel(const Material& material, int dimensions);
+  /// `spacing`: of the particles at rest density [m].
+  LiquidModel(const Material& material, int dimensions, Real spacing);
   Real support_radius;
   Real rest_density;
   Real stiffness;
@@ -47,6 +49,11 @@ struct LiquidModel {
   Poly6 density_kernel;
   Spiky pressure_kernel;
   ViscosityKernel viscosity_kernel;
+  // Of the weakly compressible liquid.
+  WendlandC2 kernel;  ///< scaled so that a lattice of that spacing has the rest density
+  Real spacing;
+  Real slope_scale;  ///< of that kernel, so that a slope over that lattice has its own steepness
+  Real central_viscosity;  ///< 2 (d + 2) mu, with the artificial one [Pa s]
   HalfSpace half_space;
 };
 
@@ -110,6 +117,7 @@ struct Model {
   std::vector<Real> radius;
   std::vector<Index> body;  ///< index into bodies
   std::vector<Index> material;
+  std::vector<Real> rest_volume;     ///< in a liquid at rest; weakly compressible ones only [m^3]
   std::vector<Vec3> local_position;  ///< rigid particles, from free_count on: body axes, about cm
 
   std::vector<std::optional<LiquidModel>> liquids;  ///< by material
@@ -128,6 +136,7 @@ struct Model {
   std::vector<Index> exclusion_begin;
   std::vector<Index> exclusions;
   Real contact_reach = 0;      ///< [m] no contact between particles further apart than this
+  bool is_coupled = false;     ///< liquids meet solids and walls by SPH, not by contacts
   bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
   bool has_friction = false;  ///< some law of bodies or walls has

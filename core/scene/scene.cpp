@@ -47,4 +47,15 @@ const char* to_string(StepControl control) {
   return "";
 }
 
+const char* to_string(PressureSolver solver) {
+  switch (solver) {
+    case PressureSolver::gas:
+      return "gas";
+    case PressureSolver::tait:
+      return "tait";
+  }
+  VAT_CHECK(false && "not a pressure solver");
+  return "";
+}
+
 }  // namespace vat

@@ -29,6 +29,12 @@ enum class StepControl : std::uint8_t {
   local,     ///< each particle has its own power-of-two part of the step
 };
 
+/// What keeps a liquid's volume.
+enum class PressureSolver : std::uint8_t {
+  gas,   ///< Boldt eq. 14 with the kernels of [MCG03]; bodies and walls push with springs
+  tait,  ///< weakly compressible, see core/forces/weakly_compressible.h; bodies and walls take part
+};
+
 /// A Hooke spring's constants: stiffness k [N/m] of Boldt eq. 3 and damping along the spring
 /// [N s/m] (not in the paper; 0 is the paper's spring).
 struct SpringConstants {
@@ -51,6 +57,9 @@ struct LiquidConstants {
   Real stiffness = 0;       ///< k of Boldt eq. 14 [m^2/s^2], the square of the speed of sound
   Real viscosity = 0;       ///< dynamic viscosity mu [Pa s]
   Real support_radius = 0;  ///< h [m]: every kernel is zero at this distance
+  /// alpha: adds alpha rho c h / (4 (d + 2)) to the viscosity of weakly compressible liquids, in d
+  /// dimensions, which calms the sound of impacts.
+  Real artificial_viscosity = 0.02;
 };
 
 /// Static springs that the shape sampler puts between lattice neighbours of a deformable body:
@@ -246,6 +255,7 @@ struct Scene {
   std::optional<Periodicity> periodic;
   std::optional<CentralField> central_field;
   ForceSwitches forces;
+  PressureSolver pressure_solver = PressureSolver::gas;
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
   /// dimensions, and masses, forces and energies are per metre of depth.
   int dimensions = 3;
@@ -256,5 +266,6 @@ struct Scene {
 const char* to_string(BodyKind kind);
 const char* to_string(IntegratorId id);
 const char* to_string(StepControl control);
+const char* to_string(PressureSolver solver);
 
 }  // namespace vat

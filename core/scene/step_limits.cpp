@@ -10,7 +10,9 @@
 namespace vat {
 namespace {
 
-constexpr Real kSoundLimit = 0.96;     // c dt / h, velocity Verlet, cubic lattice, h = 2 spacings
+constexpr Real kSoundLimit = 0.96;      // c dt / h, velocity Verlet, cubic lattice, h = 2 spacings
+constexpr Real kTaitSoundLimit = 0.86;  // the same of the weakly compressible liquid
+constexpr Real kTaitViscousLimit = 0.028;
 constexpr Real kViscousLimit = 0.126;  // nu dt / h^2, the same, 2 / (greatest eigenvalue)
 constexpr Real kNoSlipShare = 2.5;     // a wall's drag is up to 1.5 times the neighbours'
 constexpr Real kVerletLimit = 2;       // omega dt, and rate dt, at those
@@ -80,15 +82,20 @@ void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPa
   const Material& material = material_of(scene, scene.bodies[index]);
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
-  const Real sound =
-      kVerletLimit / kSoundLimit * std::sqrt(scene.forces.pressure ? liquid.stiffness : 0) / h;
+  const bool is_tait = scene.pressure_solver == PressureSolver::tait;
+  const Real speed = std::sqrt(scene.forces.pressure ? liquid.stiffness : 0);
+  const Real sound = kVerletLimit / (is_tait ? kTaitSoundLimit : kSoundLimit) * speed / h;
   Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
+  if (is_tait && scene.forces.viscosity) {
+    viscosity += liquid.artificial_viscosity * speed * h / (4 * (scene.dimensions + 2));
+  }
   const auto is_no_slip = [](const Wall& wall) { return wall.no_slip; };
   if (scene.vat && std::ranges::any_of(scene.vat->walls, is_no_slip)) viscosity *= kNoSlipShare;
+  const Real viscous_limit = is_tait ? kTaitViscousLimit : kViscousLimit;
   parts.push_back({body_path(index),
                    "sound or viscosity in the liquid becomes unstable",
                    "sound in an inviscid liquid gains energy with this integrator",
-                   {sound * sound, kVerletLimit / kViscousLimit * viscosity / (h * h)},
+                   {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h)},
                    index});
 }
 

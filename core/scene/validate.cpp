@@ -27,6 +27,26 @@ void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeC
   check.real(liquid.stiffness, 0, kMaxStiffness, path + "/stiffness");
   check.real(liquid.viscosity, 0, kMaxViscosity, path + "/viscosity");
   check.real(liquid.support_radius, kMinLength, kMaxLength, path + "/support_radius");
+  check.real(liquid.artificial_viscosity, 0, kMaxArtificialViscosity,
+             path + "/artificial_viscosity");
+}
+
+/// Its liquids share one kernel, and nothing has levels of its own.
+void check_liquids_of_tait(const Scene& scene, RangeCheck& check) {
+  if (scene.pressure_solver != PressureSolver::tait) return;
+  if (scene.numerics.control == StepControl::local) {
+    check.add("not_allowed", "/numerics/control", "\"local\" needs the pressure solver \"gas\"");
+  }
+  std::optional<Real> support;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
+    if (!liquid) continue;
+    if (support && liquid->support_radius != *support) {
+      check.add("out_of_range", element("/materials", m) + "/liquid/support_radius",
+                "must be that of the scene's other liquids with the pressure solver \"tait\"");
+    }
+    support = support.value_or(liquid->support_radius);
+  }
 }
 
 void check_material(const Material& material, const std::string& path, RangeCheck& check) {
@@ -168,6 +188,7 @@ Errors find_errors(const Scene& scene) {
   check.vector(scene.gravity, -kMaxGravity, kMaxGravity, "/gravity");
   check_materials(scene, check);
   check_interfaces(scene, check);
+  check_liquids_of_tait(scene, check);
   if (scene.dimensions != 2 && scene.dimensions != 3) {
     check.add("out_of_range", "/dimensions", "must be 2 or 3");
   }

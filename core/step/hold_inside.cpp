@@ -70,15 +70,24 @@ struct ClearBox {
   Vec3 max = Vec3::Constant(std::numeric_limits<Real>::infinity());
 };
 
-bool hold_particle(const Walls& walls, Vec3& position, Vec3& velocity) {
+/// Where walls are mirrors a particle that passes one is its image: stopped at the plane it would
+/// stay there, for its own image would not push it.
+bool hold_particle(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& velocity) {
   bool is_stopped = false;
   for (const int wall : walls.model.walls) {
-    if (!(walls.distance(wall, position) < 0)) continue;
+    const Real distance = walls.distance(wall, position);
+    if (!(distance < 0)) continue;
     is_stopped = true;
     const int axis = wall / 2;
-    position[axis] = plane_of(walls, wall, position);
     const Real speed = walls.motion.velocity[axis];
-    if (inward(wall) * (velocity[axis] - speed) < 0) velocity[axis] = speed;
+    const bool leaves = inward(wall) * (velocity[axis] - speed) < 0;
+    position[axis] = plane_of(walls, wall, position);
+    if (leaves) velocity[axis] = is_mirrored ? 2 * speed - velocity[axis] : speed;
+    if (!is_mirrored) continue;
+    const Vec3 image = position - distance * wall_normal(wall);
+    const bool fits = std::ranges::none_of(
+        walls.model.walls, [&](int other) { return walls.distance(other, image) < 0; });
+    if (fits) position = image;
   }
   return is_stopped;
 }
@@ -187,7 +196,8 @@ std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const S
   for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t stop) {
     for (std::size_t i = begin; i < stop; ++i) {
       if (clear.has(now.position[i]) || model.inverse_mass[i] == 0) continue;
-      if (hold_particle(walls, now.position[i], now.velocity[i])) {
+      const bool is_mirrored = model.is_coupled && i < model.liquid_count;
+      if (hold_particle(walls, is_mirrored, now.position[i], now.velocity[i])) {
         stops.fetch_add(1, std::memory_order_relaxed);
       }
     }

@@ -131,7 +131,7 @@ void evaluate_inner_forces(StepContext& c) {
 
 /// Density and pressure where no force needs them.
 void complete_liquid_fields(StepContext& c) {
-  if (c.model.liquid_count == 0) return;
+  if (c.model.liquid_count == 0 || c.model.is_coupled) return;
   if (!runs(c.model.plan, &compute_liquid_density)) {
     sort_liquid(c);
     compute_liquid_density(c);

@@ -92,6 +92,7 @@ ContactOutlook look_at_walls(const Search& search, Index i) {
   const Vat& vat = *model.scene.vat;
   const ContactLaw& law = model.wall_laws[model.material[i]];
   ContactOutlook sum;
+  if (model.is_coupled && i < model.liquid_count) return sum;
   if (!acts({law.stiffness, law.damping})) return sum;
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   for (const int wall : model.walls) {

@@ -9,6 +9,7 @@
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
 #include "core/forces/walls.h"
+#include "core/forces/weakly_compressible.h"
 #include "core/model/model.h"
 #include "core/support/check.h"
 
@@ -16,8 +17,9 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position", "velocity",       "rigid_state", "force",        "liquid_cells", "liquid_pairs",
-    "density",  "filled_density", "pressure",    "contact_list", "rigid_force"};
+    "position",       "velocity",     "rigid_state",    "force",    "liquid_cells",
+    "liquid_pairs",   "density",      "filled_density", "pressure", "liquid_solids",
+    "solid_pressure", "contact_list", "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -71,9 +73,38 @@ void add_liquid_stages(const Model& model, PlanBuilder& plan) {
   }
 }
 
+/// Liquids that solids and walls take part in.
+void add_coupled_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  plan.add("sort_liquid", {position}, {liquid_cells}, &sort_liquid);
+  const bool has_solids = model.particle_count > model.liquid_count;
+  if (!has_solids) {
+    plan.add("liquid_density", {position, liquid_cells}, {liquid_pairs, density},
+             &compute_tait_density);
+    plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
+    plan.add("liquid_forces",
+             {position, velocity, liquid_cells, liquid_pairs, density, pressure, force}, {force},
+             &add_tait_forces);
+    return;
+  }
+  plan.add("find_liquid_solids", {position, liquid_cells}, {liquid_solids}, &find_liquid_solids);
+  plan.add("liquid_density", {position, liquid_cells, liquid_solids}, {liquid_pairs, density},
+           &compute_tait_density);
+  plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
+  plan.add("solid_pressure", {position, liquid_cells, liquid_solids, pressure}, {solid_pressure},
+           &extrapolate_pressure);
+  plan.add("liquid_forces",
+           {position, velocity, liquid_cells, liquid_pairs, density, pressure, liquid_solids,
+            solid_pressure, force},
+           {force}, &add_tait_forces);
+  plan.add("liquid_forces_on_solids",
+           {velocity, liquid_cells, density, pressure, liquid_solids, solid_pressure, force},
+           {force}, &add_tait_forces_on_solids);
+}
+
 void add_contact_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
-  if (model.liquid_count > 0) {
+  if (model.liquid_count > 0 && !model.is_coupled) {
     plan.add("find_contacts", {position, liquid_cells}, {contact_list}, &find_contacts);
   } else {
     plan.add("find_contacts", {position}, {contact_list}, &find_contacts);
@@ -108,7 +139,11 @@ StepPlan make_step_plan(const Model& model) {
     plan.add("pose_rigid_bodies", {rigid_state}, {position, velocity}, &pose_rigid_bodies);
   }
   plan.add("external_forces", {position, velocity}, {force}, &set_external_forces);
-  if (model.liquid_count > 0) add_liquid_stages(model, plan);
+  if (model.is_coupled) {
+    add_coupled_stages(model, plan);
+  } else if (model.liquid_count > 0) {
+    add_liquid_stages(model, plan);
+  }
   if (model.contact_reach > 0) add_contact_stages(model, plan);
   if (!model.spring_ends.empty()) {
     plan.add("springs", {position, velocity, force}, {force}, &add_spring_forces);

@@ -22,10 +22,12 @@ enum class Column : std::uint8_t {
   density,
   filled_density,
   pressure,
+  liquid_solids,
+  solid_pressure,
   contact_list,
   rigid_force,
 };
-inline constexpr std::size_t kColumnCount = 11;
+inline constexpr std::size_t kColumnCount = 13;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

@@ -75,7 +75,12 @@ struct Workspace {
   std::vector<Real> filled_density;
   std::vector<Real> filling;   ///< by liquid slot: density over filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
-  CellSortedPoints solids;     ///< deformable and rigid particles; index 0 is the first of them
+  // Solids in a weakly compressible liquid: their slots near those of the liquid, and the reverse.
+  CellSortedPoints solids_in_liquid;  ///< index 0 is the first solid particle
+  std::vector<PairBlock> solids_of_liquid;
+  std::vector<PairBlock> liquid_of_solids;
+  std::vector<Real> solid_pressure;  ///< by slot of solids_in_liquid [Pa]
+  CellSortedPoints solids;  ///< deformable and rigid particles; index 0 is the first of them
   ContactList contacts;
   std::vector<ContactLoad> contact_loads;  ///< by particle
   bool keep_dampers = false;               ///< asks for the next two lines

@@ -51,8 +51,8 @@ class BitWriter {
     put_all(stiffness, damping, friction);
   }
   void put(const LiquidConstants& liquid) {
-    const auto& [stiffness, viscosity, support_radius] = liquid;
-    put_all(stiffness, viscosity, support_radius);
+    const auto& [stiffness, viscosity, support_radius, artificial_viscosity] = liquid;
+    put_all(stiffness, viscosity, support_radius, artificial_viscosity);
   }
   void put(const LatticeSprings& springs) {
     const auto& [structural, shear, bend] = springs;
@@ -140,9 +140,10 @@ class BitWriter {
   }
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
-                 bodies, vat, periodic, central_field, forces, dimensions, numerics] = scene;
+                 bodies, vat, periodic, central_field, forces, pressure_solver, dimensions,
+                 numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
-            vat, periodic, central_field, forces, dimensions, numerics);
+            vat, periodic, central_field, forces, pressure_solver, dimensions, numerics);
   }
 
  private:

@@ -11,13 +11,15 @@ const char* const kFullDocument = R"json({
   "description": "One body of each kind and shape",
   "gravity": [0.125, -0.25, -1.625],
   "dimensions": 3,
+  "pressure_solver": "gas",
   "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
   "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
   "forces": {"gravity": false, "pressure": false, "viscosity": false, "springs": false,
              "contacts": false, "walls": false},
   "materials": [
     {"name": "water", "density": 998.5,
-     "liquid": {"stiffness": 90, "viscosity": 0.75, "support_radius": 0.125}},
+     "liquid": {"stiffness": 90, "viscosity": 0.75, "support_radius": 0.125,
+                "artificial_viscosity": 0.25}},
     {"name": "rubber", "density": 500.25,
      "springs": {"structural": {"stiffness": 1000.5, "damping": 1.5},
                  "shear": {"stiffness": 500.5, "damping": 0.5},
@@ -81,7 +83,7 @@ const char* const kFullDocument = R"json({
 namespace {
 
 std::vector<Material> full_materials() {
-  return {{"water", 998.5, LiquidConstants{90, 0.75, 0.125}, {}, {}},
+  return {{"water", 998.5, LiquidConstants{90, 0.75, 0.125, 0.25}, {}, {}},
           {"rubber",
            500.25,
            {},

@@ -62,6 +62,13 @@ void spoil(Column column, Columns& columns) {
     case Column::pressure:
       std::ranges::fill(columns.work.pressure, kNan);
       return;
+    case Column::liquid_solids:
+      for (PairBlock& block : columns.work.solids_of_liquid) block.begin.fill(0);
+      for (PairBlock& block : columns.work.liquid_of_solids) block.begin.fill(0);
+      return;
+    case Column::solid_pressure:
+      std::ranges::fill(columns.work.solid_pressure, kNan);
+      return;
     case Column::contact_list:
       columns.work.contacts = {};
       return;
@@ -108,6 +115,13 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.filled_density);
     case Column::pressure:
       return bytes_of(columns.work.pressure);
+    case Column::liquid_solids: {
+      std::vector<Index> ends;
+      for (const PairBlock& block : columns.work.solids_of_liquid) ends.push_back(block.begin[1]);
+      return bytes_of(ends);
+    }
+    case Column::solid_pressure:
+      return bytes_of(columns.work.solid_pressure);
     case Column::contact_list:
       return bytes_of(columns.work.solids.x);
     case Column::rigid_force:
@@ -197,6 +211,12 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredBesideNoSlipWalls) {
 TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutPressure) {
   Scene scene = crowded_scene(1);
   scene.forces.pressure = false;
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereSolidsTakePart) {
+  Scene scene = crowded_scene(1);
+  scene.pressure_solver = PressureSolver::tait;
   expect_declared(scene);
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+
+namespace vat {
+
+struct StepContext;
+
+/// Stages of the weakly compressible liquid: one kernel for density and force (WendlandC2), Tait's
+/// equation of state, a pressure force that derives from an energy, central viscosity.
+///
+/// With the rest volume V_i = m_i / rho_0 and s_i = rho_i / rho_0 = sum_j V_j W_ij over liquid,
+/// solids and the walls' mirror images, the energy sum_i V_i u(s_i), du/ds = p / s^2, gives F_i =
+/// -V_i sum_j V_j (p_i/s_i^2 + p_j/s_j^2) grad_i W_ij (J. J. Monaghan, Rep. Prog. Phys. 68 (2005)
+/// 1703, sec. 3; rest volumes for masses allow liquids of different density). The kernel is scaled
+/// so that a cubic lattice at rest has the rest density, and its gradient so that such a lattice
+/// feels a pressure's slope in full: without, a column of liquid is up to 7 % too steep.
+///
+/// A wall of the vat is a mirror: the liquid's images complete it (A. Colagrossi, M. Landrini, J.
+/// Comput. Phys. 191 (2003) 448), which keeps energy, with the weight between the two sides added
+/// to the images' pressure. Along walls the liquid slips freely. Solid particles take part with
+/// their volumes, at rest density, and with a pressure of their surroundings.
+
+/// Which solid particles are near which liquid ones, both ways.
+void find_liquid_solids(StepContext& context);
+
+/// s_i rho_0, as density; keeps the neighbours found.
+void compute_tait_density(StepContext& context);
+
+/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), never below zero (see compute_liquid_pressure()).
+void compute_tait_pressure(StepContext& context);
+
+/// The pressure of solid particles, from that of the liquid around them and the weight between (S.
+/// Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq. 27), never below zero.
+void extrapolate_pressure(StepContext& context);
+
+/// The forces on liquid particles, and on the solids that push them.
+void add_tait_forces(StepContext& context);
+void add_tait_forces_on_solids(StepContext& context);
+
+}  // namespace vat

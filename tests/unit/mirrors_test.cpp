@@ -1,0 +1,63 @@
+#include "core/forces/mirrors.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/force_probe.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kSpacing = 0.05;
+
+/// A box full of liquid at rest density.
+Scene make_full_box(int dimensions, Real ratio) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.dimensions = dimensions;
+  scene.pressure_solver = PressureSolver::tait;
+  scene.materials = {make_liquid("water", 1000, {100, 0, ratio * kSpacing})};
+  const int n = 6;
+  const int depth = dimensions == 3 ? n : 1;
+  const Real half = n * kSpacing / 2;
+  scene.vat = Vat{Vec3::Constant(-half), Vec3::Constant(half), true, {}};
+  scene.bodies = {make_body(
+      "water", BodyKind::liquid, "water",
+      make_particles(make_lattice(n, depth, n, kSpacing), 1000 * std::pow(kSpacing, dimensions)),
+      kSpacing / 2)};
+  return scene;
+}
+
+TEST(Mirrors, CompleteALatticeAtFacesEdgesAndCorners) {
+  for (const int dimensions : {2, 3}) {
+    for (const Real ratio : {2.0, 3.0}) {
+      const ForceProbe probe(make_full_box(dimensions, ratio));
+      for (const Real density : probe.work().density) {
+        EXPECT_NEAR(density, 1000, 1e-9) << dimensions << ' ' << ratio;
+      }
+    }
+  }
+}
+
+TEST(Mirrors, ReflectPlacesAndVelocitiesAtMovingWalls) {
+  Scene scene = make_full_box(3, 2);
+  const ForceProbe probe(scene);
+  const VatMotion motion{{0.1, 0, 0}, {2, 0, 0}, {}};
+  const Real half = 3 * kSpacing;
+  int count = 0;
+  for_each_mirror(probe.model(), motion, {0.1 - half + 0.01, 0, 0.02 - half}, 0.1,
+                  [&](const Mirror& mirror) {
+                    ++count;
+                    const Vec3 place = mirror.place({0.1 - half + 0.01, 0, 0.02 - half});
+                    const Vec3 velocity = mirror.velocity({1, 1, 1});
+                    EXPECT_EQ(place.y(), 0);
+                    EXPECT_NEAR(place.x() - (0.1 - half), mirror.axes[0] ? -0.01 : 0.01, 1e-15);
+                    EXPECT_NEAR(place.z() + half, mirror.axes[2] ? -0.02 : 0.02, 1e-15);
+                    EXPECT_EQ(velocity, Vec3(mirror.axes[0] ? 3 : 1, 1, mirror.axes[2] ? -1 : 1));
+                  });
+  EXPECT_EQ(count, 3);  // two faces and their edge
+}
+
+}  // namespace
+}  // namespace vat
