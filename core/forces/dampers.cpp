@@ -71,51 +71,40 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
   if (is_viscous_) collect_viscosity(f);
 }
 
-void DampingMatrix::collect_viscosity(const ForceModel& f) {
+namespace {
+
+/// Of a pair of liquid slots: what add_liquid_forces() has for the difference of velocities, or
+/// add_tait_forces() for its part along x, over |x|^2.
+Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
   const Model& model = f.model;
+  const std::span<const Index> order = f.work.liquid.grid.order();
+  const LiquidModel& liquid = liquid_of(model, order[slot]);
+  const LiquidRecord& own = f.work.liquid_records[slot];
+  const LiquidRecord& other = f.work.liquid_records[other_slot];
+  const Real r = model.periodic.nearest(own.position - other.position).norm();
   if (model.is_coupled) {
-    collect_central_viscosity(f);
-    return;
+    const Real h = liquid.support_radius;
+    return -mean_viscosity(liquid, liquid_of(model, order[other_slot])) * liquid.slope_scale *
+           own.volume * other.volume * liquid.kernel.slope_over_r(r) / (r * r + Real{0.01} * h * h);
   }
-  const bool is_filled = !model.no_slip_walls.empty();
-  viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
-  for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
-    const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
-    std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
-    viscosities.resize(pairs.begin[end - begin]);
-    for (std::size_t s = begin; s < end; ++s) {
-      const LiquidRecord& own = f.work.liquid_records[s];
-      const Index i = f.work.liquid.grid.order()[s];
-      const LiquidModel& liquid = *model.liquids[model.material[i]];
-      for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
-        const LiquidRecord& other = f.work.liquid_records[pairs.slots[k]];
-        const Real r = model.periodic.nearest(own.position - other.position).norm();
-        viscosities[k] =
-            liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
-        if (is_filled) viscosities[k] *= f.work.filling[s] * f.work.filling[pairs.slots[k]];
-      }
-    }
-  });
+  const Real strength =
+      liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
+  return model.no_slip_walls.empty()
+             ? strength
+             : strength * (f.work.filling[slot] * f.work.filling[other_slot]);
 }
 
-void DampingMatrix::collect_central_viscosity(const ForceModel& f) {
-  const Model& model = f.model;
-  viscosities_.resize((model.liquid_count + kBlockSize - 1) / kBlockSize);
-  for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
+}  // namespace
+
+void DampingMatrix::collect_viscosity(const ForceModel& f) {
+  viscosities_.resize((f.model.liquid_count + kBlockSize - 1) / kBlockSize);
+  for_blocks(f.runner, f.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
     std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
     viscosities.resize(pairs.begin[end - begin]);
     for (std::size_t s = begin; s < end; ++s) {
-      const LiquidRecord& own = f.work.liquid_records[s];
-      const std::span<const Index> order = f.work.liquid.grid.order();
-      const LiquidModel& liquid = liquid_of(model, order[s]);
-      const Real h = liquid.support_radius;
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
-        const LiquidRecord& other = f.work.liquid_records[pairs.slots[k]];
-        const Real r = model.periodic.nearest(own.position - other.position).norm();
-        const Real viscosity = mean_viscosity(liquid, liquid_of(model, order[pairs.slots[k]]));
-        viscosities[k] = -viscosity * liquid.slope_scale * own.volume * other.volume *
-                         liquid.kernel.slope_over_r(r) / (r * r + Real{0.01} * h * h);
+        viscosities[k] = pair_viscosity(f, static_cast<Index>(s), pairs.slots[k]);
       }
     }
   });

@@ -28,7 +28,6 @@ class DampingMatrix {
 
  private:
   void collect_viscosity(const ForceModel& force_model);
-  void collect_central_viscosity(const ForceModel& force_model);
 
   bool is_viscous_ = false;
   std::vector<DamperBlock> blocks_;             ///< of particles, without springs and contacts

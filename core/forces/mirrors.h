@@ -12,19 +12,11 @@ namespace vat {
 struct Mirror {
   std::array<bool, 3> axes{};       ///< along which it reflects
   Vec3 twice_plane = Vec3::Zero();  ///< 2 w of the walls' places w, along those [m]
-  Vec3 twice_velocity = Vec3::Zero();
 
   Vec3 place(const Vec3& x) const {
     Vec3 image = x;
     for (int axis = 0; axis < 3; ++axis) {
       if (axes[static_cast<std::size_t>(axis)]) image[axis] = twice_plane[axis] - x[axis];
-    }
-    return image;
-  }
-  Vec3 velocity(const Vec3& v) const {
-    Vec3 image = v;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axes[static_cast<std::size_t>(axis)]) image[axis] = twice_velocity[axis] - v[axis];
     }
     return image;
   }
@@ -52,7 +44,6 @@ void for_each_mirror(const Model& model, const VatMotion& motion, const Vec3& p,
   const auto reflect = [&](Mirror mirror, const Near& wall) {
     mirror.axes[static_cast<std::size_t>(wall.axis)] = true;
     mirror.twice_plane[wall.axis] = 2 * wall.plane;
-    mirror.twice_velocity[wall.axis] = 2 * motion.velocity[wall.axis];
     return mirror;
   };
   for (std::size_t a = 0; a < count; ++a) {

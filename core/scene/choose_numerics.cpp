@@ -81,11 +81,7 @@ Numerics choose_numerics(const Scene& scene, std::span<const SampledBody* const>
 
 void resolve_accuracy(Scene& scene) {
   if (!scene.numerics.accuracy) return;
-  std::vector<SampledBody> bodies;
-  for (const BodyDescription& body : scene.bodies) {
-    const Material& material = *std::ranges::find(scene.materials, body.material, &Material::name);
-    bodies.push_back(sample_body(body, material, scene.dimensions));
-  }
+  const std::vector<SampledBody> bodies = sample_bodies(scene);
   scene.numerics = choose_numerics(scene, pointers_to(bodies));
 }
 

@@ -194,6 +194,15 @@ SampledBody sample_body(const BodyDescription& body, const Material& material, i
   return sample;
 }
 
+std::vector<SampledBody> sample_bodies(const Scene& scene) {
+  std::vector<SampledBody> samples;
+  for (const BodyDescription& body : scene.bodies) {
+    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
+    samples.push_back(sample_body(body, *material, scene.dimensions));
+  }
+  return samples;
+}
+
 std::vector<const SampledBody*> pointers_to(const std::vector<SampledBody>& bodies) {
   std::vector<const SampledBody*> pointers;
   pointers.reserve(bodies.size());

@@ -35,6 +35,9 @@ struct SampledBody {
 /// The body must be valid.
 SampledBody sample_body(const BodyDescription& body, const Material& material, int dimensions = 3);
 
+/// All bodies of a valid scene.
+std::vector<SampledBody> sample_bodies(const Scene& scene);
+
 /// Where each of `bodies` is.
 std::vector<const SampledBody*> pointers_to(const std::vector<SampledBody>& bodies);
 

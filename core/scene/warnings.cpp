@@ -35,11 +35,9 @@ struct Start {
 
 Start sample_all(const Scene& scene) {
   Start start;
-  for (const BodyDescription& body : scene.bodies) {
-    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
-    const auto index = static_cast<Index>(start.bodies.size());
-    start.bodies.push_back(sample_body(body, *material, scene.dimensions));
-    const SampledBody& sample = start.bodies.back();
+  start.bodies = sample_bodies(scene);
+  for (Index index = 0; index < start.bodies.size(); ++index) {
+    const SampledBody& sample = start.bodies[index];
     start.positions.insert(start.positions.end(), sample.positions.begin(), sample.positions.end());
     start.radii.insert(start.radii.end(), sample.radii.begin(), sample.radii.end());
     start.body.insert(start.body.end(), sample.positions.size(), index);

@@ -232,6 +232,7 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
                         Real reach, const StepBounds& bounds, ContactScratch& scratch,
                         std::vector<Real>& particle_steps, std::vector<Real>& rigid_steps) {
   const Model& model = f.model;
+  if (model.contact_reach <= 0 && model.walls.empty()) return;
   const Search search{f,
                       at,
                       longest,

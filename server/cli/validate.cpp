@@ -1,7 +1,6 @@
 #include "server/cli/validate.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -23,11 +22,7 @@ struct Options {
 
 /// In round numbers, for it is an estimate.
 void print_cost(const Scene& scene) {
-  std::vector<SampledBody> bodies;
-  for (const BodyDescription& body : scene.bodies) {
-    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
-    bodies.push_back(sample_body(body, *material, scene.dimensions));
-  }
+  const std::vector<SampledBody> bodies = sample_bodies(scene);
   const CostEstimate cost = estimate_cost(scene, pointers_to(bodies));
   std::cout << std::setprecision(2) << "about " << cost.memory / 1e6 << " MB, and " << cost.seconds
             << " s of one core for a simulated second, without contacts\n";

@@ -40,7 +40,7 @@ TEST(Mirrors, CompleteALatticeAtFacesEdgesAndCorners) {
   }
 }
 
-TEST(Mirrors, ReflectPlacesAndVelocitiesAtMovingWalls) {
+TEST(Mirrors, ReflectPlacesAtMovingWalls) {
   Scene scene = make_full_box(3, 2);
   const ForceProbe probe(scene);
   const VatMotion motion{{0.1, 0, 0}, {2, 0, 0}, {}};
@@ -50,11 +50,9 @@ TEST(Mirrors, ReflectPlacesAndVelocitiesAtMovingWalls) {
                   [&](const Mirror& mirror) {
                     ++count;
                     const Vec3 place = mirror.place({0.1 - half + 0.01, 0, 0.02 - half});
-                    const Vec3 velocity = mirror.velocity({1, 1, 1});
                     EXPECT_EQ(place.y(), 0);
                     EXPECT_NEAR(place.x() - (0.1 - half), mirror.axes[0] ? -0.01 : 0.01, 1e-15);
                     EXPECT_NEAR(place.z() + half, mirror.axes[2] ? -0.02 : 0.02, 1e-15);
-                    EXPECT_EQ(velocity, Vec3(mirror.axes[0] ? 3 : 1, 1, mirror.axes[2] ? -1 : 1));
                   });
   EXPECT_EQ(count, 3);  // two faces and their edge
 }
