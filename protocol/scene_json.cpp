@@ -134,6 +134,9 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
             [&](const Json& value, std::string path) {
               return scene_parts::to_central_field(value, std::move(path), errors);
             });
+  read_part(reader, "settling", scene.settling, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_settling(value, std::move(path), errors);
+  });
   read_part(reader, "forces", scene.forces, errors, [&](const Json& value, std::string path) {
     return scene_parts::to_force_switches(value, std::move(path), errors);
   });

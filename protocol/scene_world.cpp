@@ -95,6 +95,15 @@ CentralField to_central_field(const Json& value, std::string path, Errors& error
   return field;
 }
 
+Settling to_settling(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  Settling settling;
+  settling.drag = reader.real("drag", 0, kMaxDrag);
+  settling.until = reader.real("until", 0, kMaxRelease);
+  reader.refuse_unknown();
+  return settling;
+}
+
 ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   ForceSwitches forces;

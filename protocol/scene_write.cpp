@@ -207,6 +207,9 @@ Json write_scene(const Scene& scene) {
     json["central_field"] = {{"center", to_json(scene.central_field->center)},
                              {"angular_frequency", scene.central_field->angular_frequency}};
   }
+  if (scene.settling) {
+    json["settling"] = {{"drag", scene.settling->drag}, {"until", scene.settling->until}};
+  }
   return json;
 }
 

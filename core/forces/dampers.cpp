@@ -42,6 +42,14 @@ void add_no_slip_dampers(const Model& model, const Workspace& work, const VatMot
   }
 }
 
+void add_settling_dampers(const Model& model, Real time, Index i, std::vector<Damper>& dampers) {
+  if (!model.scene.settling || time >= model.scene.settling->until) return;
+  const Real drag = model.mass[i] * model.scene.settling->drag;
+  for (int axis = 0; axis < 3; ++axis) {
+    dampers.push_back({kNoParticle, drag, Vec3(Vec3::Unit(axis))});
+  }
+}
+
 }  // namespace
 
 void add_drag(Real drag, Index other, const Vec3& normal, std::vector<Damper>& dampers) {
@@ -51,7 +59,7 @@ void add_drag(Real drag, Index other, const Vec3& normal, std::vector<Damper>& d
 void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time,
                             bool viscosity) {
   const Model& model = f.model;
-  is_viscous_ = viscosity;
+  is_viscous_ = viscosity && (model.is_coupled || has_viscosity(model));
   const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
   blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
@@ -64,6 +72,9 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
       if (!is_mirrored) add_wall_dampers(model, motion, at, i, block.dampers);
       if (i < model.liquid_count && is_viscous_) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
+      }
+      if (i < model.liquid_count && viscosity) {
+        add_settling_dampers(model, time, i, block.dampers);
       }
     }
     block.begin[end - begin] = static_cast<Index>(block.dampers.size());

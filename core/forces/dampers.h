@@ -19,7 +19,7 @@ void add_drag(Real drag, Index other, const Vec3& normal, std::vector<Damper>& d
 class DampingMatrix {
  public:
   /// Of the configuration that `force_model` was last evaluated at, its workspace keeping dampers;
-  /// without the liquids' viscosity where that is not asked for.
+  /// without the liquids' viscosity and their drag of settling where those are not asked for.
   void collect(const ForceModel& force_model, const Configuration& at, Real time, bool viscosity);
 
   /// force = D w, both with an entry for each particle.

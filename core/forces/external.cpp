@@ -1,5 +1,6 @@
 #include "core/forces/external.h"
 
+#include "core/forces/vat_motion.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -38,6 +39,18 @@ void add_central_field(const CentralField& field, StepContext& c) {
   });
 }
 
+void add_settling_drag(const Settling& settling, StepContext& c) {
+  if (c.time >= settling.until) return;
+  const Scene& scene = c.model.scene;
+  const Vec3 still = scene.vat ? vat_motion(*scene.vat, c.time).velocity : Vec3(Vec3::Zero());
+  for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 slip = c.configuration.velocity[i] - still;
+      c.forces.particle[i] -= (c.model.mass[i] * settling.drag) * slip;
+    }
+  });
+}
+
 }  // namespace
 
 void set_external_forces(StepContext& c) {
@@ -48,6 +61,7 @@ void set_external_forces(StepContext& c) {
   });
   c.work.contact_loads.assign(c.model.particle_count, {});
   if (scene.forces.gravity && scene.central_field) add_central_field(*scene.central_field, c);
+  if (scene.settling) add_settling_drag(*scene.settling, c);
   for (const AppliedForce& applied : c.controls.applied_forces) add_applied_force(applied, c);
   for (const Grab& grab : c.controls.grabs) add_grab(grab, c);
 }

@@ -7,14 +7,22 @@
 // Solids in a weakly compressible liquid.
 
 namespace vat {
+namespace {
+
+Real greatest_support(const Model& model) {
+  Real support = 0;
+  for (const auto& liquid : model.liquids) {
+    if (liquid) support = std::max(support, liquid->support_radius);
+  }
+  return support;
+}
+
+}  // namespace
 
 void find_liquid_solids(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
   const Index first = c.model.liquid_count;
-  Real support = 0;
-  for (const auto& liquid : c.model.liquids) {
-    if (liquid) support = std::max(support, liquid->support_radius);
-  }
+  const Real support = greatest_support(c.model);
   c.work.solids_in_liquid.build(points.subspan(first), support, c.model.periodic);
   const auto find = [&](const CellSortedPoints& from, const CellSortedPoints& to,
                         std::vector<PairBlock>& blocks, auto&& support_of) {
@@ -41,58 +49,128 @@ void find_liquid_solids(StepContext& c) {
        [&](std::size_t) { return support; });
 }
 
-void extrapolate_pressure(StepContext& c) {
+namespace {
+
+/// The mean pressure around a place, weighted with the kernel and extrapolated by the weight of
+/// the liquid between.
+class Extrapolation {
+ public:
+  Extrapolation(const Model& model, const VatMotion& still, const Vec3& place)
+      : fall_(fall_in_vat(model, still, place)) {}
+
+  /// x leads from the liquid to the place.
+  void add(const LiquidModel& liquid, Real pressure, const Vec3& x) {
+    const Real r = x.norm();
+    if (r >= liquid.support_radius) return;
+    const Real w = liquid.kernel.value(r);
+    weight_ += w;
+    sum_ += w * (pressure + liquid.rest_density * fall_.dot(x));
+  }
+
+  Real pressure() const { return weight_ > 0 ? std::max(Real{0}, sum_ / weight_) : 0; }
+
+ private:
+  Vec3 fall_;
+  Real weight_ = 0;
+  Real sum_ = 0;
+};
+
+/// Of solid slot `self`, over liquid and the walls' images of it.
+Real extrapolated_pressure(const StepContext& c, Index self, Real support,
+                           const VatMotion& motion) {
   const CellSortedPoints& solids = c.work.solids_in_liquid;
-  const std::span<const Index> order = solids.grid.order();
-  const std::span<const Index> liquid_order = c.work.liquid.grid.order();
-  const VatMotion still;
-  c.work.solid_pressure.resize(order.size());
-  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
-    const PairBlock& near = c.work.liquid_of_solids[begin / kBlockSize];
+  const CellSortedPoints& points = c.work.liquid;
+  const std::span<const Index> order = points.grid.order();
+  const Vec3 place(solids.x[self], solids.y[self], solids.z[self]);
+  const PairBlock& near = c.work.liquid_of_solids[self / kBlockSize];
+  Extrapolation sum(c.model, VatMotion{}, place);
+  for (Index k = near.begin[self % kBlockSize]; k < near.begin[self % kBlockSize + 1]; ++k) {
+    const Index slot = near.slots[k];
+    const Vec3 x =
+        nearest_image(c.model, place - Vec3(points.x[slot], points.y[slot], points.z[slot]));
+    sum.add(liquid_of(c.model, order[slot]), c.work.pressure[order[slot]], x);
+  }
+  if (c.model.walls.empty()) return sum.pressure();
+  for_each_image(c.model, motion, points, place, support,
+                 [&](Index slot, const Vec3& x, const Mirror& mirror) {
+                   const LiquidModel& liquid = liquid_of(c.model, order[slot]);
+                   const ImagePressure image_pressure(c.model, liquid, motion, place);
+                   const Vec3 position(points.x[slot], points.y[slot], points.z[slot]);
+                   sum.add(liquid, image_pressure(c.work.pressure[order[slot]], position, mirror),
+                           x);
+                 });
+  return sum.pressure();
+}
+
+}  // namespace
+
+void extrapolate_pressure(StepContext& c) {
+  const std::size_t count = c.work.solids_in_liquid.grid.order().size();
+  const VatMotion motion = motion_of(c);
+  const Real support = greatest_support(c.model);
+  c.work.solid_pressure.resize(count);
+  for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const Vec3 place(solids.x[s], solids.y[s], solids.z[s]);
-      const Vec3 fall = fall_in_vat(c.model, still, place);
-      Real weight = 0;
-      Real pressure = 0;
-      for (Index k = near.begin[s - begin]; k < near.begin[s - begin + 1]; ++k) {
-        const Index slot = near.slots[k];
-        const Index f = liquid_order[slot];
-        const LiquidModel& liquid = liquid_of(c.model, f);
-        const Vec3 x = nearest_image(
-            c.model,
-            place - Vec3(c.work.liquid.x[slot], c.work.liquid.y[slot], c.work.liquid.z[slot]));
-        const Real r = x.norm();
-        if (r >= liquid.support_radius) continue;
-        const Real w = liquid.kernel.value(r);
-        weight += w;
-        pressure += w * (c.work.pressure[f] + liquid.rest_density * fall.dot(x));
-      }
-      c.work.solid_pressure[s] = weight > 0 ? std::max(Real{0}, pressure / weight) : 0;
+      c.work.solid_pressure[s] = extrapolated_pressure(c, static_cast<Index>(s), support, motion);
     }
   });
 }
 
+namespace {
+
+/// On solid slot `self`, over its volume, by the liquid near it.
+Vec3 liquid_forces(const StepContext& c, Index self, const Vec3& place) {
+  const PairBlock& near = c.work.liquid_of_solids[self / kBlockSize];
+  const Real pressure = c.work.solid_pressure[self];
+  const Vec3& velocity =
+      c.configuration.velocity[c.model.liquid_count + c.work.solids_in_liquid.grid.order()[self]];
+  Vec3 sum = Vec3::Zero();
+  for (Index k = near.begin[self % kBlockSize]; k < near.begin[self % kBlockSize + 1]; ++k) {
+    const LiquidRecord& other = c.work.liquid_records[near.slots[k]];
+    const LiquidModel& liquid = liquid_of(c.model, c.work.liquid.grid.order()[near.slots[k]]);
+    const Vec3 x = nearest_image(c.model, other.position - place);
+    const Real r = x.norm();
+    if (r >= liquid.support_radius) continue;
+    sum -= other.volume *
+           central_force(liquid, liquid.central_viscosity, other.pressure + pressure,
+                         other.velocity - velocity, x, r) *
+           x;
+  }
+  return sum;
+}
+
+/// The same by the walls' images of liquid.
+Vec3 image_forces(const StepContext& c, Index self, const Vec3& place, Real support,
+                  const VatMotion& motion) {
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  const Real pressure = c.work.solid_pressure[self];
+  Vec3 sum = Vec3::Zero();
+  for_each_image(c.model, motion, c.work.liquid, place, support,
+                 [&](Index slot, const Vec3& x, const Mirror& mirror) {
+                   const LiquidRecord& other = c.work.liquid_records[slot];
+                   const LiquidModel& liquid = liquid_of(c.model, order[slot]);
+                   const ImagePressure image_pressure(c.model, liquid, motion, place);
+                   const Real both =
+                       pressure + image_pressure(other.pressure, other.position, mirror);
+                   sum += (other.volume * pressure_force(liquid, both, x.norm())) * x;
+                 });
+  return sum;
+}
+
+}  // namespace
+
 void add_tait_forces_on_solids(StepContext& c) {
   const CellSortedPoints& solids = c.work.solids_in_liquid;
   const std::span<const Index> order = solids.grid.order();
+  const VatMotion motion = motion_of(c);
+  const Real support = greatest_support(c.model);
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
-    const PairBlock& near = c.work.liquid_of_solids[begin / kBlockSize];
     for (std::size_t s = begin; s < end; ++s) {
-      const Index b = c.model.liquid_count + order[s];
+      const auto self = static_cast<Index>(s);
       const Vec3 place(solids.x[s], solids.y[s], solids.z[s]);
-      Vec3 sum = Vec3::Zero();
-      for (Index k = near.begin[s - begin]; k < near.begin[s - begin + 1]; ++k) {
-        const LiquidRecord& other = c.work.liquid_records[near.slots[k]];
-        const LiquidModel& liquid = liquid_of(c.model, c.work.liquid.grid.order()[near.slots[k]]);
-        const Vec3 x = nearest_image(c.model, other.position - place);
-        const Real r = x.norm();
-        if (r >= liquid.support_radius) continue;
-        sum -= other.volume *
-               central_force(liquid, liquid.central_viscosity,
-                             other.pressure + c.work.solid_pressure[s],
-                             other.velocity - c.configuration.velocity[b], x, r) *
-               x;
-      }
+      Vec3 sum = liquid_forces(c, self, place);
+      if (!c.model.walls.empty()) sum += image_forces(c, self, place, support, motion);
+      const Index b = c.model.liquid_count + order[s];
       c.forces.particle[b] += c.model.rest_volume[b] * sum;
     }
   });

@@ -3,23 +3,14 @@
 #include <algorithm>
 
 #include "core/forces/liquid_pairs.h"
-#include "core/forces/mirrors.h"
 #include "core/forces/weakly_compressible_pairs.h"
 
 namespace vat {
 namespace {
 
-VatMotion motion_of(const StepContext& c) {
-  return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
-}
-
 bool has_several_liquids(const Model& model) {
   const auto liquids = std::span(model.material).first(model.liquid_count);
   return std::ranges::any_of(liquids, [&](Index material) { return material != liquids[0]; });
-}
-
-bool has_solids(const Model& model) {
-  return model.particle_count > model.liquid_count;
 }
 
 /// s_i over liquid and solids, the particle itself included.
@@ -56,35 +47,23 @@ Real sum_solid_volumes(const StepContext& c, Index self, const LiquidModel& liqu
   return sum;
 }
 
-/// Calls f(slot of the other, its image's x seen from the particle, mirror) for images within
-/// reach.
-template <class F>
-void for_each_image(const StepContext& c, Index self, const LiquidModel& liquid,
-                    const VatMotion& motion, F&& f) {
-  const CellSortedPoints& points = c.work.liquid;
-  const Vec3 place(points.x[self], points.y[self], points.z[self]);
-  const Real h = liquid.support_radius;
-  for_each_mirror(c.model, motion, place, h, [&](const Mirror& mirror) {
-    const auto search = [&](const Vec3& from) {
-      points.grid.for_each_run(from, h, [&](Index begin, Index end) {
-        for (Index slot = begin; slot < end; ++slot) {
-          const Vec3 x(points.x[slot] - from.x(), points.y[slot] - from.y(),
-                       points.z[slot] - from.z());
-          if (x.squaredNorm() < h * h) f(slot, x, mirror);
-        }
-      });
-    };
-    c.model.periodic.for_each_image(
-        mirror.place(place), h, [&](const Vec3& shift) { search(mirror.place(place) + shift); });
-  });
-}
-
 Real sum_mirrored_volumes(const StepContext& c, Index self, const LiquidModel& liquid,
                           const VatMotion& motion) {
+  const CellSortedPoints& points = c.work.liquid;
+  const Vec3 place(points.x[self], points.y[self], points.z[self]);
   Real sum = 0;
-  for_each_image(c, self, liquid, motion, [&](Index slot, const Vec3& x, const Mirror&) {
-    sum += c.model.rest_volume[c.work.liquid.grid.order()[slot]] * liquid.kernel.value(x.norm());
-  });
+  for_each_image(c.model, motion, points, place, liquid.support_radius,
+                 [&](Index slot, const Vec3& x, const Mirror&) {
+                   sum += c.model.rest_volume[points.grid.order()[slot]] *
+                          liquid.kernel.value(x.norm());
+                 });
+  if (!has_solids(c.model)) return sum;
+  const CellSortedPoints& solids = c.work.solids_in_liquid;
+  for_each_image(c.model, motion, solids, place, liquid.support_radius,
+                 [&](Index slot, const Vec3& x, const Mirror&) {
+                   sum += c.model.rest_volume[c.model.liquid_count + solids.grid.order()[slot]] *
+                          liquid.kernel.value(x.norm());
+                 });
   return sum;
 }
 
@@ -168,30 +147,29 @@ Vec3 solid_forces(const StepContext& c, const LiquidModel& liquid, Index self,
   return sum;
 }
 
-/// On one liquid particle, over its volume: what the images of all liquid do to it. The mirror
-/// keeps energy, but turns gravity's part across the wall round; the rest is what the weight beyond
-/// the wall would add, as far as there is pressure.
+/// On one liquid particle, over its volume: what the images of liquid and solids do to it.
 Vec3 wall_forces(const StepContext& c, const LiquidModel& liquid, const VatMotion& motion,
                  Index self) {
   const LiquidRecord& own = c.work.liquid_records[self];
-  const Vec3 weight = liquid.rest_density * fall_in_vat(c.model, motion, own.position);
-  const Real layer = weight.norm() * liquid.spacing;
+  const ImagePressure image_pressure(c.model, liquid, motion, own.position);
   Vec3 sum = Vec3::Zero();
-  for_each_image(c, self, liquid, motion, [&](Index slot, const Vec3& seen, const Mirror& mirror) {
-    const LiquidRecord& other = c.work.liquid_records[slot];
-    Vec3 x = -seen;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (mirror.axes[static_cast<std::size_t>(axis)]) x[axis] = seen[axis];
-    }
-    Real beyond = 0;
-    if (other.pressure > 0) {
-      const Real more = weight.dot(mirror.place(other.position) - other.position);
-      beyond = other.pressure / (other.pressure + layer) * more;
-    }
-    const Real pressures = own.pressure + std::max(Real{0}, other.pressure + beyond);
-    sum -=
-        (other.volume * pressures * liquid.slope_scale * liquid.kernel.slope_over_r(x.norm())) * x;
-  });
+  for_each_image(
+      c.model, motion, c.work.liquid, own.position, liquid.support_radius,
+      [&](Index slot, const Vec3& x, const Mirror& mirror) {
+        const LiquidRecord& other = c.work.liquid_records[slot];
+        const Real pressure = image_pressure(other.pressure, other.position, mirror);
+        sum += (other.volume * pressure_force(liquid, own.pressure + pressure, x.norm())) * x;
+      });
+  if (!has_solids(c.model)) return sum;
+  const CellSortedPoints& solids = c.work.solids_in_liquid;
+  for_each_image(c.model, motion, solids, own.position, liquid.support_radius,
+                 [&](Index slot, const Vec3& x, const Mirror& mirror) {
+                   const Vec3 place(solids.x[slot], solids.y[slot], solids.z[slot]);
+                   const Real pressure = image_pressure(c.work.solid_pressure[slot], place, mirror);
+                   const Real volume =
+                       c.model.rest_volume[c.model.liquid_count + solids.grid.order()[slot]];
+                   sum += (volume * pressure_force(liquid, own.pressure + pressure, x.norm())) * x;
+                 });
   return sum;
 }
 

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+
+#include "core/forces/mirrors.h"
 #include "core/forces/vat_motion.h"
 #include "core/model/model.h"
+#include "core/step/workspace.h"
 
 /// What the stages of the weakly compressible liquid share.
 namespace vat {
@@ -38,5 +42,62 @@ inline Real central_force(const LiquidModel& liquid, Real viscosity, Real pressu
   const Real viscous = viscosity * velocity.dot(x) / (r * r + Real{0.01} * h * h);
   return (viscous - pressures) * liquid.slope_scale * liquid.kernel.slope_over_r(r);
 }
+
+/// The same of pressure alone.
+inline Real pressure_force(const LiquidModel& liquid, Real pressures, Real r) {
+  return -pressures * liquid.slope_scale * liquid.kernel.slope_over_r(r);
+}
+
+inline bool has_solids(const Model& model) {
+  return model.particle_count > model.liquid_count;
+}
+
+inline VatMotion motion_of(const StepContext& c) {
+  return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
+}
+
+/// Calls f(slot, x, mirror) for the walls' images of points within `radius` of `place`; x leads
+/// from the image to the place.
+template <class F>
+void for_each_image(const Model& model, const VatMotion& motion, const CellSortedPoints& points,
+                    const Vec3& place, Real radius, F&& f) {
+  for_each_mirror(model, motion, place, radius, [&](const Mirror& mirror) {
+    const Vec3 mirrored = mirror.place(place);
+    model.periodic.for_each_image(mirrored, radius, [&](const Vec3& shift) {
+      const Vec3 from = mirrored + shift;
+      points.grid.for_each_run(from, radius, [&](Index begin, Index end) {
+        for (Index slot = begin; slot < end; ++slot) {
+          Vec3 x(from.x() - points.x[slot], from.y() - points.y[slot], from.z() - points.z[slot]);
+          if (x.squaredNorm() >= radius * radius) continue;
+          for (int axis = 0; axis < 3; ++axis) {
+            if (mirror.axes[static_cast<std::size_t>(axis)]) x[axis] = -x[axis];
+          }
+          f(slot, x, mirror);
+        }
+      });
+    });
+  });
+}
+
+/// The pressure of a particle's image near a place. The mirror keeps energy, but turns gravity's
+/// part across the wall round; the rest is what the weight beyond the wall would add, as far as
+/// there is pressure.
+class ImagePressure {
+ public:
+  ImagePressure(const Model& model, const LiquidModel& liquid, const VatMotion& motion,
+                const Vec3& place)
+      : weight_(liquid.rest_density * fall_in_vat(model, motion, place)),
+        layer_(weight_.norm() * liquid.spacing) {}
+
+  Real operator()(Real pressure, const Vec3& position, const Mirror& mirror) const {
+    if (pressure <= 0) return 0;
+    const Real more = weight_.dot(mirror.place(position) - position);
+    return std::max(Real{0}, pressure + pressure / (pressure + layer_) * more);
+  }
+
+ private:
+  Vec3 weight_;  ///< by volume [N/m^3]
+  Real layer_;   ///< pressure that the weight of one layer of particles makes
+};
 
 }  // namespace vat

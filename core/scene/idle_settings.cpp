@@ -77,6 +77,10 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   if (scene.central_field && !scene.forces.gravity) {
     warn("/central_field", "gravity is off, and the central field with it", warnings);
   }
+  const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
+  if (scene.settling && std::ranges::none_of(scene.bodies, is_liquid)) {
+    warn("/settling", "no body is liquid", warnings);
+  }
   warn_of_tolerance(scene.numerics, warnings);
   warn_of_friction(scene.default_interface, "/default_interface", warnings);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {

@@ -217,6 +217,13 @@ struct CentralField {
   Real angular_frequency = 0;  ///< [rad/s]
 };
 
+/// A drag on liquids towards the vat's velocity while a scene begins: liquid that was placed on a
+/// lattice falls into its own balance with a sound that would ring for long.
+struct Settling {
+  Real drag = 0;   ///< by mass [1/s]; about c/H calms a depth H with a speed of sound c
+  Real until = 0;  ///< time at which it ends [s]
+};
+
 /// Forces that act; one that is off costs nothing.
 struct ForceSwitches {
   bool gravity = true;    ///< and the central field
@@ -254,6 +261,7 @@ struct Scene {
   std::optional<Vat> vat;
   std::optional<Periodicity> periodic;
   std::optional<CentralField> central_field;
+  std::optional<Settling> settling;
   ForceSwitches forces;
   PressureSolver pressure_solver = PressureSolver::gas;
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two

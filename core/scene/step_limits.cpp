@@ -92,10 +92,11 @@ void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPa
   const auto is_no_slip = [](const Wall& wall) { return wall.no_slip; };
   if (scene.vat && std::ranges::any_of(scene.vat->walls, is_no_slip)) viscosity *= kNoSlipShare;
   const Real viscous_limit = is_tait ? kTaitViscousLimit : kViscousLimit;
+  const Real drag = scene.settling ? scene.settling->drag : 0;
   parts.push_back({body_path(index),
                    "sound or viscosity in the liquid becomes unstable",
                    "sound in an inviscid liquid gains energy with this integrator",
-                   {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h)},
+                   {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h) + drag},
                    index});
 }
 

@@ -20,6 +20,7 @@ void check_interface(const Scene& scene, const InterfaceDescription& interface,
 void check_vat(const Scene& scene, RangeCheck& check);
 void check_periodicity(const Periodicity& periodic, RangeCheck& check);
 void check_central_field(const CentralField& field, RangeCheck& check);
+void check_settling(const Settling& settling, RangeCheck& check);
 void check_numerics(const Numerics& numerics, RangeCheck& check);
 /// Whether the accuracy, if any, can be met. The rest of the scene must be without errors.
 void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check);

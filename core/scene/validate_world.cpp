@@ -110,6 +110,11 @@ void check_central_field(const CentralField& field, RangeCheck& check) {
   check.real(field.angular_frequency, 0, kMaxAngularSpeed, "/central_field/angular_frequency");
 }
 
+void check_settling(const Settling& settling, RangeCheck& check) {
+  check.real(settling.drag, 0, kMaxDrag, "/settling/drag");
+  check.real(settling.until, 0, kMaxRelease, "/settling/until");
+}
+
 void check_numerics(const Numerics& numerics, RangeCheck& check) {
   constexpr Real kWhole = 1e-9;  // rounding of tick / step
   const bool tick = check.real(numerics.tick, kMinStep, kMaxTick, "/numerics/tick");

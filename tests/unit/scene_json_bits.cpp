@@ -86,6 +86,10 @@ class BitWriter {
     const auto& [center, angular_frequency] = field;
     put_all(center, angular_frequency);
   }
+  void put(const Settling& settling) {
+    const auto& [drag, until] = settling;
+    put_all(drag, until);
+  }
   void put(const ForceSwitches& forces) {
     const auto& [gravity, pressure, viscosity, springs, contacts, walls] = forces;
     put_all(gravity, pressure, viscosity, springs, contacts, walls);
@@ -140,10 +144,10 @@ class BitWriter {
   }
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
-                 bodies, vat, periodic, central_field, forces, pressure_solver, dimensions,
-                 numerics] = scene;
+                 bodies, vat, periodic, central_field, settling, forces, pressure_solver,
+                 dimensions, numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
-            vat, periodic, central_field, forces, pressure_solver, dimensions, numerics);
+            vat, periodic, central_field, settling, forces, pressure_solver, dimensions, numerics);
   }
 
  private:

@@ -14,6 +14,7 @@ const char* const kFullDocument = R"json({
   "pressure_solver": "gas",
   "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
   "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
+  "settling": {"drag": 47.5, "until": 0.1875},
   "forces": {"gravity": false, "pressure": false, "viscosity": false, "springs": false,
              "contacts": false, "walls": false},
   "materials": [
@@ -166,6 +167,7 @@ Scene full_scene() {
   scene.vat->walls[5].no_slip = true;
   scene.periodic = Periodicity{{-2, -1, -2.5}, {3, 5, 6}, {true, false, false}};
   scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
+  scene.settling = Settling{47.5, 0.1875};
   scene.forces = {false, false, false, false, false, false};
   scene.numerics = {IntegratorId::runge_kutta_4, 0.0005, 0.01, StepControl::adaptive};
   scene.bodies = full_bodies();

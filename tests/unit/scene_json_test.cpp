@@ -110,6 +110,8 @@ std::set<std::string> required_members() {
                                  "/periodic/min",
                                  "/periodic/max",
                                  "/central_field/angular_frequency",
+                                 "/settling/drag",
+                                 "/settling/until",
                                  "/bodies/0/velocity_field/waves/0/amplitude",
                                  "/bodies/0/velocity_field/waves/0/wave_vector",
                                  "/bodies/0/velocity_field/waves/1/amplitude",

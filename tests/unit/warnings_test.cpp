@@ -151,6 +151,9 @@ TEST(Warnings, OfSettingsWithoutEffect) {
   EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
   scene.forces.gravity = false;
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /central_field"));
+  scene.central_field.reset();
+  scene.settling = Settling{1, 1};
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /settling"));
 }
 
 TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {
