@@ -180,6 +180,7 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
   for (Index i = 0; i < model.free_count; ++i) hash.add(state.forces.particle[i]);
   for (const Vec3& force : state.forces.rigid_force) hash.add(force);
   for (const Vec3& torque : state.forces.rigid_torque) hash.add(torque);
+  for (const Vec3& velocity : state.forces.transport) hash.add(velocity);
 }
 
 void add_controls(const Controls& controls, StateHash& hash) {

@@ -56,7 +56,7 @@ namespace {
 class Extrapolation {
  public:
   Extrapolation(const Model& model, const VatMotion& still, const Vec3& place)
-      : fall_(fall_in_vat(model, still, place)) {}
+      : fall_(fall_in_vat(model, still, place)), may_pull_(model.is_filled) {}
 
   /// x leads from the liquid to the place.
   void add(const LiquidModel& liquid, Real pressure, const Vec3& x) {
@@ -67,10 +67,15 @@ class Extrapolation {
     sum_ += w * (pressure + liquid.rest_density * fall_.dot(x));
   }
 
-  Real pressure() const { return weight_ > 0 ? std::max(Real{0}, sum_ / weight_) : 0; }
+  Real pressure() const {
+    if (!(weight_ > 0)) return 0;
+    const Real mean = sum_ / weight_;
+    return may_pull_ ? mean : std::max(Real{0}, mean);
+  }
 
  private:
   Vec3 fall_;
+  bool may_pull_;
   Real weight_ = 0;
   Real sum_ = 0;
 };

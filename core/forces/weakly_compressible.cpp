@@ -96,8 +96,8 @@ void compute_tait_pressure(StepContext& c) {
       const LiquidModel& liquid = liquid_of(c.model, i);
       const Real s = c.work.density[i] / liquid.rest_density;
       const Real s2 = s * s;
-      c.work.pressure[i] =
-          std::max(Real{0}, liquid.rest_density * liquid.stiffness / 7 * (s2 * s2 * s2 * s - 1));
+      const Real pressure = liquid.rest_density * liquid.stiffness / 7 * (s2 * s2 * s2 * s - 1);
+      c.work.pressure[i] = c.model.is_filled ? pressure : std::max(Real{0}, pressure);
     }
   });
 }

@@ -25,11 +25,12 @@ void find_liquid_solids(StepContext& context);
 /// s_i rho_0, as density; keeps the neighbours found.
 void compute_tait_density(StepContext& context);
 
-/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), never below zero (see compute_liquid_pressure()).
+/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), never below zero (see compute_liquid_pressure()) but
+/// where liquid fills its world.
 void compute_tait_pressure(StepContext& context);
 
 /// The pressure of solid particles, from that of the liquid around them and the weight between (S.
-/// Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq. 27), never below zero.
+/// Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq. 27), with the same bound.
 void extrapolate_pressure(StepContext& context);
 
 /// The forces on liquid particles, and on the solids that push them.

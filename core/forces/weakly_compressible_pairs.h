@@ -81,23 +81,26 @@ void for_each_image(const Model& model, const VatMotion& motion, const CellSorte
 
 /// The pressure of a particle's image near a place. The mirror keeps energy, but turns gravity's
 /// part across the wall round; the rest is what the weight beyond the wall would add, as far as
-/// there is pressure.
+/// there is pressure where there is a free surface.
 class ImagePressure {
  public:
   ImagePressure(const Model& model, const LiquidModel& liquid, const VatMotion& motion,
                 const Vec3& place)
       : weight_(liquid.rest_density * fall_in_vat(model, motion, place)),
-        layer_(weight_.norm() * liquid.spacing) {}
+        layer_(weight_.norm() * liquid.spacing),
+        may_pull_(model.is_filled) {}
 
   Real operator()(Real pressure, const Vec3& position, const Mirror& mirror) const {
-    if (pressure <= 0) return 0;
     const Real more = weight_.dot(mirror.place(position) - position);
+    if (may_pull_) return pressure + more;
+    if (pressure <= 0) return 0;
     return std::max(Real{0}, pressure + pressure / (pressure + layer_) * more);
   }
 
  private:
   Vec3 weight_;  ///< by volume [N/m^3]
   Real layer_;   ///< pressure that the weight of one layer of particles makes
+  bool may_pull_;
 };
 
 }  // namespace vat

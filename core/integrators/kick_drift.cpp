@@ -21,6 +21,15 @@ void drift(const Model& model, TaskRunner* runner, Configuration& configuration,
   }
 }
 
+void move_with_transport(const Model& model, TaskRunner* runner, const Forces& forces,
+                         Configuration& configuration, Real dt) {
+  for_blocks(runner, forces.transport.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (model.inverse_mass[i] > 0) configuration.position[i] += dt * forces.transport[i];
+    }
+  });
+}
+
 void kick(const Model& model, TaskRunner* runner, const Forces& forces,
           Configuration& configuration, Real dt) {
   for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t end) {
@@ -40,6 +49,7 @@ void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Re
   f.evaluate(state.now, time, state.forces);
   kick(f.model, f.runner, state.forces, state.now, dt);
   drift(f.model, f.runner, state.now, dt);
+  move_with_transport(f.model, f.runner, state.forces, state.now, dt);
 }
 
 void keep_velocities(const Configuration& now, Configuration& kept) {
@@ -96,6 +106,7 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   }
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
   drift(f.model, f.runner, state.now, dt);
+  move_with_transport(f.model, f.runner, state.forces, state.now, dt);
   if (is_damped && must_solve_damping(state.bound, dt)) {
     evaluate_with_solve(f, state, time + dt, dt, scratch);
   } else if (is_damped || !f.controls.grabs.empty()) {

@@ -60,7 +60,8 @@ void accumulate(const ForceModel& f, const Forces& forces, const Configuration& 
   const Model& model = f.model;
   for_blocks(f.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 velocity = at.velocity[i];
+      Vec3 velocity = at.velocity[i];
+      if (i < forces.transport.size()) velocity += forces.transport[i];
       const Vec3 acceleration = model.inverse_mass[i] * forces.particle[i];
       increment.position[i] += weight * velocity;
       increment.velocity[i] += weight * acceleration;

@@ -10,6 +10,7 @@
 #include "core/model/contacts.h"
 #include "core/rigid/mass_properties.h"
 #include "core/scene/step_limits.h"
+#include "core/scene/volumes.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -170,35 +171,28 @@ LiquidModel make_liquid(const Model& model, Index material) {
   return liquid;
 }
 
-/// Of one particle of a solid body in a liquid: its part of the shape, or a ball's cube.
-Real solid_volume(const Model& model, std::size_t body, Index particle) {
-  const BodyDescription& description = model.scene.bodies[body];
-  const SampledBody& sample = *model.bodies[body].sample;
-  const bool is_plane = model.scene.dimensions == 2;
-  const Real shape = is_plane ? shape_area(description.shape) : shape_volume(description.shape);
-  if (shape > 0) return shape / static_cast<Real>(sample.positions.size());
-  return std::pow(2 * sample.radii[particle], model.scene.dimensions);
-}
-
 void find_rest_volumes(Model& model) {
   model.rest_volume.resize(model.particle_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
-    const Real density = model.scene.materials[body.material].density;
     for (Index i = 0; i < body.particles.size(); ++i) {
-      const Index particle = body.particles.begin + i;
-      model.rest_volume[particle] = body.kind == BodyKind::liquid ? model.mass[particle] / density
-                                                                  : solid_volume(model, b, i);
+      model.rest_volume[body.particles.begin + i] =
+          particle_volume(model.scene, b, *body.sample, i);
     }
   }
 }
 
-ModelDamping find_damping(const Model& model) {
+std::vector<const SampledBody*> samples_of(const Model& model) {
   std::vector<const SampledBody*> samples;
   for (const ModelBody& body : model.bodies) samples.push_back(body.sample.get());
+  return samples;
+}
+
+ModelDamping find_damping(const Model& model) {
   ModelDamping damping;
+  damping.any = model.is_filled;  // what is carried along with the transport velocity
   damping.own.resize(model.bodies.size());
-  for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples)) {
+  for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples_of(model))) {
     if (part.bound.rate > 0) damping.any = true;
     if (!part.body) continue;
     Oscillation& own = damping.own[*part.body];
@@ -253,9 +247,11 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
     model->liquids.emplace_back();
     if (model->scene.materials[m].liquid) model->liquids.back() = make_liquid(*model, m);
   }
-  model->is_coupled =
-      model->scene.pressure_solver == PressureSolver::tait && model->liquid_count > 0;
-  if (model->is_coupled) find_rest_volumes(*model);
+  model->is_coupled = couples_liquids(model->scene.pressure_solver) && model->liquid_count > 0;
+  if (model->is_coupled) {
+    find_rest_volumes(*model);
+    model->is_filled = fills_world(model->scene, samples_of(*model));
+  }
   add_springs(*model);
   add_rigid_bodies(*model);
   compile_contacts(*model);

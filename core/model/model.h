@@ -137,6 +137,7 @@ struct Model {
   std::vector<Index> exclusions;
   Real contact_reach = 0;      ///< [m] no contact between particles further apart than this
   bool is_coupled = false;     ///< liquids meet solids and walls by SPH, not by contacts
+  bool is_filled = false;      ///< coupled, and without a free surface: pressure may be negative
   bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
   bool has_friction = false;  ///< some law of bodies or walls has

@@ -9,6 +9,7 @@
 
 #include "core/forces/friction.h"
 #include "core/scene/interface_table.h"
+#include "core/scene/volumes.h"
 
 namespace vat {
 namespace {
@@ -113,11 +114,15 @@ std::vector<LawInUse> find_worst(const Scene& scene, const std::vector<ContactBo
   const InterfaceTable table(scene.materials, scene.interfaces);
   const std::size_t other = scene.interfaces.size();
   std::vector<LawInUse> laws = list_laws(scene);
+  const auto has_contacts = [&](const ContactBody& body) {
+    return body.kind != BodyKind::liquid || !couples_liquids(scene.pressure_solver);
+  };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const ContactBody& a = bodies[i];
+    if (!has_contacts(a)) continue;
     for (std::size_t j = 0; j < i; ++j) {
       const ContactBody& b = bodies[j];
-      if (!scene.forces.contacts || !can_touch(a, b)) continue;
+      if (!scene.forces.contacts || !has_contacts(b) || !can_touch(a, b)) continue;
       LawInUse& law = laws[table.between(a.material, b.material).value_or(other)];
       take(law, inverse_mass(a, b, law), {j, i});
     }

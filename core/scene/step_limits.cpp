@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/scene/contact_limits.h"
+#include "core/scene/volumes.h"
 
 namespace vat {
 namespace {
@@ -78,26 +79,51 @@ void add_springs(std::size_t index, const SampledBody& body, std::vector<Oscilla
   }
 }
 
-void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPart>& parts) {
-  const Material& material = material_of(scene, scene.bodies[index]);
+/// Of the sound, viscosity and settling of a liquid of this material.
+Oscillation bound_liquid(const Scene& scene, const Material& material) {
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
-  const bool is_tait = scene.pressure_solver == PressureSolver::tait;
+  const bool is_coupled = couples_liquids(scene.pressure_solver);
   const Real speed = std::sqrt(scene.forces.pressure ? liquid.stiffness : 0);
-  const Real sound = kVerletLimit / (is_tait ? kTaitSoundLimit : kSoundLimit) * speed / h;
+  const Real sound = kVerletLimit / (is_coupled ? kTaitSoundLimit : kSoundLimit) * speed / h;
   Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
-  if (is_tait && scene.forces.viscosity) {
+  if (is_coupled && scene.forces.viscosity) {
     viscosity += liquid.artificial_viscosity * speed * h / (4 * (scene.dimensions + 2));
   }
   const auto is_no_slip = [](const Wall& wall) { return wall.no_slip; };
   if (scene.vat && std::ranges::any_of(scene.vat->walls, is_no_slip)) viscosity *= kNoSlipShare;
-  const Real viscous_limit = is_tait ? kTaitViscousLimit : kViscousLimit;
+  const Real viscous_limit = is_coupled ? kTaitViscousLimit : kViscousLimit;
   const Real drag = scene.settling ? scene.settling->drag : 0;
-  parts.push_back({body_path(index),
-                   "sound or viscosity in the liquid becomes unstable",
+  return {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h) + drag};
+}
+
+void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPart>& parts) {
+  parts.push_back({body_path(index), "sound or viscosity in the liquid becomes unstable",
                    "sound in an inviscid liquid gains energy with this integrator",
-                   {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h) + drag},
-                   index});
+                   bound_liquid(scene, material_of(scene, scene.bodies[index])), index});
+}
+
+/// A solid in a liquid that it takes part in: what a liquid particle feels, on as much volume, by
+/// the solid's mass. No matter where it is heavier than the liquid.
+void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sample,
+                   std::vector<OscillatingPart>& parts) {
+  Real lightest = std::numeric_limits<Real>::infinity();  // density
+  for (Index i = 0; i < sample.positions.size(); ++i) {
+    lightest = std::min(lightest, sample.masses[i] / particle_volume(scene, index, sample, i));
+  }
+  Oscillation bound;
+  for (const BodyDescription& body : scene.bodies) {
+    if (body.kind != BodyKind::liquid) continue;
+    const Material& material = material_of(scene, body);
+    if (material.density <= lightest) continue;
+    const Oscillation liquid = bound_liquid(scene, material);
+    const Real ratio = material.density / lightest;
+    bound = {std::max(bound.omega2, ratio * liquid.omega2),
+             std::max(bound.rate, ratio * liquid.rate)};
+  }
+  if (bound.omega2 == 0 && bound.rate == 0) return;
+  parts.push_back({body_path(index), "it is so light that it becomes unstable in the liquid",
+                   "a body in an inviscid liquid gains energy with this integrator", bound, index});
 }
 
 }  // namespace
@@ -108,9 +134,10 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
   for (std::size_t b = 0; b < samples.size(); ++b) {
     if (scene.bodies[b].kind == BodyKind::liquid) {
       add_liquid(scene, b, parts);
-    } else if (scene.forces.springs) {
-      add_springs(b, *samples[b], parts);
+      continue;
     }
+    if (scene.forces.springs) add_springs(b, *samples[b], parts);
+    if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, b, *samples[b], parts);
   }
   add_contacts(scene, samples, parts);
   return parts;

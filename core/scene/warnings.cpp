@@ -13,6 +13,7 @@
 #include "core/scene/sampling.h"
 #include "core/scene/step_limits.h"
 #include "core/scene/validate.h"
+#include "core/scene/volumes.h"
 
 namespace vat {
 namespace {
@@ -217,6 +218,19 @@ void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>&
   }
 }
 
+/// Their own symmetry keeps such particles on the streamlines along which voids open.
+void warn_of_lattices(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
+  if (!couples_liquids(scene.pressure_solver)) return;
+  if (!fills_world(scene, pointers_to(start.bodies))) return;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyDescription& body = scene.bodies[b];
+    if (body.kind != BodyKind::liquid || body.jitter > 0 || body.spacing == 0) continue;
+    warnings.push_back({"perfect_lattice", body_path(b) + "/jitter",
+                        "fills its world as a perfect lattice, in which flows tear voids; a jitter "
+                        "of 0.1 does away with them"});
+  }
+}
+
 void warn_of_cost(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
   constexpr Real kMuchMemory = 1e9;
   const CostEstimate cost = estimate_cost(scene, pointers_to(start.bodies));
@@ -246,6 +260,7 @@ std::vector<Warning> find_warnings(const Scene& given) {
   warn_of_rotation(scene, warnings);
   warn_of_speed(scene, start, warnings);
   warn_of_steps(scene, start, warnings);
+  warn_of_lattices(scene, start, warnings);
   warn_of_cost(scene, start, warnings);
   return warnings;
 }

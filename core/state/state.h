@@ -30,6 +30,7 @@ struct Forces {
   std::vector<Vec3> particle;
   std::vector<Vec3> rigid_force;   ///< f_res, Boldt eq. 5 [N]
   std::vector<Vec3> rigid_torque;  ///< tau about r_cm, Boldt eq. 6 [N m]
+  std::vector<Vec3> transport;     ///< of liquids that fill their world, see core/forces/transport.h
 };
 
 /// What adaptive step control remembers from one step to the next.

@@ -72,11 +72,16 @@ StepBounds find_step_bounds(const Model& model) {
   const Numerics& numerics = model.scene.numerics;
   std::ranges::transform(bounds.own, bounds.own_step.begin(),
                          [&](const Oscillation& own) { return safe_step(numerics, own); });
-  bounds.field_step = kInfinity;
+  bounds.scene_step = kInfinity;
   if (model.scene.forces.gravity && model.scene.central_field &&
       model.scene.central_field->angular_frequency > 0) {
-    bounds.field_step = resolving_phase(numerics.integrator, numerics.tolerance) /
+    bounds.scene_step = resolving_phase(numerics.integrator, numerics.tolerance) /
                         model.scene.central_field->angular_frequency;
+  }
+  for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
+    if (model.bodies[b].kind == BodyKind::liquid) continue;
+    const Oscillation own = compressed(model, model.damping.own[b]);
+    bounds.scene_step = std::min(bounds.scene_step, safe_step(numerics, own));
   }
   return bounds;
 }
@@ -110,7 +115,7 @@ void limit_free_travel(const Present& present, TaskRunner* runner, std::vector<R
       const auto i = static_cast<Index>(k);
       const Real way = kTravelShare * present.guard.travel[present.model.body[i]];
       const Real speed = present.state.now.velocity[i].norm();
-      steps[i] = std::min({present.bounds.own_step[i], present.bounds.field_step,
+      steps[i] = std::min({present.bounds.own_step[i], present.bounds.scene_step,
                            travel_time(way, speed, present.acceleration(i))});
     }
   });
@@ -127,7 +132,7 @@ void limit_rigid_travel(const Present& present, std::vector<Real>& steps) {
                                   ? rigid.inverse_mass * present.state.forces.rigid_force[b].norm()
                                   : 0;
     const Real way = kTravelShare * present.guard.travel[rigid.body];
-    steps[b] = std::min({present.bounds.field_step, travel_time(way, speed, acceleration),
+    steps[b] = std::min({present.bounds.scene_step, travel_time(way, speed, acceleration),
                          turning > 0 ? kGreatestTurn / turning : kInfinity});
   }
 }
@@ -200,7 +205,7 @@ Real greatest_approach(const Present& present, Real longest) {
 
 Real greatest_base_step(const ForceModel& f, const State& state, const StepBounds& bounds) {
   const Model& model = f.model;
-  Real step = bounds.field_step;
+  Real step = bounds.scene_step;
   for (const Grab& grab : f.controls.grabs) {
     step = std::min(step, safe_step(model.scene.numerics, {grab.stiffness / grab.held_mass,
                                                            grab.damping / grab.held_mass}));

@@ -39,7 +39,8 @@ struct ContactScratch {
 struct StepBounds {
   std::vector<Oscillation> own;  ///< by free particle: of its springs, or of its liquid
   std::vector<Real> own_step;    ///< by free particle: that is stable for them [s]
-  Real field_step = 0;           ///< that resolves the central field [s]; infinite without one
+  Real scene_step = 0;           ///< that resolves the central field, and with which bodies are
+                                 ///< stable in a liquid [s]; infinite without either
 };
 
 /// Lowers the steps by free particle and by rigid body to those that their contacts, together with

@@ -8,6 +8,7 @@
 #include "core/forces/no_slip.h"
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
+#include "core/forces/transport.h"
 #include "core/forces/walls.h"
 #include "core/forces/weakly_compressible.h"
 #include "core/model/model.h"
@@ -17,9 +18,9 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",       "velocity",     "rigid_state",    "force",    "liquid_cells",
-    "liquid_pairs",   "density",      "filled_density", "pressure", "liquid_solids",
-    "solid_pressure", "contact_list", "rigid_force"};
+    "position",       "velocity",  "rigid_state",    "force",      "liquid_cells",
+    "liquid_pairs",   "density",   "filled_density", "pressure",   "liquid_solids",
+    "solid_pressure", "transport", "contact_list",   "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -71,6 +72,22 @@ void add_liquid_stages(const Model& model, PlanBuilder& plan) {
              {position, liquid_cells, liquid_pairs, density, pressure, force}, {force},
              &add_liquid_forces<LiquidTerms{true, false, false}>);
   }
+}
+
+void add_transport_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  if (model.particle_count > model.liquid_count) {
+    plan.add("transport_velocity", {position, liquid_cells, liquid_pairs, liquid_solids},
+             {transport}, &compute_transport_velocity);
+    plan.add("transport_forces",
+             {velocity, liquid_cells, liquid_pairs, liquid_solids, transport, force}, {force},
+             &add_transport_forces);
+    return;
+  }
+  plan.add("transport_velocity", {position, liquid_cells, liquid_pairs}, {transport},
+           &compute_transport_velocity);
+  plan.add("transport_forces", {velocity, liquid_cells, liquid_pairs, transport, force}, {force},
+           &add_transport_forces);
 }
 
 /// Liquids that solids and walls take part in.
@@ -141,6 +158,7 @@ StepPlan make_step_plan(const Model& model) {
   plan.add("external_forces", {position, velocity}, {force}, &set_external_forces);
   if (model.is_coupled) {
     add_coupled_stages(model, plan);
+    if (model.is_filled) add_transport_stages(model, plan);
   } else if (model.liquid_count > 0) {
     add_liquid_stages(model, plan);
   }

@@ -24,10 +24,11 @@ enum class Column : std::uint8_t {
   pressure,
   liquid_solids,
   solid_pressure,
+  transport,
   contact_list,
   rigid_force,
 };
-inline constexpr std::size_t kColumnCount = 13;
+inline constexpr std::size_t kColumnCount = 14;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

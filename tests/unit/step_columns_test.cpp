@@ -12,6 +12,7 @@
 #include "core/limits.h"
 #include "core/model/compile.h"
 #include "core/step/workspace.h"
+#include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
 namespace vat {
@@ -69,6 +70,8 @@ void spoil(Column column, Columns& columns) {
     case Column::solid_pressure:
       std::ranges::fill(columns.work.solid_pressure, kNan);
       return;
+    case Column::transport:
+      return spoil_vectors(forces.transport);
     case Column::contact_list:
       columns.work.contacts = {};
       return;
@@ -122,6 +125,8 @@ std::vector<char> content(Column column, const Columns& columns) {
     }
     case Column::solid_pressure:
       return bytes_of(columns.work.solid_pressure);
+    case Column::transport:
+      return bytes_of(forces.transport);
     case Column::contact_list:
       return bytes_of(columns.work.solids.x);
     case Column::rigid_force:
@@ -217,6 +222,14 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutPressure) {
 TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereSolidsTakePart) {
   Scene scene = crowded_scene(1);
   scene.pressure_solver = PressureSolver::tait;
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutAFreeSurface) {
+  Scene scene = crowded_scene(1);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.vat->max = {0.35, 0.15, 0.15};
+  ASSERT_TRUE(test::ForceProbe(scene).model().is_filled);
   expect_declared(scene);
 }
 
