@@ -162,6 +162,13 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
     hash.add(rigid.momentum);
     hash.add(rigid.angular_momentum);
   }
+  for (const ContactImpulse& contact : state.now.contacts) {
+    hash.add(std::uint64_t{contact.particle});
+    hash.add(contact.other);
+    hash.add(contact.drift);
+    hash.add(contact.finish);
+    hash.add(std::uint64_t{contact.is_steady});
+  }
   const StepControl control = model.scene.numerics.control;
   if (control != StepControl::fixed) {
     hash.add(state.history.step);

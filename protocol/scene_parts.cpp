@@ -1,5 +1,8 @@
 #include "protocol/scene_parts.h"
 
+#include <algorithm>
+#include <initializer_list>
+
 #include "core/limits.h"
 
 namespace vat::scene_parts {
@@ -48,14 +51,61 @@ SpringConstants to_spring_constants(const Json& value, std::string path, Errors&
   return constants;
 }
 
-InterfaceConstants to_interface_constants(ObjectReader& reader) {
-  const SpringConstants spring = to_spring_constants(reader);
-  return {spring.stiffness, spring.damping, reader.real("friction", kAnyMin, kAnyMax, 0)};
+namespace {
+
+using Laws = std::initializer_list<InterfaceLaw>;
+using enum InterfaceLaw;
+
+/// The law of an interface, and its members that not all laws have.
+class LawReader {
+ public:
+  LawReader(ObjectReader& reader, Errors& errors) : reader_(reader), errors_(errors) {
+    const std::size_t errors_before = errors.size();
+    // In the order of InterfaceLaw.
+    law_ = static_cast<InterfaceLaw>(
+        reader.choice("law", {"penalty", "lennard_jones", "sph", "projection"}, std::size_t{0}));
+    is_known_ = errors.size() == errors_before;
+  }
+
+  InterfaceLaw law() const { return law_; }
+  bool is_one_of(Laws laws) const { return std::ranges::find(laws, law_) != laws.end(); }
+  bool needs(Laws laws) const { return is_known_ && is_one_of(laws); }
+  /// The member if it is there, and an error where the law has none.
+  std::optional<Real> real(std::string_view key, Laws laws) {
+    if (!reader_.has(key)) return {};
+    if (is_known_ && !is_one_of(laws)) {
+      add_error(errors_, "not_allowed", reader_.path_of(key),
+                "is not for the law \"" + std::string(to_string(law_)) + '"');
+    }
+    return reader_.real(key, kAnyMin, kAnyMax);
+  }
+
+ private:
+  ObjectReader& reader_;
+  Errors& errors_;
+  InterfaceLaw law_;
+  bool is_known_;
+};
+
+InterfaceConstants to_interface_constants(LawReader& law, ObjectReader& reader) {
+  InterfaceConstants constants;
+  constants.law = law.law();
+  constants.stiffness = law.needs({penalty, lennard_jones})
+                            ? reader.real("stiffness", 0, kMaxStiffness)
+                            : law.real("stiffness", {}).value_or(0);
+  constants.damping = law.real("damping", {penalty}).value_or(0);
+  constants.restitution = law.real("restitution", {penalty, projection});
+  constants.friction = law.real("friction", {penalty, projection}).value_or(0);
+  constants.reach = law.real("reach", {lennard_jones}).value_or(constants.reach);
+  return constants;
 }
+
+}  // namespace
 
 InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
-  const InterfaceConstants constants = to_interface_constants(reader);
+  LawReader law(reader, errors);
+  const InterfaceConstants constants = to_interface_constants(law, reader);
   reader.refuse_unknown();
   return constants;
 }
@@ -91,8 +141,9 @@ InterfaceDescription to_interface(const Json& value, std::string path, Errors& e
       }
     }
   }
-  interface.constants = to_interface_constants(reader);
-  if (reader.has("threshold")) interface.threshold = reader.real("threshold", 0, kMaxLength);
+  LawReader law(reader, errors);
+  interface.constants = to_interface_constants(law, reader);
+  interface.threshold = law.real("threshold", {penalty, lennard_jones, projection});
   reader.refuse_unknown();
   return interface;
 }

@@ -16,8 +16,7 @@ inline constexpr std::size_t kMaxInterfaces = 4096;  // 64 materials and the vat
 
 SpringConstants to_spring_constants(ObjectReader& reader);
 SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors);
-/// Of the members of an interface those that are its constants.
-InterfaceConstants to_interface_constants(ObjectReader& reader);
+/// Of an interface without materials and threshold.
 InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors);
 Material to_material(const Json& value, std::string path, Errors& errors);
 InterfaceDescription to_interface(const Json& value, std::string path, Errors& errors);

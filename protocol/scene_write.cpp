@@ -41,15 +41,25 @@ Json to_json(const Material& material) {
 }
 
 Json to_json(const InterfaceConstants& constants) {
-  Json json = to_json(constants.spring());
-  json["friction"] = constants.friction;
+  const bool is_penalty = constants.law == InterfaceLaw::penalty;
+  const bool is_layer = constants.law == InterfaceLaw::lennard_jones;
+  Json json = Json::object();
+  if (!is_penalty) json["law"] = to_string(constants.law);
+  if (is_penalty || is_layer) json["stiffness"] = constants.stiffness;
+  if (is_penalty && !constants.restitution) json["damping"] = constants.damping;
+  if (is_layer) json["reach"] = constants.reach;
+  if (is_penalty || constants.law == InterfaceLaw::projection) {
+    json["friction"] = constants.friction;
+    if (constants.restitution) json["restitution"] = *constants.restitution;
+  }
   return json;
 }
 
 Json to_json(const InterfaceDescription& interface) {
   Json json = to_json(interface.constants);
   json["materials"] = interface.materials;
-  if (interface.threshold) json["threshold"] = *interface.threshold;
+  const bool is_sph = interface.constants.law == InterfaceLaw::sph;
+  if (interface.threshold && !is_sph) json["threshold"] = *interface.threshold;
   return json;
 }
 

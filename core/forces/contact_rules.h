@@ -12,11 +12,13 @@ namespace vat {
 struct Contact {
   Index self = 0;
   Index other = 0;
-  Vec3 x;          ///< position of self minus position of other [m]
-  Real distance;   ///< |x| [m]
-  Real threshold;  ///< and rest length l [m]
-  Real stiffness;  ///< [N/m]
-  Real damping;    ///< [N s/m]
+  Vec3 x;              ///< position of self minus position of other [m]
+  Real distance;       ///< |x| [m]
+  Real threshold;      ///< and rest length l of a spring [m]
+  Real stiffness;      ///< [N/m]
+  Real damping;        ///< [N s/m]
+  Real damping_ratio;  ///< of what has a restitution, in place of damping
+  Real layer;          ///< of a layer: the width of its part that pulls [m]; 0: a spring
 };
 
 /// Which law joins particles i and j, if any, as a Contact without its geometry: not two particles
@@ -31,9 +33,12 @@ class ContactRules {
   bool find_law(Index j, Contact& contact) const {
     if (model_.body[j] == body_) return find_self_law(j, contact);
     const ContactLaw& law = model_.contact_law(material_, model_.material[j]);
-    contact.threshold = law.threshold > 0 ? law.threshold : model_.radius[i_] + model_.radius[j];
+    const Real touching = law.threshold > 0 ? law.threshold : model_.radius[i_] + model_.radius[j];
+    contact.layer = law.layer * touching;
+    contact.threshold = touching + contact.layer;
     contact.stiffness = law.stiffness;
     contact.damping = law.damping;
+    contact.damping_ratio = law.damping_ratio;
     return true;
   }
 
@@ -53,6 +58,8 @@ class ContactRules {
     contact.threshold = model_.radius[i_] + model_.radius[j];
     contact.stiffness = law->stiffness;
     contact.damping = law->damping;
+    contact.damping_ratio = 0;
+    contact.layer = 0;
     return true;
   }
 

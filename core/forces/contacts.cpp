@@ -4,7 +4,9 @@
 
 #include "core/forces/connection.h"
 #include "core/forces/dampers.h"
+#include "core/forces/lennard_jones.h"
 #include "core/forces/pair_direction.h"
+#include "core/forces/restitution.h"
 #include "core/model/model.h"
 #include "core/step/workspace.h"
 
@@ -22,44 +24,100 @@ void find_contacts(StepContext& c) {
 
 namespace {
 
-template <bool keep_dampers, bool has_friction>
-void add_block(StepContext& c, std::size_t begin, std::size_t end) {
+/// What a scene's contacts have; a loop has no code for the rest.
+struct ContactTerms {
+  bool keep_dampers = false;
+  bool friction = false;
+  bool restitution = false;
+  bool layers = false;
+};
+
+/// What contacts do to one particle.
+struct ContactSum {
+  Vec3 force = Vec3::Zero();  ///< [N]
+  ContactLoad load;
+};
+
+void add_layer(const Contact& contact, const Vec3& normal, ContactSum& sum) {
+  sum.force +=
+      layer_push(contact.stiffness, contact.layer, contact.threshold, contact.distance) * normal;
+  sum.load.stiffness += 2 * greatest_layer_slope(contact.stiffness, contact.layer,
+                                                 contact.threshold, contact.distance);
+}
+
+/// A spring and dashpot, at most with friction.
+template <ContactTerms terms>
+void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, ContactSum& sum,
+                std::vector<Damper>* dampers) {
   const Configuration& at = c.configuration;
-  DamperBlock* const kept = keep_dampers ? &c.work.contact_dampers[begin / kBlockSize] : nullptr;
-  if constexpr (keep_dampers) kept->dampers.clear();
-  for (std::size_t i = begin; i < end; ++i) {
-    Vec3 sum = Vec3::Zero();
-    ContactLoad load;
-    if constexpr (keep_dampers) kept->begin[i - begin] = static_cast<Index>(kept->dampers.size());
-    c.work.contacts.for_each(c.model, at, static_cast<Index>(i), [&](const Contact& contact) {
+  const Vec3 velocity = at.velocity[contact.self] - at.velocity[contact.other];
+  const Real speed = velocity.dot(n);
+  Real damping = contact.damping;
+  if constexpr (terms.restitution) {
+    if (contact.damping_ratio > 0) {
+      const Yieldings yieldings{c.model, c.work, at, c.step};
+      damping = damping_for(contact.damping_ratio, contact.stiffness,
+                            yieldings.along(contact.self, n) + yieldings.along(contact.other, -n));
+    }
+  }
+  const Real push =
+      connection_push(contact.stiffness, damping, contact.threshold, contact.distance, speed);
+  if (push <= 0) return;
+  sum.force += push * n;
+  sum.load.stiffness += 2 * contact.stiffness;
+  if constexpr (terms.keep_dampers) dampers->push_back({contact.other, damping, n});
+  if constexpr (terms.friction) {
+    const Friction friction =
+        pair_friction(c.model, contact.self, contact.other, contact.stiffness);
+    if (friction.acts()) {
+      const Vec3 slip = slip_velocity(velocity, speed, n);
+      const Real drag = friction.drag(push, slip);
+      sum.force -= drag * slip;
+      damping = std::max(damping, friction.sticking);
+      if constexpr (terms.keep_dampers) add_drag(drag, contact.other, n, *dampers);
+    }
+  }
+  sum.load.damping += 2 * damping;
+}
+
+template <ContactTerms terms>
+void add_block(StepContext& c, std::size_t begin, std::size_t end) {
+  DamperBlock* const kept =
+      terms.keep_dampers ? &c.work.contact_dampers[begin / kBlockSize] : nullptr;
+  std::vector<Damper>* const dampers = terms.keep_dampers ? &kept->dampers : nullptr;
+  if constexpr (terms.keep_dampers) kept->dampers.clear();
+  for (std::size_t k = begin; k < end; ++k) {
+    const auto i = static_cast<Index>(k);
+    ContactSum sum;
+    if constexpr (terms.keep_dampers) {
+      kept->begin[k - begin] = static_cast<Index>(kept->dampers.size());
+    }
+    c.work.contacts.for_each(c.model, c.configuration, i, [&](const Contact& contact) {
       const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
                                     c.model.scene.dimensions);
-      const Vec3 velocity = at.velocity[i] - at.velocity[contact.other];
-      const Real speed = velocity.dot(n);
-      const Real push = connection_push(contact.stiffness, contact.damping, contact.threshold,
-                                        contact.distance, speed);
-      if (push <= 0) return;
-      sum += push * n;
-      load.stiffness += 2 * contact.stiffness;
-      Real damping = contact.damping;
-      if constexpr (keep_dampers) kept->dampers.push_back({contact.other, contact.damping, n});
-      if constexpr (has_friction) {
-        const Friction friction =
-            pair_friction(c.model, contact.self, contact.other, contact.stiffness);
-        if (friction.acts()) {
-          const Vec3 slip = slip_velocity(velocity, speed, n);
-          const Real drag = friction.drag(push, slip);
-          sum -= drag * slip;
-          damping = std::max(damping, friction.sticking);
-          if constexpr (keep_dampers) add_drag(drag, contact.other, n, kept->dampers);
-        }
+      if constexpr (terms.layers) {
+        if (contact.layer > 0) return add_layer(contact, n, sum);
       }
-      load.damping += 2 * damping;
+      add_spring<terms>(c, contact, n, sum, dampers);
     });
-    c.forces.particle[i] += sum;
-    c.work.contact_loads[i] = load;
+    c.forces.particle[i] += sum.force;
+    c.work.contact_loads[i] = sum.load;
   }
-  if constexpr (keep_dampers) kept->begin[end - begin] = static_cast<Index>(kept->dampers.size());
+  if constexpr (terms.keep_dampers) {
+    kept->begin[end - begin] = static_cast<Index>(kept->dampers.size());
+  }
+}
+
+template <bool keep_dampers>
+void add_terms(StepContext& c, std::size_t begin, std::size_t end) {
+  const Model& model = c.model;
+  if (model.has_restitution || model.has_layers) {
+    model.has_friction ? add_block<ContactTerms{keep_dampers, true, true, true}>(c, begin, end)
+                       : add_block<ContactTerms{keep_dampers, false, true, true}>(c, begin, end);
+  } else {
+    model.has_friction ? add_block<ContactTerms{keep_dampers, true, false, false}>(c, begin, end)
+                       : add_block<ContactTerms{keep_dampers, false, false, false}>(c, begin, end);
+  }
 }
 
 }  // namespace
@@ -70,13 +128,7 @@ void add_contacts(StepContext& c) {
     c.work.contact_dampers.resize((c.model.particle_count + kBlockSize - 1) / kBlockSize);
   }
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    if (c.model.has_friction) {
-      c.work.keep_dampers ? add_block<true, true>(c, begin, end)
-                          : add_block<false, true>(c, begin, end);
-    } else {
-      c.work.keep_dampers ? add_block<true, false>(c, begin, end)
-                          : add_block<false, false>(c, begin, end);
-    }
+    c.work.keep_dampers ? add_terms<true>(c, begin, end) : add_terms<false>(c, begin, end);
   });
 }
 

@@ -3,6 +3,7 @@
 #include "core/forces/contact_rules.h"
 #include "core/forces/liquid_pairs.h"
 #include "core/forces/no_slip.h"
+#include "core/forces/restitution.h"
 #include "core/forces/walls.h"
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/step/force_model.h"
@@ -10,20 +11,23 @@
 namespace vat {
 namespace {
 
-void add_wall_dampers(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
+void add_wall_dampers(const Yieldings& yieldings, const VatMotion& motion, Index i,
                       std::vector<Damper>& dampers) {
+  const Model& model = yieldings.model;
+  const Configuration& at = yieldings.at;
   const ContactLaw& law = model.wall_laws[model.material[i]];
   const Friction friction = wall_friction(model, i);
-  if (law.damping == 0 && !friction.acts()) return;
+  if (law.damping == 0 && law.damping_ratio == 0 && !friction.acts()) return;
   const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
   for (const int wall : model.walls) {
     const Real overlap = threshold - wall_distance(*model.scene.vat, motion, wall, at.position[i]);
     if (overlap <= 0) continue;
     const Vec3 n = wall_normal(wall);
     const Real speed = (at.velocity[i] - motion.velocity).dot(n);
-    const Real push = law.stiffness * overlap - law.damping * speed;
+    const Real damping = yieldings.wall_damping(i, n);
+    const Real push = law.stiffness * overlap - damping * speed;
     if (push <= 0) continue;
-    dampers.push_back({kNoParticle, law.damping, n});
+    dampers.push_back({kNoParticle, damping, n});
     if (!friction.acts()) continue;
     const Vec3 slip = wall_slip(*model.scene.vat, motion, wall, at.velocity[i]);
     add_drag(friction.drag(push, slip), kNoParticle, n, dampers);
@@ -69,7 +73,9 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
       const auto i = static_cast<Index>(k);
       block.begin[k - begin] = static_cast<Index>(block.dampers.size());
       const bool is_mirrored = model.is_coupled && i < model.liquid_count;
-      if (!is_mirrored) add_wall_dampers(model, motion, at, i, block.dampers);
+      if (!is_mirrored) {
+        add_wall_dampers({model, f.work, at, f.step}, motion, i, block.dampers);
+      }
       if (i < model.liquid_count && is_viscous_) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
       }

@@ -4,6 +4,8 @@
 
 #include "core/forces/connection.h"
 #include "core/forces/contact_rules.h"
+#include "core/forces/lennard_jones.h"
+#include "core/forces/restitution.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -13,23 +15,42 @@ namespace {
 struct WallForce {
   Vec3 force = Vec3::Zero();  ///< [N]
   int count = 0;              ///< of the walls that push
+  Real stiffness = 0;         ///< of the stiffest [N/m]
+  Real damping = 0;           ///< of the strongest dashpot [N s/m]
 };
 
-template <bool has_friction>
-WallForce sum_walls(const Model& model, const VatMotion& motion, const Configuration& at, Index i) {
+void add_layer(const ContactLaw& law, int wall, Real threshold, Real distance, WallForce& sum) {
+  const Real width = threshold * law.layer / (1 + law.layer);
+  sum.force += layer_push(law.stiffness, width, threshold, distance) * wall_normal(wall);
+  sum.stiffness =
+      std::max(sum.stiffness, greatest_layer_slope(law.stiffness, width, threshold, distance));
+  ++sum.count;
+}
+
+/// `damping_at(wall)`: of the dashpot [N s/m].
+template <bool has_friction, class Damping>
+WallForce sum_walls(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
+                    Damping&& damping_at) {
   const ContactLaw& law = model.wall_laws[model.material[i]];
-  const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
+  const Real threshold = law.wall_threshold(model.radius[i]);
   WallForce sum;
   for (const int wall : model.walls) {
     const Real distance = wall_distance(*model.scene.vat, motion, wall, at.position[i]);
     if (distance >= threshold) continue;
+    if (law.layer > 0) {
+      add_layer(law, wall, threshold, distance, sum);
+      continue;
+    }
     const int axis = wall / 2;
     const Real side = wall % 2 == 0 ? 1 : -1;
     const Real speed = side * (at.velocity[i][axis] - motion.velocity[axis]);
-    const Real push = connection_push(law.stiffness, law.damping, threshold, distance, speed);
+    const Real damping = damping_at(wall);
+    const Real push = connection_push(law.stiffness, damping, threshold, distance, speed);
     if (push <= 0) continue;
     sum.force[axis] += side * push;
     ++sum.count;
+    sum.stiffness = law.stiffness;
+    sum.damping = std::max(sum.damping, damping);
     if constexpr (has_friction) {
       const Friction friction = wall_friction(model, i);
       if (!friction.acts()) continue;
@@ -42,18 +63,20 @@ WallForce sum_walls(const Model& model, const VatMotion& motion, const Configura
 
 template <bool has_friction>
 void add_block(StepContext& c, const VatMotion& motion, std::size_t begin, std::size_t end) {
+  const Yieldings yieldings{c.model, c.work, c.configuration, c.step};
   for (std::size_t k = begin; k < end; ++k) {
     const auto i = static_cast<Index>(k);
-    const auto [force, count] = sum_walls<has_friction>(c.model, motion, c.configuration, i);
-    if (count == 0) continue;
-    c.forces.particle[i] += force;
-    const ContactLaw& law = c.model.wall_laws[c.model.material[i]];
-    c.work.contact_loads[i].stiffness += law.stiffness;
-    Real damping = law.damping;
+    const WallForce sum = sum_walls<has_friction>(
+        c.model, motion, c.configuration, i,
+        [&](int wall) { return yieldings.wall_damping(i, wall_normal(wall)); });
+    if (sum.count == 0) continue;
+    c.forces.particle[i] += sum.force;
+    c.work.contact_loads[i].stiffness += sum.stiffness;
+    Real damping = sum.damping;
     if constexpr (has_friction) {  // walls are at right angles: each drags along the others'
                                    // normals
       const Real sticking = wall_friction(c.model, i).sticking;
-      damping = std::max(damping, sticking) + (count - 1) * sticking;
+      damping = std::max(damping, sticking) + (sum.count - 1) * sticking;
     }
     c.work.contact_loads[i].damping += damping;
   }
@@ -68,8 +91,9 @@ Vec3 wall_slip(const Vat& vat, const VatMotion& motion, int wall, const Vec3& ve
 }
 
 Vec3 wall_force(const Model& model, const VatMotion& motion, const Configuration& at, Index i) {
-  return model.has_friction ? sum_walls<true>(model, motion, at, i).force
-                            : sum_walls<false>(model, motion, at, i).force;
+  const auto damping = [&](int) { return model.wall_laws[model.material[i]].damping; };
+  return model.has_friction ? sum_walls<true>(model, motion, at, i, damping).force
+                            : sum_walls<false>(model, motion, at, i, damping).force;
 }
 
 void add_wall_forces(StepContext& c) {

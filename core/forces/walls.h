@@ -12,7 +12,7 @@ struct StepContext;
 /// friction of core/forces/friction.h.
 void add_wall_forces(StepContext& context);
 
-/// The walls' force on particle i [N].
+/// The walls' force on particle i [N], where none has a restitution.
 Vec3 wall_force(const Model& model, const VatMotion& motion, const Configuration& at, Index i);
 
 /// How fast something of this velocity slips along the wall's surface [m/s].

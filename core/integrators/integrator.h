@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/integrators/damping_solve.h"
+#include "core/projection/projection.h"
 #include "core/scene/scene.h"
 #include "core/state/state.h"
 #include "core/step/force_model.h"
@@ -14,6 +15,7 @@ struct IntegratorScratch {
   Configuration start;
   Configuration increment;  ///< weighted sum of a Runge-Kutta method's rates
   DampingScratch damping;   ///< of velocity Verlet
+  ContactProjection projection;
 };
 
 /// One step of `dt` seconds from `time`. Free particles and rigid bodies advance together, and

@@ -45,11 +45,23 @@ void kick(const Model& model, TaskRunner* runner, const Forces& forces,
 
 namespace {
 
-void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Real dt) {
+/// A drift that contacts by projection take part in, where there are any.
+void drift_to_contact(const ForceModel& f, State& state, Real time, Real dt,
+                      IntegratorScratch& scratch) {
+  if (f.model.has_projection) {
+    scratch.projection.drift(f, state.now, time, dt);
+  } else {
+    drift(f.model, f.runner, state.now, dt);
+  }
+}
+
+void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Real dt,
+                                IntegratorScratch& scratch) {
   f.evaluate(state.now, time, state.forces);
   kick(f.model, f.runner, state.forces, state.now, dt);
-  drift(f.model, f.runner, state.now, dt);
+  drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
+  if (f.model.has_projection) scratch.projection.finish(f, state.now, time, dt);
 }
 
 void keep_velocities(const Configuration& now, Configuration& kept) {
@@ -105,7 +117,7 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
     if (is_damped) state.bound = find_bound(f, state.now);
   }
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
-  drift(f.model, f.runner, state.now, dt);
+  drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
   if (is_damped && must_solve_damping(state.bound, dt)) {
     evaluate_with_solve(f, state, time + dt, dt, scratch);
@@ -116,6 +128,7 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   }
   if (is_damped) state.bound = find_bound(f, state.now);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
+  if (f.model.has_projection) scratch.projection.finish(f, state.now, time, dt);
   state.forces_current = true;
 }
 
@@ -125,7 +138,7 @@ void take_step(IntegratorId id, const ForceModel& force_model, State& state, Rea
                IntegratorScratch& scratch) {
   switch (id) {
     case IntegratorId::symplectic_euler:
-      take_symplectic_euler_step(force_model, state, time, dt);
+      take_symplectic_euler_step(force_model, state, time, dt, scratch);
       return;
     case IntegratorId::velocity_verlet:
       take_velocity_verlet_step(force_model, state, time, dt, scratch);

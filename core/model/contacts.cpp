@@ -2,11 +2,36 @@
 
 #include <algorithm>
 
+#include "core/forces/restitution.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/scene/interface_table.h"
 
 namespace vat {
 namespace {
+
+ContactLaw make_law(const InterfaceConstants& constants, Real threshold) {
+  ContactLaw law{.threshold = threshold};
+  switch (constants.law) {
+    case InterfaceLaw::penalty:
+      law.stiffness = constants.stiffness;
+      law.damping = constants.damping;
+      law.friction = constants.friction;
+      if (constants.restitution) law.damping_ratio = damping_ratio_for(*constants.restitution);
+      break;
+    case InterfaceLaw::lennard_jones:
+      law.stiffness = constants.stiffness;
+      law.layer = constants.reach - 1;
+      break;
+    case InterfaceLaw::projection:
+      law.is_projected = true;
+      law.friction = constants.friction;
+      law.restitution = constants.restitution.value_or(0);
+      break;
+    case InterfaceLaw::sph:  // of coupled liquids, which have no contacts
+      break;
+  }
+  return law;
+}
 
 void fill_laws(Model& model) {
   const Scene& scene = model.scene;
@@ -15,7 +40,7 @@ void fill_laws(Model& model) {
     const InterfaceConstants& constants =
         interface ? scene.interfaces[*interface].constants : scene.default_interface;
     const Real threshold = interface ? scene.interfaces[*interface].threshold.value_or(0) : 0;
-    return {constants.stiffness, constants.damping, threshold, constants.friction};
+    return make_law(constants, threshold);
   };
   for (std::size_t a = 0; a < scene.materials.size(); ++a) {
     for (std::size_t b = 0; b < scene.materials.size(); ++b) {
@@ -24,9 +49,18 @@ void fill_laws(Model& model) {
     model.wall_laws.push_back(law(table.with_walls(a)));
     model.self_contacts.push_back(scene.materials[a].self_contact);
   }
-  const auto is_rough = [](const ContactLaw& each) { return each.friction > 0; };
-  model.has_friction = std::ranges::any_of(model.contact_laws, is_rough) ||
-                       std::ranges::any_of(model.wall_laws, is_rough);
+  const auto has = [&](auto&& property) {
+    return std::ranges::any_of(model.contact_laws, property) ||
+           std::ranges::any_of(model.wall_laws, property);
+  };
+  model.has_friction =
+      has([](const ContactLaw& each) { return each.friction > 0 && !each.is_projected; });
+  model.has_restitution = has([](const ContactLaw& each) { return each.damping_ratio > 0; });
+  model.has_layers = has([](const ContactLaw& each) { return each.layer > 0; });
+  model.has_projection = has([](const ContactLaw& each) { return each.is_projected; });
+  const auto pushes = [](const ContactLaw& each) { return !each.is_projected; };
+  model.bodies_push = std::ranges::any_of(model.contact_laws, pushes);
+  model.walls_push = std::ranges::any_of(model.wall_laws, pushes);
 }
 
 /// Whether two bodies can be joined by dynamic connections. Liquids of one material are one liquid.
@@ -50,8 +84,10 @@ void find_reach(Model& model) {
     for (std::size_t b = 0; b < a; ++b) {
       const ModelBody& second = model.bodies[b];
       if (!can_touch(model, first, second)) continue;
-      const Real threshold = model.contact_law(first.material, second.material).threshold;
-      const Real reach = threshold > 0 ? threshold : greatest_radius[a] + greatest_radius[b];
+      const ContactLaw& law = model.contact_law(first.material, second.material);
+      const Real touching =
+          law.threshold > 0 ? law.threshold : greatest_radius[a] + greatest_radius[b];
+      const Real reach = touching * (1 + law.layer);
       model.contact_reach = std::max(model.contact_reach, reach);
       if (first.kind == BodyKind::liquid && second.kind == BodyKind::liquid) {
         model.liquids_touch = true;

@@ -58,12 +58,22 @@ struct LiquidModel {
 };
 
 /// Dynamic connection between particles of two materials: unilateral spring and dashpot with
-/// l = threshold, so that it neither sticks nor jumps in energy when it comes and goes.
+/// l = threshold, so that it neither sticks nor jumps in energy when it comes and goes; or a layer;
+/// or, with no stiffness, a projection.
 struct ContactLaw {
-  Real stiffness = 0;  ///< [N/m]
-  Real damping = 0;    ///< [N s/m]
-  Real threshold = 0;  ///< [m]; 0 means the sum of the radii (against a wall: the radius)
-  Real friction = 0;   ///< coefficient mu
+  Real stiffness = 0;         ///< [N/m]
+  Real damping = 0;           ///< [N s/m]
+  Real threshold = 0;         ///< [m]; 0 means the sum of the radii (against a wall: the radius)
+  Real friction = 0;          ///< coefficient mu
+  Real damping_ratio = 0;     ///< of what has a restitution, in place of damping
+  Real layer = 0;             ///< how far a layer reaches beyond the threshold, in thresholds
+  bool is_projected = false;  ///< see core/projection/projection.h
+  Real restitution = 0;       ///< of a projection
+
+  /// The distance from a wall below which a particle is in contact [m].
+  Real wall_threshold(Real radius) const {
+    return (threshold > 0 ? threshold : radius) * (1 + layer);
+  }
 };
 
 /// A static connection seen from one of its particles.
@@ -140,7 +150,14 @@ struct Model {
   bool is_filled = false;      ///< coupled, and without a free surface: pressure may be negative
   bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
-  bool has_friction = false;  ///< some law of bodies or walls has
+  // Whether some law of bodies or walls has it.
+  bool has_friction = false;
+  bool has_restitution = false;  ///< by dashpots
+  bool has_layers = false;
+  bool has_projection = false;
+  // Whether not all laws are projections.
+  bool bodies_push = false;
+  bool walls_push = false;
   ModelDamping damping;
 
   StepPlan plan;

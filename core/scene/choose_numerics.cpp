@@ -20,8 +20,16 @@ struct Motions {
   bool has_kinks = false;           ///< liquids, contacts, walls
 };
 
+bool has_projection(const Scene& scene) {
+  return scene.default_interface.law == InterfaceLaw::projection ||
+         std::ranges::any_of(scene.interfaces, [](const InterfaceDescription& interface) {
+           return interface.constants.law == InterfaceLaw::projection;
+         });
+}
+
 Motions find_motions(const Scene& scene, std::span<const SampledBody* const> samples) {
   Motions motions;
+  motions.has_kinks = has_projection(scene);
   for (const OscillatingPart& part : find_oscillating_parts(scene, samples)) {
     const bool is_body = part.path.starts_with("/bodies/");
     const std::size_t body = is_body ? std::stoul(part.path.substr(8)) : 0;

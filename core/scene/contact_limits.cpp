@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "core/forces/friction.h"
+#include "core/forces/lennard_jones.h"
+#include "core/forces/restitution.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/volumes.h"
 
@@ -92,15 +94,32 @@ Real inverse_mass(const ContactBody& a, const ContactBody& b, const LawInUse& la
   return load(a, b, threshold) / a.mass + load(b, a, threshold) / b.mass;
 }
 
+/// What of an interface oscillates: of a layer its slope at half the distance at which it rests,
+/// further in than particles come; of a projection nothing.
+InterfaceConstants oscillating_part(InterfaceConstants constants) {
+  switch (constants.law) {
+    case InterfaceLaw::penalty:
+      break;
+    case InterfaceLaw::lennard_jones:
+      constants.stiffness =
+          greatest_layer_slope(constants.stiffness, constants.reach - 1, constants.reach, 0.5);
+      break;
+    case InterfaceLaw::sph:
+    case InterfaceLaw::projection:
+      return {};
+  }
+  return constants;
+}
+
 /// The scene's interfaces, then the default one, then each material's self-contact.
 std::vector<LawInUse> list_laws(const Scene& scene) {
   std::vector<LawInUse> laws;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const InterfaceDescription& interface = scene.interfaces[i];
-    laws.push_back(
-        {interface.constants, interface.threshold.value_or(0), "/interfaces/" + std::to_string(i)});
+    laws.push_back({oscillating_part(interface.constants), interface.threshold.value_or(0),
+                    "/interfaces/" + std::to_string(i)});
   }
-  laws.push_back({scene.default_interface, 0, "/default_interface"});
+  laws.push_back({oscillating_part(scene.default_interface), 0, "/default_interface"});
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const SpringConstants own = scene.materials[m].self_contact.value_or(SpringConstants{});
     laws.push_back(
@@ -146,10 +165,14 @@ Real particle_mass(const ContactBody& body) {
 /// The greatest of a contact's damping along its normal and, by friction, across it [N s/m].
 Real greatest_damping(const LawInUse& law, const std::vector<ContactBody>& bodies) {
   const auto [first, second] = law.worst;
-  if (law.constants.friction == 0) return law.constants.damping;
+  const Real along = law.constants.restitution
+                         ? damping_for(damping_ratio_for(*law.constants.restitution),
+                                       law.constants.stiffness, law.inverse_mass)
+                         : law.constants.damping;
+  if (law.constants.friction == 0) return along;
   // No reduced mass is above the lesser of the two.
   const Real mass = std::min(particle_mass(bodies[first]), particle_mass(bodies[second]));
-  return std::max(law.constants.damping, sticking_drag(law.constants.stiffness, mass));
+  return std::max(along, sticking_drag(law.constants.stiffness, mass));
 }
 
 /// Unit vectors, one of each opposite pair, in the body's axes.

@@ -34,7 +34,8 @@ bool has_wall_friction(const Scene& scene) {
 /// Friction is that of a spring's push, and sticks as hard as the spring.
 void warn_of_friction(const InterfaceConstants& constants, const std::string& path,
                       std::vector<Warning>& warnings) {
-  if (constants.friction > 0 && constants.stiffness == 0) {
+  const bool is_penalty = constants.law == InterfaceLaw::penalty;
+  if (is_penalty && constants.friction > 0 && constants.stiffness == 0) {
     warn(path + "/friction", "the stiffness is 0", warnings);
   }
 }

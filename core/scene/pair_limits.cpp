@@ -159,7 +159,11 @@ ContactReach find_reach(const Scene& scene, const std::vector<PairBody>& bodies)
       reach.liquids_touch |= both_liquid;
       const auto interface = table.between(material[a], material[b]);
       const bool has_threshold = interface && interfaces[*interface].threshold;
-      take(has_threshold ? *interfaces[*interface].threshold : radius[a] + radius[b], [&] {
+      const InterfaceConstants& law =
+          interface ? interfaces[*interface].constants : scene.default_interface;
+      const Real touching =
+          has_threshold ? *interfaces[*interface].threshold : radius[a] + radius[b];
+      take(law.law == InterfaceLaw::lennard_jones ? law.reach * touching : touching, [&] {
         return (has_threshold ? "the interface threshold of " : "the contact distance of ") +
                name(b) + " and " + name(a);
       });

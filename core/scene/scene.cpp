@@ -58,4 +58,19 @@ const char* to_string(PressureSolver solver) {
   return "";
 }
 
+const char* to_string(InterfaceLaw law) {
+  switch (law) {
+    case InterfaceLaw::penalty:
+      return "penalty";
+    case InterfaceLaw::lennard_jones:
+      return "lennard_jones";
+    case InterfaceLaw::sph:
+      return "sph";
+    case InterfaceLaw::projection:
+      return "projection";
+  }
+  VAT_CHECK(false && "not a law of an interface");
+  return "";
+}
+
 }  // namespace vat

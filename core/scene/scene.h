@@ -42,12 +42,30 @@ struct SpringConstants {
   Real damping = 0;
 };
 
-/// What happens where bodies touch: a spring and dashpot along the line between the two particles,
-/// which only push, and Coulomb friction across it (see core/forces/friction.h).
+/// What two particles that meet by an interface do to each other.
+enum class InterfaceLaw : std::uint8_t {
+  /// A spring and dashpot along the line between them, which only push, and Coulomb friction across
+  /// it; see core/forces/friction.h.
+  penalty,
+  lennard_jones,  ///< a layer that holds what touches it, see core/forces/lennard_jones.h
+  sph,            ///< one of them is liquid: the other takes part in its density and pressure
+  projection,     ///< what overlaps at the end of a step does not, see core/projection/projection.h
+};
+
+/// What happens where bodies touch. Each law has constants of its own; the others stay as they are
+/// here.
 struct InterfaceConstants {
-  Real stiffness = 0;  ///< [N/m]
-  Real damping = 0;    ///< [N s/m]
-  Real friction = 0;   ///< coefficient mu; 0: surfaces are smooth
+  Real stiffness = 0;  ///< [N/m] penalty; of a layer, where it neither pushes nor pulls
+  Real damping = 0;    ///< [N s/m] penalty
+  Real friction = 0;   ///< penalty and projection; coefficient mu, 0: surfaces are smooth
+  InterfaceLaw law = InterfaceLaw::penalty;
+  /// Speed of parting over speed of approach: penalty, in place of damping (see
+  /// core/forces/restitution.h), and projection, where none is 0.
+  std::optional<Real> restitution{};
+  /// Of a layer: how far it reaches, in thresholds, at which it neither pushes nor pulls.
+  Real reach = kDefaultReach;
+
+  static constexpr Real kDefaultReach = 2;
 
   SpringConstants spring() const { return {stiffness, damping}; }
 };
@@ -168,7 +186,8 @@ struct BodyDescription {
 inline constexpr const char* kVatMaterial = "vat";
 
 /// Interface (Boldt def. 0.6) between any two bodies of two materials, or a material and the vat's
-/// walls: dynamic connections of rest length `threshold`, present while the distance is below it.
+/// walls: dynamic connections of rest length `threshold`, present while the distance is below it,
+/// or below the reach of a layer.
 struct InterfaceDescription {
   std::array<std::string, 2> materials;
   InterfaceConstants constants;
@@ -275,5 +294,6 @@ const char* to_string(BodyKind kind);
 const char* to_string(IntegratorId id);
 const char* to_string(StepControl control);
 const char* to_string(PressureSolver solver);
+const char* to_string(InterfaceLaw law);
 
 }  // namespace vat

@@ -82,47 +82,13 @@ void check_materials(const Scene& scene, RangeCheck& check) {
   }
 }
 
-bool is_known(const Scene& scene, const std::string& material) {
-  return material == kVatMaterial ||
-         std::ranges::find(scene.materials, material, &Material::name) != scene.materials.end();
-}
-
-void check_interface_constants(const InterfaceConstants& constants, const std::string& path,
-                               RangeCheck& check) {
-  check_constants(constants.spring(), path, check);
-  check.real(constants.friction, 0, kMaxFriction, path + "/friction");
-}
-
-void check_interfaces(const Scene& scene, RangeCheck& check) {
-  check_interface_constants(scene.default_interface, "/default_interface", check);
-  std::set<std::pair<std::string, std::string>> pairs;
+/// An accuracy chooses numerics that can.
+void check_laws(const Scene& scene, RangeCheck& check) {
+  if (scene.numerics.accuracy) return;
+  check_law_numerics(scene.numerics, scene.default_interface, "/default_interface", check);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    const std::string path = element("/interfaces", i);
-    check_interface(scene, scene.interfaces[i], path, check);
-    const auto& [first, second] = scene.interfaces[i].materials;
-    if (!pairs.insert(std::minmax(first, second)).second) {
-      check.add("duplicate", path + "/materials", "must not be a pair that came before");
-    }
-  }
-}
-
-bool joins(const InterfaceDescription& interface, const std::string& material) {
-  return interface.materials[0] == material || interface.materials[1] == material;
-}
-
-/// The threshold against the coarsest of the sampled bodies that meet by it; explicit particles may
-/// lie as they like.
-void check_threshold(const Scene& scene, const InterfaceDescription& interface,
-                     const std::string& path, RangeCheck& check) {
-  if (!check.real(*interface.threshold, kMinLength, kMaxLength, path)) return;
-  Real spacing = 0;
-  for (const BodyDescription& body : scene.bodies) {
-    if (!joins(interface, body.material)) continue;
-    if (std::holds_alternative<ParticleShape>(body.shape)) return;
-    spacing = std::max(spacing, body.spacing);
-  }
-  if (spacing > 0) {
-    check.real(*interface.threshold, kMinLength, kMaxReachInSpacings * spacing, path);
+    check_law_numerics(scene.numerics, scene.interfaces[i].constants, element("/interfaces", i),
+                       check);
   }
 }
 
@@ -163,22 +129,6 @@ std::vector<PairBody> pair_bodies(const Scene& scene, const Present& present) {
 
 }  // namespace
 
-void check_interface(const Scene& scene, const InterfaceDescription& interface,
-                     const std::string& path, RangeCheck& check) {
-  for (std::size_t side = 0; side < 2; ++side) {
-    if (is_known(scene, interface.materials[side])) continue;
-    check.add("unknown_name", path + "/materials/" + std::to_string(side),
-              "must be \"vat\" or the name of one of the scene's materials");
-  }
-  if (interface.materials[0] == kVatMaterial && interface.materials[1] == kVatMaterial) {
-    check.add("unknown_name", path + "/materials", "must name at least one of the materials");
-  }
-  check_interface_constants(interface.constants, path, check);
-  if (interface.threshold) {
-    check_threshold(scene, interface, path + "/threshold", check);
-  }
-}
-
 Errors find_errors(const Scene& scene) {
   Errors errors;
   RangeCheck check(errors);
@@ -188,6 +138,7 @@ Errors find_errors(const Scene& scene) {
   check.vector(scene.gravity, -kMaxGravity, kMaxGravity, "/gravity");
   check_materials(scene, check);
   check_interfaces(scene, check);
+  check_laws(scene, check);
   check_liquids_of_tait(scene, check);
   if (scene.dimensions != 2 && scene.dimensions != 3) {
     check.add("out_of_range", "/dimensions", "must be 2 or 3");
@@ -226,6 +177,7 @@ Errors find_body_errors(const Scene& scene, const Present& present, const BodyDe
     allowance.take_particles(other.positions.size());
     allowance.take_springs(other.springs);
   }
+  check_new_solid(scene, body, path, check);
   const auto sample = check_body(scene, present.vat_offset, body, path, allowance, check);
   allowance.check_totals(path, check);
   if (!errors.empty()) return errors;
@@ -249,6 +201,7 @@ Errors find_interface_errors(const Scene& scene, const Present& present,
   Errors errors;
   RangeCheck check(errors);
   check_interface(scene, interface, path, check);
+  check_law_numerics(scene.numerics, interface.constants, path, check);
   if (!errors.empty()) return errors;
   Scene changed = scene;
   changed.interfaces.push_back(interface);  // the last of a pair of materials counts

@@ -13,9 +13,18 @@ namespace vat {
 
 void check_constants(const SpringConstants& constants, const std::string& path, RangeCheck& check);
 
-/// Values, names, and the threshold against the spacing of the bodies that it joins.
+/// Values, names, the threshold against the spacing of the bodies that it joins, and whether its
+/// law is one for them.
 void check_interface(const Scene& scene, const InterfaceDescription& interface,
                      const std::string& path, RangeCheck& check);
+/// All of a scene's.
+void check_interfaces(const Scene& scene, RangeCheck& check);
+/// That a body to be added meets no other solid by a law for liquids.
+void check_new_solid(const Scene& scene, const BodyDescription& body, const std::string& path,
+                     RangeCheck& check);
+/// That the numerics can have such an interface.
+void check_law_numerics(const Numerics& numerics, const InterfaceConstants& constants,
+                        const std::string& path, RangeCheck& check);
 
 void check_vat(const Scene& scene, RangeCheck& check);
 void check_periodicity(const Periodicity& periodic, RangeCheck& check);

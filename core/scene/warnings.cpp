@@ -182,7 +182,7 @@ Real least_notice(const Scene& scene, const InterfaceTable& table,
   const auto notice = [&](std::optional<std::size_t> interface, Real touching) {
     const bool listed = interface.has_value();
     const auto& law = listed ? scene.interfaces[*interface].constants : scene.default_interface;
-    if (law.stiffness == 0) return;
+    if (law.stiffness == 0 && law.law != InterfaceLaw::projection) return;
     least = std::min(least,
                      listed ? scene.interfaces[*interface].threshold.value_or(touching) : touching);
   };

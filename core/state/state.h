@@ -17,12 +17,23 @@ struct RigidState {
   Vec3 angular_momentum;  ///< L about r_cm, world axes [kg m^2/s]
 };
 
+/// What a contact by projection did in the last step, from which the next solve starts: over the
+/// step's length, on the particle.
+struct ContactImpulse {
+  Index particle = 0;
+  std::uint64_t other = 0;     ///< a wall, or kWallCount and the other particle's index
+  Vec3 drift = Vec3::Zero();   ///< at the step's start [N]
+  Vec3 finish = Vec3::Zero();  ///< at its end [N]
+  bool is_steady = false;      ///< not much more than in the step before
+};
+
 /// What is integrated. Positions and velocities of rigid particles follow from the rigid states and
 /// are kept here so that every force sees one geometry.
 struct Configuration {
   std::vector<Vec3> position;
   std::vector<Vec3> velocity;
   std::vector<RigidState> rigid;
+  std::vector<ContactImpulse> contacts{};  ///< by projection, by particle and other
 };
 
 /// Forces at a configuration: on every particle [N], and their resultants on rigid bodies.

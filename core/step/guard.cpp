@@ -41,7 +41,8 @@ Real travel_of(const Model& model, const ModelBody& body,
   const Real radius = least_radius(model, body);
   Real travel = kMaxLength;
   const auto notice = [&](const ContactLaw& law, Real touch) {
-    if (law.stiffness > 0) travel = std::min(travel, law.threshold > 0 ? law.threshold : touch);
+    if (law.stiffness == 0 && !law.is_projected) return;
+    travel = std::min(travel, law.threshold > 0 ? law.threshold : touch);
   };
   const bool is_liquid = body.kind == BodyKind::liquid;
   for (const bool of_liquids : {false, true}) {

@@ -53,7 +53,7 @@ void LocalPairs::build_springs(const ForceModel& f, const LocalLevels& levels) {
       const SpringEnd& spring = model.spring_ends[s];
       const std::uint8_t level = std::max(levels.particle[i], levels.particle[spring.other]);
       pairs.push_back(
-          {spring.other, level, false, spring.stiffness, spring.damping, spring.rest_length});
+          {spring.other, level, false, spring.stiffness, spring.damping, spring.rest_length, 0});
     }
   });
   spring_levels_ = levels.particle;
@@ -68,8 +68,8 @@ void LocalPairs::build_contacts(const ForceModel& f, const Configuration& at,
         model, f.work, at, i,
         [&](const Contact& contact) {
           const std::uint8_t level = std::max(levels.particle[i], levels.particle[contact.other]);
-          pairs.push_back(
-              {contact.other, level, true, contact.stiffness, contact.damping, contact.threshold});
+          pairs.push_back({contact.other, level, true, contact.stiffness, contact.damping,
+                           contact.threshold, contact.layer});
         },
         skin_);
   });

@@ -15,7 +15,8 @@ struct LocalPair {
   bool is_contact = false;  ///< pushes only
   Real stiffness = 0;
   Real damping = 0;
-  Real rest_length = 0;
+  Real rest_length = 0;  ///< of a contact, the distance at which it begins
+  Real layer = 0;        ///< of a layer: the width of its part that pulls [m]
 };
 
 /// Every connection that can act as long as no particle moves by more than half a skin, by

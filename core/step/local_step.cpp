@@ -7,6 +7,7 @@
 #include "core/forces/connection.h"
 #include "core/forces/contacts.h"
 #include "core/forces/external.h"
+#include "core/forces/lennard_jones.h"
 #include "core/forces/liquid.h"
 #include "core/forces/pair_direction.h"
 #include "core/forces/rigid.h"
@@ -50,6 +51,9 @@ Vec3 force_of(const Model& model, const Configuration& at, Index i, const LocalP
   const Real distance = x.norm();
   if (pair.is_contact && distance >= pair.rest_length) return Vec3::Zero();
   const Vec3 n = pair_direction(x, distance, i, pair.other, model.scene.dimensions);
+  if (pair.layer > 0) {
+    return layer_push(pair.stiffness, pair.layer, pair.rest_length, distance) * n;
+  }
   const Vec3 velocity = at.velocity[i] - at.velocity[pair.other];
   const Real speed = velocity.dot(n);
   const Real push =

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/forces/external.h"
+#include "core/forces/lennard_jones.h"
 #include "core/forces/liquid.h"
 #include "core/forces/vat_motion.h"
 #include "core/rigid/rigid_motion.h"
@@ -70,8 +71,13 @@ Real pair_contact_energy(const Model& model, const Workspace& work, const Config
   Real energy = 0;
   for (Index i = 0; i < model.particle_count; ++i) {
     work.contacts.for_each(model, at, i, [&](const Contact& contact) {
+      if (contact.layer > 0) {  // each contact is found twice
+        energy += 0.5 * layer_energy(contact.stiffness, contact.layer, contact.threshold,
+                                     contact.distance);
+        return;
+      }
       const Real overlap = contact.threshold - contact.distance;
-      energy += 0.25 * contact.stiffness * overlap * overlap;  // each contact is found twice
+      energy += 0.25 * contact.stiffness * overlap * overlap;
     });
   }
   return energy;
@@ -83,10 +89,14 @@ Real wall_contact_energy(const Model& model, const Configuration& at, Real time)
   Real energy = 0;
   for (Index i = 0; i < model.particle_count; ++i) {
     const ContactLaw& law = model.wall_laws[model.material[i]];
-    const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
+    const Real threshold = law.wall_threshold(model.radius[i]);
+    const Real layer = threshold * law.layer / (1 + law.layer);
     for (const int wall : model.walls) {
-      const Real overlap = threshold - wall_distance(vat, motion, wall, at.position[i]);
-      if (overlap > 0) energy += 0.5 * law.stiffness * overlap * overlap;
+      const Real distance = wall_distance(vat, motion, wall, at.position[i]);
+      const Real overlap = threshold - distance;
+      if (overlap <= 0) continue;
+      energy += layer > 0 ? layer_energy(law.stiffness, layer, threshold, distance)
+                          : 0.5 * law.stiffness * overlap * overlap;
     }
   }
   return energy;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/forces/lennard_jones.h"
 #include "core/forces/pair_direction.h"
+#include "core/forces/restitution.h"
 #include "core/forces/vat_motion.h"
 #include "core/scene/error_model.h"
 
@@ -71,11 +73,19 @@ ContactOutlook look_at_pairs(const Search& search, const std::vector<Real>& inve
   search.force_model.work.contacts.for_each(
       search.model(), search.at, i,
       [&](const Contact& contact) {
-        const SpringConstants law{contact.stiffness, contact.damping};
         const Index j = contact.other;
         const Vec3 velocity = search.at.velocity[i] - search.at.velocity[j];
-        const Real time = time_to_touch(contact.distance - contact.threshold,
-                                        velocity.norm() + search.gained_speed);
+        const Real approach = velocity.norm() + search.gained_speed;
+        const Real time = time_to_touch(contact.distance - contact.threshold, approach);
+        SpringConstants law{contact.stiffness, contact.damping};
+        if (contact.layer > 0) {
+          const Real nearest = std::max(Real{0}, contact.distance - approach * search.longest);
+          law.stiffness = greatest_layer_slope(contact.stiffness, contact.layer, contact.threshold,
+                                               std::min(nearest, contact.threshold));
+        } else if (contact.damping_ratio > 0) {
+          law.damping = damping_for(contact.damping_ratio, contact.stiffness,
+                                    inverse_mass[i] + inverse_mass[j]);
+        }
         if (time > search.longest || !acts(law)) return;
         const Vec3 normal =
             pair_direction(contact.x, contact.distance, i, j, search.model().scene.dimensions);
@@ -87,23 +97,37 @@ ContactOutlook look_at_pairs(const Search& search, const std::vector<Real>& inve
   return sum;
 }
 
-ContactOutlook look_at_walls(const Search& search, Index i) {
+/// Of a layer, down to the distance `nearest` from the wall, at most its reach.
+Real greatest_wall_slope(const ContactLaw& law, Real reach, Real nearest) {
+  const Real width = reach * law.layer / (1 + law.layer);
+  return greatest_layer_slope(law.stiffness, width, reach, std::clamp(nearest, Real{0}, reach));
+}
+
+/// `inverse_mass`: of what the particle moves [1/kg].
+ContactOutlook look_at_walls(const Search& search, Real inverse_mass, Index i) {
   const Model& model = search.model();
   const Vat& vat = *model.scene.vat;
   const ContactLaw& law = model.wall_laws[model.material[i]];
   ContactOutlook sum;
   if (model.is_coupled && i < model.liquid_count) return sum;
   if (!acts({law.stiffness, law.damping})) return sum;
-  const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
+  const Real threshold = law.wall_threshold(model.radius[i]);
   for (const int wall : model.walls) {
     const Vec3 normal = wall_normal(wall);
     const Real speed = -search.at.velocity[i].dot(normal);
     const Real gap = wall_distance(vat, search.vat_motion, wall, search.at.position[i]) - threshold;
-    const Real time =
-        time_to_touch(gap, std::max(Real{0}, speed + search.gained_speed + search.vat_speed));
+    const Real approach = std::max(Real{0}, speed + search.gained_speed + search.vat_speed);
+    const Real time = time_to_touch(gap, approach);
     if (time > search.longest) continue;
-    sum.add(look_at({law.stiffness, law.damping}, wall_friction(model, i), threshold, time, 1,
-                    normal, std::abs(speed + search.vat_motion.velocity.dot(normal))));
+    SpringConstants constants{law.stiffness, law.damping};
+    if (law.layer > 0) {
+      constants.stiffness =
+          greatest_wall_slope(law, threshold, gap + threshold - approach * search.longest);
+    } else if (law.damping_ratio > 0) {
+      constants.damping = damping_for(law.damping_ratio, law.stiffness, inverse_mass);
+    }
+    sum.add(look_at(constants, wall_friction(model, i), threshold, time, 1, normal,
+                    std::abs(speed + search.vat_motion.velocity.dot(normal))));
   }
   return sum;
 }
@@ -247,7 +271,9 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
       const auto i = static_cast<Index>(k);
       ContactOutlook outlook;
       if (model.contact_reach > 0) outlook = look_at_pairs(search, scratch.inverse_mass, i);
-      if (!model.walls.empty()) outlook.add(look_at_walls(search, i));
+      if (!model.walls.empty()) {
+        outlook.add(look_at_walls(search, scratch.inverse_mass[i], i));
+      }
       scratch.outlook[i] = outlook;
       if (i >= model.free_count || model.inverse_mass[i] == 0 || outlook.is_empty()) continue;
       particle_steps[i] = std::min(

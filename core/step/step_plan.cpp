@@ -6,6 +6,7 @@
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
 #include "core/forces/no_slip.h"
+#include "core/forces/restitution.h"
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
 #include "core/forces/transport.h"
@@ -18,9 +19,9 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",       "velocity",  "rigid_state",    "force",      "liquid_cells",
-    "liquid_pairs",   "density",   "filled_density", "pressure",   "liquid_solids",
-    "solid_pressure", "transport", "contact_list",   "rigid_force"};
+    "position",       "velocity",  "rigid_state",    "force",    "liquid_cells",
+    "liquid_pairs",   "density",   "filled_density", "pressure", "liquid_solids",
+    "solid_pressure", "transport", "contact_list",   "yielding", "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -126,7 +127,24 @@ void add_contact_stages(const Model& model, PlanBuilder& plan) {
   } else {
     plan.add("find_contacts", {position}, {contact_list}, &find_contacts);
   }
-  plan.add("contacts", {position, velocity, contact_list, force}, {force}, &add_contacts);
+}
+
+/// What contacts and walls do, once it is known which contacts there are.
+void add_push_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  const bool has_contacts =
+      model.contact_reach > 0 && (model.bodies_push || model.has_self_contact);
+  if (!model.has_restitution) {
+    if (has_contacts) {
+      plan.add("contacts", {position, velocity, contact_list, force}, {force}, &add_contacts);
+    }
+  } else if (has_contacts) {
+    plan.add("find_yieldings", {position, rigid_state, contact_list}, {yielding}, &find_yieldings);
+    plan.add("contacts", {position, velocity, rigid_state, contact_list, yielding, force}, {force},
+             &add_contacts);
+  } else if (!model.walls.empty()) {
+    plan.add("find_yieldings", {position, rigid_state}, {yielding}, &find_yieldings);
+  }
 }
 
 }  // namespace
@@ -163,11 +181,17 @@ StepPlan make_step_plan(const Model& model) {
     add_liquid_stages(model, plan);
   }
   if (model.contact_reach > 0) add_contact_stages(model, plan);
+  add_push_stages(model, plan);
   if (!model.spring_ends.empty()) {
     plan.add("springs", {position, velocity, force}, {force}, &add_spring_forces);
   }
-  if (!model.walls.empty())
+  const bool has_walls = !model.walls.empty() && model.walls_push;
+  if (has_walls && model.has_restitution) {
+    plan.add("walls", {position, velocity, rigid_state, yielding, force}, {force},
+             &add_wall_forces);
+  } else if (has_walls) {
     plan.add("walls", {position, velocity, force}, {force}, &add_wall_forces);
+  }
   if (!model.rigid_bodies.empty()) {
     plan.add("gather_rigid_forces", {position, rigid_state, force}, {rigid_force},
              &gather_rigid_forces);

@@ -26,9 +26,10 @@ enum class Column : std::uint8_t {
   solid_pressure,
   transport,
   contact_list,
+  yielding,
   rigid_force,
 };
-inline constexpr std::size_t kColumnCount = 14;
+inline constexpr std::size_t kColumnCount = 15;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

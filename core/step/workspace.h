@@ -83,6 +83,7 @@ struct Workspace {
   CellSortedPoints solids;  ///< deformable and rigid particles; index 0 is the first of them
   ContactList contacts;
   std::vector<ContactLoad> contact_loads;  ///< by particle
+  std::vector<Vec3> yieldings;             ///< see core/forces/restitution.h; by particle [1/kg]
   bool keep_dampers = false;               ///< asks for the next two lines
   std::vector<Vec3> spring_directions;     ///< by end: n of Boldt eq. 3
   std::vector<DamperBlock> contact_dampers;

@@ -47,8 +47,8 @@ class BitWriter {
     put_all(stiffness, damping);
   }
   void put(const InterfaceConstants& constants) {
-    const auto& [stiffness, damping, friction] = constants;
-    put_all(stiffness, damping, friction);
+    const auto& [stiffness, damping, friction, law, restitution, reach] = constants;
+    put_all(stiffness, damping, friction, law, restitution, reach);
   }
   void put(const LiquidConstants& liquid) {
     const auto& [stiffness, viscosity, support_radius, artificial_viscosity] = liquid;

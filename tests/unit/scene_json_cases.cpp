@@ -32,13 +32,18 @@ const char* const kFullDocument = R"json({
   "interfaces": [
     {"materials": ["water", "vat"], "stiffness": 2000.5, "damping": 5.5, "friction": 1.25,
      "threshold": 0.0625},
-    {"materials": ["rubber", "wood"], "stiffness": 800.5, "damping": 4.5, "threshold": 0.03125}
+    {"materials": ["rubber", "wood"], "stiffness": 800.5, "damping": 4.5, "threshold": 0.03125},
+    {"materials": ["rubber", "vat"], "law": "penalty", "stiffness": 700.5, "restitution": 0.75},
+    {"materials": ["water", "rubber"], "law": "lennard_jones", "stiffness": 90.5, "reach": 1.5,
+     "threshold": 0.09375},
+    {"materials": ["wood", "vat"], "law": "projection", "friction": 0.25, "restitution": 0.5,
+     "threshold": 0.046875}
   ],
   "vat": {"min": [-2, -1.5, -0.5], "max": [3, 1.75, 2.5], "lid": true,
           "motion": {"type": "slide", "axis": [0, 2, 0], "stroke": 0.2, "period": 2.5},
           "walls": {"y_min": {"no_slip": true, "velocity": [0.5, 0, -0.25]},
                     "z_max": {"no_slip": true}}},
-  "numerics": {"integrator": "runge_kutta_4", "step": 0.0005, "tick": 0.01,
+  "numerics": {"integrator": "symplectic_euler", "step": 0.0005, "tick": 0.01,
                "control": "adaptive"},
   "bodies": [
     {"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.0625,
@@ -161,7 +166,14 @@ Scene full_scene() {
   scene.materials = full_materials();
   scene.default_interface = {1500.5, 3.5, 0.375};
   scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5, 1.25}, 0.0625},
-                      {{"rubber", "wood"}, {800.5, 4.5}, 0.03125}};
+                      {{"rubber", "wood"}, {800.5, 4.5}, 0.03125},
+                      {{"rubber", "vat"}, {.stiffness = 700.5, .restitution = 0.75}, {}},
+                      {{"water", "rubber"},
+                       {.stiffness = 90.5, .law = InterfaceLaw::lennard_jones, .reach = 1.5},
+                       0.09375},
+                      {{"wood", "vat"},
+                       {.friction = 0.25, .law = InterfaceLaw::projection, .restitution = 0.5},
+                       0.046875}};
   scene.vat = Vat{{-2, -1.5, -0.5}, {3, 1.75, 2.5}, true, SlideMotion{{0, 2, 0}, 0.2, 2.5}, {}};
   scene.vat->walls[2] = {true, {0.5, 0, -0.25}};
   scene.vat->walls[5].no_slip = true;
@@ -169,7 +181,7 @@ Scene full_scene() {
   scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
   scene.settling = Settling{47.5, 0.1875};
   scene.forces = {false, false, false, false, false, false};
-  scene.numerics = {IntegratorId::runge_kutta_4, 0.0005, 0.01, StepControl::adaptive};
+  scene.numerics = {IntegratorId::symplectic_euler, 0.0005, 0.01, StepControl::adaptive};
   scene.bodies = full_bodies();
   return scene;
 }

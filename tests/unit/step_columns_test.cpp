@@ -75,6 +75,8 @@ void spoil(Column column, Columns& columns) {
     case Column::contact_list:
       columns.work.contacts = {};
       return;
+    case Column::yielding:
+      return spoil_vectors(columns.work.yieldings);
     case Column::rigid_force:
       spoil_vectors(forces.rigid_force);
       return spoil_vectors(forces.rigid_torque);
@@ -129,6 +131,8 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(forces.transport);
     case Column::contact_list:
       return bytes_of(columns.work.solids.x);
+    case Column::yielding:
+      return bytes_of(columns.work.yieldings);
     case Column::rigid_force:
       return bytes_of(forces.rigid_force);
   }
@@ -210,6 +214,16 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredBesideNoSlipWalls) {
   scene.vat->walls[4] = {true, {0.5, 0, 0}};
   expect_declared(scene);
   scene.forces.pressure = false;
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWithOtherLawsOfInterfaces) {
+  Scene scene = crowded_scene(1);
+  scene.default_interface = {.stiffness = 100, .restitution = 0.5};
+  expect_declared(scene);
+  scene.interfaces = {
+      {{"solid", "vat"}, {.friction = 0.1, .law = InterfaceLaw::projection}, {}},
+      {{"water", "solid"}, {.stiffness = 100, .law = InterfaceLaw::lennard_jones}, {}}};
   expect_declared(scene);
 }
 

@@ -104,6 +104,27 @@ TEST(StepPlan, HasWallsOnlyWithAVat) {
   EXPECT_THAT(stages_of(scene), ElementsAre("external_forces", "walls"));
 }
 
+TEST(StepPlan, OfRestitutionFindsHowContactsShareWhatTheyPush) {
+  Scene scene = scene_of({make_spring_body(), kBall});
+  scene.default_interface = {.stiffness = 100, .restitution = 0.5};
+  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
+  EXPECT_THAT(stages_of(scene),
+              ElementsAre("pose_rigid_bodies", "external_forces", "find_contacts", "find_yieldings",
+                          "contacts", "springs", "walls", "gather_rigid_forces"));
+  scene.forces.contacts = false;
+  EXPECT_THAT(stages_of(scene),
+              ElementsAre("pose_rigid_bodies", "external_forces", "find_yieldings", "springs",
+                          "walls", "gather_rigid_forces"));
+}
+
+TEST(StepPlan, OfProjectionsHasNoForcesOfContact) {
+  Scene scene = scene_of({make_spring_body(), kBall});
+  scene.default_interface = {.law = InterfaceLaw::projection};
+  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
+  EXPECT_THAT(stages_of(scene), ElementsAre("pose_rigid_bodies", "external_forces", "find_contacts",
+                                            "springs", "gather_rigid_forces"));
+}
+
 TEST(StepPlan, OfEverythingIsInOrder) {
   Scene scene = scene_of({kPool, make_spring_body(), kBall}, 1);
   scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};

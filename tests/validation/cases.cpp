@@ -17,6 +17,7 @@ std::vector<Case> collect() {
                            rigid_top_cases,
                            rigid_contact_cases,
                            rigid_friction_cases,
+                           rigid_projection_cases,
                            rigid_sampling_cases,
                            liquid_lattice_cases,
                            liquid_channel_cases,

@@ -20,6 +20,7 @@ std::vector<Case> free_spin_cases();
 std::vector<Case> rigid_top_cases();
 std::vector<Case> rigid_contact_cases();
 std::vector<Case> rigid_friction_cases();
+std::vector<Case> rigid_projection_cases();
 std::vector<Case> rigid_sampling_cases();
 std::vector<Case> liquid_lattice_cases();
 std::vector<Case> liquid_channel_cases();

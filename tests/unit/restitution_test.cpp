@@ -1,0 +1,150 @@
+#include "core/forces/restitution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+// Of the validation dossier's RIG-4, from the closed form.
+TEST(Restitution, OfDampingRatiosIsThatOfTheUnilateralSpring) {
+  EXPECT_EQ(restitution_of(0), 1);
+  EXPECT_NEAR(restitution_of(0.05), 0.858758102, 1e-9);
+  EXPECT_NEAR(restitution_of(0.1), 0.744079398, 1e-9);
+  EXPECT_NEAR(restitution_of(0.2), 0.571740028, 1e-9);
+  EXPECT_NEAR(restitution_of(0.5), 0.298436059, 1e-9);
+  EXPECT_NEAR(restitution_of(0.7), 0.210284564, 1e-9);
+  EXPECT_NEAR(restitution_of(1), std::exp(-2), 1e-12);
+}
+
+/// The speed at which x'' = -2 zeta x' - x, thrown in at 1, has its force at zero.
+Real parting_speed(Real zeta) {
+  constexpr Real kStep = 1e-4;
+  Real x = 0;
+  Real v = 1;
+  while (x + 2 * zeta * v > 0) {
+    const auto a = [&](Real place, Real speed) { return -place - 2 * zeta * speed; };
+    const Real half_x = x + kStep / 2 * v;
+    const Real half_v = v + kStep / 2 * a(x, v);
+    x += kStep * half_v;
+    v += kStep * a(half_x, half_v);
+  }
+  return -v;
+}
+
+TEST(Restitution, HoldsForStrongDampingToo) {
+  for (const Real zeta : {0.3, 0.9, 0.99, 1.01, 1.5, 3.0}) {
+    EXPECT_NEAR(restitution_of(zeta), parting_speed(zeta), 1e-4) << zeta;
+  }
+}
+
+TEST(Restitution, IsInverted) {
+  EXPECT_EQ(damping_ratio_for(1), 0);
+  for (const Real e : {0.99, 0.5, 0.2, 0.1353, 0.05, 0.01}) {
+    EXPECT_NEAR(restitution_of(damping_ratio_for(e)), e, 1e-12) << e;
+  }
+}
+
+struct Impact {
+  Real stiffness;
+  Real first_mass;
+  Real second_mass;
+};
+constexpr Impact kImpacts[] = {{1e3, 1, 1}, {1e5, 1, 1}, {1e4, 1, 100}, {1e4, 20, 0.5}};
+constexpr Real kRestitutions[] = {1, 0.8, 0.5, 0.2, 0.05};
+
+/// Of two bodies whose nearest particles are about to touch, with a step of 1/200 of the contact's
+/// angular period; the first moves at 1 m/s along x, `reduced_mass` is that of the impact.
+Real speed_of_parting(Scene scene, Real stiffness, Real reduced_mass, Real restitution) {
+  const Real rate = std::sqrt(stiffness / reduced_mass);
+  scene.numerics.step = scene.numerics.tick = 5e-3 / rate;
+  scene.default_interface = {.stiffness = stiffness, .restitution = restitution};
+  scene.bodies[0].velocity = {1, 0, 0};
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(3000);
+  const auto contact_speed = [&](std::size_t b, std::size_t particle) {
+    return simulation.bodies()[b].velocities[particle].x();
+  };
+  return contact_speed(1, 0) - contact_speed(0, 0);
+}
+
+// A damping force that starts with a jump somewhere within a step is wrong by half of it at most.
+constexpr Real kHalfStep = 5e-3;
+
+TEST(Restitution, IsThatOfFreeAndRigidParticlesOfAnyMass) {
+  for (const BodyKind kind : {BodyKind::deformable, BodyKind::rigid}) {
+    for (const Impact& impact : kImpacts) {
+      for (const Real e : kRestitutions) {
+        Scene scene = make_scene(IntegratorId::velocity_verlet, 1);
+        scene.materials = {make_material("steel")};
+        scene.bodies = {
+            make_body("a", kind, "steel", make_particles({{-0.1001, 0, 0}}, impact.first_mass),
+                      0.05),
+            make_body("b", kind, "steel", make_particles({{0, 0, 0}}, impact.second_mass), 0.05)};
+        const Real mass =
+            impact.first_mass * impact.second_mass / (impact.first_mass + impact.second_mass);
+        EXPECT_NEAR(speed_of_parting(scene, impact.stiffness, mass, e), e, 2 * kHalfStep)
+            << to_string(kind) << ' ' << impact.stiffness << ' ' << impact.first_mass;
+      }
+    }
+  }
+}
+
+/// Two rigid blocks of 3 x 3 x 3 particles, 27 kg in all, flat against each other.
+Scene make_blocks() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1);
+  scene.materials = {make_material("steel")};
+  const ParticleShape shape = make_particles(make_lattice(3, 3, 3, 0.1), 1);
+  scene.bodies = {make_body("a", BodyKind::rigid, "steel", shape, 0.05),
+                  make_body("b", BodyKind::rigid, "steel", shape, 0.05)};
+  scene.bodies[0].position.x() = -0.3001;
+  return scene;
+}
+
+// Nine springs act at once.
+TEST(Restitution, IsThatOfFacesThatMeetFlat) {
+  for (const Real e : kRestitutions) {
+    EXPECT_NEAR(speed_of_parting(make_blocks(), 1e4, 13.5 / 9, e), e, 2 * kHalfStep) << e;
+  }
+}
+
+// A rod that is hit at its end yields four times as easily there as at its middle.
+TEST(Restitution, IsThatOfThePointThatIsHit) {
+  for (const Real e : kRestitutions) {
+    Scene scene = make_blocks();
+    std::vector<Vec3> rod;
+    for (int i = 0; i < 11; ++i) rod.push_back({0, 0.1 * i, 0});
+    scene.bodies = {
+        make_body("ball", BodyKind::rigid, "steel", make_particles({{0, 0, 0}}, 5), 0.05),
+        make_body("rod", BodyKind::rigid, "steel", make_particles(rod, 1), 0.05)};
+    scene.bodies[0].position.x() = -0.1001;
+    // 11 kg about its middle: 1.1 m^2 of the places, and a ball's own.
+    const Real inertia = 1.1 + 11 * 0.4 * 0.05 * 0.05;
+    const Real yielding = 1.0 / 5 + 1.0 / 11 + 0.25 / inertia;
+    // Stiff, so that nothing turns while they touch.
+    EXPECT_NEAR(speed_of_parting(scene, 1e8, 1 / yielding, e), e, 2 * kHalfStep) << e;
+  }
+}
+
+TEST(Restitution, IsThatOfAFallOnTheFloor) {
+  for (const Real e : kRestitutions) {
+    Scene scene = make_blocks();
+    scene.bodies.resize(1);
+    scene.bodies[0].position = {0, 0, 0.1501};
+    scene.bodies[0].velocity.z() = -1;
+    scene.vat = Vat{{-1, -1, 0}, {1, 1, 2}, false, {}, {}};
+    scene.default_interface = {.stiffness = 1e4, .restitution = e};
+    scene.numerics.step = scene.numerics.tick = 5e-3 / std::sqrt(9e4 / 27);
+    Simulation simulation = make_simulation(scene);
+    simulation.advance(3000);
+    EXPECT_NEAR(velocity_of(simulation, 0).z(), e, 2 * kHalfStep) << e;
+  }
+}
+
+}  // namespace
+}  // namespace vat

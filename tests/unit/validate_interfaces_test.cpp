@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "core/scene/validate.h"
+#include "core/simulation.h"
+#include "tests/support/scenes.h"
+
+// What each law of an interface needs.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+/// A body of each kind, apart.
+Scene valid_scene() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.materials = {make_liquid("water", 1000, {100, 0, 0.1}), make_material("rubber"),
+                     make_material("wood")};
+  const ParticleShape point = make_particles({{0, 0, 0}}, 1);
+  scene.bodies = {make_body("drop", BodyKind::liquid, "water", point, 0.05),
+                  make_body("bead", BodyKind::deformable, "rubber", point, 0.05),
+                  make_body("ball", BodyKind::rigid, "wood", point, 0.05)};
+  for (std::size_t b = 0; b < 3; ++b) scene.bodies[b].position.x() = 0.2 * static_cast<Real>(b);
+  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}, {}};
+  return scene;
+}
+
+constexpr InterfaceConstants kSph{.law = InterfaceLaw::sph};
+constexpr InterfaceConstants kProjection{.law = InterfaceLaw::projection};
+
+struct Mistake {
+  const char* path;
+  const char* code;
+  std::function<void(Scene&)> make;
+};
+
+const Mistake kMistakes[] = {
+    {"/default_interface/restitution", "out_of_range",
+     [](Scene& s) { s.default_interface = {.stiffness = 1, .restitution = 0.049}; }},
+    {"/default_interface/restitution", "out_of_range",
+     [](Scene& s) { s.default_interface = {.law = InterfaceLaw::projection, .restitution = 1.1}; }},
+    {"/default_interface/damping", "not_allowed",
+     [](Scene& s) { s.default_interface = {.stiffness = 1, .damping = 1, .restitution = 0.5}; }},
+    {"/default_interface/restitution", "not_allowed",
+     [](Scene& s) {
+       s.default_interface = {.stiffness = 1, .restitution = 0.5};
+       s.numerics.control = StepControl::local;
+     }},
+    {"/default_interface/reach", "out_of_range", [](Scene& s) { s.default_interface.reach = 1; }},
+    {"/default_interface/reach", "out_of_range", [](Scene& s) { s.default_interface.reach = 4.1; }},
+    {"/default_interface/law", "not_allowed", [](Scene& s) { s.default_interface = kSph; }},
+    {"/default_interface/law", "not_allowed",
+     [](Scene& s) {
+       s.default_interface = kProjection;
+       s.numerics.control = StepControl::local;
+     }},
+    {"/default_interface/law", "not_allowed",
+     [](Scene& s) {
+       s.default_interface = kProjection;
+       s.numerics.integrator = IntegratorId::runge_kutta_4;
+     }},
+    {"/interfaces/0/law", "not_allowed",
+     [](Scene& s) {
+       s.interfaces = {{{"wood", "vat"}, kProjection, {}}};
+       s.numerics.integrator = IntegratorId::heun;
+     }},
+    {"/interfaces/0/law", "not_allowed",
+     [](Scene& s) {
+       s.interfaces = {{{"water", "wood"}, kSph, {}}};
+     }},
+    {"/interfaces/0/law", "not_allowed",
+     [](Scene& s) {
+       s.pressure_solver = PressureSolver::tait;
+       s.interfaces = {{{"rubber", "wood"}, kSph, {}}};
+     }},
+    {"/interfaces/0/law", "not_allowed", [](Scene& s) {
+       s.pressure_solver = PressureSolver::tait;
+       s.interfaces = {{{"vat", "wood"}, kSph, {}}};
+     }}};
+
+TEST(ValidateInterfaces, FindsEveryMistakeAlone) {
+  ASSERT_TRUE(find_errors(valid_scene()).empty());
+  for (const Mistake& mistake : kMistakes) {
+    Scene scene = valid_scene();
+    mistake.make(scene);
+    const Errors errors = find_errors(scene);
+    ASSERT_EQ(errors.size(), 1U) << mistake.path;
+    EXPECT_EQ(errors[0].path, mistake.path);
+    EXPECT_EQ(errors[0].code, mistake.code);
+    EXPECT_FALSE(errors[0].message.empty());
+  }
+}
+
+TEST(ValidateInterfaces, AllowEveryLawWhereItFits) {
+  Scene scene = valid_scene();
+  scene.pressure_solver = PressureSolver::tait;
+  scene.default_interface = {.stiffness = 1, .restitution = 0.05};
+  scene.interfaces = {
+      {{"water", "vat"}, kSph, {}},
+      {{"wood", "water"}, kSph, {}},
+      {{"wood", "vat"}, {.law = InterfaceLaw::projection, .restitution = 0}, {}},
+      {{"wood", "rubber"}, {.stiffness = 1, .law = InterfaceLaw::lennard_jones, .reach = 4}, {}}};
+  EXPECT_TRUE(find_errors(scene).empty());
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  scene.numerics.control = StepControl::adaptive;
+  EXPECT_TRUE(find_errors(scene).empty());
+}
+
+TEST(ValidateInterfaces, AccuracyChoosesNumericsThatCanProject) {
+  Scene scene = valid_scene();
+  scene.default_interface = kProjection;
+  scene.numerics.integrator = IntegratorId::runge_kutta_4;
+  scene.numerics.accuracy = 1e-3;
+  EXPECT_TRUE(find_errors(scene).empty());
+  const Numerics chosen = make_simulation(scene).scene().numerics;
+  EXPECT_EQ(chosen.integrator, IntegratorId::velocity_verlet);
+  EXPECT_EQ(chosen.control, StepControl::adaptive);
+}
+
+TEST(ValidateInterfaces, HoldForWhatCommandsAdd) {
+  Scene scene = valid_scene();
+  scene.pressure_solver = PressureSolver::tait;
+  scene.interfaces = {{{"water", "vat"}, kSph, {}}};
+  Simulation simulation = make_simulation(scene);
+  BodyDescription solid = scene.bodies[2];
+  solid.name = "cork";
+  solid.material = "water";
+  solid.position.z() = 0.5;
+  const auto added = simulation.add_body(solid);
+  ASSERT_FALSE(added.ok());
+  EXPECT_EQ(added.errors()[0].path, "/body/material");
+
+  scene.numerics.integrator = IntegratorId::heun;
+  Simulation explicit_run = make_simulation(scene);
+  const Status status = explicit_run.set_interface({{"wood", "vat"}, kProjection, {}});
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.errors()[0].path, "/interface/law");
+}
+
+}  // namespace
+}  // namespace vat
