@@ -54,6 +54,7 @@ std::optional<Fault> Simulation::Impl::find_step_fault(Real dt) const {
   if (work.too_many_pairs) {  // of liquids, whose particles come first
     return Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
   }
+  if (work.too_many_contacts) return Fault{GuardEvent::Cause::too_many_pairs, 0, 0};
   const auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()));
   if (fault || model->scene.numerics.control != StepControl::local) return fault;
   return local.find_fast(*model, state.now, dt, bounds);

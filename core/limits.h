@@ -38,6 +38,9 @@ constexpr std::size_t max_pairs(std::size_t particles) {
 constexpr std::size_t max_start_pairs(std::size_t particles) {
   return max_pairs(particles) / 2;
 }
+/// Contacts by projection of one step, which must end: 400 bytes and 10 us each. A step with more
+/// fails.
+inline constexpr std::size_t kMaxProjections = 500'000;
 inline constexpr std::size_t kMaxSearch = 1'000'000'000;  // particles tried for one list of pairs
 
 inline constexpr Real kMinLength = 1e-6;            // [m] spacing, radius, extent

@@ -33,6 +33,12 @@ bool ContactList::is_current(const StepContext& c, Real slack) {
   return std::ranges::all_of(farthest_, [&](Real way2) { return way2 <= allowed * allowed; });
 }
 
+std::size_t ContactList::size() const {
+  std::size_t size = 0;
+  for (const Block& block : blocks_) size += block.others.size();
+  return size;
+}
+
 void ContactList::update(StepContext& c, Real slack) {
   if (is_current(c, slack)) return;
   const Real skin = slack + kSkinShare * c.model.contact_reach;

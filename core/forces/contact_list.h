@@ -25,6 +25,9 @@ class ContactList {
   /// Whether update() would not have to search.
   bool is_current(const StepContext& context, Real slack);
 
+  /// Of its entries, two a pair and some of pairs that are not so near.
+  std::size_t size() const;
+
   /// Calls f(contact) for every dynamic connection of particle i, by the other one's index; with
   /// `slack` those too that are up to so much beyond their threshold.
   template <class F>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "core/forces/friction.h"
 #include "core/model/model.h"
@@ -76,6 +77,20 @@ inline Friction pair_friction(const Model& model, Index i, Index j, Real stiffne
   if (coefficient == 0) return {};
   const Real mass = model.mass[i] * model.mass[j] / (model.mass[i] + model.mass[j]);
   return {coefficient, sticking_drag(stiffness, mass)};
+}
+
+/// Where particles i and j rub, `way` [m] from j to i.
+inline ContactArms pair_arms(const Model& model, Index i, Index j, const Vec3& way) {
+  return contact_arms(way, i >= model.free_count, model.radius[i], j >= model.free_count,
+                      model.radius[j]);
+}
+
+/// The velocity that its body's spin gives a point at `arm` from particle i, beside the particle's;
+/// `spins` are by rigid body.
+inline Vec3 turning_velocity(const Model& model, const std::vector<Vec3>& spins, Index i,
+                             const Vec3& arm) {
+  if (i >= model.free_count) return spins[model.bodies[model.body[i]].rigid].cross(arm);
+  return Vec3::Zero();
 }
 
 /// Friction of particle i at a wall.

@@ -34,7 +34,8 @@ struct ContactTerms {
 
 /// What contacts do to one particle.
 struct ContactSum {
-  Vec3 force = Vec3::Zero();  ///< [N]
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 torque = Vec3::Zero();  ///< of friction, about the particle's centre [N m]
   ContactLoad load;
 };
 
@@ -48,7 +49,7 @@ void add_layer(const Contact& contact, const Vec3& normal, ContactSum& sum) {
 /// A spring and dashpot, at most with friction.
 template <ContactTerms terms>
 void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, ContactSum& sum,
-                std::vector<Damper>* dampers) {
+                DamperBlock* kept) {
   const Configuration& at = c.configuration;
   const Vec3 velocity = at.velocity[contact.self] - at.velocity[contact.other];
   const Real speed = velocity.dot(n);
@@ -65,16 +66,23 @@ void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, Con
   if (push <= 0) return;
   sum.force += push * n;
   sum.load.stiffness += 2 * contact.stiffness;
-  if constexpr (terms.keep_dampers) dampers->push_back({contact.other, damping, n});
+  if constexpr (terms.keep_dampers) kept->dampers.push_back({contact.other, damping, n});
   if constexpr (terms.friction) {
     const Friction friction =
         pair_friction(c.model, contact.self, contact.other, contact.stiffness);
     if (friction.acts()) {
-      const Vec3 slip = slip_velocity(velocity, speed, n);
+      const ContactArms arms =
+          pair_arms(c.model, contact.self, contact.other, contact.distance * n);
+      const Vec3 slip = slip_velocity(velocity, speed, n) +
+                        turning_velocity(c.model, c.work.spins, contact.self, arms.self) -
+                        turning_velocity(c.model, c.work.spins, contact.other, arms.other);
       const Real drag = friction.drag(push, slip);
       sum.force -= drag * slip;
+      sum.torque -= drag * arms.self.cross(slip);
       damping = std::max(damping, friction.sticking);
-      if constexpr (terms.keep_dampers) add_drag(drag, contact.other, n, *dampers);
+      if constexpr (terms.keep_dampers) {
+        kept->rubs.push_back({contact.other, drag, n, arms.self, arms.other});
+      }
     }
   }
   sum.load.damping += 2 * damping;
@@ -84,28 +92,24 @@ template <ContactTerms terms>
 void add_block(StepContext& c, std::size_t begin, std::size_t end) {
   DamperBlock* const kept =
       terms.keep_dampers ? &c.work.contact_dampers[begin / kBlockSize] : nullptr;
-  std::vector<Damper>* const dampers = terms.keep_dampers ? &kept->dampers : nullptr;
-  if constexpr (terms.keep_dampers) kept->dampers.clear();
+  if constexpr (terms.keep_dampers) kept->clear();
   for (std::size_t k = begin; k < end; ++k) {
     const auto i = static_cast<Index>(k);
     ContactSum sum;
-    if constexpr (terms.keep_dampers) {
-      kept->begin[k - begin] = static_cast<Index>(kept->dampers.size());
-    }
+    if constexpr (terms.keep_dampers) kept->start(k - begin);
     c.work.contacts.for_each(c.model, c.configuration, i, [&](const Contact& contact) {
       const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
                                     c.model.scene.dimensions);
       if constexpr (terms.layers) {
         if (contact.layer > 0) return add_layer(contact, n, sum);
       }
-      add_spring<terms>(c, contact, n, sum, dampers);
+      add_spring<terms>(c, contact, n, sum, kept);
     });
     c.forces.particle[i] += sum.force;
+    if constexpr (terms.friction) c.forces.rub_torque[i] += sum.torque;
     c.work.contact_loads[i] = sum.load;
   }
-  if constexpr (terms.keep_dampers) {
-    kept->begin[end - begin] = static_cast<Index>(kept->dampers.size());
-  }
+  if constexpr (terms.keep_dampers) kept->start(end - begin);
 }
 
 template <bool keep_dampers>

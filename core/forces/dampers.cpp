@@ -12,7 +12,7 @@ namespace vat {
 namespace {
 
 void add_wall_dampers(const Yieldings& yieldings, const VatMotion& motion, Index i,
-                      std::vector<Damper>& dampers) {
+                      const std::vector<Vec3>& spins, DamperBlock& block) {
   const Model& model = yieldings.model;
   const Configuration& at = yieldings.at;
   const ContactLaw& law = model.wall_laws[model.material[i]];
@@ -27,10 +27,12 @@ void add_wall_dampers(const Yieldings& yieldings, const VatMotion& motion, Index
     const Real damping = yieldings.wall_damping(i, n);
     const Real push = law.stiffness * overlap - damping * speed;
     if (push <= 0) continue;
-    dampers.push_back({kNoParticle, damping, n});
+    block.dampers.push_back({kNoParticle, damping, n});
     if (!friction.acts()) continue;
-    const Vec3 slip = wall_slip(*model.scene.vat, motion, wall, at.velocity[i]);
-    add_drag(friction.drag(push, slip), kNoParticle, n, dampers);
+    const Vec3 arm = wall_arm(model, i, wall, threshold - overlap);
+    const Vec3 slip = wall_slip(*model.scene.vat, motion, wall,
+                                at.velocity[i] + turning_velocity(model, spins, i, arm));
+    block.rubs.push_back({kNoParticle, friction.drag(push, slip), n, arm, Vec3::Zero()});
   }
 }
 
@@ -56,10 +58,6 @@ void add_settling_dampers(const Model& model, Real time, Index i, std::vector<Da
 
 }  // namespace
 
-void add_drag(Real drag, Index other, const Vec3& normal, std::vector<Damper>& dampers) {
-  for_each_across(normal, [&](const Vec3& across) { dampers.push_back({other, drag, across}); });
-}
-
 void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time,
                             bool viscosity) {
   const Model& model = f.model;
@@ -68,13 +66,13 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
   blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     DamperBlock& block = blocks_[begin / kBlockSize];
-    block.dampers.clear();
+    block.clear();
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Index>(k);
-      block.begin[k - begin] = static_cast<Index>(block.dampers.size());
+      block.start(k - begin);
       const bool is_mirrored = model.is_coupled && i < model.liquid_count;
       if (!is_mirrored) {
-        add_wall_dampers({model, f.work, at, f.step}, motion, i, block.dampers);
+        add_wall_dampers({model, f.work, at, f.step}, motion, i, f.work.spins, block);
       }
       if (i < model.liquid_count && is_viscous_) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
@@ -83,7 +81,7 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
         add_settling_dampers(model, time, i, block.dampers);
       }
     }
-    block.begin[end - begin] = static_cast<Index>(block.dampers.size());
+    block.start(end - begin);
   });
   if (is_viscous_) collect_viscosity(f);
 }
@@ -140,6 +138,24 @@ Vec3 damp(const DamperBlock& block, std::size_t k, const std::vector<Vec3>& w, s
   return sum;
 }
 
+/// What friction of the block's k-th particle, `i`, does to it.
+ContactForce rub(const Model& model, const DamperBlock& block, std::size_t k,
+                 const std::vector<Vec3>& w, const std::vector<Vec3>& spins, Index i) {
+  ContactForce sum;
+  for (Index d = block.rub_begin[k]; d < block.rub_begin[k + 1]; ++d) {
+    const RubDamper& damper = block.rubs[d];
+    Vec3 change = w[i] + turning_velocity(model, spins, i, damper.arm);
+    if (damper.other != kNoParticle) {
+      change -= w[damper.other] + turning_velocity(model, spins, damper.other, damper.other_arm);
+    }
+    const Vec3 force =
+        -damper.strength * slip_velocity(change, change.dot(damper.normal), damper.normal);
+    sum.force += force;
+    sum.torque += damper.arm.cross(force);
+  }
+  return sum;
+}
+
 Vec3 damp_springs(const Model& model, const std::vector<Vec3>& directions,
                   const std::vector<Vec3>& w, std::size_t i) {
   Vec3 sum = Vec3::Zero();
@@ -154,7 +170,8 @@ Vec3 damp_springs(const Model& model, const std::vector<Vec3>& directions,
 }  // namespace
 
 void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
-                             std::vector<Vec3>& force) {
+                             const std::vector<Vec3>& spins, std::vector<Vec3>& force,
+                             std::vector<Vec3>& torque) {
   const bool has_contacts = f.model.contact_reach > 0;
   const bool has_springs = !f.model.spring_ends.empty();
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
@@ -165,6 +182,16 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
         force[i] += damp_springs(f.model, f.work.spring_directions, w, i);
       }
       if (has_contacts) force[i] += damp(f.work.contact_dampers[block], i - begin, w, i);
+      if (!f.model.has_friction) continue;
+      torque[i].setZero();
+      const auto add = [&](const DamperBlock& dampers) {
+        const ContactForce rubbing =
+            rub(f.model, dampers, i - begin, w, spins, static_cast<Index>(i));
+        force[i] += rubbing.force;
+        torque[i] += rubbing.torque;
+      };
+      add(blocks_[block]);
+      if (has_contacts) add(f.work.contact_dampers[block]);
     }
   });
   if (!is_viscous_) return;

@@ -60,6 +60,7 @@ void set_external_forces(StepContext& c) {
     for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
   });
   c.work.contact_loads.assign(c.model.particle_count, {});
+  if (c.model.has_friction) c.forces.rub_torque.assign(c.model.particle_count, Vec3::Zero());
   if (scene.forces.gravity && scene.central_field) add_central_field(*scene.central_field, c);
   if (scene.settling) add_settling_drag(*scene.settling, c);
   for (const AppliedForce& applied : c.controls.applied_forces) add_applied_force(applied, c);

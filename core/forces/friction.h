@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/types.h"
@@ -17,10 +16,11 @@
 /// the same at any step. It is a force of the state alone: contacts that stick creep at
 /// F_t / c_t, which falls as 1 / sqrt(k).
 ///
-/// Both ends feel it at their particles' centres, as they do the push, and slip is that of the
-/// centres. So forces are equal and opposite to the bit, and a rigid body of one particle does not
-/// roll; the angular momentum of two bodies that rub changes, by the forces' couple, F_t times the
-/// distance of the centres.
+/// Both ends feel it at one point of the line between them, with the slip of that point. That of
+/// two rigid bodies divides the line as their particles' radii do; a free particle, which has no
+/// spin, is touched at its centre, and a wall at its plane. So the forces are equal and opposite
+/// and have no couple, which keeps angular momentum too; but between two free particles both are at
+/// their centres, and the couple, the force times the distance, is lost.
 namespace vat {
 
 /// c_t [N s/m] of a contact of `stiffness` [N/m] with the reduced mass `mass` [kg].
@@ -47,13 +47,18 @@ inline Vec3 slip_velocity(const Vec3& velocity, Real speed, const Vec3& normal) 
   return velocity - speed * normal;
 }
 
-/// Calls f(t) for two unit vectors across `normal` and each other; for -normal they are the same
-/// but for their signs.
-template <class F>
-void for_each_across(const Vec3& normal, F&& f) {
-  const Vec3 first = normal.unitOrthogonal();
-  f(first);
-  f(Vec3(normal.cross(first)));
+/// From the centres of two particles to the point where they rub [m].
+struct ContactArms {
+  Vec3 self = Vec3::Zero();
+  Vec3 other = Vec3::Zero();
+};
+
+/// `way`: from the second centre to the first [m]. A particle that is not rigid has no radius here.
+inline ContactArms contact_arms(const Vec3& way, bool is_rigid, Real radius, bool is_other_rigid,
+                                Real other_radius) {
+  if (!is_rigid && !is_other_rigid) return {};
+  const Real own = is_rigid ? (is_other_rigid ? radius / (radius + other_radius) : 1) : 0;
+  return {-own * way, (1 - own) * way};
 }
 
 }  // namespace vat

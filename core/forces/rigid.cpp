@@ -4,8 +4,21 @@
 #include "core/step/workspace.h"
 
 namespace vat {
+namespace {
+
+void find_spins(StepContext& c) {
+  c.work.spins.clear();
+  for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
+    const RigidState& state = c.configuration.rigid[b];
+    c.work.spins.push_back(
+        angular_velocity(c.model.rigid_bodies[b], state.orientation, state.angular_momentum));
+  }
+}
+
+}  // namespace
 
 void pose_rigid_bodies(StepContext& c) {
+  if (c.model.has_friction) find_spins(c);
   for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
     pose_rigid_body(c.model, c.model.rigid_bodies[b], c.configuration.rigid[b], c.configuration);
   }
@@ -20,6 +33,11 @@ void gather_rigid_forces(StepContext& c) {
     for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
       force += c.forces.particle[e];
       torque += (c.configuration.position[e] - center).cross(c.forces.particle[e]);
+    }
+    if (c.model.has_friction) {
+      for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
+        torque += c.forces.rub_torque[e];
+      }
     }
     const bool is_held = rigid.is_held(c.step);
     c.forces.rigid_force[b] = is_held ? Vec3(Vec3::Zero()) : force;

@@ -13,10 +13,11 @@ namespace {
 
 /// What the walls do to one particle.
 struct WallForce {
-  Vec3 force = Vec3::Zero();  ///< [N]
-  int count = 0;              ///< of the walls that push
-  Real stiffness = 0;         ///< of the stiffest [N/m]
-  Real damping = 0;           ///< of the strongest dashpot [N s/m]
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 torque = Vec3::Zero();  ///< of friction, about the particle's centre [N m]
+  int count = 0;               ///< of the walls that push
+  Real stiffness = 0;          ///< of the stiffest [N/m]
+  Real damping = 0;            ///< of the strongest dashpot [N s/m]
 };
 
 void add_layer(const ContactLaw& law, int wall, Real threshold, Real distance, WallForce& sum) {
@@ -29,8 +30,8 @@ void add_layer(const ContactLaw& law, int wall, Real threshold, Real distance, W
 
 /// `damping_at(wall)`: of the dashpot [N s/m].
 template <bool has_friction, class Damping>
-WallForce sum_walls(const Model& model, const VatMotion& motion, const Configuration& at, Index i,
-                    Damping&& damping_at) {
+WallForce sum_walls(const Model& model, const VatMotion& motion, const Configuration& at,
+                    const std::vector<Vec3>& spins, Index i, Damping&& damping_at) {
   const ContactLaw& law = model.wall_laws[model.material[i]];
   const Real threshold = law.wall_threshold(model.radius[i]);
   WallForce sum;
@@ -54,8 +55,12 @@ WallForce sum_walls(const Model& model, const VatMotion& motion, const Configura
     if constexpr (has_friction) {
       const Friction friction = wall_friction(model, i);
       if (!friction.acts()) continue;
-      const Vec3 slip = wall_slip(*model.scene.vat, motion, wall, at.velocity[i]);
-      sum.force -= friction.drag(push, slip) * slip;
+      const Vec3 arm = wall_arm(model, i, wall, distance);
+      const Vec3 slip = wall_slip(*model.scene.vat, motion, wall,
+                                  at.velocity[i] + turning_velocity(model, spins, i, arm));
+      const Vec3 rub = friction.drag(push, slip) * slip;
+      sum.force -= rub;
+      sum.torque -= arm.cross(rub);
     }
   }
   return sum;
@@ -67,10 +72,11 @@ void add_block(StepContext& c, const VatMotion& motion, std::size_t begin, std::
   for (std::size_t k = begin; k < end; ++k) {
     const auto i = static_cast<Index>(k);
     const WallForce sum = sum_walls<has_friction>(
-        c.model, motion, c.configuration, i,
+        c.model, motion, c.configuration, c.work.spins, i,
         [&](int wall) { return yieldings.wall_damping(i, wall_normal(wall)); });
     if (sum.count == 0) continue;
     c.forces.particle[i] += sum.force;
+    if constexpr (has_friction) c.forces.rub_torque[i] += sum.torque;
     c.work.contact_loads[i].stiffness += sum.stiffness;
     Real damping = sum.damping;
     if constexpr (has_friction) {  // walls are at right angles: each drags along the others'
@@ -90,10 +96,16 @@ Vec3 wall_slip(const Vat& vat, const VatMotion& motion, int wall, const Vec3& ve
   return slip;
 }
 
-Vec3 wall_force(const Model& model, const VatMotion& motion, const Configuration& at, Index i) {
+ContactForce wall_force(const Model& model, const VatMotion& motion, const Configuration& at,
+                        const std::vector<Vec3>& spins, Index i) {
   const auto damping = [&](int) { return model.wall_laws[model.material[i]].damping; };
-  return model.has_friction ? sum_walls<true>(model, motion, at, i, damping).force
-                            : sum_walls<false>(model, motion, at, i, damping).force;
+  const WallForce sum = model.has_friction ? sum_walls<true>(model, motion, at, spins, i, damping)
+                                           : sum_walls<false>(model, motion, at, spins, i, damping);
+  return {sum.force, sum.torque};
+}
+
+Vec3 wall_arm(const Model& model, Index i, int wall, Real distance) {
+  return i < model.free_count ? Vec3(Vec3::Zero()) : Vec3(-distance * wall_normal(wall));
 }
 
 void add_wall_forces(StepContext& c) {

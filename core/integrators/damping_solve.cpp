@@ -1,6 +1,7 @@
 #include "core/integrators/damping_solve.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/model/model.h"
 
@@ -104,12 +105,14 @@ void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   for_rigid_particles([&](std::size_t r, Index e, const Vec3& arm) {
     w.particle[e] = w.linear[r] + w.angular[r].cross(arm);
   });
-  eq.scratch.matrix.multiply(eq.force_model, w.particle, force.particle);
+  std::vector<Vec3>& rub_torque = eq.scratch.rub_torque;
+  eq.scratch.matrix.multiply(eq.force_model, w.particle, w.angular, force.particle, rub_torque);
   std::ranges::fill(force.linear, Vec3::Zero());
   std::ranges::fill(force.angular, Vec3::Zero());
   for_rigid_particles([&](std::size_t r, Index e, const Vec3& arm) {
     force.linear[r] += force.particle[e];
     force.angular[r] += arm.cross(force.particle[e]);
+    if (model.has_friction) force.angular[r] += rub_torque[e];
   });
 }
 
@@ -121,7 +124,7 @@ Real size_of(const Equation& eq, const Motion& w) {
 
 /// Conjugate gradients from the change in the scratch, preconditioned with M.
 void iterate(const Equation& eq) {
-  auto& [matrix, w, residual, direction, inertia, product, partial_sums] = eq.scratch;
+  auto& [matrix, w, residual, direction, inertia, product, rub_torque, partial_sums] = eq.scratch;
   apply_damping(eq, w, residual);
   for_entries(eq, residual, residual, [&](Vec3& r, const Vec3&) { r *= eq.half_step; });
   apply_inverse_mass(eq, residual, direction);
@@ -164,7 +167,8 @@ Oscillation find_bound(const ForceModel& f, const Configuration& at) {
     Oscillation sum;
     for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
       if (loads[e].stiffness == 0 && loads[e].damping == 0) continue;
-      const Real arm2 = (at.position[e] - at.rigid[r].center_of_mass).squaredNorm();
+      Real arm2 = (at.position[e] - at.rigid[r].center_of_mass).squaredNorm();
+      if (model.has_friction) arm2 = std::pow(std::sqrt(arm2) + model.radius[e], 2);
       const Real mobility = rigid.inverse_mass + arm2 * rigid.inverse_moments.maxCoeff();
       sum = sum + Oscillation{mobility * loads[e].stiffness, mobility * loads[e].damping};
     }
@@ -189,9 +193,10 @@ bool must_solve_viscosity(const Model& model, Real dt) {
 void solve_damping(const ForceModel& f, const Configuration& half, const Configuration& at,
                    Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
   const Equation eq{f, at, dt / 2, scratch};
-  auto& [matrix, w, residual, direction, inertia, product, partial_sums] = scratch;
+  auto& [matrix, w, residual, direction, inertia, product, rub_torque, partial_sums] = scratch;
   matrix.collect(f, at, time, viscosity);
   for (Motion* motion : {&w, &residual, &direction, &inertia, &product}) resize(f.model, *motion);
+  if (f.model.has_friction) rub_torque.resize(f.model.particle_count);
   product = {forces.particle, forces.rigid_force, forces.rigid_torque};
   apply_inverse_mass(eq, product, w);
   for_entries(eq, w, w, [&](Vec3& x, const Vec3&) { x *= eq.half_step; });

@@ -21,6 +21,7 @@ struct DampingScratch {
   Motion direction;
   Motion inertia;  ///< M times the direction
   Motion product;
+  std::vector<Vec3> rub_torque;    ///< see DampingMatrix::multiply()
   std::vector<Real> partial_sums;  ///< of dot products, by block
 };
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/limits.h"
+
 namespace vat {
 
 RigidMotion rigid_motion(const RigidModel& rigid, const RigidState& state, bool is_held) {
@@ -90,8 +92,11 @@ void record(const std::vector<ContactConstraint>& constraints, Real dt,
   }
 }
 
-void ConstraintSearch::find(const ForceModel& f, const Configuration& at, const VatMotion& vat,
+bool ConstraintSearch::find(const ForceModel& f, const Configuration& at, const VatMotion& vat,
                             std::vector<ContactConstraint>& constraints) {
+  constraints.clear();
+  // Before there is memory for all of them.
+  if (f.model.contact_reach > 0 && f.work.contacts.size() > 4 * kMaxProjections) return false;
   blocks_.resize((f.model.particle_count + kBlockSize - 1) / kBlockSize);
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     std::vector<ContactConstraint>& found = blocks_[begin / kBlockSize];
@@ -101,10 +106,13 @@ void ConstraintSearch::find(const ForceModel& f, const Configuration& at, const 
       find_pairs(f, at, static_cast<Index>(i), found);
     }
   });
-  constraints.clear();
+  std::size_t count = 0;
+  for (const std::vector<ContactConstraint>& found : blocks_) count += found.size();
+  if (count > kMaxProjections) return false;
   for (const std::vector<ContactConstraint>& found : blocks_) {
     constraints.insert(constraints.end(), found.begin(), found.end());
   }
+  return true;
 }
 
 }  // namespace vat

@@ -59,10 +59,10 @@ RigidMotion rigid_motion(const RigidModel& rigid, const RigidState& state, bool 
 
 /// The contacts that the configuration has or nearly has, in an order that depends on it alone:
 /// those of projections, of which something moves one end. Needs the list of contacts; walls are as
-/// `vat`.
+/// `vat`. False, and none, where there are more than kMaxProjections.
 class ConstraintSearch {
  public:
-  void find(const ForceModel& force_model, const Configuration& at, const VatMotion& vat,
+  bool find(const ForceModel& force_model, const Configuration& at, const VatMotion& vat,
             std::vector<ContactConstraint>& constraints);
 
  private:

@@ -38,10 +38,12 @@ struct ContactSolve {
   /// sweep starts from further on in the direction of the last ones.
   template <class Relax>
   bool sweep(std::vector<ContactConstraint>& constraints, Relax&& relax) {
-    constexpr int kMaxSweeps = 50;
     constexpr Real kTolerance = 1e-8;
+    // Few contacts may take what many cost.
+    const std::size_t most =
+        std::clamp<std::size_t>(20'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
     Real last = 0;
-    for (int round = 0; round < kMaxSweeps; ++round) {
+    for (std::size_t round = 0; round < most; ++round) {
       Real change = 0;
       for (ContactConstraint& contact : constraints) contact.gradient = -contact.impulse();
       for (ContactConstraint& contact : constraints) change = std::max(change, relax(contact));

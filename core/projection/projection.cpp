@@ -82,7 +82,7 @@ void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time
   const VatMotion before = vat_at(model, time);
   VatMotion vat = vat_at(model, time + dt);
   update_list(f, now, time + dt);
-  search_.find(f, now, vat, constraints_);
+  f.work.too_many_contacts = !search_.find(f, now, vat, constraints_);
   if (constraints_.empty()) return;
 
   VatMotion moving = before;

@@ -41,6 +41,9 @@ struct Forces {
   std::vector<Vec3> particle;
   std::vector<Vec3> rigid_force;   ///< f_res, Boldt eq. 5 [N]
   std::vector<Vec3> rigid_torque;  ///< tau about r_cm, Boldt eq. 6 [N m]
+  /// Of friction on rigid particles, about their centres [N m]; empty where there is none. Read by
+  /// rigid_torque alone.
+  std::vector<Vec3> rub_torque{};
   std::vector<Vec3> transport;     ///< of liquids that fill their world, see core/forces/transport.h
 };
 

@@ -26,6 +26,7 @@ struct LocalStepper::Moment {
 
   const Model& model() const { return force_model.model; }
   const Configuration& at() const { return state.now; }
+  const std::vector<Vec3>& spins() const { return force_model.work.spins; }
   StepContext context(Forces& forces) const {
     const ForceModel& f = force_model;
     return {f.model, f.controls, time, f.step, state.now, forces, f.work, f.runner};
@@ -42,29 +43,34 @@ Real share_of(int level) {
   return Real{1} / static_cast<Real>(1U << level);
 }
 
-Vec3 force_of(const Model& model, const Configuration& at, Index i, const LocalPair& pair) {
+ContactForce force_of(const Model& model, const Configuration& at, const std::vector<Vec3>& spins,
+                      Index i, const LocalPair& pair) {
   Vec3 x = at.position[i] - at.position[pair.other];
   if (pair.is_contact && model.periodic.any()) {
     x = model.periodic.nearest(model.periodic.wrap(at.position[i]) -
                                model.periodic.wrap(at.position[pair.other]));
   }
   const Real distance = x.norm();
-  if (pair.is_contact && distance >= pair.rest_length) return Vec3::Zero();
+  if (pair.is_contact && distance >= pair.rest_length) return {};
   const Vec3 n = pair_direction(x, distance, i, pair.other, model.scene.dimensions);
   if (pair.layer > 0) {
-    return layer_push(pair.stiffness, pair.layer, pair.rest_length, distance) * n;
+    return {layer_push(pair.stiffness, pair.layer, pair.rest_length, distance) * n};
   }
   const Vec3 velocity = at.velocity[i] - at.velocity[pair.other];
   const Real speed = velocity.dot(n);
   const Real push =
       connection_push(pair.stiffness, pair.damping, pair.rest_length, distance, speed);
-  if (!pair.is_contact) return push * n;
-  if (push <= 0) return Vec3::Zero();
-  if (!model.has_friction) return push * n;
+  if (!pair.is_contact) return {push * n};
+  if (push <= 0) return {};
+  if (!model.has_friction) return {push * n};
   const Friction friction = pair_friction(model, i, pair.other, pair.stiffness);
-  if (!friction.acts()) return push * n;
-  const Vec3 slip = slip_velocity(velocity, speed, n);
-  return push * n - friction.drag(push, slip) * slip;
+  if (!friction.acts()) return {push * n};
+  const ContactArms arms = pair_arms(model, i, pair.other, distance * n);
+  const Vec3 slip = slip_velocity(velocity, speed, n) +
+                    turning_velocity(model, spins, i, arms.self) -
+                    turning_velocity(model, spins, pair.other, arms.other);
+  const Vec3 rub = friction.drag(push, slip) * slip;
+  return {push * n - rub, -arms.self.cross(rub)};
 }
 
 /// Stages that the liquids' own forces consist of: all that are not replaced here.
@@ -75,10 +81,16 @@ bool is_of_liquids(const Stage& stage) {
          stage.run != &gather_rigid_forces;
 }
 
+void add(Real share, const ContactForce& part, ContactForce& sum) {
+  sum.force += share * part.force;
+  sum.torque += share * part.torque;
+}
+
 void resize(const Model& model, Forces& forces) {
   forces.particle.resize(model.particle_count, Vec3::Zero());
   forces.rigid_force.resize(model.rigid_bodies.size(), Vec3::Zero());
   forces.rigid_torque.resize(model.rigid_bodies.size(), Vec3::Zero());
+  if (model.has_friction) forces.rub_torque.resize(model.particle_count, Vec3::Zero());
 }
 
 /// Short skins are rebuilt often, long ones find many that never touch.
@@ -125,20 +137,23 @@ void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing
   const std::span<const Index> order = pairs_.due(0);
   for_blocks(now.force_model.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (const Index i : order.subspan(begin, end - begin)) {
-      Vec3 close = Vec3::Zero();
-      Vec3 open = Vec3::Zero();
+      ContactForce close;
+      ContactForce open;
       pairs_.for_each_due(i, 0, [&](const LocalPair& pair) {
-        const Vec3 force = force_of(model, now.at(), i, pair);
-        close += share_of(std::max(closing.particle[i], closing.particle[pair.other])) * force;
-        open += share_of(pair.level) * force;
+        const ContactForce part = force_of(model, now.at(), now.spins(), i, pair);
+        add(share_of(std::max(closing.particle[i], closing.particle[pair.other])), part, close);
+        add(share_of(pair.level), part, open);
       });
       if (!model.walls.empty()) {
-        const Vec3 force = wall_force(model, vat, now.at(), i);
-        close += share_of(closing.particle[i]) * force;
-        open += share_of(opening.particle[i]) * force;
+        const ContactForce part = wall_force(model, vat, now.at(), now.spins(), i);
+        add(share_of(closing.particle[i]), part, close);
+        add(share_of(opening.particle[i]), part, open);
       }
-      closing_forces.particle[i] += close;
-      opening_forces.particle[i] += open;
+      closing_forces.particle[i] += close.force;
+      opening_forces.particle[i] += open.force;
+      if (!model.has_friction) continue;
+      closing_forces.rub_torque[i] += close.torque;
+      opening_forces.rub_torque[i] += open.torque;
     }
   });
 }
@@ -150,6 +165,7 @@ void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
   StepContext context = now.context(opening_forces);
   set_external_forces(context);
   closing_forces.particle = opening_forces.particle;
+  closing_forces.rub_torque = opening_forces.rub_torque;
   if (model.liquid_count > 0) {
     const std::vector<Vec3>& own = evaluate_liquid(now);
     for (Index i = 0; i < model.liquid_count; ++i) {
@@ -197,14 +213,15 @@ void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
   const std::span<const Index> order = pairs_.due(due);
   for_blocks(now.force_model.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (const Index i : order.subspan(begin, end - begin)) {
-      Vec3 sum = Vec3::Zero();
+      ContactForce sum;
       pairs_.for_each_due(i, due, [&](const LocalPair& pair) {
-        sum += share_of(pair.level) * force_of(model, now.at(), i, pair);
+        add(share_of(pair.level), force_of(model, now.at(), now.spins(), i, pair), sum);
       });
       if (!model.walls.empty() && levels.particle[i] >= due) {
-        sum += share_of(levels.particle[i]) * wall_force(model, vat, now.at(), i);
+        add(share_of(levels.particle[i]), wall_force(model, vat, now.at(), now.spins(), i), sum);
       }
-      due_.particle[i] = sum;
+      due_.particle[i] = sum.force;
+      if (model.has_friction) due_.rub_torque[i] = sum.torque;
     }
   });
   if (now.force_model.report != nullptr) {
@@ -218,6 +235,9 @@ void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
   }
   if (pairs_.finest_rigid() >= due) kick_rigid(now, dt);
   for (const Index i : order) due_.particle[i].setZero();
+  if (model.has_friction) {
+    for (const Index i : order) due_.rub_torque[i].setZero();
+  }
 }
 
 std::optional<Fault> LocalStepper::find_fast(const Model& model, const Configuration& at, Real dt,

@@ -134,6 +134,7 @@ bool runs(const StepPlan& plan, StageFunction stage) {
 /// Runs the plan but for external forces: `forces` are those of particles and walls on each other.
 void evaluate_inner_forces(StepContext& c) {
   std::ranges::fill(c.forces.particle, Vec3::Zero());
+  if (c.model.has_friction) c.forces.rub_torque.assign(c.model.particle_count, Vec3::Zero());
   for (const Stage& stage : c.model.plan.stages) {
     if (stage.run != &set_external_forces) stage.run(c);
   }
@@ -155,6 +156,7 @@ void measure_outer_forces(const ModelBody& body, const Configuration& at, const 
   for (Index i = body.particles.begin; i < body.particles.end; ++i) {
     result.outer_force += inner.particle[i];
     result.outer_torque += (at.position[i] - result.center_of_mass).cross(inner.particle[i]);
+    if (!inner.rub_torque.empty()) result.outer_torque += inner.rub_torque[i];
   }
 }
 

@@ -42,8 +42,9 @@ void find_inverse_masses(const Search& search, std::vector<Real>& inverse_mass) 
     }
     const Real turning = rigid.inverse_moments.maxCoeff();
     for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
-      inverse_mass[i] =
-          rigid.inverse_mass + turning * model.local_position[i - model.free_count].squaredNorm();
+      Real arm2 = model.local_position[i - model.free_count].squaredNorm();
+      if (model.has_friction) arm2 = std::pow(std::sqrt(arm2) + model.radius[i], 2);
+      inverse_mass[i] = rigid.inverse_mass + turning * arm2;
     }
   }
 }

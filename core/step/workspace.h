@@ -56,10 +56,32 @@ struct Damper {
 };
 inline constexpr Index kNoParticle = ~Index{0};
 
+/// The same of friction, across the normal n at the point of contact:
+/// f_i = -strength (1 - n n^T) (u_i - u_j) with u = w + omega x arm.
+struct RubDamper {
+  Index other;     ///< kNoParticle: a wall
+  Real strength;   ///< [N s/m]
+  Vec3 normal;     ///< n
+  Vec3 arm;        ///< from the particle's centre to the point [m]
+  Vec3 other_arm;  ///< and from the other's
+};
+
 /// Dampers of one block of particles: those of the block's k-th are [begin[k], begin[k + 1]).
 struct DamperBlock {
   std::vector<Damper> dampers;
   std::array<Index, kBlockSize + 1> begin;
+  std::vector<RubDamper> rubs{};
+  std::array<Index, kBlockSize + 1> rub_begin{};
+
+  void clear() {
+    dampers.clear();
+    rubs.clear();
+  }
+  /// Those that follow are of the k-th particle.
+  void start(std::size_t k) {
+    begin[k] = static_cast<Index>(dampers.size());
+    rub_begin[k] = static_cast<Index>(rubs.size());
+  }
 };
 
 /// Scratch of force evaluations, kept from one to the next so that nothing is allocated in a steady
@@ -70,7 +92,8 @@ struct Workspace {
   std::vector<LiquidRecord> liquid_records;  ///< by slot
   std::vector<PairBlock> liquid_pairs;
   bool too_many_pairs = false;  ///< above max_pairs(): the lists are not whole, a density is a NaN
-  std::vector<Real> density;    ///< by liquid particle [kg/m^3]
+  bool too_many_contacts = false;  ///< by projection, above kMaxProjections: none was solved for
+  std::vector<Real> density;       ///< by liquid particle [kg/m^3]
   /// The same with all of the space beyond no-slip walls filled with the liquid at rest density.
   std::vector<Real> filled_density;
   std::vector<Real> filling;   ///< by liquid slot: density over filled density
@@ -82,6 +105,7 @@ struct Workspace {
   std::vector<Real> solid_pressure;  ///< by slot of solids_in_liquid [Pa]
   CellSortedPoints solids;  ///< deformable and rigid particles; index 0 is the first of them
   ContactList contacts;
+  std::vector<Vec3> spins;                 ///< by rigid body, where there is friction [rad/s]
   std::vector<ContactLoad> contact_loads;  ///< by particle
   std::vector<Vec3> yieldings;             ///< see core/forces/restitution.h; by particle [1/kg]
   bool keep_dampers = false;               ///< asks for the next two lines

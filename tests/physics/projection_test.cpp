@@ -268,6 +268,24 @@ TEST(Projection, HasTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(alone.state_hash(), hash);
 }
 
+TEST(Projection, OfTooManyContactsFailsTheStep) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, kFrame);
+  scene.materials = {make_material("steel")};
+  scene.default_interface = projection();
+  std::vector<Vec3> points;
+  for (int i = 0; i < 750; ++i) points.emplace_back(1e-5 * i, 0, 0);  // 562 500 pairs
+  for (const char* name : {"a", "b"}) {
+    scene.bodies.push_back(
+        make_body(name, BodyKind::deformable, "steel", make_particles(points, 1e-3), kRadius));
+  }
+  Simulation simulation = make_simulation(scene);
+  const std::uint64_t before = simulation.state_hash();
+  const AdvanceReport report = simulation.advance(1);
+  EXPECT_TRUE(report.failed);
+  EXPECT_EQ(report.events.at(0).cause, GuardEvent::Cause::too_many_pairs);
+  EXPECT_EQ(simulation.state_hash(), before);
+}
+
 TEST(Projection, DoesNotLimitAdaptiveSteps) {
   Scene scene = make_floor_scene(kFrame);
   scene.default_interface = projection(0.5);

@@ -149,22 +149,46 @@ TEST(Friction, IsKeptForTheSolveAsADragAcrossTheContact) {
   work.keep_dampers = true;
   const Controls controls;
   ForceModel{probe.model(), controls, work}.evaluate(probe.state().now, 0, probe.state().forces);
-  Mat3 sum = Mat3::Zero();
   const DamperBlock& block = work.contact_dampers[0];
-  for (Index d = block.begin[0]; d < block.begin[1]; ++d) {
-    const Damper& damper = block.dampers[d];
-    EXPECT_EQ(damper.other, 1U);
-    sum += damper.strength * damper.direction * damper.direction.transpose();
+  ASSERT_EQ(block.begin[1], 1U);
+  EXPECT_EQ(block.dampers[0].other, 1U);
+  EXPECT_EQ(block.dampers[0].strength, 2);
+  ASSERT_EQ(block.rub_begin[1], 1U);
+  EXPECT_EQ(block.rubs[0].other, 1U);
+  EXPECT_NEAR(block.rubs[0].strength, kFriction * kPush / 7, 1e-12);
+  EXPECT_LT((block.rubs[0].normal - kNormal).norm(), 1e-12);
+}
+
+TEST(Friction, ActsWhereTheTwoTouch) {
+  const Vec3 way(0, 0, 0.3);
+  const auto expect = [&](bool is_rigid, bool is_other_rigid, Real self, Real other) {
+    const ContactArms arms = contact_arms(way, is_rigid, 0.2, is_other_rigid, 0.4);
+    EXPECT_LT((arms.self - self * way).norm(), 1e-15);
+    EXPECT_LT((arms.other - other * way).norm(), 1e-15);
+  };
+  expect(true, true, -1.0 / 3, 2.0 / 3);
+  expect(true, false, -1, 0);
+  expect(false, true, 0, 1);
+  expect(false, false, 0, 0);
+}
+
+TEST(Friction, TurnsRigidBodiesAndIsTurnedByThem) {
+  Scene scene = make_pair_scene(Vec3::Zero(), BodyKind::rigid, BodyKind::rigid);
+  scene.bodies[0].angular_velocity = {0, 40, 0};
+  ForceProbe probe(scene);
+  // At the contact, half of 0.15 m away, it moves at 3 m/s along omega x arm.
+  const Vec3 slip = Vec3(0, 40, 0).cross(Vec3(-0.075 * kNormal));
+  EXPECT_LT((probe.force(0) - kPush * (kNormal - kFriction * slip / 3)).norm(), 1e-12);
+  const Vec3 torque = -0.075 * kNormal.cross(-kFriction * kPush * slip / 3);
+  for (const Vec3& each : probe.state().forces.rigid_torque) {
+    EXPECT_LT((each - torque).norm(), 1e-12);  // the same on both: their couple is the forces'
   }
-  const Mat3 along = kNormal * kNormal.transpose();
-  const Real drag = kFriction * kPush / 7;
-  EXPECT_LT((sum - 2 * along - drag * (Mat3::Identity() - along)).norm(), 1e-12);
 }
 
 /// The slip of a particle that starts to stick on the floor, after 100 steps with omega dt = 1.95,
 /// over that at the start.
 Real slip_left(Real damping) {
-  Scene scene = make_floor_scene({1e-3, 0, 0});
+  Scene scene = make_floor_scene({1e-3, 0, 0}, BodyKind::deformable);
   const Real omega = std::sqrt(kStiffness);
   scene.numerics.step = scene.numerics.tick = 1.95 / omega;
   scene.default_interface.damping = damping * omega;

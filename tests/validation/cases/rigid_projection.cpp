@@ -124,6 +124,7 @@ Scene ball_on_slope(Real angle, Real step, Real friction) {
   Scene scene = load_hard("RIG-7", step, friction, 0);
   const Real g = of_reference("g");
   scene.gravity = {g * std::sin(angle), 0, -g * std::cos(angle)};
+  scene.bodies[0].kind = BodyKind::rigid;
   scene.bodies[0].velocity.setZero();
   scene.bodies[0].position.z() = 0.05;
   return scene;
