@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "tests/stability/builders.h"
 
@@ -14,13 +15,13 @@ const Material& find_material(const Scene& scene, std::string_view name) {
   return *std::ranges::find(scene.materials, name, &Material::name);
 }
 
-SpringConstants wall_constants(const Scene& scene, std::string_view material) {
+InterfaceConstants wall_constants(const Scene& scene, std::string_view material) {
   for (const InterfaceDescription& interface : scene.interfaces) {
     if (interface.materials[0] == material && interface.materials[1] == kVatMaterial) {
-      return interface.constants.spring();
+      return interface.constants;
     }
   }
-  return scene.default_interface.spring();
+  return scene.default_interface;
 }
 
 struct VatPose {
@@ -35,17 +36,45 @@ VatPose vat_pose(const Vat& vat, Real time) {
   return {half * (1 - std::cos(omega * time)), half * omega * std::sin(omega * time)};
 }
 
+/// One particle as walls see it; where it is rigid, its body turns.
+struct Touching {
+  Real mass;
+  Real radius;
+  Vec3 position;
+  Vec3 velocity;
+  std::optional<Vec3> spin;
+};
+
+/// Of a wall that pushes along the axis with `push`, with its sign, at `distance` from the centre:
+/// Coulomb's friction, but at slow slips proportional to them.
+Vec3 friction(const InterfaceConstants& law, const Touching& particle, const VatPose& pose,
+              int axis, Real push, Real distance) {
+  Vec3 slip = particle.velocity - pose.velocity;
+  if (particle.spin) {
+    slip += particle.spin->cross(Vec3(std::copysign(distance, -push) * Vec3::Unit(axis)));
+  }
+  slip[axis] = 0;
+  const Real most = law.friction * std::abs(push);
+  const Vec3 slow = std::sqrt(law.stiffness * particle.mass) * slip;
+  return slow.norm() > most ? Vec3(-most * slip.normalized()) : Vec3(-slow);
+}
+
 /// Of a closed vat's six walls on one particle.
-Vec3 wall_force(const Vat& vat, const VatPose& pose, const SpringConstants& law, Real radius,
-                const Vec3& position, const Vec3& velocity) {
+Vec3 wall_force(const Vat& vat, const VatPose& pose, const InterfaceConstants& law,
+                const Touching& particle) {
   Vec3 force = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    const Real x = position[axis] - pose.offset[axis];
-    const Real v = velocity[axis] - pose.velocity[axis];
-    const Real below = vat.min[axis] + radius - x;
-    const Real above = x - (vat.max[axis] - radius);
-    if (below > 0) force[axis] += std::max(0.0, law.stiffness * below - law.damping * v);
-    if (above > 0) force[axis] -= std::max(0.0, law.stiffness * above + law.damping * v);
+    const Real x = particle.position[axis] - pose.offset[axis];
+    const Real v = particle.velocity[axis] - pose.velocity[axis];
+    const auto push = [&](Real side, Real distance) {
+      const Real overlap = particle.radius - distance;
+      const Real strength = law.stiffness * overlap - side * law.damping * v;
+      if (overlap <= 0 || strength <= 0) return;
+      force[axis] += side * strength;
+      if (law.friction > 0) force += friction(law, particle, pose, axis, side * strength, distance);
+    };
+    push(1, x - vat.min[axis]);
+    push(-1, vat.max[axis] - x);
   }
   return force;
 }
@@ -74,12 +103,13 @@ Ledger::Outside Ledger::outside(const Simulation& simulation) {
   const VatPose pose = scene.vat ? vat_pose(*scene.vat, simulation.time()) : VatPose{};
   Outside sum{Vec3::Zero(), 0, 0};
   for (const BodyView& body : simulation.bodies()) {
-    const SpringConstants law = wall_constants(scene, body.material);
+    const InterfaceConstants law = wall_constants(scene, body.material);
     for (std::size_t i = 0; i < body.positions.size(); ++i) {
       sum.force += body.masses[i] * scene.gravity;
       if (!scene.vat) continue;
-      const Vec3 force =
-          wall_force(*scene.vat, pose, law, body.radii[i], body.positions[i], body.velocities[i]);
+      Touching particle{body.masses[i], body.radii[i], body.positions[i], body.velocities[i], {}};
+      if (body.pose) particle.spin = body.pose->angular_velocity;
+      const Vec3 force = wall_force(*scene.vat, pose, law, particle);
       sum.force += force;
       if (force != Vec3::Zero()) {
         const Real unit = std::numeric_limits<Real>::epsilon() / 2 * body.positions[i].norm();
@@ -98,7 +128,8 @@ Real Ledger::mechanical(const Diagnostics& now) {
 bool Ledger::closes(const Scene& scene) {
   return scene.numerics.integrator == IntegratorId::velocity_verlet &&
          std::ranges::all_of(scene.materials, [&](const Material& material) {
-           return !scene.vat || wall_constants(scene, material.name).damping == 0;
+           const InterfaceConstants law = wall_constants(scene, material.name);
+           return !scene.vat || (law.damping == 0 && law.friction == 0 && !law.restitution);
          });
 }
 

@@ -15,7 +15,7 @@ class Ledger {
   void add_step(const Simulation& simulation, const Diagnostics& now);
 
   /// Whether momentum must add up to round-off: the kicks of velocity Verlet are the trapezoidal
-  /// rule of undamped walls' forces.
+  /// rule of the forces of walls without damping and friction.
   static bool closes(const Scene& scene);
 
   /// Greatest |P - P_0 - impulses| over the sum of what was moved, both ways.

@@ -143,6 +143,25 @@ Real mass_of(const SampledBody& body) {
   return mass;
 }
 
+/// Of bodies of which the lightest particle has this mass.
+InterfaceConstants random_law(Random& random, Real stiffness, Real mass) {
+  const Real rough = random.between(0.05, 1);
+  const Real pick = random.between(0, 1);
+  if (pick < 0.15) {
+    return {.stiffness = stiffness,
+            .law = InterfaceLaw::lennard_jones,
+            .reach = random.between(1.3, 2.5)};
+  }
+  if (pick < 0.3) {
+    return {
+        .friction = rough, .law = InterfaceLaw::projection, .restitution = random.between(0, 0.8)};
+  }
+  if (pick < 0.45) {
+    return {.stiffness = stiffness, .friction = rough, .restitution = random.between(0.1, 1)};
+  }
+  return {stiffness, damping(random, stiffness, mass), pick < 0.7 ? rough : 0};
+}
+
 /// Walls that turn round the heaviest body on a single particle, after a fall through the vat and
 /// at the speeds of its start and of the vat, within half a radius.
 void add_interfaces(Random& random, Scene& scene, std::span<const SampledBody> samples,
@@ -161,13 +180,15 @@ void add_interfaces(Random& random, Scene& scene, std::span<const SampledBody> s
   }
   const Real walls = 4 * heaviest * speed2 / std::pow(spacing / 2, 2);
   const bool damped_walls = random.chance(0.3);
+  const Real roughness = random.chance(0.3) ? random.between(0.05, 1) : 0;
   for (const Material& material : scene.materials) {
-    scene.interfaces.push_back({{material.name, kVatMaterial},
-                                {walls, damped_walls ? 0.2 * std::sqrt(walls * lightest) : 0},
-                                {}});
+    scene.interfaces.push_back(
+        {{material.name, kVatMaterial},
+         {walls, damped_walls ? 0.2 * std::sqrt(walls * lightest) : 0, roughness},
+         {}});
   }
   const Real stiffness = random.scale(1e3, 1e5) * lightest;
-  scene.default_interface = {stiffness, damping(random, stiffness, lightest)};
+  scene.default_interface = random_law(random, stiffness, lightest);
 }
 
 /// An integrator that the scene allows, and steps of at most 0.4 of their limit.
@@ -179,7 +200,8 @@ void choose_numerics(Random& random, Scene& scene) {
                               : pick < 0.85 ? IntegratorId::runge_kutta_4
                               : pick < 0.93 ? IntegratorId::heun
                                             : IntegratorId::explicit_euler;
-  if (least_step_limit(scene) < kLeastStep) {
+  const bool is_projected = scene.default_interface.law == InterfaceLaw::projection;
+  if (least_step_limit(scene) < kLeastStep || is_projected) {
     scene.numerics.integrator = IntegratorId::velocity_verlet;
   }
   const Real step = std::min(random.between(0.1, 0.4) * least_step_limit(scene), 1e-3);

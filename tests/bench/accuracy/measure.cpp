@@ -92,6 +92,9 @@ Solution solve(const Problem& problem, const Scene& scene, const SweepSettings& 
   } catch (const std::runtime_error& error) {
     solution.error = std::numeric_limits<Real>::quiet_NaN();
     solution.failure = error.what();
+  } catch (const std::invalid_argument&) {
+    solution.error = std::numeric_limits<Real>::quiet_NaN();
+    solution.failure = "not for this method";
   }
   return solution;
 }

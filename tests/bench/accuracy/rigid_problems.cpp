@@ -65,10 +65,64 @@ Problem collision(TaskRunner*) {
           }};
 }
 
+/// The scene with projections of this restitution, and its own friction, in place of springs.
+Scene with_projections(Scene scene, Real restitution) {
+  const auto project = [&](InterfaceConstants& constants) {
+    constants = {.friction = constants.friction,
+                 .law = InterfaceLaw::projection,
+                 .restitution = restitution};
+  };
+  project(scene.default_interface);
+  for (InterfaceDescription& interface : scene.interfaces) project(interface.constants);
+  return scene;
+}
+
+/// Without a time of contact.
+Problem hard_collision(TaskRunner* runner) {
+  Problem problem = collision(runner);
+  problem.title = "Two balls collide, by projection";
+  problem.scene = with_projections(problem.scene, 1);
+  problem.step_counts = doubled(5, 10);
+  problem.longest_step_count = 5;
+  problem.error = [end = problem.end](const Run& run) {
+    constexpr Real kGap = 0.02;
+    const Real after = end - kGap / 3;
+    const Real expected = -2.0 / 3.0 * 0.1 + 0.02 - 2 * after;
+    return std::abs(run.body().positions[0].x() - expected) / (2 * after);
+  };
+  return problem;
+}
+
+/// A block that slides to its stop.
+Problem slide(TaskRunner*) {
+  return {.title = "A block slides to its stop",
+          .error_name = "way to the stop, in that way",
+          .scene = validation::load_scene("RIG-7"),
+          .end = 1,
+          .step_counts = doubled(1000, 8),
+          .longest_step_count = 1000,
+          .error = [](const Run& run) {
+            const Real way = reference("/rigid/RIG-7/stop_distance");
+            return std::abs(run.body().positions[0].x() / way - 1);
+          }};
+}
+
+Problem hard_slide(TaskRunner* runner) {
+  Problem problem = slide(runner);
+  problem.title = "A block slides to its stop, by projection";
+  problem.scene = with_projections(problem.scene, 0);
+  problem.scene.bodies[0].position.z() = 0.05;
+  problem.step_counts = doubled(32, 8);
+  problem.longest_step_count = 32;
+  return problem;
+}
+
 }  // namespace
 
 std::vector<ProblemEntry> rigid_problems() {
-  return {{"RIG-1", top}, {"RIG-4", bounce}, {"RIG-5", collision}};
+  return {{"RIG-1", top},       {"RIG-4", bounce},
+          {"RIG-5", collision}, {"RIG-5-projection", hard_collision},
+          {"RIG-7", slide},     {"RIG-7-projection", hard_slide}};
 }
 
 }  // namespace vat::bench

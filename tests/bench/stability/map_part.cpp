@@ -6,6 +6,7 @@
 
 #include "tests/bench/report/plot.h"
 #include "tests/bench/stability/stability_parts.h"
+#include "tests/stability/projection_map.h"
 #include "tests/stability/step_map.h"
 
 namespace vat::bench {
@@ -125,6 +126,35 @@ Status write_maps(const std::vector<StepMapPoint>& points, const Options& option
   return write_plot(measured_against_theory(points), options.output, "step-map");
 }
 
+Status write_projections(const std::vector<stability::ProjectionPoint>& points,
+                         const Options& options) {
+  Table table{{"integrator", "mass ratio", "step [s]", "energy gained / fall", "overlap / diameter",
+               "kinetic energy / fall", "stable"},
+              {}};
+  for (const stability::ProjectionPoint& point : points) {
+    table.rows.push_back({std::string(to_string(point.integrator)), point.mass_ratio, point.step,
+                          point.energy_gain, point.overlap, point.kinetic_energy,
+                          stability::is_stable(point)});
+  }
+  return write_table(table, options.output, "projection-map", "# A stack by projection");
+}
+
+/// Contacts by projection have no largest step: every one must be stable.
+std::vector<stability::ProjectionPoint> run_projections(const Options& options,
+                                                        StabilityCount& count) {
+  std::vector<stability::ProjectionPoint> points;
+  for (const stability::ProjectionPoint& point : stability::projection_points(options.quick)) {
+    ++count.scenes;
+    points.push_back(stability::measure_projection(point));
+    if (stability::is_stable(points.back())) continue;
+    ++count.faults;
+    print_fault("stack by projection, " + std::string(to_string(point.integrator)) +
+                    ", mass ratio " + short_text(point.mass_ratio),
+                "step of " + short_text(point.step) + " s");
+  }
+  return points;
+}
+
 }  // namespace
 
 Result<StabilityCount> run_map_part(const Options& options) {
@@ -145,7 +175,8 @@ Result<StabilityCount> run_map_part(const Options& options) {
                   short_text(point.measured) + " s of " + short_text(point.theory) + " s");
     }
   }
-  const Status written = write_maps(points, options);
+  Status written = write_maps(points, options);
+  if (written) written = write_projections(run_projections(options, count), options);
   if (!written) return written.errors();
   return count;
 }
