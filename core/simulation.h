@@ -46,8 +46,8 @@ struct LiquidFields {
 
 /// What the guard saw. A step, or the part of one that step control takes, that ends with a
 /// non-finite value, outside the domain, too fast (see core/step/guard.h) or with more pairs of
-/// liquid particles than memory is meant for is undone and repeated in two, four and at last eight
-/// parts.
+/// liquid particles, or contacts by projection, than memory is meant for is undone and repeated in
+/// two, four and at last eight parts.
 struct GuardEvent {
   enum class Cause { non_finite, outside_domain, too_fast, too_many_pairs };
   Cause cause;
@@ -88,7 +88,7 @@ struct AdvanceReport {
   void count_steps(std::uint64_t count, Real least, Real greatest);
 };
 
-/// Told when each stage of the plan, and solve_damping, begins and ends. The core has no clock.
+/// Told when each stage of the plan, solve_damping and project_contacts begins and ends; no clock.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

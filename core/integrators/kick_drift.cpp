@@ -48,11 +48,22 @@ namespace {
 /// A drift that contacts by projection take part in, where there are any.
 void drift_to_contact(const ForceModel& f, State& state, Real time, Real dt,
                       IntegratorScratch& scratch) {
-  if (f.model.has_projection) {
-    scratch.projection.drift(f, state.now, time, dt);
-  } else {
+  if (!f.model.has_projection) {
     drift(f.model, f.runner, state.now, dt);
+    return;
   }
+  if (f.observer != nullptr) f.observer->stage_begins("project_contacts");
+  scratch.projection.drift(f, state.now, time, dt);
+  if (f.observer != nullptr) f.observer->stage_ends("project_contacts");
+}
+
+/// What contacts by projection do once the velocities at the end of the step are known.
+void finish_contacts(const ForceModel& f, State& state, Real time, Real dt,
+                     IntegratorScratch& scratch) {
+  if (!f.model.has_projection) return;
+  if (f.observer != nullptr) f.observer->stage_begins("project_contacts");
+  scratch.projection.finish(f, state.now, time, dt);
+  if (f.observer != nullptr) f.observer->stage_ends("project_contacts");
 }
 
 void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Real dt,
@@ -61,7 +72,7 @@ void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Re
   kick(f.model, f.runner, state.forces, state.now, dt);
   drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
-  if (f.model.has_projection) scratch.projection.finish(f, state.now, time, dt);
+  finish_contacts(f, state, time, dt, scratch);
 }
 
 void keep_velocities(const Configuration& now, Configuration& kept) {
@@ -128,7 +139,7 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   }
   if (is_damped) state.bound = find_bound(f, state.now);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
-  if (f.model.has_projection) scratch.projection.finish(f, state.now, time, dt);
+  finish_contacts(f, state, time, dt, scratch);
   state.forces_current = true;
 }
 

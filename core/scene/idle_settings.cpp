@@ -40,6 +40,22 @@ void warn_of_friction(const InterfaceConstants& constants, const std::string& pa
   }
 }
 
+/// With the solver tait liquids meet solids and walls by SPH, whatever the law.
+void warn_of_law(const Scene& scene, const InterfaceDescription& interface, const std::string& path,
+                 std::vector<Warning>& warnings) {
+  if (scene.pressure_solver == PressureSolver::gas) return;
+  const InterfaceLaw law = interface.constants.law;
+  if (law != InterfaceLaw::lennard_jones && law != InterfaceLaw::projection) return;
+  const bool is_liquid = std::ranges::any_of(interface.materials, [&](const std::string& name) {
+    const auto is_of = [&](const BodyDescription& body) { return body.material == name; };
+    const auto is_solid = [&](const BodyDescription& body) {
+      return is_of(body) && body.kind != BodyKind::liquid;
+    };
+    return std::ranges::any_of(scene.bodies, is_of) && std::ranges::none_of(scene.bodies, is_solid);
+  });
+  if (is_liquid) warn(path + "/law", "with \"tait\" liquids meet others by \"sph\"", warnings);
+}
+
 void warn_of_vat_walls(const Scene& scene, std::vector<Warning>& warnings) {
   const bool has_drag = has_viscous_liquid(scene);
   const bool has_friction = has_wall_friction(scene);
@@ -85,7 +101,9 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   warn_of_tolerance(scene.numerics, warnings);
   warn_of_friction(scene.default_interface, "/default_interface", warnings);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    warn_of_friction(scene.interfaces[i].constants, "/interfaces/" + std::to_string(i), warnings);
+    const std::string path = "/interfaces/" + std::to_string(i);
+    warn_of_friction(scene.interfaces[i].constants, path, warnings);
+    warn_of_law(scene, scene.interfaces[i], path, warnings);
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];

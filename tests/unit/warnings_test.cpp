@@ -6,6 +6,7 @@
 #include "core/scene/contact_limits.h"
 #include "core/scene/cost_estimate.h"
 #include "core/scene/validate.h"
+#include "tests/support/scenes.h"
 
 namespace vat {
 namespace {
@@ -154,6 +155,22 @@ TEST(Warnings, OfSettingsWithoutEffect) {
   scene.central_field.reset();
   scene.settling = Settling{1, 1};
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /settling"));
+}
+
+TEST(Warnings, OfLawsThatALiquidOfTaitDoesNotHave) {
+  Scene scene = two_balls(0.3);
+  scene.materials.push_back(test::make_liquid("water", 1000, {100, 0, 0.1}));
+  scene.bodies.push_back(test::make_body("drop", BodyKind::liquid, "water",
+                                         test::make_particles({{0, 0.5, 0}}, 0.1), 0.05));
+  scene.vat = Vat{{-1, -1, -1}, {2, 1, 1}, true, {}, {}};
+  scene.interfaces = {
+      {{"water", "vat"}, {.stiffness = 10, .law = InterfaceLaw::lennard_jones}, {}}};
+  const auto idle = testing::Contains("no_effect /interfaces/0/law");
+  EXPECT_THAT(warnings_of(scene), testing::Not(idle));
+  scene.pressure_solver = PressureSolver::tait;
+  EXPECT_THAT(warnings_of(scene), idle);
+  scene.interfaces[0].constants.law = InterfaceLaw::sph;
+  EXPECT_THAT(warnings_of(scene), testing::Not(idle));
 }
 
 TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {
