@@ -41,7 +41,7 @@ struct ContactSolve {
     constexpr Real kTolerance = 1e-8;
     // Few contacts may take what many cost.
     const std::size_t most =
-        std::clamp<std::size_t>(20'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
+        std::clamp<std::size_t>(10'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
     Real last = 0;
     for (std::size_t round = 0; round < most; ++round) {
       Real change = 0;
