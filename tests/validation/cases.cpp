@@ -28,7 +28,8 @@ std::vector<Case> collect() {
                            liquid_vortex_cases,
                            liquid_outlet_cases,
                            interaction_impact_cases,
-                           interaction_buoyancy_cases}) {
+                           interaction_buoyancy_cases,
+                           tait_body_cases}) {
     std::ranges::move(group(), std::back_inserter(cases));
   }
   return cases;

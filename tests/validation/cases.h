@@ -32,5 +32,6 @@ std::vector<Case> liquid_vortex_cases();
 std::vector<Case> liquid_outlet_cases();
 std::vector<Case> interaction_impact_cases();
 std::vector<Case> interaction_buoyancy_cases();
+std::vector<Case> tait_body_cases();
 
 }  // namespace vat::validation

@@ -3,6 +3,7 @@
 
 #include "tests/validation/cases.h"
 #include "tests/validation/cases/liquid_rest.h"
+#include "tests/validation/cases/pool.h"
 #include "tests/validation/reference.h"
 
 namespace vat::validation {
@@ -23,19 +24,7 @@ Scene pool_with_ball(Real threshold, Real density_ratio, Real height = 0.4) {
   scene.bodies[1].position.z() = height;
   set_rest_mass(scene);
   const Real spacing = scene.bodies[0].spacing;
-  const Vec3 center = scene.bodies[1].position;
-  Scene pool = scene;
-  pool.bodies.resize(1);
-  const Run run(pool);
-  const BodyView lattice = run.body();
-  ParticleShape shape;
-  for (std::size_t i = 0; i < lattice.positions.size(); ++i) {
-    if ((lattice.positions[i] - center).norm() < kRadius + spacing / 4) continue;
-    shape.positions.push_back(lattice.positions[i]);
-    shape.masses.push_back(lattice.masses[i]);
-  }
-  scene.bodies[0].mass.reset();
-  scene.bodies[0].shape = shape;
+  clear_around_ball(scene, kRadius + spacing / 4);
   scene.interfaces[1].threshold = threshold * spacing;
   scene.materials[1].density = 1000 * density_ratio;
   return with_step(scene, acoustic_step(scene, 0.02));
@@ -78,14 +67,6 @@ void run_held(Sheet& sheet) {
 
 // --- INT-1 ---
 
-/// Depth of the ball's lowest point under the level of the volumes, over its diameter.
-Real draft(const Run& run) {
-  const Diagnostics now = run.diagnostics();
-  const Real volume = (now.bodies[0].mass + now.bodies[1].mass) / 1000;
-  const Real level = volume / (kDepth * kDepth);
-  return (level - now.bodies[1].center_of_mass.z() + kRadius) / (2 * kRadius);
-}
-
 void check_floating(Sheet& sheet, const char* ratio, Real threshold) {
   const Real exact =
       reference(std::string("/interaction/INT-1/sphere_draft_over_diameter/") + ratio);
@@ -97,7 +78,7 @@ void check_floating(Sheet& sheet, const char* ratio, Real threshold) {
   Real sum = 0;
   int samples = 0;
   run.observe_until(3, 0.02, [&] {
-    sum += draft(run);
+    sum += draft(run, kRadius, kDepth * kDepth);
     ++samples;
   });
   sheet.add(

@@ -30,6 +30,7 @@ void set_rest_mass(Scene& scene) {
   const Material& material = scene.materials[0];
   const Real reach = material.liquid->support_radius / body.spacing;
   body.mass.reset();
+  if (scene.pressure_solver == PressureSolver::tait) return;
   const auto count = static_cast<Real>(Run(scene).body().positions.size());
   body.mass = count * material.density * std::pow(body.spacing, scene.dimensions) /
               lattice_density(scene.dimensions, reach);
@@ -56,7 +57,8 @@ Real artificial_viscosity(const Scene& scene, Real alpha) {
 
 Real acoustic_step(const Scene& scene, Real interval) {
   const LiquidConstants& liquid = *scene.materials[0].liquid;
-  const Real longest = 0.2 * liquid.support_radius / std::sqrt(liquid.stiffness);
+  const Real part = scene.pressure_solver == PressureSolver::tait ? 0.4 : 0.2;
+  const Real longest = part * liquid.support_radius / std::sqrt(liquid.stiffness);
   return interval / std::ceil(interval / longest);
 }
 

@@ -9,7 +9,8 @@ namespace vat::validation {
 Real lattice_density(int dimensions, Real support_over_spacing);
 
 /// Gives the first body of the scene, a sampled liquid, the mass with which its lattice has the
-/// rest density. Without it the gas law takes the error of the sum for a pressure.
+/// rest density. Without it the gas law takes the error of the sum for a pressure; the weakly
+/// compressible liquid scales its kernel instead.
 void set_rest_mass(Scene& scene);
 
 /// Sets the lattice spacing of the first body, a sampled liquid, with the support radius in
@@ -24,8 +25,8 @@ void set_walls_like_liquid(Scene& scene);
 /// form stands for, with the support radius H in the place of its length [m^2/s].
 Real artificial_viscosity(const Scene& scene, Real alpha);
 
-/// The longest step, a whole part of `interval`, in which sound goes a fifth of the support radius:
-/// half of what is stable is 0.48 of it.
+/// The longest step, a whole part of `interval`, in which sound goes a fifth of the support radius,
+/// or two fifths in a weakly compressible liquid: half of what is stable is 0.48 or 0.43 of it.
 Real acoustic_step(const Scene& scene, Real interval);
 
 }  // namespace vat::validation
