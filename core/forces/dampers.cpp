@@ -98,9 +98,8 @@ Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
   const LiquidRecord& other = f.work.liquid_records[other_slot];
   const Real r = model.periodic.nearest(own.position - other.position).norm();
   if (model.is_coupled) {
-    const Real h = liquid.support_radius;
     return -mean_viscosity(liquid, liquid_of(model, order[other_slot])) * liquid.slope_scale *
-           own.volume * other.volume * liquid.kernel.slope_over_r(r) / (r * r + Real{0.01} * h * h);
+           own.volume * other.volume * liquid.kernel.slope_over_r(r) / softened_square(liquid, r);
   }
   const Real strength =
       liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);

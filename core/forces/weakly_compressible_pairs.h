@@ -33,13 +33,19 @@ inline Real mean_viscosity(const LiquidModel& a, const LiquidModel& b) {
   return sum > 0 ? 2 * a.central_viscosity * b.central_viscosity / sum : 0;
 }
 
+/// |x|^2 + 0.01 h^2 with the smoothing length h, half of the support radius, as in Monaghan's form:
+/// with the support radius in its place the viscosity would be a thirtieth too small.
+inline Real softened_square(const LiquidModel& liquid, Real r) {
+  const Real h = liquid.support_radius / 2;
+  return r * r + Real{0.01} * h * h;
+}
+
 /// What two particles do to each other along x, over their volumes and |x|: pressure, and viscosity
 /// 2 (d + 2) mu (v.x) / (x^2 + 0.01 h^2), which acts along x, so that it keeps angular momentum (J.
 /// J. Monaghan, Rep. Prog. Phys. 68 (2005) 1703, sec. 4). `viscosity` has the factor.
 inline Real central_force(const LiquidModel& liquid, Real viscosity, Real pressures,
                           const Vec3& velocity, const Vec3& x, Real r) {
-  const Real h = liquid.support_radius;
-  const Real viscous = viscosity * velocity.dot(x) / (r * r + Real{0.01} * h * h);
+  const Real viscous = viscosity * velocity.dot(x) / softened_square(liquid, r);
   return (viscous - pressures) * liquid.slope_scale * liquid.kernel.slope_over_r(r);
 }
 
