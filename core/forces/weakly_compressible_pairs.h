@@ -54,6 +54,18 @@ inline Real pressure_force(const LiquidModel& liquid, Real pressures, Real r) {
   return -pressures * liquid.slope_scale * liquid.kernel.slope_over_r(r);
 }
 
+/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2. From s = 1.1 on it goes along its tangent:
+/// impacts that press a liquid further together are no longer weakly compressible, and sound at
+/// twice the density would be 8 times as fast as the step allows for.
+inline Real tait_pressure(Real s) {
+  constexpr Real kTangent = 1.1;
+  constexpr Real kSlope = 1.771561;  // 1.1^6
+  constexpr Real kPressure = (kTangent * kSlope - 1) / 7;
+  if (s > kTangent) return kPressure + kSlope * (s - kTangent);
+  const Real s2 = s * s;
+  return (s2 * s2 * s2 * s - 1) / 7;
+}
+
 inline bool has_solids(const Model& model) {
   return model.particle_count > model.liquid_count;
 }

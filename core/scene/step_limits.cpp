@@ -115,9 +115,12 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
   for (const BodyDescription& body : scene.bodies) {
     if (body.kind != BodyKind::liquid) continue;
     const Material& material = material_of(scene, body);
-    if (material.density <= lightest) continue;
+    // The highest modes of a liquid have neighbours that move the other way. A rigid body moves as
+    // one: against liquid at rest the same displacement is half of that.
+    const Real share = scene.bodies[index].kind == BodyKind::rigid ? 0.5 : 1;
+    const Real ratio = share * material.density / lightest;
+    if (ratio <= 1) continue;
     const Oscillation liquid = bound_liquid(scene, material);
-    const Real ratio = material.density / lightest;
     bound = {std::max(bound.omega2, ratio * liquid.omega2),
              std::max(bound.rate, ratio * liquid.rate)};
   }

@@ -85,18 +85,23 @@ TEST(Volumes, PerfectLatticesThatFillTheirWorldAreWarnedOf) {
   EXPECT_THAT(paths_of(find_warnings(scene)), Not(Contains("perfect_lattice /bodies/0/jitter")));
 }
 
-// A quarter of the liquid's mass on the same volume: the same forces at twice the frequency.
+// A quarter of the liquid's mass on the same volume: the same forces at twice the frequency. A rigid
+// body may be half as heavy.
 TEST(StepLimits, OfALightSolidInALiquidAreThoseOfTheLiquidByTheRatioOfDensities) {
   Scene scene = make_full_vat();
   scene.materials[0].liquid->viscosity = 0;
   scene.materials[0].liquid->artificial_viscosity = 0;
   scene.default_interface = {0, 0};
   scene.bodies.push_back(make_cork(BoxShape{Vec3::Zero(), {0.1, 0.1, 0.1}}));
+  scene.materials[1].density = 125;
   const std::vector<StepLimit> limits = find_step_limits(scene, sample_bodies(scene));
   ASSERT_EQ(limits.size(), 2U);
   EXPECT_EQ(limits[0].path, "/bodies/0");
   EXPECT_EQ(limits[1].path, "/bodies/1");
   EXPECT_NEAR(limits[1].step, limits[0].step / 2, 1e-9);
+  scene.bodies[1].kind = BodyKind::deformable;
+  scene.materials[1].density = 250;
+  EXPECT_NEAR(find_step_limits(scene, sample_bodies(scene)).at(1).step, limits[1].step, 1e-9);
   scene.materials[1].density = 1000;
   EXPECT_EQ(find_step_limits(scene, sample_bodies(scene)).size(), 1U);
 }
