@@ -282,7 +282,7 @@ struct Scene {
   std::optional<CentralField> central_field;
   std::optional<Settling> settling;
   ForceSwitches forces;
-  PressureSolver pressure_solver = PressureSolver::gas;
+  PressureSolver pressure_solver = PressureSolver::tait;
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
   /// dimensions, and masses, forces and energies are per metre of depth.
   int dimensions = 3;

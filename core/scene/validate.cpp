@@ -34,8 +34,11 @@ void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeC
 /// Its liquids share one kernel, and nothing has levels of its own.
 void check_liquids_of_tait(const Scene& scene, RangeCheck& check) {
   if (scene.pressure_solver != PressureSolver::tait) return;
-  if (scene.numerics.control == StepControl::local) {
-    check.add("not_allowed", "/numerics/control", "\"local\" needs the pressure solver \"gas\"");
+  const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
+  if (scene.numerics.control == StepControl::local &&
+      std::ranges::any_of(scene.bodies, is_liquid)) {
+    check.add("not_allowed", "/numerics/control",
+              "\"local\" needs the pressure solver \"gas\" for liquids");
   }
   std::optional<Real> support;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -171,6 +174,11 @@ Errors find_body_errors(const Scene& scene, const Present& present, const BodyDe
   }
   if (std::ranges::find(scene.bodies, body.name, &BodyDescription::name) != scene.bodies.end()) {
     check.add("duplicate", path + "/name", "must not be the name of another body");
+  }
+  if (body.kind == BodyKind::liquid && scene.numerics.control == StepControl::local &&
+      scene.pressure_solver == PressureSolver::tait) {
+    check.add("not_allowed", path + "/kind",
+              "a liquid needs the pressure solver \"gas\" for \"local\" steps");
   }
   Allowance allowance;
   for (const PresentBody& other : present.bodies) {

@@ -12,6 +12,7 @@ namespace vat::stability {
 
 Scene make_scene() {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.name = "adversarial";
   scene.materials = {test::make_liquid("water", 1000, {100, 1, 2 * kSpacing}),
                      test::make_liquid("oil", 800, {100, 2, 2 * kSpacing}),

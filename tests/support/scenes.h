@@ -22,6 +22,7 @@ inline constexpr std::array kIntegrators = {
 inline Scene make_scene(IntegratorId integrator, Real step) {
   Scene scene;
   scene.name = "test";
+  scene.pressure_solver = PressureSolver::gas;
   scene.gravity = Vec3::Zero();
   scene.numerics = {integrator, step, step};
   return scene;

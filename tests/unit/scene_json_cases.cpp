@@ -159,6 +159,7 @@ std::vector<BodyDescription> full_bodies() {
 
 Scene full_scene() {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.name = "everything";
   scene.title = "Every member";
   scene.description = "One body of each kind and shape";

@@ -23,6 +23,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
 
 Scene two_balls(Real distance) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "wood";
   const SphereShape ball{{0, 0, 0}, 0.1};
@@ -35,6 +36,7 @@ Scene two_balls(Real distance) {
 /// A mass on a spring to a fixed point: omega^2 = stiffness / 1 kg.
 Scene oscillator(Real stiffness, Real damping) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "m";
   scene.bodies.resize(1);
@@ -85,6 +87,7 @@ TEST(Warnings, OfNoContactWhereThereIsNone) {
 /// A cube of water, 40 particles along each edge.
 Scene sea(Real step) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "water";
   scene.materials[0].liquid = LiquidConstants{1, 1, 0.1};
@@ -175,6 +178,7 @@ TEST(Warnings, OfLawsThatALiquidOfTaitDoesNotHave) {
 
 TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.resize(1);
   scene.materials[0].name = "water";
   scene.materials[0].liquid = LiquidConstants{10, 1, 0.1};
@@ -188,6 +192,7 @@ TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {
 
 TEST(Warnings, OfASupportRadiusThatDoesNotFitTheSpacing) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "water";
   scene.materials[0].liquid = LiquidConstants{100, 1, 0.1};
@@ -242,6 +247,7 @@ TEST(Warnings, OfDampedSpringsBeyondTheStep) {
 /// Two rigid particles of 1 kg, so that one contact has mu = 1/2.
 Scene two_grains(const InterfaceConstants& contact) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "wood";
   scene.bodies.resize(2);
@@ -286,6 +292,7 @@ TEST(Warnings, OfContactsThatNoStepHolds) {
 TEST(Warnings, OfManyContactsOfOneBody) {
   // 64 contacts at once on 8 kg: omega^2 = 64 k / m, so k <= 4 m / (64 dt^2) = 5e5.
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "m";
   scene.vat = Vat{{-1, -1, 0}, {1, 1, 2}, false, {}};
@@ -337,6 +344,7 @@ TEST(Warnings, OfMotionTooFastForTheStep) {
 
 TEST(Warnings, OfSoundAndViscosityBeyondTheStep) {
   Scene scene;
+  scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
   scene.materials[0].name = "water";
   scene.bodies = {{"pool", BodyKind::liquid, "water", BoxShape{{0, 0, 0}, {1, 1, 1}}, 0.05}};

@@ -1,0 +1,53 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/scene/validate.h"
+#include "tests/support/scenes.h"
+
+// What liquids that walls and solids take part in cannot do yet.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+BodyDescription make_drop() {
+  return make_body("drop", BodyKind::liquid, "water", make_particles({{0, 0, 0}}, 1), 0.05);
+}
+
+Scene make_coupled() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.materials = {make_liquid("water", 1000, {100, 1, 0.1})};
+  return scene;
+}
+
+std::vector<std::string> paths_of(const Errors& errors) {
+  std::vector<std::string> paths;
+  for (const Error& error : errors) paths.push_back(error.code + ' ' + error.path);
+  return paths;
+}
+
+TEST(CoupledLiquids, HaveNoLocalSteps) {
+  Scene scene = make_coupled();
+  scene.numerics.control = StepControl::local;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty()) << "there is no liquid body";
+  EXPECT_THAT(paths_of(find_body_errors(scene, make_drop(), "/body")),
+              testing::ElementsAre("not_allowed /body/kind"));
+  scene.bodies = {make_drop()};
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::ElementsAre("not_allowed /numerics/control"));
+  scene.pressure_solver = PressureSolver::gas;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+}
+
+TEST(CoupledLiquids, ShareOneSupportRadius) {
+  Scene scene = make_coupled();
+  scene.materials.push_back(make_liquid("oil", 900, {100, 1, 0.2}));
+  EXPECT_THAT(paths_of(find_errors(scene)),
+              testing::ElementsAre("out_of_range /materials/1/liquid/support_radius"));
+  scene.pressure_solver = PressureSolver::gas;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace vat
