@@ -85,7 +85,9 @@ Oscillation bound_liquid(const Scene& scene, const Material& material) {
   const Real h = liquid.support_radius;
   const bool is_coupled = couples_liquids(scene.pressure_solver);
   const Real speed = std::sqrt(scene.forces.pressure ? liquid.stiffness : 0);
-  const Real sound = kVerletLimit / (is_coupled ? kTaitSoundLimit : kSoundLimit) * speed / h;
+  // Impacts compress it, and sound is faster then: by a tenth in space, by a fifth in the plane.
+  const Real tait_limit = kTaitSoundLimit * (scene.dimensions == 2 ? 0.82 : 0.9);
+  const Real sound = kVerletLimit / (is_coupled ? tait_limit : kSoundLimit) * speed / h;
   Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
   if (is_coupled && scene.forces.viscosity) {
     viscosity += liquid.artificial_viscosity * speed * h / (4 * (scene.dimensions + 2));

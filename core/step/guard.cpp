@@ -38,6 +38,9 @@ std::array<std::vector<AlikeBodies>, 2> bodies_by_material(const Model& model) {
 
 Real travel_of(const Model& model, const ModelBody& body,
                const std::array<std::vector<AlikeBodies>, 2>& bodies) {
+  if (model.is_coupled && body.kind == BodyKind::liquid) {
+    return model.liquids[body.material]->support_radius / 2;  // its pairs push from there on
+  }
   const Real radius = least_radius(model, body);
   Real travel = kMaxLength;
   const auto notice = [&](const ContactLaw& law, Real touch) {

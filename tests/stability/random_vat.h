@@ -17,8 +17,9 @@ struct RandomVat {
 };
 
 /// Valid, and the same for the same seed and solver on every machine. Spacings are from 5 mm to 0.2
-/// m, and vats 8 to 14 of them wide; steps are 0.9 of the limit that find_step_limits() knows, and
-/// the speed of sound is that which a user is told to choose: ten times the greatest speed.
+/// m, and vats 8 to 14 of them wide; steps are 0.9 of the limit that find_step_limits() knows, 0.6
+/// with the article's gas, whose limit is that of a liquid at rest, and the speed of sound is that
+/// which a user is told to choose: ten times the greatest speed.
 RandomVat random_vat(std::uint64_t seed, PressureSolver solver);
 
 /// What became of one.

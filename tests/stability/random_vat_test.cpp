@@ -10,7 +10,7 @@
 namespace vat::stability {
 namespace {
 
-constexpr std::uint64_t kVats = 12;
+constexpr std::uint64_t kVats = 6;
 constexpr PressureSolver kSolvers[] = {PressureSolver::gas, PressureSolver::tait};
 
 TEST(RandomVats, AreValidAndTheSameForTheSameSeed) {

@@ -29,6 +29,7 @@ struct StabilityCount {
 /// as it must be.
 Result<StabilityCount> run_adversarial_part(const Options& options);
 Result<StabilityCount> run_random_part(const Options& options);
+Result<StabilityCount> run_vat_part(const Options& options);
 Result<StabilityCount> run_conservation_part(const Options& options);
 Result<StabilityCount> run_long_part(const Options& options);
 Result<StabilityCount> run_map_part(const Options& options);

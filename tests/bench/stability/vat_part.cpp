@@ -1,0 +1,38 @@
+// The part of the stability run in which vats of liquid slide, shake and tilt.
+
+#include "tests/bench/stability/stability_parts.h"
+#include "tests/stability/random_vat.h"
+
+namespace vat::bench {
+
+Result<StabilityCount> run_vat_part(const Options& options) {
+  const std::uint64_t vats = options.quick ? 3 : 200;
+  StabilityCount count;
+  Table table{{"vat", "bodies", "particles", "step [s]", "steps", "guard events", "wall stops",
+               "outside", "greatest speed / speed of sound", "hash", "fault"},
+              {}};
+  for (const PressureSolver solver : {PressureSolver::gas, PressureSolver::tait}) {
+    for (std::uint64_t seed = 1; seed <= vats; ++seed) {
+      const stability::RandomVat vat = stability::random_vat(seed, solver);
+      const stability::VatReport report = stability::shake(vat);
+      ++count.scenes;
+      count.events += report.events;
+      count.retries += report.events;
+      count.wall_stops += report.wall_stops;
+      count.outside += report.outside;
+      if (!report.fault.empty()) {
+        ++count.faults;
+        print_fault(vat.scene.name, report.fault);
+      }
+      table.rows.push_back({vat.scene.name, std::uint64_t{vat.scene.bodies.size()},
+                            std::uint64_t{report.particles}, vat.scene.numerics.step, report.steps,
+                            report.events, report.wall_stops, std::uint64_t{report.outside},
+                            report.greatest_speed, hash_text(report.hash), report.fault});
+    }
+  }
+  const Status written = write_table(table, options.output, "vats", "# Vats of liquid");
+  if (!written) return written.errors();
+  return count;
+}
+
+}  // namespace vat::bench
