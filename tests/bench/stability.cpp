@@ -15,6 +15,7 @@ namespace {
 using Part = Result<StabilityCount> (*)(const Options&);
 constexpr std::pair<const char*, Part> kParts[] = {{"adversarial", run_adversarial_part},
                                                    {"random", run_random_part},
+                                                   {"vats", run_vat_part},
                                                    {"conservation", run_conservation_part},
                                                    {"long-runs", run_long_part},
                                                    {"step-maps", run_map_part}};
