@@ -70,11 +70,14 @@ struct AdvanceReport {
   /// it (see core/step/hold_inside.h), undone steps included: its springs are too soft for the
   /// load.
   std::uint64_t wall_stops = 0;
+  /// How often the implicit springs of a body were not solved for to their tolerance (see
+  /// core/integrators/implicit_springs.h): it is then less exact, but stays stable.
+  std::uint64_t unsolved_drifts = 0;
   Real least_step = 0;     ///< [s] the shortest and the longest of them; of local control
   Real greatest_step = 0;  ///< the steps of particles
   std::uint64_t force_evaluations = 0;  ///< of all particles at once
   /// How often the forces on one particle were summed, in part or whole: the measure on which local
-  /// control compares with the others, whose evaluations count every particle.
+  /// control and implicit springs compare with the others, whose evaluations count every particle.
   std::uint64_t particle_evaluations = 0;
   bool failed = false;             ///< the state is the one before the call
   std::vector<GuardEvent> events;  ///< in the order in which they were seen
@@ -88,7 +91,8 @@ struct AdvanceReport {
   void count_steps(std::uint64_t count, Real least, Real greatest);
 };
 
-/// Told when each stage of the plan, solve_damping and project_contacts begins and ends; no clock.
+/// Told when each stage of the plan begins and ends, and each of implicit_springs,
+/// implicit_dashpots, project_contacts and solve_damping; no clock.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

@@ -124,6 +124,7 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
   if (const Json* contact = reader.member("self_contact")) {
     material.self_contact = to_spring_constants(*contact, reader.path_of("self_contact"), errors);
   }
+  material.implicit_springs = reader.boolean("implicit_springs", material.implicit_springs);
   reader.refuse_unknown();
   return material;
 }

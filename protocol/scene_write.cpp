@@ -37,6 +37,7 @@ Json to_json(const Material& material) {
   }
   if (material.springs) json["springs"] = to_json(*material.springs);
   if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
+  json["implicit_springs"] = material.implicit_springs;
   return json;
 }
 

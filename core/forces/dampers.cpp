@@ -177,7 +177,7 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
     const std::size_t block = begin / kBlockSize;
     for (std::size_t i = begin; i < end; ++i) {
       force[i] = damp(blocks_[block], i - begin, w, i);
-      if (has_springs && i < f.model.free_count) {
+      if (has_springs && i < f.model.implicit_begin) {
         force[i] += damp_springs(f.model, f.work.spring_directions, w, i);
       }
       if (has_contacts) force[i] += damp(f.work.contact_dampers[block], i - begin, w, i);

@@ -26,7 +26,7 @@ void add_spring_forces(StepContext& c) {
   const Index first = c.model.liquid_count;
   const bool keep = c.work.keep_dampers;
   if (keep) c.work.spring_directions.resize(c.model.spring_ends.size());
-  for_blocks(c.runner, c.model.free_count - first, [&](std::size_t begin, std::size_t end) {
+  for_blocks(c.runner, c.model.implicit_begin - first, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Index e = first + static_cast<Index>(k);
       Vec3 sum = Vec3::Zero();

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/integrators/damping_solve.h"
+#include "core/integrators/implicit_springs.h"
 #include "core/projection/projection.h"
 #include "core/scene/scene.h"
 #include "core/state/state.h"
@@ -14,7 +15,8 @@ namespace vat {
 struct IntegratorScratch {
   Configuration start;
   Configuration increment;  ///< weighted sum of a Runge-Kutta method's rates
-  DampingScratch damping;   ///< of velocity Verlet
+  DampingScratch damping;   ///< of velocity Verlet, as are implicit springs
+  ImplicitSpringsScratch implicit_springs;
   ContactProjection projection;
 };
 

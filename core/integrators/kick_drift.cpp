@@ -117,6 +117,34 @@ void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
   restore_velocities(f.model, scratch.start, state.now);
 }
 
+bool has_implicit_springs(const Model& model) {
+  return model.implicit_begin < model.free_count;
+}
+
+/// The drift between velocity Verlet's kicks.
+void drift_with_springs(const ForceModel& f, State& state, Real time, Real dt,
+                        IntegratorScratch& scratch) {
+  if (!has_implicit_springs(f.model)) {
+    drift_to_contact(f, state, time, dt, scratch);
+    return;
+  }
+  // Impulses of contacts by projection come before the springs, which stretch by none of them.
+  keep_implicit_places(f.model, state.now, scratch.implicit_springs);
+  drift_to_contact(f, state, time, dt, scratch);
+  if (f.observer != nullptr) f.observer->stage_begins("implicit_springs");
+  drift_implicit_springs(f, state.now, dt, scratch.implicit_springs);
+  if (f.observer != nullptr) f.observer->stage_ends("implicit_springs");
+}
+
+/// Implicit springs' dashpots, before the first kick and after the last.
+void damp_with_springs(const ForceModel& f, Configuration& now, Real dt,
+                       IntegratorScratch& scratch) {
+  if (!has_implicit_springs(f.model)) return;
+  if (f.observer != nullptr) f.observer->stage_begins("implicit_dashpots");
+  damp_implicit_springs(f, now, dt, scratch.implicit_springs);
+  if (f.observer != nullptr) f.observer->stage_ends("implicit_dashpots");
+}
+
 // Kick, drift, kick: the closing kick's forces open the next step, so a step costs one evaluation.
 // Forces that depend on velocities are those at the end of the step, or at what is predicted for it
 // where that is stable: order 2 either way.
@@ -127,8 +155,9 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
     f.evaluate(state.now, time, state.forces);
     if (is_damped) state.bound = find_bound(f, state.now);
   }
+  damp_with_springs(f, state.now, dt / 2, scratch);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
-  drift_to_contact(f, state, time, dt, scratch);
+  drift_with_springs(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
   if (is_damped && must_solve_damping(state.bound, dt)) {
     evaluate_with_solve(f, state, time + dt, dt, scratch);
@@ -140,6 +169,7 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   if (is_damped) state.bound = find_bound(f, state.now);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
   finish_contacts(f, state, time, dt, scratch);
+  damp_with_springs(f, state.now, dt / 2, scratch);
   state.forces_current = true;
 }
 

@@ -68,16 +68,26 @@ void append_particles(Model& model, ModelBody& body, Index body_index) {
   }
 }
 
-void lay_out_particles(Model& model) {
-  for (const BodyKind kind : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-      if (model.bodies[b].kind == kind) {
-        append_particles(model, model.bodies[b], static_cast<Index>(b));
-      }
-    }
-    if (kind == BodyKind::liquid) model.liquid_count = model.particle_count;
-    if (kind == BodyKind::deformable) model.free_count = model.particle_count;
+template <class Predicate>
+void append_bodies(Model& model, Predicate&& is_one) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (is_one(model.bodies[b])) append_particles(model, model.bodies[b], static_cast<Index>(b));
   }
+}
+
+void lay_out_particles(Model& model) {
+  const auto is_implicit = [&](const ModelBody& body) {
+    return has_implicit_springs(model.scene, model.scene.materials[body.material]);
+  };
+  append_bodies(model, [](const ModelBody& b) { return b.kind == BodyKind::liquid; });
+  model.liquid_count = model.particle_count;
+  append_bodies(
+      model, [&](const ModelBody& b) { return b.kind == BodyKind::deformable && !is_implicit(b); });
+  model.implicit_begin = model.particle_count;
+  append_bodies(
+      model, [&](const ModelBody& b) { return b.kind == BodyKind::deformable && is_implicit(b); });
+  model.free_count = model.particle_count;
+  append_bodies(model, [](const ModelBody& b) { return b.kind == BodyKind::rigid; });
 }
 
 void add_springs(Model& model) {

@@ -106,7 +106,7 @@ struct ModelDamping {
 };
 
 /// A compiled scene: constant while it is stepped. Particles are ordered liquid, deformable, rigid,
-/// each body contiguous.
+/// each body contiguous; of the deformable ones, those with implicit springs come last.
 struct Model {
   Scene scene;
   std::vector<ModelBody> bodies;  ///< in the scene's order
@@ -117,8 +117,9 @@ struct Model {
   std::vector<int> walls;
   std::vector<int> no_slip_walls;
 
-  Index liquid_count = 0;  ///< particles [0, liquid_count) are liquid
-  Index free_count = 0;    ///< particles [0, free_count) move on their own; the rest are rigid
+  Index liquid_count = 0;    ///< particles [0, liquid_count) are liquid
+  Index implicit_begin = 0;  ///< particles [implicit_begin, free_count) have implicit springs
+  Index free_count = 0;      ///< particles [0, free_count) move on their own; the rest are rigid
   Index particle_count = 0;
 
   // One entry a particle.

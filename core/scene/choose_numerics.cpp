@@ -78,7 +78,8 @@ Numerics choose_numerics(const Scene& scene, std::span<const SampledBody* const>
   } else {
     numerics.control = StepControl::fixed;
     const Real longer = longest_step(motions, IntegratorId::runge_kutta_4, error);
-    if (longer > kEvaluations * step) {
+    if (!std::ranges::any_of(scene.materials, &Material::implicit_springs) &&
+        longer > kEvaluations * step) {
       numerics.integrator = IntegratorId::runge_kutta_4;
       step = longer;
     }

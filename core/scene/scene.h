@@ -96,6 +96,9 @@ struct Material {
   std::optional<LiquidConstants> liquid;        ///< needed by liquid bodies
   std::optional<LatticeSprings> springs;        ///< used by sampled deformable bodies
   std::optional<SpringConstants> self_contact;  ///< dynamic springs within one deformable body
+  /// Static springs are solved for, so that they limit no step; see
+  /// core/integrators/implicit_springs.h. Needs velocity Verlet, in fixed or adaptive steps.
+  bool implicit_springs = false;
 };
 
 /// A box along the body's axes.

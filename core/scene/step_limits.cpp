@@ -133,6 +133,10 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
 
 }  // namespace
 
+bool has_implicit_springs(const Scene& scene, const Material& material) {
+  return scene.forces.springs && material.implicit_springs;
+}
+
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples) {
   std::vector<OscillatingPart> parts;
@@ -141,7 +145,8 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
       add_liquid(scene, b, parts);
       continue;
     }
-    if (scene.forces.springs) add_springs(b, *samples[b], parts);
+    const Material& material = material_of(scene, scene.bodies[b]);
+    if (scene.forces.springs && !material.implicit_springs) add_springs(b, *samples[b], parts);
     if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, b, *samples[b], parts);
   }
   add_contacts(scene, samples, parts);

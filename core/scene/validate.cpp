@@ -152,6 +152,7 @@ Errors find_errors(const Scene& scene) {
   if (scene.vat) check_vat(scene, check);
   if (scene.dimensions == 2) check_plane(scene, check);
   check_numerics(scene.numerics, check);
+  check_implicit_springs(scene, check);
   std::vector<SampledBody> samples;
   check_bodies(scene, check, samples);
   if (!errors.empty()) return errors;

@@ -63,7 +63,7 @@ StepBounds find_step_bounds(const Model& model) {
     if (i < model.liquid_count) {
       if (model.scene.numerics.control == StepControl::local) continue;  // a level of their own
       bounds.own[i] = compressed(model, model.damping.own[model.body[i]]);
-    } else if (model.spring_begin[i] != model.spring_begin[i + 1]) {
+    } else if (i < model.implicit_begin && model.spring_begin[i] != model.spring_begin[i + 1]) {
       bounds.own[i] = {
           spring_load(model, at, i, [](const SpringEnd& spring) { return spring.stiffness; }),
           spring_load(model, at, i, [](const SpringEnd& spring) { return spring.damping; })};

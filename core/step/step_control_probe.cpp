@@ -42,7 +42,8 @@ Real MotionProbe::observed_rate(const Model& model) const {
   if (seen_ < 2) return 0;
   Real greatest = 0;
   for (const ModelBody& body : model.bodies) {
-    if (body.kind == BodyKind::rigid) continue;
+    // Nor do bodies with implicit springs follow the forces that are seen here as they move.
+    if (body.kind == BodyKind::rigid || body.particles.begin >= model.implicit_begin) continue;
     const Real way = spread(model, body.particles,
                             [&](Index i) { return Vec3(last_position_[i] - first_position_[i]); });
     const Real noticed = kNoticed * model.radius[body.particles.begin];

@@ -182,7 +182,7 @@ StepPlan make_step_plan(const Model& model) {
   }
   if (model.contact_reach > 0) add_contact_stages(model, plan);
   add_push_stages(model, plan);
-  if (!model.spring_ends.empty()) {
+  if (model.spring_begin[model.implicit_begin] > 0) {
     plan.add("springs", {position, velocity, force}, {force}, &add_spring_forces);
   }
   const bool has_walls = !model.walls.empty() && model.walls_push;

@@ -169,6 +169,9 @@ void print_summary(const Simulation& simulation, const RunTotals& totals) {
             << " s of wall time: " << real_time_factor(simulation, totals)
             << " times real time, guard events: " << totals.guard_events;
   if (totals.wall_stops > 0) std::cerr << ", wall stops: " << totals.wall_stops;
+  if (totals.unsolved_drifts > 0) {
+    std::cerr << ", implicit springs not solved to the tolerance: " << totals.unsolved_drifts;
+  }
   std::cerr << '\n';
 }
 

@@ -19,6 +19,7 @@ Status take_steps(Simulation& simulation, std::uint32_t count, const RunHooks& h
   const bool first_event = totals.guard_events == 0 && !report.events.empty();
   totals.guard_events += report.undone_steps;
   totals.wall_stops += report.wall_stops;
+  totals.unsolved_drifts += report.unsolved_drifts;
   if (report.failed) return describe(report.events.back(), simulation);
   if (first_event) {
     const Error event = describe(report.events.front(), simulation);

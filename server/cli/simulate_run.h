@@ -15,6 +15,7 @@ struct RunTotals {
   std::uint64_t steps = 0;  ///< retries included
   std::uint64_t guard_events = 0;
   std::uint64_t wall_stops = 0;               ///< as AdvanceReport counts them
+  std::uint64_t unsolved_drifts = 0;          ///< the same
   std::chrono::duration<double> stepping{0};  ///< wall time spent in steps
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/limits.h"
 #include "core/simulation.h"
 #include "tests/stability/builders.h"
 
@@ -58,19 +59,33 @@ Real largest_stable_part(const LinearCase& linear, IntegratorId integrator, Real
   return low;
 }
 
-StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator) {
+namespace {
+
+StepMapPoint empty_point(const LinearCase& linear, IntegratorId integrator, Real theory) {
   Real fastest = 0;
   for (const Oscillation& mode : linear.modes) {
     fastest = std::max({fastest, mode.omega2, mode.rate * mode.rate / 4});
   }
+  return {linear.body,        integrator, linear.stiffness, linear.mass_ratio, linear.damping_ratio,
+          std::sqrt(fastest), theory};
+}
+
+}  // namespace
+
+StepMapPoint map_point_without_limit(const LinearCase& linear, IntegratorId integrator) {
+  StepMapPoint point = empty_point(linear, integrator, std::numeric_limits<Real>::infinity());
+  for (int decade = 0; decade <= 5; ++decade) {
+    const Real step = std::min(kMaxStep, std::pow(Real{10}, decade) / point.frequency);
+    if (!is_stable(linear, integrator, step, linear.steps)) break;
+    point.measured = step;
+    if (step == kMaxStep) break;
+  }
+  return point;
+}
+
+StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator) {
   constexpr Real kGrowing = 1.5;  // omega dt
-  StepMapPoint point{linear.body,
-                     integrator,
-                     linear.stiffness,
-                     linear.mass_ratio,
-                     linear.damping_ratio,
-                     std::sqrt(fastest),
-                     theoretical_step(linear, integrator)};
+  StepMapPoint point = empty_point(linear, integrator, theoretical_step(linear, integrator));
   if (point.theory > 0) {
     point.measured =
         point.theory * largest_stable_part(linear, integrator, point.theory, linear.steps);

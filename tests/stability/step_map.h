@@ -21,6 +21,8 @@ struct LinearCase {
   std::vector<Oscillation> modes;
 };
 
+/// The bodies of springs alone, with implicit springs: no step is too long.
+std::vector<LinearCase> implicit_cases(bool quick);
 /// Oscillator, pair, chain, lattice, ball on the floor, pair of balls on the floor, and a liquid on
 /// a lattice that repeats itself, with sound or viscosity alone.
 std::vector<LinearCase> linear_cases(bool quick);
@@ -51,5 +53,9 @@ struct StepMapPoint {
 /// One point of the map: bisects about theory, or where that is 0, shows that omega dt = 1.5 grows.
 /// Theory must be finite.
 StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator);
+
+/// The same where theory is infinite: measured is the longest of steps from 1 to 10^5 over the
+/// frequency, and kMaxStep, up to which all are stable.
+StepMapPoint map_point_without_limit(const LinearCase& linear, IntegratorId integrator);
 
 }  // namespace vat::stability

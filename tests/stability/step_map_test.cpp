@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/limits.h"
 #include "tests/stability/step_map.h"
 #include "tests/support/scenes.h"
 
@@ -22,6 +23,15 @@ TEST(StepMap, ReachesTheoryOnLinearCases) {
       // Of liquids theory is a bound.
       EXPECT_LE(point.measured, (linear.scene.periodic ? 1.5 : 1.1) * point.theory);
     }
+  }
+}
+
+TEST(StepMap, HasNoLimitForImplicitSprings) {
+  for (const LinearCase& linear : implicit_cases(true)) {
+    const StepMapPoint point = map_point_without_limit(linear, IntegratorId::velocity_verlet);
+    EXPECT_GT(point.frequency * kMaxStep, 999);
+    EXPECT_EQ(point.measured, kMaxStep) << linear.body << ", damping ratio " << linear.damping_ratio
+                                        << ", frequency " << point.frequency;
   }
 }
 

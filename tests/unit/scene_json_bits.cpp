@@ -59,8 +59,8 @@ class BitWriter {
     put_all(structural, shear, bend);
   }
   void put(const Material& material) {
-    const auto& [name, density, liquid, springs, self_contact] = material;
-    put_all(name, density, liquid, springs, self_contact);
+    const auto& [name, density, liquid, springs, self_contact, implicit_springs] = material;
+    put_all(name, density, liquid, springs, self_contact, implicit_springs);
   }
   void put(const InterfaceDescription& interface) {
     const auto& [materials, constants, threshold] = interface;

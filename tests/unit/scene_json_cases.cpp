@@ -25,7 +25,7 @@ const char* const kFullDocument = R"json({
      "springs": {"structural": {"stiffness": 1000.5, "damping": 1.5},
                  "shear": {"stiffness": 500.5, "damping": 0.5},
                  "bend": {"stiffness": 250.5, "damping": 0.25}},
-     "self_contact": {"stiffness": 300.5, "damping": 2.5}},
+     "self_contact": {"stiffness": 300.5, "damping": 2.5}, "implicit_springs": true},
     {"name": "wood", "density": 600.125}
   ],
   "default_interface": {"stiffness": 1500.5, "damping": 3.5, "friction": 0.375},
@@ -43,7 +43,7 @@ const char* const kFullDocument = R"json({
           "motion": {"type": "slide", "axis": [0, 2, 0], "stroke": 0.2, "period": 2.5},
           "walls": {"y_min": {"no_slip": true, "velocity": [0.5, 0, -0.25]},
                     "z_max": {"no_slip": true}}},
-  "numerics": {"integrator": "symplectic_euler", "step": 0.0005, "tick": 0.01,
+  "numerics": {"integrator": "velocity_verlet", "step": 0.0005, "tick": 0.01,
                "control": "adaptive"},
   "bodies": [
     {"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.0625,
@@ -95,7 +95,8 @@ std::vector<Material> full_materials() {
            {},
            LatticeSprings{SpringConstants{1000.5, 1.5}, SpringConstants{500.5, 0.5},
                           SpringConstants{250.5, 0.25}},
-           SpringConstants{300.5, 2.5}},
+           SpringConstants{300.5, 2.5},
+           true},
           {"wood", 600.125, {}, {}, {}}};
 }
 
@@ -182,7 +183,7 @@ Scene full_scene() {
   scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
   scene.settling = Settling{47.5, 0.1875};
   scene.forces = {false, false, false, false, false, false};
-  scene.numerics = {IntegratorId::symplectic_euler, 0.0005, 0.01, StepControl::adaptive};
+  scene.numerics = {IntegratorId::velocity_verlet, 0.0005, 0.01, StepControl::adaptive};
   scene.bodies = full_bodies();
   return scene;
 }

@@ -14,6 +14,7 @@ std::vector<Case> collect() {
                            pendulum_cases,
                            cantilever_cases,
                            free_spin_cases,
+                           implicit_spring_cases,
                            rigid_top_cases,
                            rigid_contact_cases,
                            rigid_friction_cases,

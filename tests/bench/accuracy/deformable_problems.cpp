@@ -51,6 +51,25 @@ Problem cube(TaskRunner*) {
           }};
 }
 
+/// The problem with implicit springs, from steps on that are eight times as long.
+Problem with_implicit_springs(Problem problem) {
+  problem.title += ", implicit springs";
+  for (Material& material : problem.scene.materials) material.implicit_springs = true;
+  problem.step_counts =
+      doubled(problem.step_counts.front() / 8, static_cast<int>(problem.step_counts.size()) + 3);
+  return problem;
+}
+
+Problem implicit_pendulum(TaskRunner* runner) {
+  return with_implicit_springs(pendulum(runner));
+}
+Problem implicit_beam(TaskRunner* runner) {
+  return with_implicit_springs(beam(runner));
+}
+Problem implicit_cube(TaskRunner* runner) {
+  return with_implicit_springs(cube(runner));
+}
+
 constexpr Real kLampSpacing = 0.1;  // [m]
 constexpr Real kSoft = 1e3;         // [N/m]
 constexpr Real kStiff = 1e6;
@@ -104,7 +123,13 @@ Problem lamp(TaskRunner* runner) {
 }  // namespace
 
 std::vector<ProblemEntry> deformable_problems() {
-  return {{"DEF-4", pendulum}, {"DEF-5", beam}, {"DEF-6b", cube}, {"lamp", lamp, true}};
+  return {{"DEF-4", pendulum},
+          {"DEF-5", beam},
+          {"DEF-6b", cube},
+          {"lamp", lamp, true},
+          {"DEF-4-implicit", implicit_pendulum},
+          {"DEF-5-implicit", implicit_beam},
+          {"DEF-6b-implicit", implicit_cube}};
 }
 
 }  // namespace vat::bench

@@ -26,7 +26,7 @@ struct Problem {
 
 /// A problem by its name. Making one may run a reference solution.
 struct ProblemEntry {
-  std::string name;  ///< of the validation case where there is one
+  std::string name;  ///< of the validation case where there is one, and how it is varied
   std::function<Problem(TaskRunner*)> make;
   bool is_long = false;  ///< left out of quick runs that do not name it
 };

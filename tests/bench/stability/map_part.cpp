@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/limits.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/stability/stability_parts.h"
 #include "tests/stability/projection_map.h"
@@ -20,6 +21,11 @@ constexpr IntegratorId kIntegrators[] = {
     IntegratorId::heun, IntegratorId::runge_kutta_4};
 constexpr Real kLeastPart = 0.95;  // of theory
 
+/// Some steps are stable and others are not.
+bool has_limit(const StepMapPoint& point) {
+  return point.theory > 0 && std::isfinite(point.theory);
+}
+
 Table map_table(const std::vector<StepMapPoint>& points) {
   Table table{{"body", "integrator", "stiffness [N/m]", "mass ratio", "damping ratio",
                "frequency [rad/s]", "theory [s]", "measured [s]", "measured / theory"},
@@ -28,7 +34,7 @@ Table map_table(const std::vector<StepMapPoint>& points) {
     table.rows.push_back({point.body, std::string(to_string(point.integrator)), point.stiffness,
                           point.mass_ratio, point.damping_ratio, point.frequency, point.theory,
                           point.measured,
-                          point.theory > 0 ? point.measured / point.theory
+                          has_limit(point) ? point.measured / point.theory
                                            : std::numeric_limits<Real>::quiet_NaN()});
   }
   return table;
@@ -52,13 +58,14 @@ GridPlot grid_of(const std::vector<StepMapPoint>& points, IntegratorId integrato
   plot.min = 0.9;
   plot.max = 1.1;
   for (const StepMapPoint& point : points) {
+    if (std::isinf(point.theory)) continue;
     place_of(short_text(point.damping_ratio), plot.x_names);
     place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names);
   }
   plot.values.assign(plot.y_names.size(),
                      std::vector<Real>(plot.x_names.size(), std::numeric_limits<Real>::infinity()));
   for (const StepMapPoint& point : points) {
-    if (point.integrator != integrator || point.theory == 0) continue;
+    if (point.integrator != integrator || !has_limit(point)) continue;
     Real& value =
         plot.values[place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names)]
                    [place_of(short_text(point.damping_ratio), plot.x_names)];
@@ -95,7 +102,7 @@ LogPlot measured_against_theory(const std::vector<StepMapPoint>& points) {
   for (std::size_t i = 0; i < std::size(kIntegrators); ++i) {
     Series series{to_string(kIntegrators[i]), {}, i, 0, false};
     for (const StepMapPoint& point : points) {
-      if (point.integrator != kIntegrators[i] || point.theory == 0) continue;
+      if (point.integrator != kIntegrators[i] || !has_limit(point)) continue;
       series.points.push_back({point.theory, point.measured});
       line.points.push_back({point.theory, point.theory});
     }
@@ -113,7 +120,7 @@ Status write_maps(const std::vector<StepMapPoint>& points, const Options& option
   for (const IntegratorId integrator : kIntegrators) {
     if (!written) return written;
     const bool has_any = std::ranges::any_of(points, [&](const StepMapPoint& point) {
-      return point.integrator == integrator && point.theory > 0;
+      return point.integrator == integrator && has_limit(point);
     });
     if (has_any) {
       written = write_plot(grid_of(points, integrator), options.output,
@@ -174,6 +181,15 @@ Result<StabilityCount> run_map_part(const Options& options) {
                       short_text(point.damping_ratio),
                   short_text(point.measured) + " s of " + short_text(point.theory) + " s");
     }
+  }
+  for (const LinearCase& linear : stability::implicit_cases(options.quick)) {
+    ++count.scenes;
+    points.push_back(map_point_without_limit(linear, IntegratorId::velocity_verlet));
+    const StepMapPoint& point = points.back();
+    if (point.measured == kMaxStep || point.measured * point.frequency >= 1e4) continue;
+    ++count.faults;
+    print_fault(point.body + ", damping ratio " + short_text(point.damping_ratio),
+                short_text(point.measured) + " s, where no step should be too long");
   }
   Status written = write_maps(points, options);
   if (written) written = write_projections(run_projections(options, count), options);

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/support/parallel.h"
+
+namespace vat {
+
+/// What a change of velocities does to the impulse of a spring, seen from one end [kg].
+struct SpringSlope {
+  Vec3 direction;
+  Real along;
+  Real across;
+};
+
+/// Scratch of SpringSystem. Entries are of the particles and ends from Model::implicit_begin on.
+struct SpringSystemScratch {
+  std::vector<SpringSlope> slopes;
+  std::vector<Vec3> residual;  ///< impulses, zero where particles are fixed [N s]
+  std::vector<Vec3> change;    ///< of velocities
+  std::vector<Vec3> left;      ///< of the residual
+  std::vector<Vec3> direction;
+  std::vector<Vec3> product;
+  std::vector<Real> partial_sums;  ///< by block
+
+  void resize(const Model& model);
+};
+
+/// The linear equations (M + slopes) change = residual for the velocities of one body with implicit
+/// springs. Slopes are equal at both ends and opposite in effect, so that every iterate conserves
+/// linear momentum, and angular momentum where they have no part across.
+class SpringSystem {
+ public:
+  SpringSystem(const Model& model, TaskRunner* runner, const IndexRange& particles,
+               SpringSystemScratch& scratch);
+
+  /// Solves by conjugate gradients preconditioned with M, to `tolerance` of the residual in the
+  /// norm of M^-1, or as far as a fixed number of iterations goes.
+  void solve(Real tolerance);
+
+  /// How often all the body's springs were gone through.
+  std::uint64_t passes() const { return passes_; }
+  void count_pass() { ++passes_; }
+
+  std::size_t place_of(Index particle) const { return particle - model_.implicit_begin; }
+  SpringSlope& slope(Index end) {
+    return scratch_.slopes[end - model_.spring_begin[model_.implicit_begin]];
+  }
+
+  /// Calls f(particle), in parallel.
+  template <class F>
+  void for_particles(F&& f) {
+    for_blocks(runner_, particles_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) f(particles_.begin + static_cast<Index>(k));
+    });
+  }
+  /// The sum of f(particle), in an order that depends on the body alone.
+  template <class F>
+  Real sum(F&& f) {
+    std::vector<Real>& sums = scratch_.partial_sums;
+    sums.assign((particles_.size() + kBlockSize - 1) / kBlockSize, 0);
+    for_blocks(runner_, particles_.size(), [&](std::size_t begin, std::size_t end) {
+      Real part = 0;
+      for (std::size_t k = begin; k < end; ++k) part += f(particles_.begin + static_cast<Index>(k));
+      sums[begin / kBlockSize] = part;
+    });
+    Real total = 0;
+    for (const Real part : sums) total += part;
+    return total;
+  }
+
+ private:
+  void multiply();
+
+  const Model& model_;
+  TaskRunner* runner_;
+  IndexRange particles_;
+  SpringSystemScratch& scratch_;
+  std::uint64_t passes_ = 0;
+};
+
+}  // namespace vat

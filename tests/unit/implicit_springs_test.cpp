@@ -1,0 +1,260 @@
+#include "core/integrators/implicit_springs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/scene/validate.h"
+#include "tests/support/same_bits.h"
+#include "tests/support/scenes.h"
+#include "tests/support/totals.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kSpacing = 0.05;
+constexpr Real kMass = 0.125;
+
+Scene make_implicit_scene(Real step) {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {test::make_material("rubber")};
+  scene.materials[0].implicit_springs = true;
+  return scene;
+}
+
+/// A block of 4 x 3 x 3 particles that turns, flies, and whose particles move against one another.
+Scene make_block(const SpringConstants& constants, Real step) {
+  Scene scene = make_implicit_scene(step);
+  ParticleShape shape = test::make_particles(test::make_lattice(4, 3, 3, kSpacing), kMass);
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    const auto x = static_cast<Real>(i);
+    shape.velocities.push_back(Vec3(1, 2, 3).cross(shape.positions[i]) + Vec3(0.1, 0, 0) +
+                               0.3 * Vec3(std::sin(x), std::cos(2 * x), std::sin(3 * x)));
+  }
+  scene.bodies = {test::make_body("block", BodyKind::deformable, "rubber", shape, 0.02)};
+  const auto& positions = std::get<ParticleShape>(scene.bodies[0].shape).positions;
+  scene.bodies[0].springs = test::join_near(positions, 1.5 * kSpacing, constants);
+  return scene;
+}
+
+/// A mass on a spring of length 1 along x, a fixed distance away from rest.
+Scene make_oscillator(const SpringConstants& constants, Real step, Real stretch) {
+  Scene scene = make_implicit_scene(step);
+  ParticleShape shape = test::make_particles({{0, 0, 0}, {1 + stretch, 0, 0}}, 1);
+  shape.fixed = {0};
+  scene.bodies = {test::make_body("oscillator", BodyKind::deformable, "rubber", shape, 0.02)};
+  scene.bodies[0].springs = {{0, 1, constants, 1}};
+  return scene;
+}
+
+struct Motion {
+  Real energy;
+  Vec3 momentum;
+  Vec3 angular_momentum;
+};
+
+Motion motion_of(const Simulation& simulation) {
+  const Diagnostics now = simulation.diagnostics();
+  return {now.kinetic_energy + now.elastic_energy, now.bodies[0].linear_momentum,
+          now.bodies[0].angular_momentum};
+}
+
+// The residual r that a step leaves is an impulse of 2 r: its work is at most 2 |r| |v| in norms of
+// the masses, and |r| is the tolerance of a change of at most 2 |v|.
+TEST(ImplicitSprings, KeepEnergyAndMomentumWhateverTheStep) {
+  constexpr std::uint32_t kSteps = 100;
+  for (const Real stiffness : {1e3, 1e6, 1e9}) {
+    for (const Real step : {1e-3, 2e-2}) {
+      Simulation simulation = test::make_simulation(make_block({stiffness, 0}, step));
+      const Motion start = motion_of(simulation);
+      const AdvanceReport report = simulation.advance(kSteps);
+      const Motion end = motion_of(simulation);
+      const std::string name = std::to_string(stiffness) + " N/m, " + std::to_string(step) + " s";
+      EXPECT_TRUE(report.events.empty()) << name;
+      EXPECT_EQ(report.unsolved_drifts, 0U) << name;
+      EXPECT_NEAR(end.energy / start.energy, 1, 8 * kSteps * kSpringTolerance) << name;
+      EXPECT_LT((end.momentum - start.momentum).norm(), 1e-13 * start.momentum.norm()) << name;
+      EXPECT_LT((end.angular_momentum - start.angular_momentum).norm(),
+                1e-10 * start.angular_momentum.norm())
+          << name;
+    }
+  }
+}
+
+TEST(ImplicitSprings, LoseEnergyByDashpotsUntilTheBodyTurnsAsOne) {
+  for (const Real damping : {1e-5, 1e-3, 1.0}) {  // over stiffness [s]
+    for (const Real step : {1e-3, 2e-2}) {
+      Simulation simulation = test::make_simulation(make_block({1e6, 1e6 * damping}, step));
+      const Motion start = motion_of(simulation);
+      Real last = start.energy;
+      for (int n = 0; n < 300; ++n) {
+        simulation.advance(1);
+        const Real energy = motion_of(simulation).energy;
+        ASSERT_LE(energy, last * (1 + 8 * kSpringTolerance)) << damping << ' ' << step << ' ' << n;
+        last = energy;
+      }
+      // As stiff as this it is a rigid body: E = P^2 / 2 M + L I^-1 L / 2 about its centre.
+      const BodyView body = simulation.bodies()[0];
+      Mat3 inertia = Mat3::Zero();
+      const Vec3 center = simulation.diagnostics().bodies[0].center_of_mass;
+      for (const Vec3& position : body.positions) {
+        const Vec3 x = position - center;
+        inertia += kMass * (x.squaredNorm() * Mat3::Identity() - x * x.transpose());
+      }
+      const Vec3 spin = start.angular_momentum - center.cross(start.momentum);
+      const Real rigid =
+          start.momentum.squaredNorm() / (2 * 36 * kMass) + spin.dot(inertia.inverse() * spin) / 2;
+      EXPECT_NEAR(last / rigid, 1, 1e-3) << damping << ' ' << step;
+    }
+  }
+}
+
+// Along a line the method is the implicit midpoint rule, which turns by 2 atan(omega dt / 2).
+TEST(ImplicitSprings, FollowTheMidpointRuleAlongALine) {
+  constexpr int kSteps = 50;
+  constexpr Real kStretch = 1e-3;
+  for (const Real phase : {0.1, 1.0, 5.0, 100.0}) {
+    Scene scene = make_oscillator({100, 0}, 0.02, kStretch);
+    std::get<ParticleShape>(scene.bodies[0].shape).masses = {1, 100 * std::pow(0.02 / phase, 2)};
+    Simulation simulation = test::make_simulation(scene);
+    simulation.advance(kSteps);
+    const Real expected = 1 + kStretch * std::cos(kSteps * 2 * std::atan(phase / 2));
+    // The phase errs by the tolerance in each step.
+    EXPECT_NEAR(test::position_of(simulation, 0, 1).x(), expected,
+                kStretch * 2 * kSteps * kSpringTolerance)
+        << phase;
+  }
+}
+
+TEST(ImplicitSprings, CalmAtOnceWhatIsNotResolved) {
+  Simulation simulation = test::make_simulation(make_oscillator({1e8, 100}, 0.01, 0.01));
+  simulation.advance(20);  // omega dt = 100, rate dt = 1: undamped by rounding it would ring
+  EXPECT_LT(std::abs(test::position_of(simulation, 0, 1).x() - 1), 1e-4);
+  EXPECT_LT(test::velocity_of(simulation, 0, 1).norm(), 0.1);
+}
+
+TEST(ImplicitSprings, HangAsStaticsSay) {
+  Scene scene = make_oscillator({1e6, 1e4}, 0.02, 0);
+  scene.gravity = {9.81, 0, 0};
+  Simulation simulation = test::make_simulation(scene);
+  simulation.advance(200);
+  EXPECT_NEAR((test::position_of(simulation, 0, 1).x() - 1) / (9.81 / 1e6), 1, 1e-6);
+  EXPECT_EQ(test::position_of(simulation, 0, 0), Vec3::Zero());
+}
+
+/// The place of a particle after half a second.
+Vec3 place_after(Scene scene, std::uint32_t steps) {
+  scene.numerics.step = scene.numerics.tick = 0.5 / steps;
+  Simulation simulation = test::make_simulation(scene);
+  simulation.advance(steps);
+  return test::position_of(simulation, 0, 3);
+}
+
+TEST(ImplicitSprings, AreOfOrderTwo) {
+  for (const Real damping : {0.0, 2.0}) {
+    Scene scene = make_block({200, damping}, 0.01);
+    scene.gravity = {0, 0, -9.81};
+    std::get<ParticleShape>(scene.bodies[0].shape).fixed = {0, 4, 8};
+    Scene fine = scene;
+    fine.materials[0].implicit_springs = false;
+    fine.numerics.integrator = IntegratorId::runge_kutta_4;
+    const Vec3 exact = place_after(fine, 4000);
+    const Real coarse_error = (place_after(scene, 400) - exact).norm();
+    const Real fine_error = (place_after(scene, 800) - exact).norm();
+    EXPECT_NEAR(std::log2(coarse_error / fine_error), 2, 0.2) << damping;
+  }
+}
+
+TEST(ImplicitSprings, HaveTheSameBitsForAnyThreads) {
+  Scene scene = make_block({1e5, 10}, 0.01);
+  ParticleShape shape = test::make_particles(test::make_lattice(10, 10, 10, kSpacing), kMass);
+  shape.velocities.assign(1000, Vec3(0, 0, -1));
+  for (std::size_t i = 0; i < 1000; i += 7) shape.velocities[i].x() = 1;
+  scene.bodies[0].shape = shape;
+  scene.bodies[0].springs = test::join_near(shape.positions, 1.5 * kSpacing, {1e5, 10});
+  test::expect_same_bits(scene, 2, 2);
+}
+
+TEST(ImplicitSprings, LeaveOtherBodiesAsTheyAre) {
+  Scene scene = make_block({200, 1}, 1e-3);
+  scene.materials.push_back(test::make_material("gum"));
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[1].name = "other";
+  scene.bodies[1].material = "gum";
+  scene.bodies[1].position = {10, 0, 0};
+  Simulation both = test::make_simulation(scene);
+  scene.bodies.erase(scene.bodies.begin());
+  Simulation alone = test::make_simulation(scene);
+  both.advance(50);
+  alone.advance(50);
+  EXPECT_EQ(both.bodies()[0].name, "block");
+  for (std::size_t i = 0; i < 36; ++i) {
+    EXPECT_EQ(test::position_of(both, 1, i), test::position_of(alone, 0, i));
+  }
+}
+
+TEST(ImplicitSprings, StayInThePlane) {
+  Scene scene = make_block({1e6, 1}, 0.02);
+  scene.dimensions = 2;
+  ParticleShape shape = test::make_particles(test::make_lattice(5, 1, 4, kSpacing), kMass);
+  for (std::size_t i = 0; i < 20; ++i) shape.velocities.push_back({0, 0, i % 3 == 0 ? 1.0 : 0.0});
+  scene.bodies[0].springs = test::join_near(shape.positions, 1.5 * kSpacing, {1e6, 1});
+  scene.bodies[0].shape = shape;
+  Simulation simulation = test::make_simulation(scene);
+  simulation.advance(100);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(test::position_of(simulation, 0, i).y(), 0);
+}
+
+TEST(ImplicitSprings, PushApartTwoParticlesInOnePlace) {
+  Scene scene = make_implicit_scene(1e-3);
+  scene.bodies = {test::make_body("pair", BodyKind::deformable, "rubber",
+                                  test::make_particles({{0, 0, 0}, {0, 0, 0}}, 1), 0.02)};
+  scene.bodies[0].springs = {{0, 1, {100, 0}, 1}};
+  Simulation simulation = test::make_simulation(scene);
+  const Real energy = motion_of(simulation).energy;
+  simulation.advance(100);
+  EXPECT_GT((test::position_of(simulation, 0, 0) - test::position_of(simulation, 0, 1)).norm(),
+            0.1);
+  EXPECT_NEAR(motion_of(simulation).energy / energy, 1,
+              0.01);  // the first force is that at the start
+}
+
+TEST(ImplicitSprings, LimitNoStep) {
+  Scene scene = make_block({1e8, 1e3}, 0.02);
+  EXPECT_TRUE(find_warnings(scene).empty());
+  scene.numerics.control = StepControl::adaptive;
+  Simulation simulation = test::make_simulation(scene);
+  EXPECT_EQ(simulation.advance(10).greatest_step, 0.02);
+  scene.materials[0].implicit_springs = false;
+  scene.numerics.control = StepControl::fixed;
+  EXPECT_FALSE(find_warnings(scene).empty());
+}
+
+TEST(ImplicitSprings, NeedVelocityVerlet) {
+  Scene scene = make_block({1e3, 0}, 1e-3);
+  EXPECT_TRUE(find_errors(scene).empty());
+  scene.numerics.integrator = IntegratorId::runge_kutta_4;
+  Errors errors = find_errors(scene);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].path, "/numerics/integrator");
+  scene.numerics.accuracy = 1e-6;  // chooses the integrator
+  EXPECT_TRUE(find_errors(scene).empty());
+  EXPECT_EQ(test::make_simulation(scene).scene().numerics.integrator,
+            IntegratorId::velocity_verlet);
+  scene.numerics = {IntegratorId::velocity_verlet, 1e-3, 1e-3, StepControl::local};
+  errors = find_errors(scene);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].path, "/numerics/control");
+}
+
+TEST(ImplicitSprings, ReportWhereRoundingLeavesMore) {
+  Simulation simulation = test::make_simulation(make_block({1e12, 0}, 0.1));
+  const Real energy = motion_of(simulation).energy;
+  const AdvanceReport report = simulation.advance(10);
+  EXPECT_GT(report.unsolved_drifts, 0U);
+  EXPECT_TRUE(report.events.empty());
+  EXPECT_LT(motion_of(simulation).energy, 1.1 * energy);
+}
+
+}  // namespace
+}  // namespace vat
