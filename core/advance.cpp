@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/forces/spring_changes.h"
 #include "core/limits.h"
 #include "core/scene/error_model.h"
 #include "core/simulation.h"
@@ -26,6 +27,10 @@ void Simulation::Impl::take_unguarded_step(const ForceModel& force_model, Real s
     return;
   }
   local.take_step(force_model, state, start, dt, step_bounds, bounds);
+  if (change_springs(*model, runner, state.now, dt)) {
+    state.forces_current = false;
+    local.forget();
+  }
   report.count_steps(1U << local.finest(), std::ldexp(dt, -local.finest()),
                      std::ldexp(dt, -local.coarsest()));
 }

@@ -40,15 +40,27 @@ Status check_in_world(const Scene& scene, const Vec3& value, Real limit, const s
   return check_vector(value, limit, path);
 }
 
+/// One of a scene's models, with a configuration of it.
+struct Placed {
+  const Model& model;
+  const ModelBody& body;
+};
+
 /// Copies the state of a body from one model's columns to another's.
-void carry_over(const ModelBody& from, const Configuration& source, const ModelBody& to,
+void carry_over(const Placed& from, const Configuration& source, const Placed& to,
                 Configuration& target) {
-  for (Index i = 0; i < from.particles.size(); ++i) {
-    target.position[to.particles.begin + i] = source.position[from.particles.begin + i];
-    target.velocity[to.particles.begin + i] = source.velocity[from.particles.begin + i];
-  }
-  if (from.kind == BodyKind::rigid) {
-    target.rigid[to.rigid] = source.rigid[from.rigid];
+  const Index first = from.body.particles.begin;
+  const Index new_first = to.body.particles.begin;
+  const auto count = static_cast<std::ptrdiff_t>(from.body.particles.size());
+  std::copy_n(source.position.begin() + first, count, target.position.begin() + new_first);
+  std::copy_n(source.velocity.begin() + first, count, target.velocity.begin() + new_first);
+  if (from.body.kind == BodyKind::rigid) {
+    target.rigid[to.body.rigid] = source.rigid[from.body.rigid];
+  } else if (!source.springs.empty() && !target.springs.empty()) {
+    const Index end = from.model.spring_begin[first];
+    const auto ends = from.model.spring_begin[from.body.particles.end] - end;
+    std::copy_n(source.springs.begin() + end, ends,
+                target.springs.begin() + to.model.spring_begin[new_first]);
   }
 }
 
@@ -80,7 +92,8 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
   State new_state = initial_state(*new_model);
   for (const ModelBody& body : new_model->bodies) {
     const ModelBody* known = find(body.id);
-    if (known != nullptr) carry_over(*known, state.now, body, new_state.now);
+    if (known == nullptr) continue;
+    carry_over({*model, *known}, state.now, {*new_model, body}, new_state.now);
   }
   new_state.step_count = state.step_count;
   Controls new_controls = rebind(controls, *new_model);

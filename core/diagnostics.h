@@ -31,10 +31,11 @@ struct Diagnostics {
   Real kinetic_energy;        ///< [J] of all particles and rigid bodies
   Real gravitational_energy;  ///< [J] -m g.x over all particles, and m Omega^2 |x - center|^2 / 2
                               ///< of the central field; 0 where gravity is off
-  Real elastic_energy;        ///< [J] in static springs
+  Real elastic_energy;        ///< [J] in static springs, and in cells that keep their volume
   Real contact_energy;        ///< [J] in dynamic connections and against the walls
   Real mean_density_error;    ///< liquid: mean of max(0, rho/rho_0 - 1); 0 without liquid
   Real max_density_error;     ///< liquid: greatest rho/rho_0 - 1, at least 0
+  std::size_t torn_springs;   ///< of static ones, which have no force any more
   std::size_t particles_outside;  ///< beyond a wall of the vat
 };
 

@@ -169,6 +169,10 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
     hash.add(contact.finish);
     hash.add(std::uint64_t{contact.is_steady});
   }
+  for (const SpringState& spring : state.now.springs) {
+    hash.add(spring.rest_length);
+    hash.add(std::uint64_t{spring.is_torn});
+  }
   const StepControl control = model.scene.numerics.control;
   if (control != StepControl::fixed) {
     hash.add(state.history.step);

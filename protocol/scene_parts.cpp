@@ -35,6 +35,18 @@ LatticeSprings to_lattice_springs(const Json& value, std::string path, Errors& e
   return springs;
 }
 
+Plasticity to_plasticity(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  Plasticity plasticity;
+  plasticity.yield_strain = reader.real("yield_strain", kAnyMin, kAnyMax);
+  plasticity.hardening = reader.real("hardening", kAnyMin, kAnyMax, plasticity.hardening);
+  plasticity.relaxation_time =
+      reader.real("relaxation_time", kAnyMin, kAnyMax, plasticity.relaxation_time);
+  plasticity.max_strain = reader.real("max_strain", kAnyMin, kAnyMax, plasticity.max_strain);
+  reader.refuse_unknown();
+  return plasticity;
+}
+
 }  // namespace
 
 SpringConstants to_spring_constants(ObjectReader& reader) {
@@ -125,6 +137,16 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
     material.self_contact = to_spring_constants(*contact, reader.path_of("self_contact"), errors);
   }
   material.implicit_springs = reader.boolean("implicit_springs", material.implicit_springs);
+  if (const Json* plasticity = reader.member("plasticity")) {
+    material.plasticity = to_plasticity(*plasticity, reader.path_of("plasticity"), errors);
+  }
+  if (reader.has("tearing_strain")) {
+    material.tearing_strain = reader.real("tearing_strain", kAnyMin, kAnyMax);
+  }
+  if (reader.has("elongation_limit")) {
+    material.elongation_limit = reader.real("elongation_limit", kAnyMin, kAnyMax);
+  }
+  material.bulk_modulus = reader.real("bulk_modulus", kAnyMin, kAnyMax, material.bulk_modulus);
   reader.refuse_unknown();
   return material;
 }

@@ -38,6 +38,15 @@ Json to_json(const Material& material) {
   if (material.springs) json["springs"] = to_json(*material.springs);
   if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
   json["implicit_springs"] = material.implicit_springs;
+  if (material.plasticity) {
+    json["plasticity"] = {{"yield_strain", material.plasticity->yield_strain},
+                          {"hardening", material.plasticity->hardening},
+                          {"relaxation_time", material.plasticity->relaxation_time},
+                          {"max_strain", material.plasticity->max_strain}};
+  }
+  if (material.tearing_strain) json["tearing_strain"] = *material.tearing_strain;
+  json["bulk_modulus"] = material.bulk_modulus;
+  if (material.elongation_limit) json["elongation_limit"] = *material.elongation_limit;
   return json;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/forces/connection.h"
 #include "core/forces/pair_direction.h"
+#include "core/forces/spring_changes.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -13,7 +14,8 @@ Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int
   const Vec3 x = at.position[e] - at.position[spring.other];
   const Real r = x.norm();
   const Vec3 n = pair_direction(x, r, e, spring.other, dimensions);
-  if (direction != nullptr) *direction = n;
+  // Those of torn springs are not asked for a damping that they no longer have.
+  if (direction != nullptr) *direction = spring.damping > 0 ? n : Vec3(Vec3::Zero());
   const Real speed = (at.velocity[e] - at.velocity[spring.other]).dot(n);
   return connection_push(spring.stiffness, spring.damping, spring.rest_length, r, speed) * n;
 }
@@ -31,7 +33,8 @@ void add_spring_forces(StepContext& c) {
       const Index e = first + static_cast<Index>(k);
       Vec3 sum = Vec3::Zero();
       for (Index s = c.model.spring_begin[e]; s < c.model.spring_begin[e + 1]; ++s) {
-        sum += spring_force(c.configuration, e, c.model.spring_ends[s], c.model.scene.dimensions,
+        const SpringEnd spring = present_spring(c.model, c.configuration, s);
+        sum += spring_force(c.configuration, e, spring, c.model.scene.dimensions,
                             keep ? &c.work.spring_directions[s] : nullptr);
       }
       c.forces.particle[e] += sum;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/forces/pair_direction.h"
+#include "core/forces/spring_changes.h"
 #include "core/model/model.h"
 
 namespace vat {
@@ -28,8 +29,10 @@ struct ResidualSize {
 /// The drift of one body.
 class BodyDrift {
  public:
-  BodyDrift(const ForceModel& f, const IndexRange& particles, ImplicitSpringsScratch& scratch)
+  BodyDrift(const ForceModel& f, const Configuration& at, const IndexRange& particles,
+            ImplicitSpringsScratch& scratch)
       : model_(f.model),
+        at_(at),
         report_(f.report),
         particles_(particles),
         system_(f.model, f.runner, particles, scratch.system),
@@ -54,6 +57,7 @@ class BodyDrift {
   bool remove_turn(Real half);
 
   const Model& model_;
+  const Configuration& at_;
   AdvanceReport* report_;
   IndexRange particles_;
   SpringSystem system_;
@@ -63,7 +67,7 @@ class BodyDrift {
 
 /// The force at one end, whose slope it notes.
 Vec3 BodyDrift::push_end(Index i, Index end, Real half) {
-  const SpringEnd& spring = model_.spring_ends[end];
+  const SpringEnd spring = present_spring(model_, at_, end);
   const std::size_t a = place_of(i);
   const std::size_t b = place_of(spring.other);
   const Vec3 start = s_.position[a] - s_.position[b];
@@ -208,7 +212,7 @@ void BodyDrift::damp(std::span<const Vec3> positions, std::span<Vec3> velocities
   const Real share = 1 - std::sqrt(Real{0.5});
   system_.for_particles([&](Index i) {
     for (Index e = model_.spring_begin[i]; e < model_.spring_begin[i + 1]; ++e) {
-      const SpringEnd& spring = model_.spring_ends[e];
+      const SpringEnd spring = present_spring(model_, at_, e);
       const Vec3 x = positions[place_of(i)] - positions[place_of(spring.other)];
       const Vec3 n = pair_direction(x, x.norm(), i, spring.other, model_.scene.dimensions);
       system_.slope(e) = {n, share * dt * spring.damping, 0};
@@ -274,7 +278,7 @@ void drift_implicit_springs(const ForceModel& f, Configuration& at, Real dt,
   scratch.velocity.resize(positions.size());
   scratch.last_velocity.resize(positions.size());
   for_bodies(f.model, [&](const IndexRange& particles) {
-    if (!BodyDrift(f, particles, scratch).take(dt, 1) && f.report != nullptr) {
+    if (!BodyDrift(f, at, particles, scratch).take(dt, 1) && f.report != nullptr) {
       ++f.report->unsolved_drifts;
     }
   });
@@ -289,7 +293,7 @@ void damp_implicit_springs(const ForceModel& f, Configuration& at, Real dt,
   const std::span<Vec3> velocities = part_of(f.model, at.velocity);
   for_bodies(f.model, [&](const IndexRange& particles) {
     if (!has_damping(f.model, particles)) return;
-    BodyDrift(f, particles, scratch).damp(positions, velocities, dt);
+    BodyDrift(f, at, particles, scratch).damp(positions, velocities, dt);
   });
 }
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include "core/forces/spring_changes.h"
+#include "core/integrators/elongation_limit.h"
 #include "core/integrators/integrator.h"
 #include "core/rigid/rigid_motion.h"
 
@@ -70,8 +72,10 @@ void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Re
                                 IntegratorScratch& scratch) {
   f.evaluate(state.now, time, state.forces);
   kick(f.model, f.runner, state.forces, state.now, dt);
+  limit_elongation(f.model, f.runner, state.now, dt);
   drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
+  change_springs(f.model, f.runner, state.now, dt);
   finish_contacts(f, state, time, dt, scratch);
 }
 
@@ -157,8 +161,10 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   }
   damp_with_springs(f, state.now, dt / 2, scratch);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
+  limit_elongation(f.model, f.runner, state.now, dt);
   drift_with_springs(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
+  change_springs(f.model, f.runner, state.now, dt);
   if (is_damped && must_solve_damping(state.bound, dt)) {
     evaluate_with_solve(f, state, time + dt, dt, scratch);
   } else if (is_damped || !f.controls.grabs.empty()) {

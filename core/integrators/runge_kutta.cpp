@@ -1,5 +1,6 @@
 #include <span>
 
+#include "core/forces/spring_changes.h"
 #include "core/integrators/integrator.h"
 #include "core/rigid/rigid_motion.h"
 #include "core/support/check.h"
@@ -108,6 +109,7 @@ void take_runge_kutta_step(IntegratorId id, const ForceModel& f, State& state, R
                scratch.increment);
   }
   finish(f, scratch.start, scratch.increment, dt, state.now);
+  change_springs(f.model, f.runner, state.now, dt);
 }
 
 }  // namespace vat

@@ -8,6 +8,7 @@
 
 #include "core/forces/vat_motion.h"
 #include "core/model/contacts.h"
+#include "core/model/limited_springs.h"
 #include "core/rigid/mass_properties.h"
 #include "core/scene/step_limits.h"
 #include "core/scene/volumes.h"
@@ -103,11 +104,37 @@ void add_springs(Model& model) {
       ends[first + spring.b].push_back(end_at(spring.a));
     }
   }
+  for (Index i = model.liquid_count; i < model.free_count; ++i) {
+    const Material& material = model.scene.materials[model.material[i]];
+    const bool may_change = material.plasticity || material.tearing_strain;
+    model.springs_change = model.springs_change || (may_change && !ends[i].empty());
+  }
   model.spring_begin.push_back(0);
   for (std::vector<SpringEnd>& of_particle : ends) {
     std::ranges::stable_sort(of_particle, {}, &SpringEnd::other);
     model.spring_ends.insert(model.spring_ends.end(), of_particle.begin(), of_particle.end());
     model.spring_begin.push_back(static_cast<Index>(model.spring_ends.size()));
+  }
+}
+
+void add_cells(Model& model) {
+  std::vector<std::vector<CellCorner>> corners(model.free_count);
+  const Index count = model.scene.dimensions == 3 ? 8 : 4;
+  for (const ModelBody& body : model.bodies) {
+    if (!model.scene.forces.springs) break;
+    for (const SampledCell& sampled : body.sample->cells) {
+      VolumeCell cell{{}, sampled.volume, model.scene.materials[body.material].bulk_modulus};
+      for (Index c = 0; c < count; ++c) {
+        cell.corners[c] = body.particles.begin + sampled.corners[c];
+        corners[cell.corners[c]].push_back({static_cast<Index>(model.cells.size()), c});
+      }
+      model.cells.push_back(cell);
+    }
+  }
+  model.cell_begin.push_back(0);
+  for (const std::vector<CellCorner>& of_particle : corners) {
+    model.cell_corners.insert(model.cell_corners.end(), of_particle.begin(), of_particle.end());
+    model.cell_begin.push_back(static_cast<Index>(model.cell_corners.size()));
   }
 }
 
@@ -263,6 +290,8 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
     model->is_filled = fills_world(model->scene, samples_of(*model));
   }
   add_springs(*model);
+  find_limited_springs(*model);
+  add_cells(*model);
   add_rigid_bodies(*model);
   compile_contacts(*model);
   model->damping = find_damping(*model);

@@ -84,6 +84,27 @@ struct SpringEnd {
   Real rest_length = 0;
 };
 
+/// A static spring that gets no longer than `greatest`.
+struct LimitedSpring {
+  Index a = 0;
+  Index b = 0;
+  Index end = 0;      ///< that at a
+  Real greatest = 0;  ///< [m]
+};
+
+/// A cell of a deformable body that keeps its volume; see SampledCell.
+struct VolumeCell {
+  std::array<Index, 8> corners{};
+  Real volume = 0;        ///< at rest [m^3], in two dimensions [m^2]
+  Real bulk_modulus = 0;  ///< [Pa], in two dimensions [N/m]
+};
+
+/// A cell seen from one of its particles.
+struct CellCorner {
+  Index cell = 0;
+  Index corner = 0;
+};
+
 struct RigidModel {
   Index body = 0;  ///< index into Model::bodies
   IndexRange particles;
@@ -138,6 +159,15 @@ struct Model {
   // in order of `other`.
   std::vector<Index> spring_begin;
   std::vector<SpringEnd> spring_ends;
+  // Cells of deformable bodies: corners at free particle i are [cell_begin[i], cell_begin[i+1]).
+  std::vector<VolumeCell> cells;
+  std::vector<Index> cell_begin;
+  std::vector<CellCorner> cell_corners;
+
+  // By colour: none of [limited_begin[c], limited_begin[c + 1]) shares a particle with another.
+  std::vector<LimitedSpring> limited_springs;
+  std::vector<Index> limited_begin;
+  bool springs_change = false;  ///< some may flow or tear, see core/forces/spring_changes.h
 
   std::vector<ContactLaw> contact_laws;                       ///< materials x materials
   std::vector<ContactLaw> wall_laws;                          ///< by material

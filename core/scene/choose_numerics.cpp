@@ -13,6 +13,12 @@ namespace {
 constexpr Real kMargin = 0.9;     // of the stable step
 constexpr Real kEvaluations = 4;  // of Runge-Kutta 4
 
+bool needs_verlet(const Scene& scene) {
+  return std::ranges::any_of(scene.materials, [](const Material& material) {
+    return material.implicit_springs || material.elongation_limit;
+  });
+}
+
 /// What of a scene moves, and how fast.
 struct Motions {
   std::vector<Oscillation> smooth;  ///< springs and the central field
@@ -78,8 +84,7 @@ Numerics choose_numerics(const Scene& scene, std::span<const SampledBody* const>
   } else {
     numerics.control = StepControl::fixed;
     const Real longer = longest_step(motions, IntegratorId::runge_kutta_4, error);
-    if (!std::ranges::any_of(scene.materials, &Material::implicit_springs) &&
-        longer > kEvaluations * step) {
+    if (!needs_verlet(scene) && longer > kEvaluations * step) {
       numerics.integrator = IntegratorId::runge_kutta_4;
       step = longer;
     }

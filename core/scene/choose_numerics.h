@@ -19,7 +19,8 @@ namespace vat {
 ///   2 with any method, in adaptive steps with the tolerance e; the step is the longest that
 ///   springs and the central field allow, and that is stable for sound.
 /// - Elsewhere fixed steps, of velocity Verlet or of Runge-Kutta 4, whichever evaluates forces less
-///   often: 1 / step against 4 / step. Where a material has implicit springs, always the former.
+///   often: 1 / step against 4 / step. Where a material has implicit springs or an
+///   elongation limit, always the former.
 ///
 /// The step is the tick over a whole number, which may be above kMaxStepsPerTick; a scene with such
 /// an accuracy is not valid.

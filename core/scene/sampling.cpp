@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "core/forces/cell_volume.h"
 #include "core/scene/field.h"
 #include "core/scene/jitter.h"
 #include "core/scene/lattice.h"
@@ -65,6 +66,27 @@ void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeI
   }
 }
 
+/// All cells whose corners are all points of the body.
+void add_lattice_cells(const std::vector<LatticePoint>& points, const LatticeIndex& index,
+                       int dimensions, SampledBody& sample) {
+  const Index count = dimensions == 3 ? 8 : 4;
+  for (const LatticePoint& point : points) {
+    SampledCell cell;
+    Index found = 0;
+    for (; found < count; ++found) {
+      const auto bit = [&](Index b) { return static_cast<int>(found >> b & 1); };
+      const Offset offset =
+          dimensions == 3 ? Offset{bit(0), bit(1), bit(2)} : Offset{bit(0), 0, bit(1)};
+      const auto corner = index.find(point, offset);
+      if (!corner) break;
+      cell.corners[found] = *corner;
+    }
+    if (found < count) continue;
+    cell.volume = cell_volume(sample.positions, cell.corners, dimensions);
+    sample.cells.push_back(cell);
+  }
+}
+
 /// Of one lattice point [kg]; in two dimensions [kg/m].
 Real point_mass(Real density, Real spacing, int dimensions) {
   const Real layer = density * spacing * spacing;
@@ -94,8 +116,10 @@ void sample_lattice(const BodyDescription& body, const Material& material, int d
   sample.radii.assign(count, body.radius.value_or(body.spacing / 2));
   sample.velocities.assign(count, Vec3::Zero());
   shift_at_random(body, dimensions, sample);
-  if (body.kind == BodyKind::deformable && material.springs) {
-    const LatticeIndex index(lattice, points);
+  if (body.kind != BodyKind::deformable) return;
+  const LatticeIndex index(lattice, points);
+  if (material.bulk_modulus > 0) add_lattice_cells(points, index, dimensions, sample);
+  if (material.springs) {
     add_lattice_springs(points, index, kStructural, material.springs->structural, sample);
     add_lattice_springs(points, index, kShear, material.springs->shear, sample);
     add_lattice_springs(points, index, kBend, material.springs->bend, sample);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -15,6 +16,14 @@ struct SampledSpring {
   Real rest_length = 0;  ///< [m]
 };
 
+/// Eight neighbours of a lattice, in two dimensions four: corner c is at the cell's far end along x
+/// where bit 0 of c is set, along y where bit 1 is, and along z where bit 2 is; of four along x and
+/// z.
+struct SampledCell {
+  std::array<Index, 8> corners{};
+  Real volume = 0;  ///< at rest [m^3], in two dimensions area [m^2]
+};
+
 /// A body as particles in world coordinates at time 0; all columns have equal length.
 struct SampledBody {
   std::vector<Vec3> positions;
@@ -23,6 +32,7 @@ struct SampledBody {
   std::vector<Real> radii;
   std::vector<Index> fixed;
   std::vector<SampledSpring> springs;
+  std::vector<SampledCell> cells;  ///< where the material keeps their volume
 };
 
 /// Turns a body's description into particles and springs, in an order that depends on nothing but

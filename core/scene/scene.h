@@ -89,6 +89,18 @@ struct LatticeSprings {
   std::optional<SpringConstants> bend;
 };
 
+/// How static springs flow (rate-independent: J. C. Simo, T. J. R. Hughes, Computational
+/// Inelasticity, Springer, 1998, section 1.2 with linear kinematic hardening; with a relaxation
+/// time: section 1.7). Strains are over a spring's length at rest at the start, l0: e of its
+/// length, p of its present length at rest. It is elastic while |e - p - hardening p| <=
+/// yield_strain.
+struct Plasticity {
+  Real yield_strain = 0;
+  Real hardening = 0;        ///< plastic modulus over stiffness; 0: perfectly plastic
+  Real relaxation_time = 0;  ///< of what is beyond yield [s]; 0: none ever is
+  Real max_strain = 0.5;     ///< the greatest |p|
+};
+
 /// What bodies are made of. A body uses the parts that its kind needs.
 struct Material {
   std::string name;
@@ -99,6 +111,15 @@ struct Material {
   /// Static springs are solved for, so that they limit no step; see
   /// core/integrators/implicit_springs.h. Needs velocity Verlet, in fixed or adaptive steps.
   bool implicit_springs = false;
+  std::optional<Plasticity> plasticity{};  ///< of static springs; they are elastic without
+  std::optional<Real> tearing_strain{};    ///< static springs tear at this strain e, for good
+  /// No static spring gets longer than 1 + this times its length at rest at the start; see
+  /// core/integrators/elongation_limit.h. Needs symplectic Euler or velocity Verlet, in fixed or
+  /// adaptive steps, without implicit springs.
+  std::optional<Real> elongation_limit{};
+  /// K [Pa], in two dimensions [N/m]: cells of the lattice of sampled deformable bodies keep their
+  /// volume, see core/forces/volume.h. 0: only springs resist compression.
+  Real bulk_modulus = 0;
 };
 
 /// A box along the body's axes.

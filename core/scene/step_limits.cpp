@@ -2,9 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/forces/cell_volume.h"
 #include "core/scene/contact_limits.h"
 #include "core/scene/volumes.h"
 
@@ -67,15 +69,21 @@ SpringBound bound_springs(const SampledBody& body) {
 }
 
 /// The strongest damping limits some integrators and the weakest others.
-void add_springs(std::size_t index, const SampledBody& body, std::vector<OscillatingPart>& parts) {
-  const SpringBound bound = bound_springs(body);
+void add_solid(const Scene& scene, std::size_t index, const SampledBody& body,
+               std::vector<OscillatingPart>& parts) {
+  const Material& material = material_of(scene, scene.bodies[index]);
+  const bool is_implicit = has_implicit_springs(scene, material);
+  const SpringBound springs = is_implicit ? SpringBound{} : bound_springs(body);
+  const Oscillation cells{bound_cells(body, material.bulk_modulus, scene.dimensions), 0};
   const auto add = [&](const Oscillation& oscillation) {
     parts.push_back({body_path(index), "its springs may become unstable",
                      "undamped springs gain energy with this integrator", oscillation, index});
   };
-  add(bound.greatest);
-  if (bound.greatest.omega2 > 0) {
-    add({bound.greatest.omega2, bound.least_ratio * bound.greatest.omega2});
+  const Oscillation& greatest = springs.greatest;
+  if (is_implicit && body.cells.empty()) return;
+  add(greatest + cells);
+  if (greatest.omega2 > 0) {
+    add(Oscillation{greatest.omega2, springs.least_ratio * greatest.omega2} + cells);
   }
 }
 
@@ -133,6 +141,27 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
 
 }  // namespace
 
+Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions) {
+  std::vector<Real> load(body.positions.size(), 0);
+  const Index count = dimensions == 3 ? 8 : 4;
+  for (const SampledCell& cell : body.cells) {
+    std::array<Real, 8> slope{};
+    Real sum = 0;
+    for (Index c = 0; c < count; ++c) {
+      slope[c] = cell_slope(body.positions, cell.corners, c, dimensions).norm();
+      sum += slope[c];
+    }
+    for (Index c = 0; c < count; ++c) {
+      load[cell.corners[c]] += bulk_modulus / cell.volume * slope[c] * sum;
+    }
+  }
+  Real greatest = 0;
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    greatest = std::max(greatest, load[i] / body.masses[i]);
+  }
+  return greatest;
+}
+
 bool has_implicit_springs(const Scene& scene, const Material& material) {
   return scene.forces.springs && material.implicit_springs;
 }
@@ -145,8 +174,7 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
       add_liquid(scene, b, parts);
       continue;
     }
-    const Material& material = material_of(scene, scene.bodies[b]);
-    if (scene.forces.springs && !material.implicit_springs) add_springs(b, *samples[b], parts);
+    if (scene.forces.springs) add_solid(scene, b, *samples[b], parts);
     if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, b, *samples[b], parts);
   }
   add_contacts(scene, samples, parts);

@@ -30,6 +30,10 @@ struct OscillatingPart {
 /// Whether static springs of the material limit no step.
 bool has_implicit_springs(const Scene& scene, const Material& material);
 
+/// A bound of omega^2 of the cells of a body that keep their volume [1/s^2]: max_i sum_j |H_ij| /
+/// m_i of H = K / V0 sum of slope slope^T over all cells as they start.
+Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions);
+
 /// The parts of the scene that limit its steps; see find_step_limits().
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples);
@@ -38,7 +42,8 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
 /// interface, the default one included, and by self-contact), for its integrator. `samples` are the
 /// scene's bodies. Each is the step that is stable for upper bounds of frequency and damping:
 ///
-/// - springs, but for implicit ones: omega^2 <= 2 max_i lambda_max(sum_j k_ij n n^T) / m_i at the start, and the same of
+/// - springs, but for implicit ones: omega^2 <= 2 max_i lambda_max(sum_j k_ij n n^T) / m_i at the
+/// start, and the same of
 ///   the damping constants;
 /// - sound: c dt / h <= 0.96 and viscosity: nu dt / h^2 <= 0.126, the limits of the corrected
 ///   [MCG03] forces on a cubic lattice under velocity Verlet, as omega dt = 2 and rate dt = 2;

@@ -62,6 +62,7 @@ void check_material(const Material& material, const std::string& path, RangeChec
   if (material.self_contact) {
     check_constants(*material.self_contact, path + "/self_contact", check);
   }
+  check_spring_changes(material, path, check);
   if (!material.springs) return;
   const auto lattice = [&](const std::optional<SpringConstants>& constants, const char* name) {
     if (constants) check_constants(*constants, path + "/springs/" + name, check);
@@ -152,7 +153,7 @@ Errors find_errors(const Scene& scene) {
   if (scene.vat) check_vat(scene, check);
   if (scene.dimensions == 2) check_plane(scene, check);
   check_numerics(scene.numerics, check);
-  check_implicit_springs(scene, check);
+  check_spring_numerics(scene, check);
   std::vector<SampledBody> samples;
   check_bodies(scene, check, samples);
   if (!errors.empty()) return errors;

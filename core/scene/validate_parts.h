@@ -26,8 +26,10 @@ void check_new_solid(const Scene& scene, const BodyDescription& body, const std:
 void check_law_numerics(const Numerics& numerics, const InterfaceConstants& constants,
                         const std::string& path, RangeCheck& check);
 
-/// That the numerics fit materials with implicit springs.
-void check_implicit_springs(const Scene& scene, RangeCheck& check);
+/// Of a material: what may become of static springs.
+void check_spring_changes(const Material& material, const std::string& path, RangeCheck& check);
+/// That the numerics fit what materials say of static springs.
+void check_spring_numerics(const Scene& scene, RangeCheck& check);
 
 void check_vat(const Scene& scene, RangeCheck& check);
 void check_periodicity(const Periodicity& periodic, RangeCheck& check);

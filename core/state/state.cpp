@@ -37,6 +37,11 @@ State initial_state(const Model& model) {
   state.now.velocity.resize(model.particle_count);
   state.now.rigid.resize(model.rigid_bodies.size());
   for (const ModelBody& body : model.bodies) place_body(model, body, state.now);
+  if (model.springs_change) {
+    for (const SpringEnd& spring : model.spring_ends) {
+      state.now.springs.push_back({spring.rest_length, false});
+    }
+  }
   state.forces.particle.assign(model.particle_count, Vec3::Zero());
   state.forces.rigid_force.assign(model.rigid_bodies.size(), Vec3::Zero());
   state.forces.rigid_torque.assign(model.rigid_bodies.size(), Vec3::Zero());

@@ -27,6 +27,12 @@ struct ContactImpulse {
   bool is_steady = false;      ///< not much more than in the step before
 };
 
+/// What becomes of one spring that may flow or tear, kept at each of its ends.
+struct SpringState {
+  Real rest_length = 0;  ///< [m]
+  bool is_torn = false;
+};
+
 /// What is integrated. Positions and velocities of rigid particles follow from the rigid states and
 /// are kept here so that every force sees one geometry.
 struct Configuration {
@@ -34,6 +40,7 @@ struct Configuration {
   std::vector<Vec3> velocity;
   std::vector<RigidState> rigid;
   std::vector<ContactImpulse> contacts{};  ///< by projection, by particle and other
+  std::vector<SpringState> springs{};      ///< by end; empty where no spring may flow or tear
 };
 
 /// Forces at a configuration: on every particle [N], and their resultants on rigid bodies.
@@ -44,7 +51,7 @@ struct Forces {
   /// Of friction on rigid particles, about their centres [N m]; empty where there is none. Read by
   /// rigid_torque alone.
   std::vector<Vec3> rub_torque{};
-  std::vector<Vec3> transport;     ///< of liquids that fill their world, see core/forces/transport.h
+  std::vector<Vec3> transport;  ///< of liquids that fill their world, see core/forces/transport.h
 };
 
 /// What adaptive step control remembers from one step to the next.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/forces/contact_search.h"
+#include "core/forces/spring_changes.h"
 #include "core/limits.h"
 
 namespace vat {
@@ -45,12 +46,13 @@ void LocalPairs::fill(const ForceModel& f, std::vector<Block>& blocks, Collect&&
   });
 }
 
-void LocalPairs::build_springs(const ForceModel& f, const LocalLevels& levels) {
+void LocalPairs::build_springs(const ForceModel& f, const Configuration& at,
+                               const LocalLevels& levels) {
   const Model& model = f.model;
   fill(f, springs_, [&](Index i, std::vector<LocalPair>& pairs) {
     if (i < model.liquid_count || i >= model.free_count) return;
     for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
-      const SpringEnd& spring = model.spring_ends[s];
+      const SpringEnd spring = present_spring(model, at, s);
       const std::uint8_t level = std::max(levels.particle[i], levels.particle[spring.other]);
       pairs.push_back(
           {spring.other, level, false, spring.stiffness, spring.damping, spring.rest_length, 0});
@@ -79,7 +81,7 @@ void LocalPairs::build(const ForceModel& f, const Configuration& at, const Local
                        bool model_changed) {
   skin_ = levels.skin;
   const bool same_levels = !model_changed && levels.particle == spring_levels_;
-  if (!same_levels) build_springs(f, levels);
+  if (!same_levels) build_springs(f, at, levels);
   if (same_levels && f.model.contact_reach <= 0) return;
   built_at_ = at.position;
   build_contacts(f, at, levels);

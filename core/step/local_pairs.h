@@ -63,7 +63,8 @@ class LocalPairs {
   /// Fills `blocks` with what collect(i, pairs) appends for each particle that moves.
   template <class Collect>
   static void fill(const ForceModel& force_model, std::vector<Block>& blocks, Collect&& collect);
-  void build_springs(const ForceModel& force_model, const LocalLevels& levels);
+  void build_springs(const ForceModel& force_model, const Configuration& at,
+                     const LocalLevels& levels);
   void build_contacts(const ForceModel& force_model, const Configuration& at,
                       const LocalLevels& levels);
   void sort_particles(const Model& model, const LocalLevels& levels);

@@ -5,7 +5,9 @@
 #include "core/forces/external.h"
 #include "core/forces/lennard_jones.h"
 #include "core/forces/liquid.h"
+#include "core/forces/spring_changes.h"
 #include "core/forces/vat_motion.h"
+#include "core/forces/volume.h"
 #include "core/rigid/rigid_motion.h"
 
 namespace vat {
@@ -59,7 +61,7 @@ Real elastic_energy(const Model& model, const Configuration& at) {
   Real energy = 0;
   for (Index i = model.liquid_count; i < model.free_count; ++i) {
     for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
-      const SpringEnd& spring = model.spring_ends[s];
+      const SpringEnd spring = present_spring(model, at, s);
       const Real stretch = (at.position[i] - at.position[spring.other]).norm() - spring.rest_length;
       energy += 0.25 * spring.stiffness * stretch * stretch;  // each spring has two ends here
     }
@@ -203,7 +205,8 @@ Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) 
   }
   result.kinetic_energy = kinetic_energy(model, at);
   result.gravitational_energy = external_energy(model, at);
-  result.elastic_energy = elastic_energy(model, at);
+  result.elastic_energy = elastic_energy(model, at) + cell_energy(model, at);
+  result.torn_springs = count_torn(at);
   if (model.contact_reach > 0) {
     result.contact_energy = pair_contact_energy(model, force_model.work, at);
   }

@@ -11,6 +11,7 @@
 #include "core/limits.h"
 #include "core/rigid/rigid_motion.h"
 #include "core/scene/error_model.h"
+#include "core/scene/step_limits.h"
 
 namespace vat {
 namespace {
@@ -51,6 +52,17 @@ std::vector<Vec3> starting_places(const Model& model) {
   return at;
 }
 
+void add_cell_bounds(const Model& model, StepBounds& bounds) {
+  for (const ModelBody& body : model.bodies) {
+    if (body.sample->cells.empty() || !model.scene.forces.springs) continue;
+    const Real bulk_modulus = model.scene.materials[body.material].bulk_modulus;
+    const Real omega2 = bound_cells(*body.sample, bulk_modulus, model.scene.dimensions);
+    for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+      if (model.inverse_mass[i] > 0) bounds.own[i].omega2 += omega2;
+    }
+  }
+}
+
 }  // namespace
 
 StepBounds find_step_bounds(const Model& model) {
@@ -69,6 +81,7 @@ StepBounds find_step_bounds(const Model& model) {
           spring_load(model, at, i, [](const SpringEnd& spring) { return spring.damping; })};
     }
   }
+  add_cell_bounds(model, bounds);
   bounds.own_step.resize(model.free_count);
   const Numerics& numerics = model.scene.numerics;
   std::ranges::transform(bounds.own, bounds.own_step.begin(),

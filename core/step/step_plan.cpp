@@ -10,6 +10,7 @@
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
 #include "core/forces/transport.h"
+#include "core/forces/volume.h"
 #include "core/forces/walls.h"
 #include "core/forces/weakly_compressible.h"
 #include "core/model/model.h"
@@ -19,9 +20,10 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",       "velocity",  "rigid_state",    "force",    "liquid_cells",
-    "liquid_pairs",   "density",   "filled_density", "pressure", "liquid_solids",
-    "solid_pressure", "transport", "contact_list",   "yielding", "rigid_force"};
+    "position",     "velocity",      "rigid_state",    "force",
+    "liquid_cells", "liquid_pairs",  "density",        "filled_density",
+    "pressure",     "liquid_solids", "solid_pressure", "transport",
+    "contact_list", "yielding",      "cell_pressure",  "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -184,6 +186,10 @@ StepPlan make_step_plan(const Model& model) {
   add_push_stages(model, plan);
   if (model.spring_begin[model.implicit_begin] > 0) {
     plan.add("springs", {position, velocity, force}, {force}, &add_spring_forces);
+  }
+  if (!model.cells.empty()) {
+    plan.add("cell_pressure", {position}, {cell_pressure}, &compute_cell_pressure);
+    plan.add("cell_forces", {position, cell_pressure, force}, {force}, &add_cell_forces);
   }
   const bool has_walls = !model.walls.empty() && model.walls_push;
   if (has_walls && model.has_restitution) {

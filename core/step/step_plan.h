@@ -27,9 +27,10 @@ enum class Column : std::uint8_t {
   transport,
   contact_list,
   yielding,
+  cell_pressure,
   rigid_force,
 };
-inline constexpr std::size_t kColumnCount = 15;
+inline constexpr std::size_t kColumnCount = 16;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

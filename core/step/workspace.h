@@ -108,6 +108,7 @@ struct Workspace {
   std::vector<Vec3> spins;                 ///< by rigid body, where there is friction [rad/s]
   std::vector<ContactLoad> contact_loads;  ///< by particle
   std::vector<Vec3> yieldings;             ///< see core/forces/restitution.h; by particle [1/kg]
+  std::vector<Real> cell_pressure;         ///< by cell [Pa]
   bool keep_dampers = false;               ///< asks for the next two lines
   std::vector<Vec3> spring_directions;     ///< by end: n of Boldt eq. 3
   std::vector<DamperBlock> contact_dampers;

@@ -58,9 +58,15 @@ class BitWriter {
     const auto& [structural, shear, bend] = springs;
     put_all(structural, shear, bend);
   }
+  void put(const Plasticity& plasticity) {
+    const auto& [yield_strain, hardening, relaxation_time, max_strain] = plasticity;
+    put_all(yield_strain, hardening, relaxation_time, max_strain);
+  }
   void put(const Material& material) {
-    const auto& [name, density, liquid, springs, self_contact, implicit_springs] = material;
-    put_all(name, density, liquid, springs, self_contact, implicit_springs);
+    const auto& [name, density, liquid, springs, self_contact, implicit_springs, plasticity,
+                 tearing_strain, elongation_limit, bulk_modulus] = material;
+    put_all(name, density, liquid, springs, self_contact, implicit_springs, plasticity,
+            tearing_strain, elongation_limit, bulk_modulus);
   }
   void put(const InterfaceDescription& interface) {
     const auto& [materials, constants, threshold] = interface;

@@ -25,8 +25,11 @@ const char* const kFullDocument = R"json({
      "springs": {"structural": {"stiffness": 1000.5, "damping": 1.5},
                  "shear": {"stiffness": 500.5, "damping": 0.5},
                  "bend": {"stiffness": 250.5, "damping": 0.25}},
-     "self_contact": {"stiffness": 300.5, "damping": 2.5}, "implicit_springs": true},
-    {"name": "wood", "density": 600.125}
+     "self_contact": {"stiffness": 300.5, "damping": 2.5}, "implicit_springs": true,
+     "plasticity": {"yield_strain": 0.0625, "hardening": 0.25, "relaxation_time": 1.5,
+                    "max_strain": 0.375},
+     "tearing_strain": 0.75},
+    {"name": "wood", "density": 600.125, "elongation_limit": 0.125, "bulk_modulus": 2500.5}
   ],
   "default_interface": {"stiffness": 1500.5, "damping": 3.5, "friction": 0.375},
   "interfaces": [
@@ -96,8 +99,10 @@ std::vector<Material> full_materials() {
            LatticeSprings{SpringConstants{1000.5, 1.5}, SpringConstants{500.5, 0.5},
                           SpringConstants{250.5, 0.25}},
            SpringConstants{300.5, 2.5},
-           true},
-          {"wood", 600.125, {}, {}, {}}};
+           true,
+           Plasticity{0.0625, 0.25, 1.5, 0.375},
+           0.75},
+          {"wood", 600.125, {}, {}, {}, false, {}, {}, 0.125, 2500.5}};
 }
 
 BodyDescription body(const char* name, BodyKind kind, const char* material, Shape shape,

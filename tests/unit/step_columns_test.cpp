@@ -57,6 +57,9 @@ void spoil(Column column, Columns& columns) {
     case Column::density:
       std::ranges::fill(columns.work.density, kNan);
       return;
+    case Column::cell_pressure:
+      std::ranges::fill(columns.work.cell_pressure, kNan);
+      return;
     case Column::filled_density:
       std::ranges::fill(columns.work.filled_density, kNan);
       return;
@@ -133,6 +136,8 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.solids.x);
     case Column::yielding:
       return bytes_of(columns.work.yieldings);
+    case Column::cell_pressure:
+      return bytes_of(columns.work.cell_pressure);
     case Column::rigid_force:
       return bytes_of(forces.rigid_force);
   }
@@ -244,6 +249,16 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutAFreeSurface) {
   scene.pressure_solver = PressureSolver::tait;
   scene.vat->max = {0.35, 0.15, 0.15};
   ASSERT_TRUE(test::ForceProbe(scene).model().is_filled);
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereCellsKeepTheirVolume) {
+  Scene scene = crowded_scene(1);
+  scene.materials[2].bulk_modulus = 1e4;
+  scene.bodies[2].springs.clear();
+  scene.bodies[2].shape = BoxShape{{0, 0, 0}, {0.15, 0.15, 0.15}};
+  scene.bodies[2].spacing = 0.05;
+  scene.bodies[2].displacement_field = VectorField{Vec3::Zero(), 0.1 * Mat3::Identity(), {}};
   expect_declared(scene);
 }
 

@@ -15,6 +15,8 @@ std::vector<Case> collect() {
                            cantilever_cases,
                            free_spin_cases,
                            implicit_spring_cases,
+                           plastic_spring_cases,
+                           kept_length_cases,
                            rigid_top_cases,
                            rigid_contact_cases,
                            rigid_friction_cases,

@@ -18,6 +18,8 @@ std::vector<Case> pendulum_cases();
 std::vector<Case> cantilever_cases();
 std::vector<Case> free_spin_cases();
 std::vector<Case> implicit_spring_cases();
+std::vector<Case> plastic_spring_cases();
+std::vector<Case> kept_length_cases();
 std::vector<Case> rigid_top_cases();
 std::vector<Case> rigid_contact_cases();
 std::vector<Case> rigid_friction_cases();

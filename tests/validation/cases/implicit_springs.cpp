@@ -69,7 +69,8 @@ void add_cube_rows(Sheet& sheet) {
   const auto corner_error = [](const Run& run) {
     return (run.body().positions[7] - reference_vector("/deformable/DEF-6b/corner_ppp/5")).norm();
   };
-  add_order_row(sheet, scene, IntegratorId::velocity_verlet, halved(1.25e-3, 3), 5, 2, corner_error);
+  add_order_row(sheet, scene, IntegratorId::velocity_verlet, halved(1.25e-3, 3), 5, 2,
+                corner_error);
   constexpr Real kStep = 0.1;  // omega dt = 4
   Run run = sheet.start(with_step(scene, kStep));
   const BodyDiagnostics start = run.diagnostics().bodies[0];

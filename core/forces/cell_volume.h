@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/types.h"
+
+namespace vat {
+
+/// Volume and its slope of cells whose corners are numbered as SampledCell's. Faces are bilinear:
+/// the mean of their two ways of being cut into triangles. All from differences of places, so that
+/// no digits are lost far from the origin.
+
+namespace cell {
+
+/// A face from the corner c, along the axes i and j after its own, seen from outside: its other
+/// corners in turn.
+inline std::array<Index, 3> face_of(Index c, Index axis) {
+  const Index i = Index{1} << (axis + 1) % 3;
+  const Index j = Index{1} << (axis + 2) % 3;
+  const bool is_odd = ((c ^ c >> 1 ^ c >> 2) & 1) != 0;
+  return is_odd ? std::array{c ^ i, c ^ i ^ j, c ^ j} : std::array{c ^ j, c ^ i ^ j, c ^ i};
+}
+
+inline Vec3 quarter_turn(const Vec3& v) {
+  return {v.z(), 0, -v.x()};
+}
+
+}  // namespace cell
+
+/// The slope of the volume [m^2] with the place of one corner; of an area [m].
+inline Vec3 cell_slope(std::span<const Vec3> at, const std::array<Index, 8>& corners, Index c,
+                       int dimensions) {
+  if (dimensions == 2) {
+    const bool is_outer = c == 0 || c == 3;
+    const Vec3 across =
+        is_outer ? Vec3(at[corners[2]] - at[corners[1]]) : Vec3(at[corners[0]] - at[corners[3]]);
+    return cell::quarter_turn(across) * (c == 3 || c == 2 ? 0.5 : -0.5);
+  }
+  const Vec3& own = at[corners[c]];
+  Vec3 sum = Vec3::Zero();
+  for (Index axis = 0; axis < 3; ++axis) {
+    const std::array<Index, 3> face = cell::face_of(c, axis);
+    const Vec3 a = at[corners[face[0]]] - own;
+    const Vec3 b = at[corners[face[1]]] - own;
+    const Vec3 d = at[corners[face[2]]] - own;
+    sum += a.cross(b) + b.cross(d) + a.cross(d);
+  }
+  return sum / 12;
+}
+
+/// The volume [m^3], negative where the cell is turned inside out; of two dimensions the area.
+inline Real cell_volume(std::span<const Vec3> at, const std::array<Index, 8>& corners,
+                        int dimensions) {
+  const Vec3& origin = at[corners[0]];
+  if (dimensions == 2) {
+    const Vec3 across = at[corners[2]] - at[corners[1]];
+    return (at[corners[3]] - origin).dot(cell::quarter_turn(across)) / 2;
+  }
+  Real sum = 0;
+  for (Index axis = 0; axis < 3; ++axis) {
+    for (const Index c : {Index{0}, Index{7}}) {
+      const std::array<Index, 3> face = cell::face_of(c, axis);
+      const Vec3 p = at[corners[c]] - origin;
+      const Vec3 a = at[corners[face[0]]] - origin;
+      const Vec3 b = at[corners[face[1]]] - origin;
+      const Vec3 d = at[corners[face[2]]] - origin;
+      sum += p.dot(a.cross(b) + b.cross(d) + a.cross(d)) + a.dot(b.cross(d));
+    }
+  }
+  return sum / 12;
+}
+
+}  // namespace vat

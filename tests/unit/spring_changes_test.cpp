@@ -1,0 +1,253 @@
+#include "core/forces/spring_changes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/scene/validate.h"
+#include "tests/support/same_bits.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kLength = 2;  // [m] at the start
+
+TEST(Plasticity, IsElasticUpToTheYieldStrain) {
+  const Plasticity plasticity{0.1, 0.5, 0, 0.5};
+  for (const Real strain : {-0.1, -0.05, 0.0, 0.1}) {
+    EXPECT_EQ(flown_length(plasticity, kLength, kLength, kLength * (1 + 0.999 * strain), 1e-3),
+              kLength);
+  }
+}
+
+TEST(Plasticity, FlowsUntilTheStressIsAtYield) {
+  for (const Real hardening : {0.0, 0.25, 4.0}) {
+    for (const Real strain : {0.15, -0.3}) {
+      const Plasticity plasticity{0.1, hardening, 0, 0.5};
+      const Real length = kLength * (1 + strain);
+      const Real rest = flown_length(plasticity, kLength, kLength, length, 1e-3);
+      const Real flown = rest / kLength - 1;
+      EXPECT_NEAR(strain - flown - hardening * flown, std::copysign(0.1, strain), 1e-15);
+      EXPECT_NEAR(flown_length(plasticity, kLength, rest, length, 1e-3), rest, 1e-15);
+    }
+  }
+}
+
+TEST(Plasticity, RelaxesExponentially) {
+  const Plasticity plasticity{0.1, 0, 2, 0.5};
+  Real rest = kLength;
+  for (int n = 0; n < 100; ++n) rest = flown_length(plasticity, kLength, rest, 2.6, 0.01);
+  // 0.3 of strain, 0.2 of it beyond yield, of which exp(-1 / 2) is left after 1 s of 2 s.
+  EXPECT_NEAR(rest / kLength - 1, 0.2 * (1 - std::exp(-0.5)), 1e-13);
+}
+
+TEST(Plasticity, EndsAtTheGreatestStrain) {
+  const Plasticity plasticity{0.1, 0, 0, 0.25};
+  EXPECT_DOUBLE_EQ(flown_length(plasticity, kLength, kLength, 5, 1e-3), 1.25 * kLength);
+  EXPECT_DOUBLE_EQ(flown_length(plasticity, kLength, kLength, 0.1, 1e-3), 0.75 * kLength);
+  EXPECT_EQ(flown_length(plasticity, 0, 0, 5, 1e-3), 0);  // no length, no strain
+}
+
+// The area of the loop of stress and strain: flow of 4 (A - Y) / (1 + H) against Y, in k l0^2.
+TEST(Plasticity, TakesTheEnergyOfItsLoopInACycle) {
+  constexpr Real kYield = 0.05;
+  constexpr Real kAmplitude = 0.2;
+  constexpr int kSteps = 20000;
+  for (const Real hardening : {0.0, 0.5}) {
+    const Plasticity plasticity{kYield, hardening, 0, 0.5};
+    Real rest = kLength;
+    Real work = 0;
+    Real last = kLength;
+    for (int n = 1; n <= 2 * kSteps; ++n) {
+      const Real phase = 2 * std::numbers::pi * n / kSteps;
+      const Real length = kLength * (1 + kAmplitude * std::sin(phase));
+      const Real force = last - rest;
+      rest = flown_length(plasticity, kLength, rest, length, 1e-3);
+      if (n > kSteps) work += (force + length - rest) / 2 * (length - last);
+      last = length;
+    }
+    const Real expected = 4 * kYield * (kAmplitude - kYield) / (1 + hardening) * kLength * kLength;
+    EXPECT_NEAR(work / expected, 1, 1e-3) << hardening;
+  }
+}
+
+/// A mass on a spring along x, the other end fixed.
+Scene make_oscillator(IntegratorId integrator, Real step) {
+  Scene scene = test::make_scene(integrator, step);
+  scene.materials = {test::make_material("clay")};
+  ParticleShape shape = test::make_particles({{0, 0, 0}, {1, 0, 0}}, 1);
+  shape.fixed = {0};
+  shape.velocities = {{0, 0, 0}, {3, 0, 0}};
+  scene.bodies = {test::make_body("oscillator", BodyKind::deformable, "clay", shape, 0.02)};
+  scene.bodies[0].springs = {{0, 1, {100, 0}, {}}};
+  return scene;
+}
+
+// The spring takes k Y^2 / 2 elastically and the rest of m v^2 / 2 at the constant force k Y; then
+// the mass swings by Y about the new length at rest.
+TEST(Plasticity, LeavesASetThatEnergyTells) {
+  constexpr Real kYield = 0.1;
+  const Real set = (4.5 - 100 * kYield * kYield / 2) / (100 * kYield);
+  for (const bool implicit : {false, true}) {
+    for (const IntegratorId integrator : test::kIntegrators) {
+      if (implicit && integrator != IntegratorId::velocity_verlet) continue;
+      for (const StepControl control :
+           {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
+        const bool is_verlet = integrator == IntegratorId::velocity_verlet;
+        if (control == StepControl::local && (implicit || !is_verlet)) continue;
+        Scene scene = make_oscillator(integrator, 1e-4);
+        scene.numerics.control = control;
+        scene.materials[0].plasticity = Plasticity{kYield, 0, 0, 0.9};
+        scene.materials[0].implicit_springs = implicit;
+        Simulation simulation = test::make_simulation(scene);
+        Real greatest = 0;
+        Real least = 10;
+        for (int n = 0; n < 10000; ++n) {
+          simulation.advance(1);
+          const Real x = test::position_of(simulation, 0, 1).x() - 1;
+          greatest = std::max(greatest, x);
+          if (simulation.time() > 0.5) least = std::min(least, x);
+        }
+        const std::string name = std::string(to_string(integrator)) + ", " + to_string(control);
+        // First order in the step where it yields: k Y v dt of energy, 3e-4 m; explicit Euler adds
+        // k dt / m of its energy a second.
+        const Real tolerance = integrator == IntegratorId::explicit_euler ? 5e-3 : 5e-4;
+        EXPECT_NEAR(greatest, kYield + set, tolerance) << name;
+        EXPECT_NEAR(least, set - kYield, tolerance) << name;
+        EXPECT_EQ(simulation.diagnostics().torn_springs, 0U);
+      }
+    }
+  }
+}
+
+TEST(Tearing, IsForGood) {
+  for (const bool implicit : {false, true}) {
+    Scene scene = make_oscillator(IntegratorId::velocity_verlet, 1e-3);
+    scene.materials[0].tearing_strain = 0.2;  // the swing would be 0.3
+    scene.materials[0].implicit_springs = implicit;
+    Simulation simulation = test::make_simulation(scene);
+    EXPECT_EQ(simulation.diagnostics().torn_springs, 0U);
+    simulation.advance(200);
+    EXPECT_EQ(simulation.diagnostics().torn_springs, 1U);
+    EXPECT_EQ(simulation.diagnostics().elastic_energy, 0);
+    const Vec3 velocity = test::velocity_of(simulation, 0, 1);
+    EXPECT_NEAR(velocity.x(), std::sqrt(9 - 100 * 0.04), 0.03);  // what a step of 1 ms moves
+    simulation.advance(100);
+    EXPECT_EQ(test::velocity_of(simulation, 0, 1), velocity);
+  }
+}
+
+TEST(Tearing, EndsTheDashpotToo) {
+  Scene scene = make_oscillator(IntegratorId::velocity_verlet, 0.01);
+  std::get<ParticleShape>(scene.bodies[0].shape).velocities.clear();
+  scene.bodies[0].springs[0] = {0, 1, {100, 1e4}, 0.9};  // the dashpot must be solved for
+  scene.materials[0].tearing_strain = 0.05;
+  scene.gravity = {10, 0, 0};
+  Simulation simulation = test::make_simulation(scene);
+  simulation.advance(1);
+  ASSERT_EQ(simulation.diagnostics().torn_springs, 1U);
+  const Vec3 velocity = test::velocity_of(simulation, 0, 1);
+  simulation.advance(10);
+  EXPECT_NEAR(test::velocity_of(simulation, 0, 1).x() - velocity.x(), 1, 1e-12);
+}
+
+/// A block that is torn in two and dented: its right half flies away.
+Scene make_torn_block(StepControl control) {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.numerics.control = control;
+  scene.materials = {test::make_material("clay")};
+  scene.materials[0].plasticity = Plasticity{0.02, 0.1, 0.01, 0.3};
+  scene.materials[0].tearing_strain = 0.2;
+  ParticleShape shape = test::make_particles(test::make_lattice(16, 6, 6, 0.05), 0.05);
+  for (const Vec3& place : shape.positions) {
+    shape.velocities.push_back({place.x() > 0 ? 6.0 : 0.0, place.z() * 20, 0});
+  }
+  scene.bodies = {test::make_body("block", BodyKind::deformable, "clay", shape, 0.02)};
+  scene.bodies[0].springs = test::join_near(shape.positions, 0.075, {2000, 1});
+  return scene;
+}
+
+TEST(SpringChanges, HaveTheSameBitsForAnyThreads) {
+  for (const StepControl control :
+       {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
+    const Scene scene = make_torn_block(control);
+    test::expect_same_bits(scene, 30, 10);
+    Simulation simulation = test::make_simulation(scene);
+    const Diagnostics start = simulation.diagnostics();
+    simulation.advance(100);
+    const Diagnostics end = simulation.diagnostics();
+    EXPECT_GT(end.torn_springs, 100U);
+    EXPECT_LT(end.torn_springs, simulation.spring_count() / 2);
+    EXPECT_LT((end.bodies[0].linear_momentum - start.bodies[0].linear_momentum).norm(),
+              1e-12 * start.bodies[0].linear_momentum.norm());
+    EXPECT_LT((end.bodies[0].angular_momentum - start.bodies[0].angular_momentum).norm(),
+              1e-12 * start.bodies[0].angular_momentum.norm());
+  }
+}
+
+TEST(SpringChanges, ArePartOfTheHash) {
+  Scene scene = make_oscillator(IntegratorId::runge_kutta_4, 1e-3);
+  scene.materials[0].plasticity = Plasticity{0.01, 0, 0, 0.5};
+  Simulation one = test::make_simulation(scene);
+  scene.materials[0].plasticity->yield_strain = 0.02;
+  Simulation other = test::make_simulation(scene);
+  EXPECT_EQ(one.state_hash(), other.state_hash());
+  one.advance(4);  // to a strain of 0.012, at which the forces were elastic
+  other.advance(4);
+  EXPECT_EQ(test::position_of(one, 0, 1), test::position_of(other, 0, 1));
+  EXPECT_NE(one.state_hash(), other.state_hash());
+}
+
+TEST(SpringChanges, StayWhereBodiesComeAndGo) {
+  Scene scene = make_torn_block(StepControl::fixed);
+  Simulation simulation = test::make_simulation(scene);
+  simulation.advance(50);
+  const Diagnostics before = simulation.diagnostics();
+  BodyDescription other = scene.bodies[0];
+  other.name = "other";
+  other.position = {0, 10, 0};
+  const Result<BodyId> added = simulation.add_body(other);
+  ASSERT_TRUE(added.ok());
+  EXPECT_EQ(simulation.diagnostics().torn_springs, before.torn_springs);
+  ASSERT_TRUE(simulation.remove_body(simulation.bodies()[1].id).ok());
+  EXPECT_EQ(simulation.diagnostics().torn_springs, before.torn_springs);
+  EXPECT_EQ(simulation.diagnostics().elastic_energy, before.elastic_energy);
+}
+
+TEST(SpringChanges, AreUndoneWithTheStep) {
+  Scene scene = make_torn_block(StepControl::fixed);
+  scene.numerics.step = scene.numerics.tick = 0.02;  // far too long
+  scene.materials[0].plasticity->relaxation_time = 0;
+  scene.bodies[0].springs =
+      test::join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.075, {1e9, 0});
+  scene.materials[0].tearing_strain = 900;
+  Simulation simulation = test::make_simulation(scene);
+  AdvanceReport report;
+  for (int n = 0; n < 20 && !report.failed; ++n) {
+    const std::uint64_t before = simulation.state_hash();
+    report = simulation.advance(1);
+    if (report.failed) {
+      EXPECT_EQ(simulation.state_hash(), before);
+    }
+  }
+  EXPECT_TRUE(report.failed);
+}
+
+TEST(SpringChanges, AreCheckedAtTheirPlaces) {
+  Scene scene = make_oscillator(IntegratorId::velocity_verlet, 1e-3);
+  scene.materials[0].plasticity = Plasticity{-1, -1, -1, 1};
+  scene.materials[0].tearing_strain = 0;
+  std::string paths;
+  for (const Error& error : find_errors(scene)) paths += error.path + '\n';
+  EXPECT_EQ(paths,
+            "/materials/0/tearing_strain\n"
+            "/materials/0/plasticity/yield_strain\n"
+            "/materials/0/plasticity/hardening\n"
+            "/materials/0/plasticity/relaxation_time\n"
+            "/materials/0/plasticity/max_strain\n");
+}
+
+}  // namespace
+}  // namespace vat
