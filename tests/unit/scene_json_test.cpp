@@ -128,6 +128,7 @@ std::set<std::string> required_members() {
                                  "/materials/1/springs/shear/stiffness",
                                  "/materials/1/springs/bend/stiffness",
                                  "/materials/1/self_contact/stiffness",
+                                 "/materials/1/plasticity/yield_strain",
                                  "/bodies/0/shape/size",
                                  "/bodies/1/shape/radius",
                                  "/bodies/2/shape/radius",

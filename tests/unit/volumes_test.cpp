@@ -85,8 +85,8 @@ TEST(Volumes, PerfectLatticesThatFillTheirWorldAreWarnedOf) {
   EXPECT_THAT(paths_of(find_warnings(scene)), Not(Contains("perfect_lattice /bodies/0/jitter")));
 }
 
-// A quarter of the liquid's mass on the same volume: the same forces at twice the frequency. A rigid
-// body may be half as heavy.
+// A quarter of the liquid's mass on the same volume: the same forces at twice the frequency. A
+// rigid body may be half as heavy.
 TEST(StepLimits, OfALightSolidInALiquidAreThoseOfTheLiquidByTheRatioOfDensities) {
   Scene scene = make_full_vat();
   scene.materials[0].liquid->viscosity = 0;
