@@ -31,7 +31,7 @@ BodyDescription make_floater(Random& random, const Vec3& cells, int layers, Real
   if (random.chance(0.5)) body.shape = SphereShape{Vec3::Zero(), 1.3 * spacing};
   // Side by side along x, two cells from walls and from one another.
   body.position = spacing * Vec3(2.5 + 4 * number, random.between(2.5, cells.y() - 2.5),
-                                 layers + random.between(2, 3));
+                                 layers + random.between(1.5, 2));
   body.velocity = random.vector(std::sqrt(kGravity * spacing));
   return body;
 }
@@ -92,7 +92,7 @@ RandomVat random_vat(std::uint64_t seed, PressureSolver solver) {
   Random random(seed);
   RandomVat vat;
   const Real spacing = random.scale(0.005, 0.2);
-  const Vec3 cells(8 + random.below(7), 8 + random.below(7), 8 + random.below(7));
+  const Vec3 cells(8 + random.below(7), 8 + random.below(7), 9 + random.below(6));
   vat.scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
   vat.scene.name = std::string(to_string(solver)) + "-vat-" + std::to_string(seed);
   vat.scene.pressure_solver = solver;
