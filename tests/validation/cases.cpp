@@ -27,6 +27,7 @@ std::vector<Case> collect() {
                            liquid_drop_cases,
                            liquid_column_cases,
                            liquid_dam_break_cases,
+                           tait_dam_break_cases,
                            liquid_tank_cases,
                            liquid_vortex_cases,
                            liquid_outlet_cases,

@@ -36,5 +36,6 @@ std::vector<Case> liquid_outlet_cases();
 std::vector<Case> interaction_impact_cases();
 std::vector<Case> interaction_buoyancy_cases();
 std::vector<Case> tait_body_cases();
+std::vector<Case> tait_dam_break_cases();
 
 }  // namespace vat::validation
