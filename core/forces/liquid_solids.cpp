@@ -9,12 +9,9 @@
 namespace vat {
 namespace {
 
-Real greatest_support(const Model& model) {
-  Real support = 0;
-  for (const auto& liquid : model.liquids) {
-    if (liquid) support = std::max(support, liquid->support_radius);
-  }
-  return support;
+/// That of all liquids, which coupled ones share.
+Real support_of(const Model& model) {
+  return liquid_of(model, 0).support_radius;
 }
 
 }  // namespace
@@ -22,10 +19,10 @@ Real greatest_support(const Model& model) {
 void find_liquid_solids(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
   const Index first = c.model.liquid_count;
-  const Real support = greatest_support(c.model);
+  const Real support = support_of(c.model);
   c.work.solids_in_liquid.build(points.subspan(first), support, c.model.periodic);
   const auto find = [&](const CellSortedPoints& from, const CellSortedPoints& to,
-                        std::vector<PairBlock>& blocks, auto&& support_of) {
+                        std::vector<PairBlock>& blocks) {
     const std::size_t count = from.grid.order().size();
     blocks.resize((count + kBlockSize - 1) / kBlockSize);
     for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
@@ -34,19 +31,15 @@ void find_liquid_solids(StepContext& c) {
       for (std::size_t s = begin; s < end; ++s) {
         block.begin[s - begin] = static_cast<Index>(found);
         const Vec3 place(from.x[s], from.y[s], from.z[s]);
-        const Real radius = support_of(s);
-        c.model.periodic.for_each_image(place, radius, [&](const Vec3& shift) {
-          found = find_near(to, place + shift, kNoParticle, radius, block.slots, found);
+        c.model.periodic.for_each_image(place, support, [&](const Vec3& shift) {
+          found = find_near(to, place + shift, kNoParticle, support, block.slots, found);
         });
       }
       block.begin[end - begin] = static_cast<Index>(found);
     });
   };
-  const std::span<const Index> order = c.work.liquid.grid.order();
-  find(c.work.liquid, c.work.solids_in_liquid, c.work.solids_of_liquid,
-       [&](std::size_t slot) { return liquid_of(c.model, order[slot]).support_radius; });
-  find(c.work.solids_in_liquid, c.work.liquid, c.work.liquid_of_solids,
-       [&](std::size_t) { return support; });
+  find(c.work.liquid, c.work.solids_in_liquid, c.work.solids_of_liquid);
+  find(c.work.solids_in_liquid, c.work.liquid, c.work.liquid_of_solids);
 }
 
 namespace {
@@ -55,8 +48,8 @@ namespace {
 /// the liquid between.
 class Extrapolation {
  public:
-  Extrapolation(const Model& model, const VatMotion& still, const Vec3& place)
-      : fall_(fall_in_vat(model, still, place)), may_pull_(model.is_filled) {}
+  Extrapolation(const Model& model, const Vec3& place)
+      : fall_(fall_in_vat(model, {}, place)), may_pull_(model.is_filled) {}
 
   /// x leads from the liquid to the place.
   void add(const LiquidModel& liquid, Real pressure, const Vec3& x) {
@@ -88,7 +81,7 @@ Real extrapolated_pressure(const StepContext& c, Index self, Real support,
   const std::span<const Index> order = points.grid.order();
   const Vec3 place(solids.x[self], solids.y[self], solids.z[self]);
   const PairBlock& near = c.work.liquid_of_solids[self / kBlockSize];
-  Extrapolation sum(c.model, VatMotion{}, place);
+  Extrapolation sum(c.model, place);
   for (Index k = near.begin[self % kBlockSize]; k < near.begin[self % kBlockSize + 1]; ++k) {
     const Index slot = near.slots[k];
     const Vec3 x =
@@ -96,14 +89,14 @@ Real extrapolated_pressure(const StepContext& c, Index self, Real support,
     sum.add(liquid_of(c.model, order[slot]), c.work.pressure[order[slot]], x);
   }
   if (c.model.walls.empty()) return sum.pressure();
-  for_each_image(c.model, motion, points, place, support,
-                 [&](Index slot, const Vec3& x, const Mirror& mirror) {
-                   const LiquidModel& liquid = liquid_of(c.model, order[slot]);
-                   const ImagePressure image_pressure(c.model, liquid, motion, place);
-                   const Vec3 position(points.x[slot], points.y[slot], points.z[slot]);
-                   sum.add(liquid, image_pressure(c.work.pressure[order[slot]], position, mirror),
-                           x);
-                 });
+  const ImagePressure image_pressure(c.model, motion, place);
+  for_each_image(
+      c.model, motion, points, place, support,
+      [&](Index slot, const Vec3& x, const Mirror& mirror) {
+        const LiquidModel& liquid = liquid_of(c.model, order[slot]);
+        const Vec3 position(points.x[slot], points.y[slot], points.z[slot]);
+        sum.add(liquid, image_pressure(liquid, c.work.pressure[order[slot]], position, mirror), x);
+      });
   return sum.pressure();
 }
 
@@ -112,7 +105,7 @@ Real extrapolated_pressure(const StepContext& c, Index self, Real support,
 void extrapolate_pressure(StepContext& c) {
   const std::size_t count = c.work.solids_in_liquid.grid.order().size();
   const VatMotion motion = motion_of(c);
-  const Real support = greatest_support(c.model);
+  const Real support = support_of(c.model);
   c.work.solid_pressure.resize(count);
   for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -149,14 +142,14 @@ Vec3 image_forces(const StepContext& c, Index self, const Vec3& place, Real supp
                   const VatMotion& motion) {
   const std::span<const Index> order = c.work.liquid.grid.order();
   const Real pressure = c.work.solid_pressure[self];
+  const ImagePressure image_pressure(c.model, motion, place);
   Vec3 sum = Vec3::Zero();
   for_each_image(c.model, motion, c.work.liquid, place, support,
                  [&](Index slot, const Vec3& x, const Mirror& mirror) {
                    const LiquidRecord& other = c.work.liquid_records[slot];
                    const LiquidModel& liquid = liquid_of(c.model, order[slot]);
-                   const ImagePressure image_pressure(c.model, liquid, motion, place);
                    const Real both =
-                       pressure + image_pressure(other.pressure, other.position, mirror);
+                       pressure + image_pressure(liquid, other.pressure, other.position, mirror);
                    sum += (other.volume * pressure_force(liquid, both, x.norm())) * x;
                  });
   return sum;
@@ -168,7 +161,7 @@ void add_tait_forces_on_solids(StepContext& c) {
   const CellSortedPoints& solids = c.work.solids_in_liquid;
   const std::span<const Index> order = solids.grid.order();
   const VatMotion motion = motion_of(c);
-  const Real support = greatest_support(c.model);
+  const Real support = support_of(c.model);
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const auto self = static_cast<Index>(s);

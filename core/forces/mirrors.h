@@ -13,13 +13,14 @@ struct Mirror {
   std::array<bool, 3> axes{};       ///< along which it reflects
   Vec3 twice_plane = Vec3::Zero();  ///< 2 w of the walls' places w, along those [m]
 
-  Vec3 place(const Vec3& x) const {
-    Vec3 image = x;
+  /// A direction as the mirror has it.
+  Vec3 turn(Vec3 x) const {
     for (int axis = 0; axis < 3; ++axis) {
-      if (axes[static_cast<std::size_t>(axis)]) image[axis] = twice_plane[axis] - x[axis];
+      if (axes[static_cast<std::size_t>(axis)]) x[axis] = -x[axis];
     }
-    return image;
+    return x;
   }
+  Vec3 place(const Vec3& x) const { return twice_plane + turn(x); }
 };
 
 /// Calls f(mirror) for the reflections that put something inside the vat within `radius` of `p`.

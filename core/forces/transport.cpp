@@ -6,14 +6,6 @@
 namespace vat {
 namespace {
 
-/// x as the mirror has it.
-Vec3 reflect(const Mirror& mirror, Vec3 x) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (mirror.axes[static_cast<std::size_t>(axis)]) x[axis] = -x[axis];
-  }
-  return x;
-}
-
 /// Calls f(volume, gradient of W, slot, mirror) for everything near liquid slot `self`: other
 /// liquid, without a mirror; its images; solids and their images, with the slot kNoParticle.
 template <class F>
@@ -94,9 +86,8 @@ void add_transport_forces(StepContext& c) {
           if (slot != kNoParticle) {
             const Vec3& u_j = c.work.liquid_records[slot].velocity;
             const Vec3& w_j = transport[order[slot]];
-            flow += mirror == nullptr
-                        ? Vec3(w_j.dot(gradient) * u_j)
-                        : Vec3(reflect(*mirror, w_j).dot(gradient) * reflect(*mirror, u_j));
+            flow += mirror == nullptr ? Vec3(w_j.dot(gradient) * u_j)
+                                      : Vec3(mirror->turn(w_j).dot(gradient) * mirror->turn(u_j));
           }
           sum += volume * flow;
         });

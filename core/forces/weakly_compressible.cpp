@@ -150,25 +150,25 @@ Vec3 solid_forces(const StepContext& c, const LiquidModel& liquid, Index self,
 Vec3 wall_forces(const StepContext& c, const LiquidModel& liquid, const VatMotion& motion,
                  Index self) {
   const LiquidRecord& own = c.work.liquid_records[self];
-  const ImagePressure image_pressure(c.model, liquid, motion, own.position);
+  const ImagePressure image_pressure(c.model, motion, own.position);
   Vec3 sum = Vec3::Zero();
   for_each_image(
       c.model, motion, c.work.liquid, own.position, liquid.support_radius,
       [&](Index slot, const Vec3& x, const Mirror& mirror) {
         const LiquidRecord& other = c.work.liquid_records[slot];
-        const Real pressure = image_pressure(other.pressure, other.position, mirror);
+        const Real pressure = image_pressure(liquid, other.pressure, other.position, mirror);
         sum += (other.volume * pressure_force(liquid, own.pressure + pressure, x.norm())) * x;
       });
   if (!has_solids(c.model)) return sum;
   const CellSortedPoints& solids = c.work.solids_in_liquid;
-  for_each_image(c.model, motion, solids, own.position, liquid.support_radius,
-                 [&](Index slot, const Vec3& x, const Mirror& mirror) {
-                   const Vec3 place(solids.x[slot], solids.y[slot], solids.z[slot]);
-                   const Real pressure = image_pressure(c.work.solid_pressure[slot], place, mirror);
-                   const Real volume =
-                       c.model.rest_volume[c.model.liquid_count + solids.grid.order()[slot]];
-                   sum += (volume * pressure_force(liquid, own.pressure + pressure, x.norm())) * x;
-                 });
+  for_each_image(
+      c.model, motion, solids, own.position, liquid.support_radius,
+      [&](Index slot, const Vec3& x, const Mirror& mirror) {
+        const Vec3 place(solids.x[slot], solids.y[slot], solids.z[slot]);
+        const Real pressure = image_pressure(liquid, c.work.solid_pressure[slot], place, mirror);
+        const Real volume = c.model.rest_volume[c.model.liquid_count + solids.grid.order()[slot]];
+        sum += (volume * pressure_force(liquid, own.pressure + pressure, x.norm())) * x;
+      });
   return sum;
 }
 

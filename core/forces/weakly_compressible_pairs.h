@@ -85,12 +85,9 @@ void for_each_image(const Model& model, const VatMotion& motion, const CellSorte
       const Vec3 from = mirrored + shift;
       points.grid.for_each_run(from, radius, [&](Index begin, Index end) {
         for (Index slot = begin; slot < end; ++slot) {
-          Vec3 x(from.x() - points.x[slot], from.y() - points.y[slot], from.z() - points.z[slot]);
-          if (x.squaredNorm() >= radius * radius) continue;
-          for (int axis = 0; axis < 3; ++axis) {
-            if (mirror.axes[static_cast<std::size_t>(axis)]) x[axis] = -x[axis];
-          }
-          f(slot, x, mirror);
+          const Vec3 x(from.x() - points.x[slot], from.y() - points.y[slot],
+                       from.z() - points.z[slot]);
+          if (x.squaredNorm() < radius * radius) f(slot, mirror.turn(x), mirror);
         }
       });
     });
@@ -102,22 +99,24 @@ void for_each_image(const Model& model, const VatMotion& motion, const CellSorte
 /// there is pressure where there is a free surface.
 class ImagePressure {
  public:
-  ImagePressure(const Model& model, const LiquidModel& liquid, const VatMotion& motion,
-                const Vec3& place)
-      : weight_(liquid.rest_density * fall_in_vat(model, motion, place)),
-        layer_(weight_.norm() * liquid.spacing),
+  ImagePressure(const Model& model, const VatMotion& motion, const Vec3& place)
+      : fall_(fall_in_vat(model, motion, place)),
+        acceleration_(fall_.norm()),
         may_pull_(model.is_filled) {}
 
-  Real operator()(Real pressure, const Vec3& position, const Mirror& mirror) const {
-    const Real more = weight_.dot(mirror.place(position) - position);
+  Real operator()(const LiquidModel& liquid, Real pressure, const Vec3& position,
+                  const Mirror& mirror) const {
+    const Real more = liquid.rest_density * fall_.dot(mirror.place(position) - position);
     if (may_pull_) return pressure + more;
     if (pressure <= 0) return 0;
-    return std::max(Real{0}, pressure + pressure / (pressure + layer_) * more);
+    // What the weight of one layer of particles makes.
+    const Real layer = liquid.rest_density * acceleration_ * liquid.spacing;
+    return std::max(Real{0}, pressure + pressure / (pressure + layer) * more);
   }
 
  private:
-  Vec3 weight_;  ///< by volume [N/m^3]
-  Real layer_;   ///< pressure that the weight of one layer of particles makes
+  Vec3 fall_;
+  Real acceleration_;
   bool may_pull_;
 };
 

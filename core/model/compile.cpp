@@ -212,10 +212,8 @@ void find_rest_volumes(Model& model) {
   model.rest_volume.resize(model.particle_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
-    for (Index i = 0; i < body.particles.size(); ++i) {
-      model.rest_volume[body.particles.begin + i] =
-          particle_volume(model.scene, b, *body.sample, i);
-    }
+    std::ranges::copy(particle_volumes(model.scene, b, *body.sample),
+                      model.rest_volume.begin() + body.particles.begin);
   }
 }
 

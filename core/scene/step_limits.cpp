@@ -93,8 +93,7 @@ Oscillation bound_liquid(const Scene& scene, const Material& material) {
   const Real h = liquid.support_radius;
   const bool is_coupled = couples_liquids(scene.pressure_solver);
   const Real speed = std::sqrt(scene.forces.pressure ? liquid.stiffness : 0);
-  // Impacts compress it, and sound is faster then: by a tenth in space, by a fifth in the plane.
-  const Real tait_limit = kTaitSoundLimit * (scene.dimensions == 2 ? 0.82 : 0.9);
+  const Real tait_limit = kTaitSoundLimit * compressed_step_share(scene.dimensions);
   const Real sound = kVerletLimit / (is_coupled ? tait_limit : kSoundLimit) * speed / h;
   Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
   if (is_coupled && scene.forces.viscosity) {
@@ -118,8 +117,9 @@ void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPa
 void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sample,
                    std::vector<OscillatingPart>& parts) {
   Real lightest = std::numeric_limits<Real>::infinity();  // density
-  for (Index i = 0; i < sample.positions.size(); ++i) {
-    lightest = std::min(lightest, sample.masses[i] / particle_volume(scene, index, sample, i));
+  const std::vector<Real> volumes = particle_volumes(scene, index, sample);
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    lightest = std::min(lightest, sample.masses[i] / volumes[i]);
   }
   Oscillation bound;
   for (const BodyDescription& body : scene.bodies) {
@@ -164,6 +164,10 @@ Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions) {
 
 bool has_implicit_springs(const Scene& scene, const Material& material) {
   return scene.forces.springs && material.implicit_springs;
+}
+
+Real compressed_step_share(int dimensions) {
+  return dimensions == 2 ? 0.82 : 0.9;
 }
 
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,

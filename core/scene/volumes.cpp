@@ -27,27 +27,33 @@ Real world_volume(const Scene& scene) {
 
 }  // namespace
 
-Real particle_volume(const Scene& scene, std::size_t body, const SampledBody& sample,
-                     Index particle) {
+std::vector<Real> particle_volumes(const Scene& scene, std::size_t body,
+                                   const SampledBody& sample) {
   const BodyDescription& description = scene.bodies[body];
+  const std::size_t count = sample.positions.size();
+  std::vector<Real> volumes;
+  volumes.reserve(count);
   if (description.kind == BodyKind::liquid) {
     const auto material = std::ranges::find(scene.materials, description.material, &Material::name);
     VAT_CHECK(material != scene.materials.end());
-    return sample.masses[particle] / material->density;
+    for (const Real mass : sample.masses) volumes.push_back(mass / material->density);
+    return volumes;
   }
   const bool is_plane = scene.dimensions == 2;
   const Real shape = is_plane ? shape_area(description.shape) : shape_volume(description.shape);
-  if (shape > 0) return shape / static_cast<Real>(sample.positions.size());
-  return std::pow(2 * sample.radii[particle], scene.dimensions);
+  if (shape > 0) {
+    volumes.assign(count, shape / static_cast<Real>(count));
+    return volumes;
+  }
+  for (const Real radius : sample.radii) volumes.push_back(std::pow(2 * radius, scene.dimensions));
+  return volumes;
 }
 
 bool fills_world(const Scene& scene, std::span<const SampledBody* const> samples) {
   constexpr Real kFull = 0.999;
   Real filled = 0;
   for (std::size_t b = 0; b < samples.size(); ++b) {
-    for (Index i = 0; i < samples[b]->positions.size(); ++i) {
-      filled += particle_volume(scene, b, *samples[b], i);
-    }
+    for (const Real volume : particle_volumes(scene, b, *samples[b])) filled += volume;
   }
   return filled >= kFull * world_volume(scene);
 }

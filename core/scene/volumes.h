@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/scene/sampling.h"
 #include "core/scene/scene.h"
@@ -13,11 +14,10 @@ inline bool couples_liquids(PressureSolver solver) {
   return solver != PressureSolver::gas;
 }
 
-/// Of one particle of the scene's body `body`, with this sample [m^3]: of a liquid its mass over
-/// the rest density; of a solid its part of the shape or, for explicit particles, the cube about
-/// it.
-Real particle_volume(const Scene& scene, std::size_t body, const SampledBody& sample,
-                     Index particle);
+/// Of the particles of the scene's body `body`, with this sample [m^3]: of a liquid their mass over
+/// the rest density; of a solid equal parts of the shape or, for explicit particles, the cubes
+/// about them.
+std::vector<Real> particle_volumes(const Scene& scene, std::size_t body, const SampledBody& sample);
 
 /// Whether bodies take up all of a world that is closed, by periodic axes and the walls of a vat
 /// with a lid, but for a thousandth: liquid then has no free surface.

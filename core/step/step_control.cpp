@@ -36,11 +36,10 @@ Real spring_load(const Model& model, const std::vector<Vec3>& at, Index i, Const
   return 2 * solver.eigenvalues()[2] * model.inverse_mass[i];
 }
 
-/// Sound in a liquid that is compressed by up to an eighth, where lattices of h / 2 are stable up
-/// to 0.71 h / c in the plane and 0.78 h / c in space: nine tenths of this one's stable step.
+/// With the sound of a liquid that is compressed.
 Oscillation compressed(const Model& model, const Oscillation& liquid) {
   if (model.is_coupled) return liquid;  // its bound allows for that
-  const Real share = model.scene.dimensions == 2 ? 0.82 : 0.9;
+  const Real share = compressed_step_share(model.scene.dimensions);
   return {liquid.omega2 / (share * share), liquid.rate};
 }
 

@@ -38,7 +38,7 @@ bool is_full(const Scene& scene) {
 
 TEST(Volumes, OfALiquidParticleAreItsMassOverTheRestDensity) {
   const Scene scene = make_full_vat();
-  EXPECT_NEAR(particle_volume(scene, 0, sample_bodies(scene)[0], 3), 0.05 * 0.05 * 0.05, 1e-15);
+  EXPECT_NEAR(particle_volumes(scene, 0, sample_bodies(scene)[0])[3], 0.05 * 0.05 * 0.05, 1e-15);
 }
 
 TEST(Volumes, OfASolidAddUpToItsShape) {
@@ -48,9 +48,9 @@ TEST(Volumes, OfASolidAddUpToItsShape) {
   scene.bodies[2].radius = 0.01;
   const std::vector<SampledBody> samples = sample_bodies(scene);
   const Real count = static_cast<Real>(samples[1].positions.size());
-  EXPECT_NEAR(particle_volume(scene, 1, samples[1], 0) * count, 4 * M_PI / 3 * std::pow(0.08, 3),
+  EXPECT_NEAR(particle_volumes(scene, 1, samples[1])[0] * count, 4 * M_PI / 3 * std::pow(0.08, 3),
               1e-15);
-  EXPECT_NEAR(particle_volume(scene, 2, samples[2], 0), std::pow(0.02, 3), 1e-18);
+  EXPECT_NEAR(particle_volumes(scene, 2, samples[2])[0], std::pow(0.02, 3), 1e-18);
 }
 
 TEST(Volumes, FillAWorldThatIsClosed) {
