@@ -29,6 +29,7 @@ std::vector<Case> collect() {
                            liquid_dam_break_cases,
                            tait_dam_break_cases,
                            liquid_tank_cases,
+                           two_liquid_cases,
                            liquid_vortex_cases,
                            liquid_outlet_cases,
                            interaction_impact_cases,

@@ -55,6 +55,12 @@ Real artificial_viscosity(const Scene& scene, Real alpha) {
   return alpha * std::sqrt(liquid.stiffness) * liquid.support_radius / (2 * (scene.dimensions + 2));
 }
 
+Real pressed_height(Real thickness, Real above, Real c2) {
+  constexpr Real kGravity = 9.81;
+  const auto power = [&](Real depth) { return std::pow(1 + 7 * kGravity * depth / c2, 6.0 / 7); };
+  return c2 / (6 * kGravity) * (power(above + thickness) - power(above));
+}
+
 Real acoustic_step(const Scene& scene, Real interval) {
   const LiquidConstants& liquid = *scene.materials[0].liquid;
   const Real part = scene.pressure_solver == PressureSolver::tait ? 0.4 : 0.2;

@@ -25,6 +25,10 @@ void set_walls_like_liquid(Scene& scene);
 /// form stands for, with the support radius H in the place of its length [m^2/s].
 Real artificial_viscosity(const Scene& scene, Real alpha);
 
+/// Height of a layer of weakly compressible liquid at rest that is that thick without compression,
+/// under the weight of `above` more of it [m]: dz/dz_0 = rho_0/rho = (1 + 7 g depth / c^2)^(-1/7).
+Real pressed_height(Real thickness, Real above, Real c2);
+
 /// The longest step, a whole part of `interval`, in which sound goes a fifth of the support radius,
 /// or two fifths in a weakly compressible liquid: half of what is stable is 0.48 or 0.43 of it.
 Real acoustic_step(const Scene& scene, Real interval);

@@ -3,6 +3,7 @@
 
 #include "tests/validation/cases.h"
 #include "tests/validation/cases/liquid_rest.h"
+#include "tests/validation/cases/liquid_wave.h"
 #include "tests/validation/reference.h"
 
 namespace vat::validation {
@@ -22,18 +23,12 @@ Real pressed_gas(Real z, Real depth, Real c2) {
   return -c2 / kGravity * std::log(1 - kGravity * z / (c2 + kGravity * depth));
 }
 
-/// The same by Tait's equation: dz/dz_0 = rho_0/rho = (1 + 7 g (depth - z_0) / c^2)^(-1/7).
-Real pressed_tait(Real z, Real depth, Real c2) {
-  const auto power = [&](Real above) { return std::pow(1 + 7 * kGravity * above / c2, 6.0 / 7); };
-  return c2 / (6 * kGravity) * (power(depth) - power(depth - z));
-}
-
 /// Puts every particle of a lattice where the weight above presses it.
 void press_together(ParticleShape& shape, Real depth, const Scene& scene) {
   const Real c2 = scene.materials[0].liquid->stiffness;
   const bool tait = scene.pressure_solver == PressureSolver::tait;
   for (Vec3& x : shape.positions) {
-    x.z() = tait ? pressed_tait(x.z(), depth, c2) : pressed_gas(x.z(), depth, c2);
+    x.z() = tait ? pressed_height(x.z(), depth - x.z(), c2) : pressed_gas(x.z(), depth, c2);
   }
 }
 
@@ -69,37 +64,12 @@ Scene standing_wave(const std::string& name, int layers) {
   return with_step(scene, acoustic_step(scene, 0.01));
 }
 
-/// Of the centre of mass about the middle of the tank.
-struct Swing {
-  std::vector<Real> zeros;     ///< [s]
-  std::vector<Real> extremes;  ///< greatest distances between zeros [m]
-};
-
-Swing swing(Run& run, Real until) {
-  Swing seen;
-  Real before = center(run) - 0.5;
-  Real greatest = std::abs(before);
-  while (run.simulation().time() < until - 0.005) {
-    const Real begin = run.simulation().time();
-    run.advance_to(begin + 0.01);
-    const Real after = center(run) - 0.5;
-    if (before * after < 0) {
-      seen.zeros.push_back(begin + 0.01 * before / (before - after));
-      seen.extremes.push_back(greatest);
-      greatest = 0;
-    }
-    greatest = std::max(greatest, std::abs(after));
-    before = after;
-  }
-  return seen;
-}
-
 void check_standing_wave(Sheet& sheet, const std::string& name, int layers) {
   const std::string at = "/liquid/LIQ-12/modes/1/";
   const std::string of = ", " + std::to_string(layers) + " layers";
   const bool tait = name == "LIQ-12-tait";
   Run run = sheet.start(standing_wave(name, layers));
-  const Swing seen = swing(run, 3.2);
+  const Swing seen = observe_swing(run, 3.2, [&] { return center(run) - 0.5; });
   const Real steepness = reference(at + "k") * kWave;
   const Real period = reference(at + "T") / (1 - 0.194641 * steepness * steepness / 2);
   // Over whole periods, for the liquid at rest may be a little to one side.
