@@ -113,12 +113,9 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.name = reader.text("name", kMaxNameLength, "");
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");
-  const std::size_t errors_before = errors.size();
   // In the order of PressureSolver.
   scene.pressure_solver = static_cast<PressureSolver>(reader.choice(
       "pressure_solver", {"gas", "tait"}, static_cast<std::size_t>(scene.pressure_solver)));
-  // One mistake, one error: the article's gas allows all that the others do.
-  if (errors.size() > errors_before) scene.pressure_solver = PressureSolver::gas;
   scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);

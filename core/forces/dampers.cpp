@@ -74,7 +74,7 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
       if (!is_mirrored) {
         add_wall_dampers({model, f.work, at, f.step}, motion, i, f.work.spins, block);
       }
-      if (i < model.liquid_count && is_viscous_) {
+      if (i < model.liquid_count && is_viscous_ && !model.is_coupled) {
         add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
       }
       if (i < model.liquid_count && viscosity) {
@@ -84,6 +84,8 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
     block.start(end - begin);
   });
   if (is_viscous_) collect_viscosity(f);
+  has_images_ = is_viscous_ && has_no_slip_images(model);
+  if (has_images_) images_.collect(f, time);
 }
 
 namespace {
@@ -216,6 +218,7 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
       force[order[s]] += sum;
     }
   });
+  if (has_images_) images_.add(f, w, force);
 }
 
 }  // namespace vat

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/forces/no_slip_images.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -28,6 +29,8 @@ class DampingMatrix {
   void collect_viscosity(const ForceModel& force_model);
 
   bool is_viscous_ = false;
+  bool has_images_ = false;
+  NoSlipImages images_;
   std::vector<DamperBlock> blocks_;             ///< of particles, without springs and contacts
   std::vector<std::vector<Real>> viscosities_;  ///< mu V_i V_j laplacian W, as liquid_pairs [N s/m]
   std::vector<Vec3> by_slot_;                   ///< w of liquid slots

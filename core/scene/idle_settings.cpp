@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/scene/interface_table.h"
+#include "core/scene/volumes.h"
 
 namespace vat {
 namespace {
@@ -13,11 +14,13 @@ void warn(std::string path, std::string message, std::vector<Warning>& warnings)
 }
 
 bool has_viscous_liquid(const Scene& scene) {
+  const bool has_artificial = couples_liquids(scene.pressure_solver);
   return scene.forces.viscosity &&
          std::ranges::any_of(scene.bodies, [&](const BodyDescription& body) {
            if (body.kind != BodyKind::liquid) return false;
            const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
-           return material->liquid->viscosity > 0;
+           const LiquidConstants& liquid = *material->liquid;
+           return liquid.viscosity > 0 || (has_artificial && liquid.artificial_viscosity > 0);
          });
 }
 

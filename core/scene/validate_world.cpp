@@ -45,10 +45,6 @@ void check_wall(const Scene& scene, std::size_t wall, RangeCheck& check) {
     check.add("not_allowed", path, reason);
     return;
   }
-  if (no_slip && scene.pressure_solver == PressureSolver::tait) {
-    check.add("not_allowed", path + "/no_slip", "needs the pressure solver \"gas\"");
-    return;
-  }
   const std::string at = path + "/velocity";
   if (!check.vector(velocity, -kMaxSpeed, kMaxSpeed, at)) return;
   const std::size_t axis = wall / 2;

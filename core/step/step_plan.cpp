@@ -1,11 +1,13 @@
 #include "core/step/step_plan.h"
 
+#include <algorithm>
 #include <array>
 
 #include "core/forces/contacts.h"
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
 #include "core/forces/no_slip.h"
+#include "core/forces/no_slip_images.h"
 #include "core/forces/restitution.h"
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
@@ -169,6 +171,13 @@ bool has_viscosity(const Model& model) {
   return false;
 }
 
+bool has_no_slip_images(const Model& model) {
+  if (!model.is_coupled || model.no_slip_walls.empty()) return false;
+  return std::ranges::any_of(model.bodies, [&](const ModelBody& body) {
+    return body.kind == BodyKind::liquid && model.liquids[body.material]->central_viscosity > 0;
+  });
+}
+
 StepPlan make_step_plan(const Model& model) {
   using enum Column;
   PlanBuilder plan({position, velocity, rigid_state});
@@ -178,6 +187,10 @@ StepPlan make_step_plan(const Model& model) {
   plan.add("external_forces", {position, velocity}, {force}, &set_external_forces);
   if (model.is_coupled) {
     add_coupled_stages(model, plan);
+    if (has_no_slip_images(model)) {
+      plan.add("no_slip_images", {velocity, liquid_cells, force}, {force},
+               &add_no_slip_image_forces);
+    }
     if (model.is_filled) add_transport_stages(model, plan);
   } else if (model.liquid_count > 0) {
     add_liquid_stages(model, plan);

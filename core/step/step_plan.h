@@ -63,6 +63,9 @@ class PlanBuilder {
 /// Whether some liquid of the model is viscous, and viscosity on.
 bool has_viscosity(const Model& model);
 
+/// Whether no-slip walls drag a weakly compressible liquid along, see core/forces/no_slip_images.h.
+bool has_no_slip_images(const Model& model);
+
 /// The plan for a model whose bodies and contact tables are complete.
 StepPlan make_step_plan(const Model& model);
 

@@ -244,6 +244,13 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereSolidsTakePart) {
   expect_declared(scene);
 }
 
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereWallsDragALiquidThatTheyTakePartIn) {
+  Scene scene = crowded_scene(1);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.vat->walls[4] = {true, {0.5, 0, 0}};
+  expect_declared(scene);
+}
+
 TEST(StepColumns, AreReadAndWrittenAsDeclaredWithoutAFreeSurface) {
   Scene scene = crowded_scene(1);
   scene.pressure_solver = PressureSolver::tait;

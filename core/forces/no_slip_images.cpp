@@ -1,0 +1,114 @@
+#include "core/forces/no_slip_images.h"
+
+#include "core/forces/liquid_pairs.h"
+#include "core/forces/weakly_compressible_pairs.h"
+#include "core/step/force_model.h"
+
+namespace vat {
+namespace {
+
+/// What a mirror makes of velocities: v -> factor v + shift, axis by axis.
+struct MirroredVelocity {
+  bool is_dragged = false;  ///< one of its walls, at least, is no_slip
+  Vec3 factor = Vec3::Ones();
+  Vec3 shift = Vec3::Zero();
+};
+
+/// Of a mirror seen from `place` inside: one wall after the other, each in its own frame. A wall
+/// that is not no_slip leaves the part along it.
+MirroredVelocity mirrored_velocity(const Vat& vat, const VatMotion& motion, const Mirror& mirror,
+                                   const Vec3& place) {
+  MirroredVelocity result;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
+    const bool is_low = 2 * place[axis] > mirror.twice_plane[axis];
+    const Wall& wall = vat.walls[static_cast<std::size_t>(2 * axis + (is_low ? 0 : 1))];
+    Vec3 factor = Vec3::Constant(wall.no_slip ? -1 : 1);
+    factor[axis] = -1;
+    const Vec3 of_wall = motion.velocity + wall.velocity;
+    result.is_dragged = result.is_dragged || wall.no_slip;
+    result.factor = factor.cwiseProduct(result.factor);
+    result.shift = factor.cwiseProduct(result.shift - of_wall) + of_wall;
+  }
+  return result;
+}
+
+/// Calls f(particle, velocity's mirror, strength by axis) for the images of liquid near slot `self`
+/// that no-slip walls make.
+template <class F>
+void for_each_dragging_image(const Model& model, const Workspace& work, const VatMotion& motion,
+                             Index self, F&& f) {
+  const CellSortedPoints& points = work.liquid;
+  const std::span<const Index> order = points.grid.order();
+  const LiquidModel& liquid = liquid_of(model, order[self]);
+  const Vec3 place(points.x[self], points.y[self], points.z[self]);
+  const auto drag = [&](Index slot, const Vec3& x, const Mirror& mirror) {
+    const MirroredVelocity velocity = mirrored_velocity(*model.scene.vat, motion, mirror, place);
+    if (!velocity.is_dragged) return;
+    const Real r = x.norm();
+    const Real volumes = model.rest_volume[order[self]] * model.rest_volume[order[slot]];
+    const Real strength = -mean_viscosity(liquid, liquid_of(model, order[slot])) * volumes *
+                          liquid.slope_scale * liquid.kernel.slope_over_r(r) /
+                          softened_square(liquid, r);
+    f(order[slot], velocity, Vec3(strength * x.cwiseAbs2()));
+  };
+  for_each_image(model, motion, points, place, liquid.support_radius, drag);
+}
+
+}  // namespace
+
+void add_no_slip_image_forces(StepContext& c) {
+  const VatMotion motion = motion_of(c);
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  const std::vector<Vec3>& velocities = c.configuration.velocity;
+  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index i = order[s];
+      Vec3 sum = Vec3::Zero();
+      for_each_dragging_image(c.model, c.work, motion, static_cast<Index>(s),
+                              [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
+                                const Vec3 image =
+                                    mirrored.factor.cwiseProduct(velocities[j]) + mirrored.shift;
+                                sum -= strength.cwiseProduct(velocities[i] - image);
+                              });
+      c.forces.particle[i] += sum;
+    }
+  });
+}
+
+void NoSlipImages::collect(const ForceModel& f, Real time) {
+  const VatMotion motion = vat_motion(*f.model.scene.vat, time);
+  const std::size_t count = f.work.liquid.grid.order().size();
+  blocks_.resize((count + kBlockSize - 1) / kBlockSize);
+  for_blocks(f.runner, count, [&](std::size_t begin, std::size_t end) {
+    Block& block = blocks_[begin / kBlockSize];
+    block.images.clear();
+    for (std::size_t s = begin; s < end; ++s) {
+      block.begin[s - begin] = static_cast<Index>(block.images.size());
+      for_each_dragging_image(f.model, f.work, motion, static_cast<Index>(s),
+                              [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
+                                block.images.push_back({j, strength, mirrored.factor});
+                              });
+    }
+    block.begin[end - begin] = static_cast<Index>(block.images.size());
+  });
+}
+
+void NoSlipImages::add(const ForceModel& f, const std::vector<Vec3>& w,
+                       std::vector<Vec3>& force) const {
+  const std::span<const Index> order = f.work.liquid.grid.order();
+  for_blocks(f.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    const Block& block = blocks_[begin / kBlockSize];
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index i = order[s];
+      Vec3 sum = Vec3::Zero();
+      for (Index k = block.begin[s - begin]; k < block.begin[s - begin + 1]; ++k) {
+        const Image& image = block.images[k];
+        sum -= image.strength.cwiseProduct(w[i] - image.factor.cwiseProduct(w[image.other]));
+      }
+      force[i] += sum;
+    }
+  });
+}
+
+}  // namespace vat

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/step/workspace.h"
+
+namespace vat {
+
+struct ForceModel;
+
+/// Stage: no-slip walls of liquids whose walls are mirrors (Model::is_coupled). Seen from the wall,
+/// an image has its particle's velocity turned round, so that it is zero in the middle (J. P.
+/// Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, sec. 3.5). Particles and images have
+/// the liquid's own viscous force, but for what couples two axes in it: that cancels between images
+/// on both sides, and without it the force is symmetric in any two particles and never adds energy.
+void add_no_slip_image_forces(StepContext& context);
+
+/// The same as a symmetric, negative semi-definite matrix D; see DampingMatrix.
+class NoSlipImages {
+ public:
+  void collect(const ForceModel& force_model, Real time);
+  /// force += D w, both with an entry for each particle.
+  void add(const ForceModel& force_model, const std::vector<Vec3>& w,
+           std::vector<Vec3>& force) const;
+
+ private:
+  /// f = -strength (w - factor w_other), axis by axis.
+  struct Image {
+    Index other;    ///< particle
+    Vec3 strength;  ///< [N s/m]
+    Vec3 factor;    ///< 1 or -1
+  };
+  struct Block {
+    std::vector<Image> images;
+    std::array<Index, kBlockSize + 1> begin;  ///< by slot
+  };
+  std::vector<Block> blocks_;
+};
+
+}  // namespace vat

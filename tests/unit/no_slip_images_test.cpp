@@ -1,0 +1,103 @@
+// What no-slip walls do to a liquid that they take part in: the force between two particles and
+// their images.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/force_probe.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kSupport = 0.1;
+constexpr Real kSpacing = 0.04;
+constexpr Real kViscosity = 3;
+constexpr Real kDistance = 0.02;
+const Vec3 kVelocity(1, -2, 3);
+
+/// A place at kDistance from a wall, and another kSpacing from there along `along`.
+Scene make_wall_scene(int wall, int along) {
+  const int axis = wall / 2;
+  Vec3 place = Vec3::Constant(0.5);
+  place[axis] = wall % 2 == 0 ? kDistance : 1 - kDistance;
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4);
+  scene.pressure_solver = PressureSolver::tait;
+  LiquidConstants water{0, kViscosity, kSupport};
+  water.artificial_viscosity = 0;
+  scene.materials = {make_liquid("water", 1000, water)};
+  const Real mass = 1000 * std::pow(kSpacing, 3);
+  scene.bodies = {make_body("drops", BodyKind::liquid, "water",
+                            make_particles({place, place + kSpacing * Vec3::Unit(along)}, mass),
+                            kSpacing / 2)};
+  scene.bodies[0].velocity = kVelocity;
+  scene.vat = Vat{Vec3::Zero(), Vec3::Ones(), true, {}, {}};
+  scene.vat->walls[static_cast<std::size_t>(wall)].no_slip = true;
+  return scene;
+}
+
+/// Of the viscous force 2 (d + 2) mu V^2 W'/r x x^T / (x^2 + 0.01 (h/2)^2) at the distance r, over
+/// x x^T [N s/m^3].
+Real strength(const ForceProbe& probe, Real r) {
+  const LiquidModel& liquid = *probe.model().liquids[0];
+  const Real volume = std::pow(kSpacing, 3);
+  return -2 * (3 + 2) * kViscosity * volume * volume * liquid.slope_scale *
+         liquid.kernel.slope_over_r(r) / (r * r + 0.0025 * kSupport * kSupport);
+}
+
+// Across the wall the image comes towards the particle, along it the image goes the other way: both
+// differ from the particle by twice its velocity. The force has what is along x, axis by axis.
+TEST(NoSlipImages, HaveTheVelocityTurnedRound) {
+  for (int wall = 0; wall < 6; ++wall) {
+    const int axis = wall / 2;
+    const int along = (axis + 1) % 3;
+    const ForceProbe probe(make_wall_scene(wall, along));
+    const Real across = 2 * kDistance;
+    const Real own = strength(probe, across) * across * across;
+    const Real others = strength(probe, std::hypot(across, kSpacing));
+    Vec3 expected = Vec3::Zero();
+    expected[axis] = -(own + others * across * across) * 2 * kVelocity[axis];
+    expected[along] = -others * kSpacing * kSpacing * 2 * kVelocity[along];
+    EXPECT_LT((probe.force(0, 0) - expected).norm(), 1e-12 * expected.norm()) << wall;
+    EXPECT_LT((probe.force(0, 1) - expected).norm(), 1e-12 * expected.norm()) << wall;
+  }
+}
+
+TEST(NoSlipImages, MoveWithTheWallAndTheVat) {
+  constexpr int kAlong = 0;
+  Scene scene = make_wall_scene(4, kAlong);
+  scene.bodies[0].velocity = Vec3::Zero();
+  scene.vat->walls[4].velocity = {0.5, 0.25, 0};
+  scene.vat->motion = SlideMotion{Vec3::UnitX(), 0.2, 4};
+  ForceProbe probe(scene);
+  const Real others = strength(probe, std::hypot(2 * kDistance, kSpacing)) * kSpacing * kSpacing;
+  EXPECT_NEAR(probe.force(0).x(), others * 2 * 0.5, 1e-12 * others);
+  EXPECT_EQ(probe.force(0).y(), 0);  // both particles lie along x
+  probe.evaluate(1);                 // the vat moves at 0.1 pi/2
+  EXPECT_NEAR(probe.force(0).x(), others * 2 * (0.5 + 0.05 * std::numbers::pi), 1e-12 * others);
+}
+
+TEST(NoSlipImages, CostNothingWhereTheyDoNothing) {
+  const auto has_stage = [](const Scene& scene) {
+    return has_no_slip_images(ForceProbe(scene).model());
+  };
+  Scene scene = make_wall_scene(4, 0);
+  EXPECT_TRUE(has_stage(scene));
+  scene.forces.viscosity = false;
+  EXPECT_FALSE(has_stage(scene));
+  EXPECT_EQ(ForceProbe(scene).force(0), Vec3::Zero());
+  scene.forces.viscosity = true;
+  scene.materials[0].liquid->viscosity = 0;
+  EXPECT_FALSE(has_stage(scene));
+  scene.materials[0].liquid->viscosity = kViscosity;
+  scene.vat->walls[4].no_slip = false;
+  EXPECT_FALSE(has_stage(scene));
+  EXPECT_EQ(ForceProbe(scene).force(0), Vec3::Zero());
+}
+
+}  // namespace
+}  // namespace vat
