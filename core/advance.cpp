@@ -167,15 +167,36 @@ bool Simulation::Impl::take_varied_step(ForceModel& force_model, AdvanceReport& 
   return true;
 }
 
-bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& report) {
+void Simulation::Impl::change_bodies_on_time(AdvanceReport& report) {
+  std::vector<MeltedBody> melting;
+  for (std::size_t b = 0; b < model->bodies.size(); ++b) {
+    if (model->bodies[b].melts_at > state.step_count) continue;
+    melting.push_back({b, model->scene.bodies[b].melting->into});
+  }
+  if (melting.empty()) return;
+  const std::vector<Grab> grabs = controls.grabs;
+  melt(melting);
+  report.bodies_changed = true;
+  for (const Grab& grab : grabs) {
+    if (std::ranges::find(controls.grabs, grab.id, &Grab::id) != controls.grabs.end()) continue;
+    report.ended_grabs.push_back(grab.id);
+  }
+}
+
+bool Simulation::Impl::take_nominal_step(AdvanceReport& report) {
   ForceModel force_model{*model, controls, work, runner, observer};
   force_model.report = &report;
-  const bool is_fixed = model->scene.numerics.control == StepControl::fixed;
+  force_model.step = state.step_count;
+  if (model->scene.numerics.control == StepControl::fixed) {
+    return take_guarded_step(force_model, time(), step_size(), report);
+  }
+  return take_varied_step(force_model, report);
+}
+
+bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& report) {
   for (std::uint32_t s = 0; s < steps; ++s) {
-    force_model.step = state.step_count;
-    const bool is_taken = is_fixed ? take_guarded_step(force_model, time(), step_size(), report)
-                                   : take_varied_step(force_model, report);
-    if (!is_taken) return false;
+    change_bodies_on_time(report);
+    if (!take_nominal_step(report)) return false;
     ++state.step_count;
     if (model->periodic.any()) wrap_liquid(*model, runner, state.now);
     for (const AppliedForce& applied : controls.applied_forces) {
@@ -190,20 +211,35 @@ bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& re
   return true;
 }
 
+void Simulation::Impl::begin_call() {
+  call_start.content = *this;
+  call_start.bounds.reset();
+}
+
+void Simulation::Impl::undo_call() noexcept {
+  if (call_start.bounds) {
+    adopt(std::move(call_start.content), std::move(call_start.bounds->first),
+          std::move(call_start.bounds->second));
+  } else {
+    state = call_start.content.state;
+    local.forget();
+  }
+}
+
 AdvanceReport Simulation::advance(std::uint32_t steps) {
   Impl& impl = *impl_;
   AdvanceReport report;
-  impl.call_start = impl.state;
+  impl.begin_call();
   try {
     report.failed = !impl.take_guarded_steps(steps, report);
   } catch (...) {  // out of memory
-    impl.state = impl.call_start;
-    impl.local.forget();
+    impl.undo_call();
     throw;
   }
   if (report.failed) {
-    impl.state = impl.call_start;
-    impl.local.forget();
+    impl.undo_call();
+    report.bodies_changed = false;
+    report.ended_grabs.clear();
   }
   std::erase_if(impl.controls.applied_forces, [&](const AppliedForce& applied) {
     return applied.end_step <= impl.state.step_count;

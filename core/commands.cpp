@@ -6,9 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "core/forces/vat_motion.h"
 #include "core/limits.h"
-#include "core/model/compile.h"
 #include "core/scene/validate.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
@@ -40,98 +38,14 @@ Status check_in_world(const Scene& scene, const Vec3& value, Real limit, const s
   return check_vector(value, limit, path);
 }
 
-/// One of a scene's models, with a configuration of it.
-struct Placed {
-  const Model& model;
-  const ModelBody& body;
-};
-
-/// Copies the state of a body from one model's columns to another's.
-void carry_over(const Placed& from, const Configuration& source, const Placed& to,
-                Configuration& target) {
-  const Index first = from.body.particles.begin;
-  const Index new_first = to.body.particles.begin;
-  const auto count = static_cast<std::ptrdiff_t>(from.body.particles.size());
-  std::copy_n(source.position.begin() + first, count, target.position.begin() + new_first);
-  std::copy_n(source.velocity.begin() + first, count, target.velocity.begin() + new_first);
-  if (from.body.kind == BodyKind::rigid) {
-    target.rigid[to.body.rigid] = source.rigid[from.body.rigid];
-  } else if (!source.springs.empty() && !target.springs.empty()) {
-    const Index end = from.model.spring_begin[first];
-    const auto ends = from.model.spring_begin[from.body.particles.end] - end;
-    std::copy_n(source.springs.begin() + end, ends,
-                target.springs.begin() + to.model.spring_begin[new_first]);
-  }
-}
-
 }  // namespace
-
-namespace {
-
-/// Those of `controls` whose bodies stay, bound to the places of their bodies in `model`.
-Controls rebind(Controls controls, const Model& model) {
-  const auto bind = [&](auto& control) {
-    const auto found = std::ranges::find(model.bodies, control.body_id, &ModelBody::id);
-    control.body = static_cast<Index>(found - model.bodies.begin());
-    return found != model.bodies.end();
-  };
-  std::erase_if(controls.grabs, [&](Grab& grab) { return !bind(grab); });
-  std::erase_if(controls.applied_forces, [&](AppliedForce& applied) { return !bind(applied); });
-  return controls;
-}
-
-}  // namespace
-
-void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
-  std::vector<std::shared_ptr<const SampledBody>> samples;
-  for (const BodyId id : ids) {
-    const ModelBody* known = find(id);
-    samples.push_back(known == nullptr ? nullptr : known->sample);
-  }
-  auto new_model = compile(std::move(scene), ids, std::move(samples));
-  State new_state = initial_state(*new_model);
-  for (const ModelBody& body : new_model->bodies) {
-    const ModelBody* known = find(body.id);
-    if (known == nullptr) continue;
-    carry_over({*model, *known}, state.now, {*new_model, body}, new_state.now);
-  }
-  new_state.step_count = state.step_count;
-  Controls new_controls = rebind(controls, *new_model);
-  GuardBounds new_bounds = guard_bounds(*new_model);
-  StepBounds new_step_bounds = find_step_bounds(*new_model);
-  adopt({std::move(new_model), std::move(new_state), std::move(new_controls)},
-        std::move(new_bounds), std::move(new_step_bounds));
-}
-
-namespace {
-
-std::vector<BodyId> ids_of(const Model& model) {
-  std::vector<BodyId> ids;
-  for (const ModelBody& body : model.bodies) ids.push_back(body.id);
-  return ids;
-}
-
-}  // namespace
-
-Present Simulation::Impl::present() const {
-  Present present;
-  for (const ModelBody& body : model->bodies) {
-    const auto part = [&](const auto& column) {
-      return std::span(column).subspan(body.particles.begin, body.particles.size());
-    };
-    present.bodies.push_back(
-        {part(state.now.position), part(model->radius), body.sample->springs.size()});
-  }
-  if (model->scene.vat) present.vat_offset = vat_motion(*model->scene.vat, time()).offset;
-  return present;
-}
 
 Result<BodyId> Simulation::add_body(const BodyDescription& body) {
   Errors errors = find_body_errors(impl_->model->scene, impl_->present(), body, "/body");
   if (!errors.empty()) return errors;
   Scene scene = impl_->model->scene;
   scene.bodies.push_back(body);
-  std::vector<BodyId> ids = ids_of(*impl_->model);
+  std::vector<BodyId> ids = impl_->ids();
   const BodyId id = impl_->next_id++;
   ids.push_back(id);
   impl_->recompile(std::move(scene), ids);
@@ -143,10 +57,20 @@ Status Simulation::remove_body(BodyId id) {
   if (body == nullptr) return no_such_body();
   const auto index = body - impl_->model->bodies.data();
   Scene scene = impl_->model->scene;
-  std::vector<BodyId> ids = ids_of(*impl_->model);
+  std::vector<BodyId> ids = impl_->ids();
   scene.bodies.erase(scene.bodies.begin() + index);
   ids.erase(ids.begin() + index);
   impl_->recompile(std::move(scene), ids);
+  return {};
+}
+
+Status Simulation::melt_body(BodyId id, const std::string& material) {
+  const ModelBody* body = impl_->find(id);
+  if (body == nullptr) return no_such_body();
+  const auto index = static_cast<std::size_t>(body - impl_->model->bodies.data());
+  Errors errors = find_melting_errors(impl_->model->scene, impl_->present(), index, material);
+  if (!errors.empty()) return errors;
+  impl_->melt({{index, material}});
   return {};
 }
 
@@ -174,7 +98,7 @@ Status Simulation::set_interface(const InterfaceDescription& interface) {
   } else {
     *found = interface;
   }
-  impl_->recompile(std::move(scene), ids_of(*impl_->model));
+  impl_->recompile(std::move(scene), impl_->ids());
   return {};
 }
 

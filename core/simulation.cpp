@@ -65,6 +65,9 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
 
 void Simulation::Impl::adopt(Content content, GuardBounds content_bounds,
                              StepBounds content_step_bounds) noexcept {
+  if (call_start.content.model == model && !call_start.bounds) {
+    call_start.bounds.emplace(std::move(bounds), std::move(step_bounds));
+  }
   static_cast<Content&>(*this) = std::move(content);
   bounds = std::move(content_bounds);
   step_bounds = std::move(content_step_bounds);

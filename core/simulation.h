@@ -79,6 +79,8 @@ struct AdvanceReport {
   /// How often the forces on one particle were summed, in part or whole: the measure on which local
   /// control and implicit springs compare with the others, whose evaluations count every particle.
   std::uint64_t particle_evaluations = 0;
+  bool bodies_changed = false;     ///< some melted, as the scene has it
+  std::vector<std::uint64_t> ended_grabs;  ///< of what is gone, or liquid now
   bool failed = false;             ///< the state is the one before the call
   std::vector<GuardEvent> events;  ///< in the order in which they were seen
 
@@ -158,6 +160,11 @@ class Simulation {
   Result<BodyId> add_body(const BodyDescription& body);
   /// Ends the body's grabs and applied forces too. Fails if there is no such body.
   Status remove_body(BodyId id);
+  /// Makes a deformable body liquid, of a material with liquid constants: its particles keep their
+  /// places, velocities and masses, so that momentum is kept, and lose their springs; none stays
+  /// fixed. Ends the body's grabs and applied forces. Fails if there is no such body or material,
+  /// the body is not deformable, or the material is not for liquids or for this body's particles.
+  Status melt_body(BodyId id, const std::string& material);
   /// `gravity` in m/s^2, each component at most kMaxGravity in magnitude; fails beyond.
   Status set_gravity(const Vec3& gravity);
   /// Adds or replaces one interface. Fails like create(), paths under "/interface".

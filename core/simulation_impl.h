@@ -17,7 +17,22 @@ struct Snapshot::Content {
   Controls controls;
 };
 
+/// A body that is to melt.
+struct MeltedBody {
+  std::size_t body = 0;  ///< index into Model::bodies
+  std::string into;      ///< material
+};
+
 struct Simulation::Impl : Snapshot::Content {
+  using Samples = std::vector<std::shared_ptr<const SampledBody>>;
+
+  /// What an advance() that fails goes back to.
+  struct CallStart {
+    Content content;
+    /// Of the model, where the call has changed it.
+    std::optional<std::pair<GuardBounds, StepBounds>> bounds;
+  };
+
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
   BodyId next_id = 1;      ///< not in snapshots: an id is never used again
@@ -25,7 +40,7 @@ struct Simulation::Impl : Snapshot::Content {
   StepBounds step_bounds;  ///< of the model
   Workspace work;
   IntegratorScratch scratch;
-  State call_start;          ///< of the advance() in progress
+  CallStart call_start;      ///< of the advance() in progress
   Configuration step_start;  ///< of its present step, or part of one
   PresentSteps present_steps;
   MotionProbe probe;
@@ -41,12 +56,22 @@ struct Simulation::Impl : Snapshot::Content {
   /// Takes over what belongs together. Does not fail.
   void adopt(Content content, GuardBounds content_bounds, StepBounds content_step_bounds) noexcept;
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
-  /// of them. Changes nothing where it fails.
+  /// of them. Changes nothing where it fails. A null sample is the body's own, or made.
+  void recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples);
   void recompile(Scene scene, const std::vector<BodyId>& ids);
+  /// Of the bodies, in their order.
+  std::vector<BodyId> ids() const;
+  /// Changes nothing where it fails.
+  void melt(const std::vector<MeltedBody>& bodies);
   /// Rigid particles to their poses, for views.
   void pose_rigid_particles();
 
+  void begin_call();
+  void undo_call() noexcept;
+  /// What the scene has to happen as the next nominal step begins.
+  void change_bodies_on_time(AdvanceReport& report);
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
+  bool take_nominal_step(AdvanceReport& report);
   /// One nominal step, in the parts that adaptive or local control chooses.
   bool take_varied_step(ForceModel& force_model, AdvanceReport& report);
   Real wanted_step(const ForceModel& force_model, Real start);

@@ -173,6 +173,15 @@ void read_field(ObjectReader& reader, std::string_view key, Real bound,
   }
 }
 
+Melting to_melting(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  Melting melting;
+  melting.into = reader.text("into", kMaxNameLength);
+  melting.at = reader.real("at", 0, kMaxRelease);
+  reader.refuse_unknown();
+  return melting;
+}
+
 void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors) {
   body.position = reader.vector("position", -kMaxLength, kMaxLength, body.position);
   if (const Json* orientation = reader.member("orientation")) {
@@ -188,6 +197,9 @@ void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors)
       reader.count("seed", 0, std::numeric_limits<std::uint32_t>::max(), body.seed));
   body.fixed = reader.boolean("fixed", body.fixed);
   body.release = reader.real("release", 0, kMaxRelease, body.release);
+  if (const Json* melting = reader.member("melting")) {
+    body.melting = to_melting(*melting, reader.path_of("melting"), errors);
+  }
 }
 
 }  // namespace

@@ -89,6 +89,7 @@ void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& p
       },
       [&](BodyDescription body, std::size_t at, bool intact) {
         if (!intact || !can_be_checked(partial, body.material)) return;
+        if (body.melting && !can_be_checked(partial, body.melting->into)) return;
         partial.scene.bodies.push_back(std::move(body));
         partial.bodies_at.push_back(at);
       });

@@ -193,6 +193,7 @@ Json to_json(const BodyDescription& body) {
   if (body.mass) json["mass"] = *body.mass;
   if (body.radius) json["radius"] = *body.radius;
   for (const SpringDescription& spring : body.springs) json["springs"].push_back(to_json(spring));
+  if (body.melting) json["melting"] = {{"into", body.melting->into}, {"at", body.melting->at}};
   if (body.velocity_field) json["velocity_field"] = to_json(*body.velocity_field);
   if (body.displacement_field) json["displacement_field"] = to_json(*body.displacement_field);
   return json;

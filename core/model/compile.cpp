@@ -23,6 +23,12 @@ Index find_material(const Scene& scene, const std::string& name) {
   return static_cast<Index>(found - scene.materials.begin());
 }
 
+/// The first step that begins at that time or after it.
+std::uint64_t first_step_from(Real time, Real step) {
+  constexpr Real kRounding = 1e-6;  // a time after whole steps is not one step later
+  return static_cast<std::uint64_t>(std::max(Real{0}, std::ceil(time / step - kRounding)));
+}
+
 void add_bodies(Model& model, const std::vector<BodyId>& ids,
                 std::vector<std::shared_ptr<const SampledBody>> samples) {
   const Scene& scene = model.scene;
@@ -33,6 +39,9 @@ void add_bodies(Model& model, const std::vector<BodyId>& ids,
     body.name = description.name;
     body.kind = description.kind;
     body.material = find_material(scene, description.material);
+    if (description.melting) {
+      body.melts_at = first_step_from(description.melting->at, scene.numerics.step);
+    }
     body.sample = samples[b] ? std::move(samples[b])
                              : std::make_shared<const SampledBody>(sample_body(
                                    description, scene.materials[body.material], scene.dimensions));
@@ -150,11 +159,8 @@ void set_inertia(RigidModel& rigid, const Mat3& inertia) {
   rigid.splitting = w[0] - w[1] < w[1] - w[2] ? std::array{0, 1, 2} : std::array{1, 2, 0};
 }
 
-/// The first step that begins at the body's release or after it.
 std::uint64_t first_free_step(const BodyDescription& body, Real step) {
-  constexpr Real kRounding = 1e-6;  // a release after whole steps is not one step later
-  if (body.fixed) return std::numeric_limits<std::uint64_t>::max();
-  return static_cast<std::uint64_t>(std::max(Real{0}, std::ceil(body.release / step - kRounding)));
+  return body.fixed ? kNever : first_step_from(body.release, step);
 }
 
 void add_rigid_bodies(Model& model) {

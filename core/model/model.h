@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ struct IndexRange {
   Index size() const { return end - begin; }
 };
 
+/// Of nominal steps.
+inline constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
 struct ModelBody {
   BodyId id = 0;
   std::string name;
@@ -35,6 +39,7 @@ struct ModelBody {
   IndexRange particles;
   Index rigid = 0;  ///< place among the rigid bodies; only for kind rigid
   Real mass = 0;
+  std::uint64_t melts_at = kNever;  ///< the first nominal step in which it is liquid
   std::shared_ptr<const SampledBody> sample;
 };
 

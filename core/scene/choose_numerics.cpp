@@ -39,7 +39,9 @@ Motions find_motions(const Scene& scene, std::span<const SampledBody* const> sam
   for (const OscillatingPart& part : find_oscillating_parts(scene, samples)) {
     const bool is_body = part.path.starts_with("/bodies/");
     const std::size_t body = is_body ? std::stoul(part.path.substr(8)) : 0;
-    if (is_body && scene.bodies[body].kind == BodyKind::deformable) {
+    const bool is_liquid = is_body && (scene.bodies[body].kind == BodyKind::liquid ||
+                                       part.path.ends_with(kMeltingPath));
+    if (is_body && !is_liquid && scene.bodies[body].kind == BodyKind::deformable) {
       motions.smooth.push_back(part.bound);
     } else if (part.bound.omega2 > 0 || part.bound.rate > 0) {
       motions.has_kinks = true;

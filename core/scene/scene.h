@@ -179,6 +179,12 @@ struct VectorField {
   std::vector<PlaneWave> waves;
 };
 
+/// When a deformable body becomes liquid: as the first step begins that does so then or later.
+struct Melting {
+  std::string into;  ///< a material with liquid constants
+  Real at = 0;       ///< [s]
+};
+
 /// One body. The shape is given in the body's own frame; `position` and `orientation` place that
 /// frame in the world, `velocity` and `angular_velocity` (world axes, about the centre of mass) set
 /// it in motion. Rigid bodies have neither fields nor jitter; only rigid bodies are held.
@@ -203,7 +209,8 @@ struct BodyDescription {
   std::uint32_t seed = 0;                           ///< of the jitter
   /// A held rigid body moves on as if no force acted on it, up to the time `release` [s].
   Real release = 0;
-  bool fixed = false;  ///< held for ever
+  bool fixed = false;                ///< held for ever
+  std::optional<Melting> melting{};  ///< deformable bodies only
 };
 
 /// The name that stands for the vat's walls in an interface.

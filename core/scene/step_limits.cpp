@@ -106,10 +106,23 @@ Oscillation bound_liquid(const Scene& scene, const Material& material) {
   return {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h) + drag};
 }
 
+/// Of a liquid, or of what becomes one; null for others.
+const Material* liquid_of(const Scene& scene, const BodyDescription& body) {
+  if (body.kind != BodyKind::liquid && !body.melting) return nullptr;
+  const std::string& name = body.melting ? body.melting->into : body.material;
+  return &*std::ranges::find(scene.materials, name, &Material::name);
+}
+
 void add_liquid(const Scene& scene, std::size_t index, std::vector<OscillatingPart>& parts) {
-  parts.push_back({body_path(index), "sound or viscosity in the liquid becomes unstable",
-                   "sound in an inviscid liquid gains energy with this integrator",
-                   bound_liquid(scene, material_of(scene, scene.bodies[index])), index});
+  const BodyDescription& body = scene.bodies[index];
+  OscillatingPart part{body_path(index), "sound or viscosity in the liquid becomes unstable",
+                       "sound in an inviscid liquid gains energy with this integrator",
+                       bound_liquid(scene, *liquid_of(scene, body)), index};
+  if (body.melting) {
+    part.path += kMeltingPath;
+    part.body.reset();  // not yet
+  }
+  parts.push_back(std::move(part));
 }
 
 /// A solid in a liquid that it takes part in: what a liquid particle feels, on as much volume, by
@@ -123,8 +136,9 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
   }
   Oscillation bound;
   for (const BodyDescription& body : scene.bodies) {
-    if (body.kind != BodyKind::liquid) continue;
-    const Material& material = material_of(scene, body);
+    const Material* liquid_material = liquid_of(scene, body);
+    if (liquid_material == nullptr || &body == &scene.bodies[index]) continue;
+    const Material& material = *liquid_material;
     // The highest modes of a liquid have neighbours that move the other way. A rigid body moves as
     // one: against liquid at rest the same displacement is half of that.
     const Real share = scene.bodies[index].kind == BodyKind::rigid ? 0.5 : 1;
@@ -174,10 +188,8 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples) {
   std::vector<OscillatingPart> parts;
   for (std::size_t b = 0; b < samples.size(); ++b) {
-    if (scene.bodies[b].kind == BodyKind::liquid) {
-      add_liquid(scene, b, parts);
-      continue;
-    }
+    if (liquid_of(scene, scene.bodies[b]) != nullptr) add_liquid(scene, b, parts);
+    if (scene.bodies[b].kind == BodyKind::liquid) continue;
     if (scene.forces.springs) add_solid(scene, b, *samples[b], parts);
     if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, b, *samples[b], parts);
   }

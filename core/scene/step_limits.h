@@ -18,6 +18,9 @@ struct StepLimit {
   Real step = 0;       ///< [s]; 0: no step is stable with this integrator
 };
 
+/// What follows the path of a body whose melting makes a part that oscillates.
+inline constexpr const char* kMeltingPath = "/melting";
+
 /// A part of a scene that oscillates or decays, as an upper bound.
 struct OscillatingPart {
   std::string path;    ///< JSON pointer to what makes it oscillate

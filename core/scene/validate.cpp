@@ -6,6 +6,7 @@
 
 #include "core/limits.h"
 #include "core/scene/interface_table.h"
+#include "core/scene/melting.h"
 #include "core/scene/pair_limits.h"
 #include "core/scene/validate_parts.h"
 #include "core/support/check.h"
@@ -133,6 +134,15 @@ std::vector<PairBody> pair_bodies(const Scene& scene, const Present& present) {
 
 }  // namespace
 
+/// Of particles to one another.
+void check_neighbours(const Scene& scene, const Present& present, const std::string& periods_path,
+                      const std::string& pairs_path, RangeCheck& check) {
+  const std::vector<PairBody> pairs = pair_bodies(scene, present);
+  if (check_periods(scene, pairs, periods_path, check)) {
+    check_pairs(scene, pairs, pairs_path, check);
+  }
+}
+
 Errors find_errors(const Scene& scene) {
   Errors errors;
   RangeCheck check(errors);
@@ -159,9 +169,11 @@ Errors find_errors(const Scene& scene) {
   if (!errors.empty()) return errors;
   check_accuracy(scene, samples, check);
   const Present present = present_of(samples);
-  const std::vector<PairBody> pairs = pair_bodies(scene, present);
-  if (check_periods(scene, pairs, "/periodic/max", check)) {
-    check_pairs(scene, pairs, "/bodies", check);
+  check_neighbours(scene, present, "/periodic/max", "/bodies", check);
+  const bool melts = std::ranges::any_of(
+      scene.bodies, [](const BodyDescription& body) { return body.melting.has_value(); });
+  if (melts && errors.empty()) {
+    check_neighbours(with_all_melted(scene, samples), present, "/periodic/max", "/bodies", check);
   }
   return errors;
 }
@@ -215,8 +227,20 @@ Errors find_interface_errors(const Scene& scene, const Present& present,
   if (!errors.empty()) return errors;
   Scene changed = scene;
   changed.interfaces.push_back(interface);  // the last of a pair of materials counts
-  const std::vector<PairBody> pairs = pair_bodies(changed, present);
-  if (check_periods(changed, pairs, path, check)) check_pairs(changed, pairs, path, check);
+  check_neighbours(changed, present, path, path, check);
+  return errors;
+}
+
+Errors find_melting_errors(const Scene& scene, const Present& present, std::size_t body,
+                           const std::string& into) {
+  Errors errors;
+  RangeCheck check(errors);
+  check_melting(scene, scene.bodies[body], into, "/body", "/material", check);
+  if (!errors.empty()) return errors;
+  Scene changed = scene;
+  changed.bodies[body].kind = BodyKind::liquid;
+  changed.bodies[body].material = into;
+  check_neighbours(changed, present, "/body", "/body", check);
   return errors;
 }
 

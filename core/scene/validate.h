@@ -43,6 +43,11 @@ Errors find_body_errors(const Scene& scene, const Present& present, const BodyDe
 /// The same at time 0, with every body of the scene where it starts.
 Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path);
 
+/// The errors of melting the scene's body `body` into a material; paths are /body and /material.
+/// Samples nothing.
+Errors find_melting_errors(const Scene& scene, const Present& present, std::size_t body,
+                           const std::string& into);
+
 /// The errors of an interface that is added or that replaces the one of the same materials; paths
 /// start with `path`. Samples nothing.
 Errors find_interface_errors(const Scene& scene, const Present& present,

@@ -169,6 +169,11 @@ std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset
   RangeCheck own_check(own);
   const Material* material = check_material(scene, body, path, own_check);
   check_motion(body, path, own_check);
+  if (body.melting) {
+    const std::string at = path + "/melting";
+    own_check.real(body.melting->at, 0, kMaxRelease, at + "/at");
+    check_melting(scene, body, body.melting->into, at, at + "/into", own_check);
+  }
   if (scene.dimensions == 2) check_body_in_plane(body, path, own_check);
   if (const auto size =
           measure_body(body, material, scene.dimensions, path, allowance, own_check)) {

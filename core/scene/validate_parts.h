@@ -70,6 +70,11 @@ class Allowance {
   Real mesh_work_ = 0;
 };
 
+/// That a body has what it takes to become liquid of a material. The paths are those of what asks
+/// for it and of the material's name.
+void check_melting(const Scene& scene, const BodyDescription& body, const std::string& into,
+                   const std::string& path, const std::string& into_path, RangeCheck& check);
+
 /// Everything about a body but its name's uniqueness and what depends on other bodies. The body's
 /// particles, where it was sampled and has no errors.
 std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,

@@ -45,6 +45,10 @@ void Members::forget_grabs() {
   for (auto& [id, member] : members_) member.grabs.clear();
 }
 
+void Members::forget_grab(std::uint64_t grab) {
+  for (auto& [id, member] : members_) member.grabs.erase(grab);
+}
+
 void Members::forget_grabs_of(BodyId body) {
   for (auto& [id, member] : members_) {
     std::erase_if(member.grabs, [&](const auto& grab) { return grab.second == body; });

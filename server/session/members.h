@@ -43,6 +43,7 @@ class Members {
   void start_epoch();
   void await_frames();
   void forget_grabs();
+  void forget_grab(std::uint64_t grab);
   void forget_grabs_of(BodyId body);
 
   std::map<ConnectionId, Member>& all() { return members_; }

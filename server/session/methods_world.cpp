@@ -46,6 +46,18 @@ SessionAction read_remove_body(ObjectReader& params, Errors&) {
   };
 }
 
+SessionAction read_melt_body(ObjectReader& params, Errors&) {
+  const BodyId body = read_body_id(params);
+  std::string material = params.text("material", kMaxNameLength);
+  return [body, material = std::move(material)](SessionCore& core, Member&) -> ActionResult {
+    const Status melted = core.run().simulation().melt_body(body, material);
+    if (!melted) return refused(melted.errors());
+    core.members().forget_grabs_of(body);
+    core.bodies_changed();
+    return Json::object();
+  };
+}
+
 SessionAction read_set_gravity(ObjectReader& params, Errors&) {
   const Vec3 gravity = params.vector("gravity", kAnyMin, kAnyMax);
   return [gravity](SessionCore& core, Member&) -> ActionResult {
@@ -87,9 +99,9 @@ SessionAction read_apply_force(ObjectReader& params, Errors&) {
 }
 
 constexpr Method kMethods[] = {
-    {"world.add_body", read_add_body, true}, {"world.remove_body", read_remove_body},
-    {"world.set_gravity", read_set_gravity}, {"world.set_interface", read_set_interface},
-    {"world.apply_force", read_apply_force},
+    {"world.add_body", read_add_body, true},     {"world.remove_body", read_remove_body},
+    {"world.melt_body", read_melt_body},         {"world.set_gravity", read_set_gravity},
+    {"world.set_interface", read_set_interface}, {"world.apply_force", read_apply_force},
 };
 
 }  // namespace

@@ -102,6 +102,8 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
     set_playing(false);
     return false;
   }
+  for (const std::uint64_t grab : report.ended_grabs) members_.forget_grab(grab);
+  if (report.bodies_changed) bodies_changed();
   if (timed) rate_.tick_done(now, run_.tick_seconds());
   return true;
 }
@@ -112,12 +114,19 @@ void SessionCore::tell_guard(const AdvanceReport& report) {
   }
 }
 
+void SessionCore::tell_description() {
+  if (!description_due_) return;
+  members_.send_event(write_event("session.description", description()));
+  description_due_ = false;  // what fails stays due
+}
+
+void SessionCore::send_tick_frames() {
+  tell_description();  // a tick may begin an epoch
+  send_frames(true);
+}
+
 void SessionCore::announce() {
-  // What fails stays due.
-  if (description_due_) {
-    members_.send_event(write_event("session.description", description()));
-    description_due_ = false;
-  }
+  tell_description();
   if (status_due_) {
     announce_status();
     status_due_ = false;

@@ -67,7 +67,7 @@ class SessionCore {
   /// Runs one tick; its frames are due then. False if the guard failed, which pauses the session.
   /// The rate is measured where `timed`: ticks of control.step keep no pace.
   bool tick(SteadyClock::time_point now, bool timed);
-  void send_tick_frames() { send_frames(true); }
+  void send_tick_frames();
   /// Tells what is due.
   void announce();
   void announce_status();
@@ -81,6 +81,7 @@ class SessionCore {
  private:
   Json status() const;
   void interrupt();
+  void tell_description();
   void tell_guard(const AdvanceReport& report);
   /// To the subscribers whose turn this tick is, and to those that await a frame.
   void send_frames(bool new_tick);

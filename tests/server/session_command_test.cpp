@@ -117,6 +117,43 @@ TEST_F(SessionCommands, BodiesComeAndGoWithANewEpoch) {
   EXPECT_EQ(description.at("bodies"), before.at("bodies"));
 }
 
+TEST_F(SessionCommands, ABodyMeltsWithANewEpoch) {
+  const Json before = client->result("session.join").at("description");
+  client->result("control.step", {{"ticks", 3}});
+  client->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.5}}});
+  client->mark();
+  EXPECT_EQ(tick_of("world.melt_body", {{"body", 2}, {"material", "water"}}), 3u);
+  const Json description = client->wait_event("session.description");
+  EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
+  EXPECT_EQ(description.at("bodies").at(1).at("kind"), "liquid");
+  EXPECT_EQ(client->error("grab.end", {{"grab", 1}}).at("code"), -32602);
+  client->result("control.step", {{"ticks", 3}});
+  advance_ticks(reference, 3);
+  ASSERT_TRUE(reference.melt_body(2, "water"));
+  advance_ticks(reference, 3);
+  EXPECT_EQ(hash(), hash_of(reference));
+}
+
+// The frame of the tick in which a body melts comes after the description that it belongs to.
+TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
+  Json scene = Json::parse(mixed_scene_text());
+  scene["bodies"][1]["melting"] = {{"into", "water"}, {"at", 0.05}};
+  client->result("scene.load", {{"scene", scene}});
+  const Json before = client->wait_event("session.description");
+  client->result("frames.subscribe");
+  const Json grab =
+      client->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.5}}});
+  client->mark();
+  client->result("control.step", {{"ticks", 3}});
+  const Json description = client->wait_event("session.description");
+  EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
+  EXPECT_EQ(description.at("tick"), 3);
+  EXPECT_EQ(description.at("bodies").at(1).at("kind"), "liquid");
+  const Frame frame = client->wait_frame([](const Frame& each) { return each.header.tick == 3; });
+  EXPECT_EQ(frame.header.epoch, description.at("epoch").get<std::uint32_t>());
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab.at("grab")}}).at("code"), -32602);
+}
+
 TEST_F(SessionCommands, GravityAndInterfacesAreOfTheSceneFromThenOn) {
   client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
   EXPECT_EQ(client->wait_event("session.description").at("gravity"), Json({0, 0, -1}));

@@ -140,13 +140,14 @@ class BitWriter {
     const auto& [a, b, constants, rest_length] = spring;
     put_all(a, b, constants, rest_length);
   }
+  void put(const Melting& melting) { put_all(melting.into, melting.at); }
   void put(const BodyDescription& body) {
     const auto& [name, kind, material, shape, spacing, mass, radius, position, orientation,
                  velocity, angular_velocity, springs, velocity_field, displacement_field, jitter,
-                 seed, release, fixed] = body;
+                 seed, release, fixed, melting] = body;
     put_all(name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
             angular_velocity, springs, velocity_field, displacement_field, jitter, seed, release,
-            fixed);
+            fixed, melting);
   }
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,

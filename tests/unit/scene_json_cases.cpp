@@ -67,7 +67,7 @@ const char* const kFullDocument = R"json({
     {"name": "rod", "kind": "deformable", "material": "rubber", "spacing": 0.04,
      "shape": {"type": "cylinder", "center": [0, 0, 0.1], "axis": [1, 2, 2],
                "radius": 0.1, "height": 0.3},
-     "position": [-1, -0.75, 1.5]},
+     "position": [-1, -0.75, 1.5], "melting": {"into": "water", "at": 1.25}},
     {"name": "wedge", "kind": "rigid", "material": "wood", "spacing": 0.05,
      "shape": {"type": "mesh", "file": "meshes/wedge.obj", "scale": 0.5}, "position": [2, 0, 1],
      "fixed": true},
@@ -156,6 +156,7 @@ std::vector<BodyDescription> full_bodies() {
   bodies[1].mass = 2.5;
   bodies[1].angular_velocity = {1.5, -2.5, 3.5};
   bodies[1].release = 0.75;
+  bodies[2].melting = Melting{"water", 1.25};
   bodies[3].fixed = true;
   bodies[5].springs = {{0, 1, {100.5, 0.125}, 0.2}, {2, 1, {50.5, 0}, {}}};
   return bodies;

@@ -133,6 +133,8 @@ std::set<std::string> required_members() {
                                  "/bodies/1/shape/radius",
                                  "/bodies/2/shape/radius",
                                  "/bodies/2/shape/height",
+                                 "/bodies/2/melting/into",
+                                 "/bodies/2/melting/at",
                                  "/bodies/3/shape/file",
                                  "/bodies/4/shape/vertices",
                                  "/bodies/4/shape/triangles",
