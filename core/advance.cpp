@@ -167,19 +167,28 @@ bool Simulation::Impl::take_varied_step(ForceModel& force_model, AdvanceReport& 
   return true;
 }
 
-void Simulation::Impl::change_bodies_on_time(AdvanceReport& report) {
+void Simulation::Impl::melt_on_time(AdvanceReport& report) {
   std::vector<MeltedBody> melting;
   for (std::size_t b = 0; b < model->bodies.size(); ++b) {
     if (model->bodies[b].melts_at > state.step_count) continue;
     melting.push_back({b, model->scene.bodies[b].melting->into});
   }
-  if (melting.empty()) return;
-  const std::vector<Grab> grabs = controls.grabs;
   melt(melting);
   report.bodies_changed = true;
-  for (const Grab& grab : grabs) {
-    if (std::ranges::find(controls.grabs, grab.id, &Grab::id) != controls.grabs.end()) continue;
-    report.ended_grabs.push_back(grab.id);
+}
+
+void Simulation::Impl::change_bodies_on_time(AdvanceReport& report) {
+  const bool may_flow = !model->nozzles.empty() || !model->scene.drains.empty();
+  const bool may_melt = std::ranges::any_of(
+      model->bodies, [&](const ModelBody& body) { return body.melts_at <= state.step_count; });
+  if (!may_flow && !may_melt) return;
+  std::vector<std::uint64_t> grabs;
+  for (const Grab& grab : controls.grabs) grabs.push_back(grab.id);
+  if (may_melt) melt_on_time(report);
+  if (may_flow) flow();
+  for (const std::uint64_t grab : grabs) {
+    if (std::ranges::find(controls.grabs, grab, &Grab::id) != controls.grabs.end()) continue;
+    report.ended_grabs.push_back(grab);
   }
 }
 

@@ -58,6 +58,7 @@ Status Simulation::remove_body(BodyId id) {
   const auto index = body - impl_->model->bodies.data();
   Scene scene = impl_->model->scene;
   std::vector<BodyId> ids = impl_->ids();
+  std::erase_if(scene.emitters, [&](const Emitter& each) { return each.body == body->name; });
   scene.bodies.erase(scene.bodies.begin() + index);
   ids.erase(ids.begin() + index);
   impl_->recompile(std::move(scene), ids);
@@ -109,6 +110,9 @@ Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
   if (!status) return status;
   if (!(duration > 0 && duration <= kMaxForceTime)) {
     return Error{"out_of_range", "/duration", "must be above 0 and at most 3600 seconds"};
+  }
+  if (body->particles.size() == 0) {
+    return Error{"no_particles", "/body", "the body has no particles at present"};
   }
   if (impl_->controls.applied_forces.size() >= kMaxAppliedForces) {
     return Error{"limit_reached", "",

@@ -36,7 +36,9 @@ struct Diagnostics {
   Real mean_density_error;    ///< liquid: mean of max(0, rho/rho_0 - 1); 0 without liquid
   Real max_density_error;     ///< liquid: greatest rho/rho_0 - 1, at least 0
   std::size_t torn_springs;   ///< of static ones, which have no force any more
-  std::size_t particles_outside;  ///< beyond a wall of the vat
+  std::size_t particles_outside;    ///< beyond a wall of the vat
+  std::uint64_t emitted_particles;  ///< since time 0: what there was at the start, and this, less
+  std::uint64_t drained_particles;  ///< this, is what there is, but for commands
 };
 
 }  // namespace vat

@@ -20,6 +20,8 @@ inline constexpr std::size_t kMaxMeshWork = 20'000'000;      // pairs of triangl
 inline constexpr std::size_t kMaxLatticePoints = 8'000'000;  // of all shapes' bounding boxes
 inline constexpr std::size_t kMaxSceneTriangles = 1'000'000;  // of all meshes, time to check them
 inline constexpr std::size_t kMaxStepsPerTick = 10'000;       // a tick must end
+inline constexpr std::size_t kMaxEmitters = 64;               // each step asks all of them
+inline constexpr std::size_t kMaxDrains = 64;                 // each particle is sought in all
 inline constexpr std::size_t kMaxGrabs = 64;                  // of one simulation, by all users
 inline constexpr std::size_t kMaxAppliedForces = 256;         // pending timed forces
 

@@ -83,11 +83,18 @@ Real Simulation::step_size() const {
   return impl_->step_size();
 }
 std::uint32_t Simulation::steps_per_tick() const {
-  const Numerics& numerics = impl_->model->scene.numerics;
-  return static_cast<std::uint32_t>(std::llround(numerics.tick / numerics.step));
+  return impl_->steps_per_tick();
 }
 std::size_t Simulation::particle_count() const {
   return impl_->model->particle_count;
+}
+std::size_t Simulation::greatest_particle_count() const {
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < impl_->model->bodies.size(); ++b) {
+    const std::size_t present = impl_->model->bodies[b].particles.size();
+    count += std::max(present, most_particles(impl_->model->scene, impl_->model->scene.bodies[b]));
+  }
+  return count;
 }
 std::size_t Simulation::spring_count() const {
   return impl_->model->spring_ends.size() / 2;
@@ -225,7 +232,10 @@ std::uint64_t Simulation::state_hash() const {
 Diagnostics Simulation::diagnostics() const {
   const ForceModel force_model{*impl_->model, impl_->controls, impl_->measured,
                                impl_->runner, nullptr,         impl_->state.step_count};
-  return measure(force_model, impl_->state.now, impl_->time());
+  Diagnostics result = measure(force_model, impl_->state.now, impl_->time());
+  result.emitted_particles = impl_->state.emitted;
+  result.drained_particles = impl_->state.drained;
+  return result;
 }
 
 Result<LiquidFields> Simulation::liquid_fields(BodyId id) const {

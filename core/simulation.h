@@ -24,7 +24,9 @@ struct RigidPose {
   Vec3 angular_velocity;  ///< [rad/s] world axes
 };
 
-/// Read-only view of one body; valid until the simulation next changes.
+/// Read-only view of one body; valid until the simulation next changes. A particle's index is its
+/// place here: emitted particles are added at the end, and where some are drained, those after them
+/// move up in their order.
 struct BodyView {
   BodyId id;
   std::string_view name;
@@ -79,10 +81,10 @@ struct AdvanceReport {
   /// How often the forces on one particle were summed, in part or whole: the measure on which local
   /// control and implicit springs compare with the others, whose evaluations count every particle.
   std::uint64_t particle_evaluations = 0;
-  bool bodies_changed = false;     ///< some melted, as the scene has it
+  bool bodies_changed = false;             ///< some melted, as the scene has it
   std::vector<std::uint64_t> ended_grabs;  ///< of what is gone, or liquid now
-  bool failed = false;             ///< the state is the one before the call
-  std::vector<GuardEvent> events;  ///< in the order in which they were seen
+  bool failed = false;                     ///< the state is the one before the call
+  std::vector<GuardEvent> events;          ///< in the order in which they were seen
 
   /// Counts the event, and keeps it in place of the last where there are kMaxEvents.
   void add(const GuardEvent& event);
@@ -126,6 +128,8 @@ class Simulation {
   Real step_size() const;  ///< [s]
   std::uint32_t steps_per_tick() const;
   std::size_t particle_count() const;
+  /// With all that emitters may add.
+  std::size_t greatest_particle_count() const;
   std::size_t spring_count() const;
   const Scene& scene() const;  ///< as it is now: commands change it
 
@@ -158,7 +162,8 @@ class Simulation {
   /// Adds a body at the present time. Fails like create(), paths under "/body"; its name must be
   /// new.
   Result<BodyId> add_body(const BodyDescription& body);
-  /// Ends the body's grabs and applied forces too. Fails if there is no such body.
+  /// Ends the body's grabs and applied forces too, and its emitters. Fails if there is no such
+  /// body.
   Status remove_body(BodyId id);
   /// Makes a deformable body liquid, of a material with liquid constants: its particles keep their
   /// places, velocities and masses, so that momentum is kept, and lose their springs; none stays
@@ -169,10 +174,10 @@ class Simulation {
   Status set_gravity(const Vec3& gravity);
   /// Adds or replaces one interface. Fails like create(), paths under "/interface".
   Status set_interface(const InterfaceDescription& interface);
-  /// A force [N] on the whole body, in equal accelerations, for `duration` seconds rounded up to
-  /// whole steps; weakened as much, so that the impulse is force times duration. Fails if there is
-  /// no such body, a component is beyond kMaxForce, the duration is not above 0 and at most
-  /// kMaxForceTime, or kMaxAppliedForces act already.
+  /// A force [N] on the whole body as it is now, in equal accelerations, for `duration` seconds
+  /// rounded up to whole steps; weakened as much, so that the impulse is force times duration.
+  /// Fails if there is no such body or it is empty, a component is beyond kMaxForce, the duration
+  /// is not above 0 and at most kMaxForceTime, or kMaxAppliedForces act already.
   Status apply_force(BodyId id, const Vec3& force, Real duration);
 
   /// Ties a particle to a target by a critically damped spring. A deformable or liquid body is held

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cmath>
+#include <optional>
+#include <utility>
+
 #include "core/integrators/integrator.h"
 #include "core/scene/validate.h"
 #include "core/simulation.h"
@@ -48,6 +52,10 @@ struct Simulation::Impl : Snapshot::Content {
   mutable Workspace measured;  ///< scratch of read-only questions
 
   Real step_size() const { return model->scene.numerics.step; }
+  std::uint32_t steps_per_tick() const {
+    const Numerics& numerics = model->scene.numerics;
+    return static_cast<std::uint32_t>(std::llround(numerics.tick / numerics.step));
+  }
   Real time() const { return static_cast<Real>(state.step_count) * step_size(); }
   const ModelBody* find(BodyId id) const;
   /// For the checks of what users add.
@@ -56,8 +64,11 @@ struct Simulation::Impl : Snapshot::Content {
   /// Takes over what belongs together. Does not fail.
   void adopt(Content content, GuardBounds content_bounds, StepBounds content_step_bounds) noexcept;
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
-  /// of them. Changes nothing where it fails. A null sample is the body's own, or made.
-  void recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples);
+  /// of them. Changes nothing where it fails. A null sample is the body's own, or made. `kept`,
+  /// where it is not empty, has which particles of a body stay, as the first of its sample, in
+  /// rising order; all where there is nothing.
+  void recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
+                 const std::vector<std::optional<std::vector<Index>>>& kept);
   void recompile(Scene scene, const std::vector<BodyId>& ids);
   /// Of the bodies, in their order.
   std::vector<BodyId> ids() const;
@@ -70,6 +81,8 @@ struct Simulation::Impl : Snapshot::Content {
   void undo_call() noexcept;
   /// What the scene has to happen as the next nominal step begins.
   void change_bodies_on_time(AdvanceReport& report);
+  void melt_on_time(AdvanceReport& report);
+  void flow();
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
   bool take_nominal_step(AdvanceReport& report);
   /// One nominal step, in the parts that adaptive or local control chooses.

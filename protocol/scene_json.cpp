@@ -17,9 +17,12 @@ struct PartialScene {
   std::vector<std::size_t> materials_at;
   std::vector<std::size_t> interfaces_at;
   std::vector<std::size_t> bodies_at;
+  std::vector<std::size_t> emitters_at;
+  std::vector<std::size_t> drains_at;
   /// Names that the document defines though their material could not be read.
   std::set<std::string> broken_materials;
   bool material_names_known = true;
+  bool body_names_known = true;  ///< all bodies were read without errors
 };
 
 /// Whether every name that an element refers to was read, or is certainly not there.
@@ -82,16 +85,50 @@ void read_interfaces(ObjectReader& reader, PartialScene& partial, Errors& errors
 
 void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& partial,
                  Errors& errors) {
+  const Json* list = reader.array("bodies", kMaxBodies, true);
+  partial.body_names_known = list != nullptr;
   for_elements(
-      reader, reader.array("bodies", kMaxBodies, true), "bodies", errors,
+      reader, list, "bodies", errors,
       [&](const Json& value, const std::string& path) {
         return scene_parts::to_body(value, path, meshes, errors);
       },
       [&](BodyDescription body, std::size_t at, bool intact) {
-        if (!intact || !can_be_checked(partial, body.material)) return;
-        if (body.melting && !can_be_checked(partial, body.melting->into)) return;
+        const bool is_known = intact && can_be_checked(partial, body.material) &&
+                              (!body.melting || can_be_checked(partial, body.melting->into));
+        partial.body_names_known = partial.body_names_known && is_known;
+        if (!is_known) return;
         partial.scene.bodies.push_back(std::move(body));
         partial.bodies_at.push_back(at);
+      });
+}
+
+/// Whether a body could be checked, so that what names it can be.
+bool is_checked(const PartialScene& partial, const std::string& body) {
+  return partial.body_names_known ||
+         std::ranges::find(partial.scene.bodies, body, &BodyDescription::name) !=
+             partial.scene.bodies.end();
+}
+
+void read_flow(ObjectReader& reader, PartialScene& partial, Errors& errors) {
+  for_elements(
+      reader, reader.array("emitters", kMaxEmitters), "emitters", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_emitter(value, path, errors);
+      },
+      [&](Emitter emitter, std::size_t at, bool intact) {
+        if (!intact || !is_checked(partial, emitter.body)) return;
+        partial.scene.emitters.push_back(std::move(emitter));
+        partial.emitters_at.push_back(at);
+      });
+  for_elements(
+      reader, reader.array("drains", kMaxDrains), "drains", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_drain(value, path, errors);
+      },
+      [&](Drain drain, std::size_t at, bool intact) {
+        if (!intact) return;
+        partial.scene.drains.push_back(std::move(drain));
+        partial.drains_at.push_back(at);
       });
 }
 
@@ -145,6 +182,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
     return scene_parts::to_numerics(value, std::move(path), errors);
   });
   read_bodies(reader, meshes, partial, errors);
+  read_flow(reader, partial, errors);
   reader.refuse_unknown();
   return partial;
 }
@@ -168,6 +206,8 @@ Result<Scene> read_scene(const Json& document, const MeshSource& meshes) {
     std::string path = document_path(error.path, "materials", partial.materials_at);
     path = document_path(path, "interfaces", partial.interfaces_at);
     path = document_path(path, "bodies", partial.bodies_at);
+    path = document_path(path, "emitters", partial.emitters_at);
+    path = document_path(path, "drains", partial.drains_at);
     add_error(errors, std::move(error.code), std::move(path), std::move(error.message));
   }
   if (!errors.empty()) return errors;

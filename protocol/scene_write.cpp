@@ -199,6 +199,24 @@ Json to_json(const BodyDescription& body) {
   return json;
 }
 
+Json to_json(const Emitter& emitter) {
+  Json json = {{"name", emitter.name},
+               {"body", emitter.body},
+               {"position", to_json(emitter.position)},
+               {"direction", to_json(emitter.direction)},
+               {"speed", emitter.speed},
+               {"from", emitter.from},
+               {"until", emitter.until},
+               {"most_particles", emitter.most_particles}};
+  if (emitter.radius) json["radius"] = *emitter.radius;
+  if (emitter.size) json["size"] = *emitter.size;
+  return json;
+}
+
+Json to_json(const Drain& drain) {
+  return {{"name", drain.name}, {"min", to_json(drain.min)}, {"max", to_json(drain.max)}};
+}
+
 template <class T>
 Json to_list(const std::vector<T>& values) {
   Json list = Json::array();
@@ -222,6 +240,8 @@ Json write_scene(const Scene& scene) {
                {"forces", to_json(scene.forces)},
                {"numerics", to_json(scene.numerics)},
                {"bodies", to_list(scene.bodies)}};
+  if (!scene.emitters.empty()) json["emitters"] = to_list(scene.emitters);
+  if (!scene.drains.empty()) json["drains"] = to_list(scene.drains);
   if (scene.vat) json["vat"] = to_json(*scene.vat);
   if (scene.periodic) json["periodic"] = to_json(*scene.periodic);
   if (scene.central_field) {

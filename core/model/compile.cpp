@@ -15,18 +15,18 @@
 #include "core/support/check.h"
 
 namespace vat {
+
+std::uint64_t first_step_from(Real time, Real step) {
+  constexpr Real kRounding = 1e-6;  // a time after whole steps is not one step later
+  return static_cast<std::uint64_t>(std::max(Real{0}, std::ceil(time / step - kRounding)));
+}
+
 namespace {
 
 Index find_material(const Scene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.materials, name, &Material::name);
   VAT_CHECK(found != scene.materials.end());
   return static_cast<Index>(found - scene.materials.begin());
-}
-
-/// The first step that begins at that time or after it.
-std::uint64_t first_step_from(Real time, Real step) {
-  constexpr Real kRounding = 1e-6;  // a time after whole steps is not one step later
-  return static_cast<std::uint64_t>(std::max(Real{0}, std::ceil(time / step - kRounding)));
 }
 
 void add_bodies(Model& model, const std::vector<BodyId>& ids,
@@ -75,6 +75,9 @@ void append_particles(Model& model, ModelBody& body, Index body_index) {
   } else {
     for (const Real mass : sample.masses) model.inverse_mass.push_back(1 / mass);
     for (const Index fixed : sample.fixed) model.inverse_mass[body.particles.begin + fixed] = 0;
+    for (const NozzleParticle& each : sample.in_nozzles) {
+      model.inverse_mass[body.particles.begin + each.particle] = 0;
+    }
   }
 }
 
@@ -195,7 +198,7 @@ void add_rigid_bodies(Model& model) {
 /// support radius where there are none.
 Real spacing_of(const Model& model, Index material) {
   for (const ModelBody& body : model.bodies) {
-    if (body.kind != BodyKind::liquid) continue;
+    if (body.kind != BodyKind::liquid || body.particles.size() == 0) continue;
     const Real density = model.scene.materials[body.material].density;
     const Real volume = body.sample->masses.front() / density;
     const Real spacing = model.scene.dimensions == 3 ? std::cbrt(volume) : std::sqrt(volume);
@@ -282,6 +285,9 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
   model->scene = std::move(scene);
   if (model->scene.periodic) model->periodic = PeriodicBox(*model->scene.periodic);
   if (model->scene.vat) add_walls(*model);
+  for (const Emitter& emitter : model->scene.emitters) {
+    model->nozzles.push_back(make_nozzle(model->scene, emitter));
+  }
   add_bodies(*model, ids, std::move(samples));
   lay_out_particles(*model);
   for (Index m = 0; m < model->scene.materials.size(); ++m) {

@@ -13,6 +13,7 @@
 #include "core/kernels/viscosity_kernel.h"
 #include "core/kernels/wendland_c2.h"
 #include "core/neighbours/periodic_box.h"
+#include "core/scene/nozzle.h"
 #include "core/scene/sampling.h"
 #include "core/scene/scene.h"
 #include "core/scene/stable_step.h"
@@ -142,6 +143,7 @@ struct Model {
   /// them those that are no_slip.
   std::vector<int> walls;
   std::vector<int> no_slip_walls;
+  std::vector<Nozzle> nozzles;  ///< of the scene's emitters
 
   Index liquid_count = 0;    ///< particles [0, liquid_count) are liquid
   Index implicit_begin = 0;  ///< particles [implicit_begin, free_count) have implicit springs
@@ -150,7 +152,7 @@ struct Model {
 
   // One entry a particle.
   std::vector<Real> mass;
-  std::vector<Real> inverse_mass;  ///< 0: fixed, or part of a rigid body
+  std::vector<Real> inverse_mass;  ///< 0: fixed, in a nozzle, or part of a rigid body
   std::vector<Real> radius;
   std::vector<Index> body;  ///< index into bodies
   std::vector<Index> material;

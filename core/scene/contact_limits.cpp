@@ -41,14 +41,15 @@ ContactBody describe(const Scene& scene, const BodyDescription& body, const Samp
   const bool is_rigid = body.kind == BodyKind::rigid;
   const auto count = static_cast<Real>(sample.positions.size());
   const bool is_sampled = !std::holds_alternative<ParticleShape>(body.shape);
+  const bool is_empty = sample.radii.empty();  // a liquid that was drained
   return {body.kind,
           material_index(scene.materials, body.material),
           is_rigid ? std::accumulate(sample.masses.begin(), sample.masses.end(), Real{0})
                    : lightest_free(sample),
           count,
           is_rigid ? static_cast<Real>(count_flattest_side(sample, body.orientation)) : count,
-          std::ranges::max(sample.radii),
-          is_sampled ? body.spacing : 2 * std::ranges::min(sample.radii)};
+          is_empty ? 0 : std::ranges::max(sample.radii),
+          is_sampled || is_empty ? body.spacing : 2 * std::ranges::min(sample.radii)};
 }
 
 /// How many particles of `other` one particle reaches. Where the threshold is a pitch, a particle

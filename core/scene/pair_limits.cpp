@@ -137,7 +137,7 @@ ContactReach find_reach(const Scene& scene, const std::vector<PairBody>& bodies)
   std::vector<Real> radius;
   std::vector<std::size_t> material;
   for (const PairBody& body : bodies) {
-    radius.push_back(std::ranges::max(body.radii));
+    radius.push_back(body.radii.empty() ? 0 : std::ranges::max(body.radii));
     material.push_back(material_index(materials, body.description->material));
   }
   ContactReach reach;

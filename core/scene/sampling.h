@@ -24,6 +24,12 @@ struct SampledCell {
   Real volume = 0;  ///< at rest [m^3], in two dimensions area [m^2]
 };
 
+/// A particle that has not left the tube of its nozzle.
+struct NozzleParticle {
+  Index particle = 0;
+  std::uint64_t free_from = 0;  ///< the first nominal step in which forces move it
+};
+
 /// A body as particles in world coordinates at time 0; all columns have equal length.
 struct SampledBody {
   std::vector<Vec3> positions;
@@ -32,7 +38,8 @@ struct SampledBody {
   std::vector<Real> radii;
   std::vector<Index> fixed;
   std::vector<SampledSpring> springs;
-  std::vector<SampledCell> cells;  ///< where the material keeps their volume
+  std::vector<SampledCell> cells;            ///< where the material keeps their volume
+  std::vector<NozzleParticle> in_nozzles{};  ///< that no force moves
 };
 
 /// Turns a body's description into particles and springs, in an order that depends on nothing but

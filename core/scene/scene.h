@@ -274,6 +274,32 @@ struct Settling {
   Real until = 0;  ///< time at which it ends [s]
 };
 
+/// A nozzle from which a liquid body grows: a tube of moving liquid that ends in an opening. In the
+/// tube, which is as long as the liquid's support radius, layers of particles a spacing of the body
+/// apart move with the nozzle's speed, whatever pushes them; at the opening they become free.
+struct Emitter {
+  std::string name;
+  std::string body;              ///< the liquid body that grows; it has a spacing
+  Vec3 position = Vec3::Zero();  ///< of the opening's centre [m]
+  Vec3 direction{0, 0, -1};      ///< of the flow; any length but zero
+  std::optional<Real> radius{};  ///< of a round opening [m]; in the plane half its width
+  std::optional<std::array<Real, 2>> size{};  ///< of a rectangular one [m]: across and along z, or
+                                              ///< where the flow is vertical along x and y
+  Real speed = 0;                             ///< [m/s]
+  Real from = 0;                              ///< when the flow reaches the opening [s]
+  Real until = kNoEnd;                        ///< the first time without flow [s]
+  std::size_t most_particles = 0;  ///< of the body: a layer that would be more is left out
+
+  static constexpr Real kNoEnd = 1e9;
+};
+
+/// A box from which liquid is taken as the first step of each tick begins.
+struct Drain {
+  std::string name;
+  Vec3 min = Vec3::Zero();  ///< [m]
+  Vec3 max = Vec3::Zero();  ///< [m]
+};
+
 /// Forces that act; one that is off costs nothing.
 struct ForceSwitches {
   bool gravity = true;    ///< and the central field
@@ -312,6 +338,8 @@ struct Scene {
   std::optional<Periodicity> periodic;
   std::optional<CentralField> central_field;
   std::optional<Settling> settling;
+  std::vector<Emitter> emitters;
+  std::vector<Drain> drains;
   ForceSwitches forces;
   PressureSolver pressure_solver = PressureSolver::tait;
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two

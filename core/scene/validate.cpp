@@ -7,6 +7,7 @@
 #include "core/limits.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/melting.h"
+#include "core/scene/nozzle.h"
 #include "core/scene/pair_limits.h"
 #include "core/scene/validate_parts.h"
 #include "core/support/check.h"
@@ -143,6 +144,20 @@ void check_neighbours(const Scene& scene, const Present& present, const std::str
   }
 }
 
+/// For all that emitters may add.
+void check_room(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check) {
+  Allowance allowance;
+  for (std::size_t b = 0; b < samples.size(); ++b) {
+    allowance.take_particles(
+        std::max(samples[b].positions.size(), most_particles(scene, scene.bodies[b])));
+  }
+  if (allowance.is_exceeded()) {
+    check.add(
+        "too_many", "/emitters",
+        "the bodies may grow to at most " + std::to_string(kMaxParticles) + " particles in all");
+  }
+}
+
 Errors find_errors(const Scene& scene) {
   Errors errors;
   RangeCheck check(errors);
@@ -166,6 +181,9 @@ Errors find_errors(const Scene& scene) {
   check_spring_numerics(scene, check);
   std::vector<SampledBody> samples;
   check_bodies(scene, check, samples);
+  if (!errors.empty()) return errors;
+  check_flow(scene, errors);
+  check_room(scene, samples, check);
   if (!errors.empty()) return errors;
   check_accuracy(scene, samples, check);
   const Present present = present_of(samples);
@@ -195,8 +213,10 @@ Errors find_body_errors(const Scene& scene, const Present& present, const BodyDe
               "a liquid needs the pressure solver \"gas\" for \"local\" steps");
   }
   Allowance allowance;
-  for (const PresentBody& other : present.bodies) {
-    allowance.take_particles(other.positions.size());
+  for (std::size_t b = 0; b < present.bodies.size(); ++b) {
+    const PresentBody& other = present.bodies[b];
+    allowance.take_particles(
+        std::max(other.positions.size(), most_particles(scene, scene.bodies[b])));
     allowance.take_springs(other.springs);
   }
   check_new_solid(scene, body, path, check);

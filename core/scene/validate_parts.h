@@ -35,6 +35,8 @@ void check_vat(const Scene& scene, RangeCheck& check);
 void check_periodicity(const Periodicity& periodic, RangeCheck& check);
 void check_central_field(const CentralField& field, RangeCheck& check);
 void check_settling(const Settling& settling, RangeCheck& check);
+/// Of emitters and drains.
+void check_flow(const Scene& scene, Errors& errors);
 void check_numerics(const Numerics& numerics, RangeCheck& check);
 /// Whether the accuracy, if any, can be met. The rest of the scene must be without errors.
 void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check);

@@ -68,6 +68,11 @@ void check_plane(const Scene& scene, RangeCheck& check) {
     plane.add("/periodic/axes", "must not name y in a scene of two dimensions");
   }
   if (scene.central_field) plane.zero_y(scene.central_field->center, "/central_field/center");
+  for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
+    const std::string path = "/emitters/" + std::to_string(e);
+    plane.zero_y(scene.emitters[e].position, path + "/position");
+    plane.zero_y(scene.emitters[e].direction, path + "/direction");
+  }
   if (!scene.vat) return;
   if (scene.vat->motion) plane.zero_y(scene.vat->motion->axis, "/vat/motion/axis");
   for (std::size_t wall = 0; wall < scene.vat->walls.size(); ++wall) {

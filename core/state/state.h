@@ -79,7 +79,9 @@ struct State {
   Oscillation bound;
   bool forces_current = false;  ///< false: something but the integrator changed what they depend on
   StepHistory history;
-  LocalLevels levels;  ///< with which the forces were evaluated; local control only
+  LocalLevels levels;         ///< with which the forces were evaluated; local control only
+  std::uint64_t emitted = 0;  ///< particles, since time 0
+  std::uint64_t drained = 0;  ///< the same
 };
 
 /// The state at time 0.

@@ -42,14 +42,15 @@ constexpr const char* kFooter = R"(Output files
          position, velocity, number of the body, kind (0 liquid, 1 deformable, 2 rigid), radius,
          density and pressure (0 unless the body is a liquid)
   .ply   binary points in single precision, coloured by kind, a file per output time
-  .npy   one array [outputs, particles, 6] of float64: x, y, z, vx, vy, vz
+  .npy   one array [outputs, particles, 6] of float64: x, y, z, vx, vy, vz; not where the number of
+         particles changes
 Particles are in the order of the scene's bodies. Numbers in text have all digits needed to read
 back the same value. SI units throughout.
 
 Diagnostics (.csv), a row per output time: time, energies, liquid density error (mean and greatest),
-particles outside the vat, guard events so far, and for each body NAME.mass, centre of mass NAME.x y
-z, linear and angular momentum about the origin NAME.px py pz lx ly lz, and for a rigid body the
-orientation NAME.qw qx qy qz and angular velocity NAME.wx wy wz.
+particles outside the vat, particles emitted and drained and guard events so far, and for each body
+NAME.mass, centre of mass NAME.x y z, linear and angular momentum about the origin NAME.px py pz lx
+ly lz, and for a rigid body the orientation NAME.qw qx qy qz and angular velocity NAME.wx wy wz.
 
 Outputs are made at t = 0, at each multiple of --every, and at the end. A file ends in .part until
 it is complete, and keeps that ending if the run fails or is interrupted.

@@ -20,7 +20,8 @@ void append_names(std::string& row, const std::string& body,
 std::string header_row(const Diagnostics& diagnostics) {
   std::string row =
       "time,kinetic_energy,gravitational_energy,elastic_energy,contact_energy,"
-      "mean_density_error,max_density_error,torn_springs,particles_outside,guard_events";
+      "mean_density_error,max_density_error,torn_springs,particles_outside,emitted_particles,"
+      "drained_particles,guard_events";
   for (const BodyDiagnostics& body : diagnostics.bodies) {
     append_names(row, body.name,
                  {"mass", "x", "y", "z", "px", "py", "pz", "lx", "ly", "lz", "fx", "fy", "fz", "tx",
@@ -62,6 +63,7 @@ std::string value_row(const Diagnostics& d, std::uint64_t guard_events) {
   append_values(row, {d.kinetic_energy, d.gravitational_energy, d.elastic_energy, d.contact_energy,
                       d.mean_density_error, d.max_density_error});
   row += ',' + std::to_string(d.torn_springs) + ',' + std::to_string(d.particles_outside) + ',' +
+         std::to_string(d.emitted_particles) + ',' + std::to_string(d.drained_particles) + ',' +
          std::to_string(guard_events);
   for (const BodyDiagnostics& body : d.bodies) append_body(row, body);
   return row + '\n';

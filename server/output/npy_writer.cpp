@@ -30,10 +30,14 @@ class NpyWriter final : public FrameWriter {
 
   // The header is renewed with each frame, so that what a failed run leaves behind can be read.
   Status write(const Simulation& simulation) override {
+    if (frame_count_ > 0 && simulation.particle_count() != particle_count_) {
+      return Error{"not_allowed", "", "an .npy file cannot hold a changing number of particles"};
+    }
+    particle_count_ = simulation.particle_count();
     bytes_.clear();
     for (const BodyView& body : simulation.bodies()) append_body(body);
     if (Status written = file_.append(bytes_); !written) return written;
-    return file_.overwrite_start(npy_header(++frame_count_, simulation.particle_count()));
+    return file_.overwrite_start(npy_header(++frame_count_, particle_count_));
   }
 
   Status finish() override { return file_.commit(); }
@@ -48,6 +52,7 @@ class NpyWriter final : public FrameWriter {
 
   OutputFile file_;
   std::size_t frame_count_ = 0;
+  std::size_t particle_count_ = 0;
   std::string bytes_;
 };
 

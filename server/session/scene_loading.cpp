@@ -30,7 +30,7 @@ std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalog
 }
 
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits) {
-  const std::size_t particles = simulation.particle_count();
+  const std::size_t particles = simulation.greatest_particle_count();
   if (particles > limits.max_particles) return limit_reached("particles", limits.max_particles);
   if (particles * simulation.steps_per_tick() > limits.max_particle_steps_per_tick) {
     return limit_reached("particle_steps_per_tick", limits.max_particle_steps_per_tick);

@@ -158,7 +158,7 @@ TEST(Output, DiagnosticsOfRigidBodiesHaveOrientationAndSpin) {
   write_mixed(folder.file("run.npy"), folder.file("d.csv"));
   const Table table = read_csv(folder.file("d.csv"));
   const std::string ball = "ball, \"red\".";
-  EXPECT_EQ(table.columns[10], "pool.mass");
+  EXPECT_EQ(table.columns[12], "pool.mass");
   EXPECT_THAT(table.columns, testing::Not(testing::Contains("pool.qw")));
   EXPECT_EQ(table.columns.back(), ball + "wz");
   EXPECT_EQ(table.number(0, ball + "qw"), 1);

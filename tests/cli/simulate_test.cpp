@@ -182,6 +182,14 @@ TEST(Simulate, ProfileNamesTheStagesOfThePlan) {
   EXPECT_NEAR(share, 100, 0.05 * static_cast<double>(stages + others));  // each is rounded to 0.1
 }
 
+TEST(Simulate, AnArrayHoldsNoChangingNumberOfParticles) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_vat({"simulate", VAT_SOURCE_DIR "/protocol/scenes/pour.json",
+                                        "--until", "0.1", "--output", folder.file("run.npy")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("changing number of particles"));
+}
+
 TEST(Simulate, GuardFailureNamesBodyAndKeepsThePartialFile) {
   const TemporaryFolder folder;
   const ProgramResult result =

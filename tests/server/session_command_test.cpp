@@ -154,6 +154,42 @@ TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
   EXPECT_EQ(client->error("grab.end", {{"grab", grab.at("grab")}}).at("code"), -32602);
 }
 
+/// The mixed scene with a nozzle that feeds its pool.
+Json scene_with_nozzle(std::size_t most_particles) {
+  Json scene = Json::parse(mixed_scene_text());
+  scene["emitters"] = {{{"name", "tap"},
+                        {"body", "pool"},
+                        {"position", {0.3, 0.1, 0.9}},
+                        {"direction", {1, 0, 0}},
+                        {"size", {0.1, 0.1}},
+                        {"speed", 1},
+                        {"most_particles", most_particles}}};
+  return scene;
+}
+
+TEST_F(SessionCommands, LiquidFlowsInWithoutANewEpoch) {
+  client->result("scene.load", {{"scene", scene_with_nozzle(1000)}});
+  const Json before = client->wait_event("session.description");
+  client->result("frames.subscribe");
+  client->mark();
+  client->result("control.step", {{"ticks", 10}});
+  const Frame frame = client->wait_frame([](const Frame& each) { return each.header.tick == 10; });
+  EXPECT_EQ(frame.header.epoch, before.at("epoch").get<std::uint32_t>());
+  const auto particles = before.at("bodies").at(0).at("particles").get<std::size_t>();
+  // The tube holds two layers of one particle, and others come 0 s and 0.1 s after these; the last
+  // step of the ten ticks begins before 0.2 s.
+  EXPECT_EQ(frame.blocks.at(1).grid_positions.size(), 3 * (particles + 4));
+  EXPECT_TRUE(client->events("session.description").empty());
+  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
+  EXPECT_EQ(state.at("bodies").at(0).at("positions").size(), particles + 4);
+}
+
+TEST_F(SessionCommands, WhatMayFlowInCountsForTheLimits) {
+  const Json error = client->error("scene.load", {{"scene", scene_with_nozzle(200'000)}});
+  EXPECT_EQ(error.at("code"), 1005);
+  EXPECT_EQ(error.at("data").at("limit"), "particles");
+}
+
 TEST_F(SessionCommands, GravityAndInterfacesAreOfTheSceneFromThenOn) {
   client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
   EXPECT_EQ(client->wait_event("session.description").at("gravity"), Json({0, 0, -1}));

@@ -122,16 +122,14 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Melts, testing::Values(PressureSolver::gas, Pr
 TEST(Melting, InACallThatFailsIsUndone) {
   Scene scene = make_melting_scene(PressureSolver::tait);
   scene.bodies[1].melting = Melting{"water", 5 * kStep};
-  scene.bodies[0].velocity = {9e3, 0, 0};
-  scene.bodies[0].melting.reset();
   Simulation simulation = make_simulation(scene);
   simulation.advance(3);
-  ASSERT_TRUE(
-      simulation.apply_force(*simulation.find_body("plate"), {1e10, 0, 0}, kStep * 100).ok());
+  // Too fast for the guard after some 40 steps.
+  ASSERT_TRUE(simulation.apply_force(*simulation.find_body("plate"), {0, 0, -3e5}, 1).ok());
   const std::uint64_t hash = simulation.state_hash();
   const AdvanceReport report = simulation.advance(100);
   ASSERT_TRUE(report.failed);
-  EXPECT_GT(report.steps, 3U);
+  ASSERT_GT(report.steps - report.undone_steps, 10U);  // it was liquid
   EXPECT_FALSE(report.bodies_changed);
   EXPECT_EQ(simulation.bodies()[1].kind, BodyKind::deformable);
   EXPECT_EQ(simulation.state_hash(), hash);

@@ -140,6 +140,12 @@ class BitWriter {
     const auto& [a, b, constants, rest_length] = spring;
     put_all(a, b, constants, rest_length);
   }
+  void put(const Emitter& emitter) {
+    const auto& [name, body, position, direction, radius, size, speed, from, until, most] = emitter;
+    put_all(name, body, position, direction, radius, size, speed, from, until);
+    put_number(most);
+  }
+  void put(const Drain& drain) { put_all(drain.name, drain.min, drain.max); }
   void put(const Melting& melting) { put_all(melting.into, melting.at); }
   void put(const BodyDescription& body) {
     const auto& [name, kind, material, shape, spacing, mass, radius, position, orientation,
@@ -151,10 +157,11 @@ class BitWriter {
   }
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
-                 bodies, vat, periodic, central_field, settling, forces, pressure_solver,
-                 dimensions, numerics] = scene;
+                 bodies, vat, periodic, central_field, settling, emitters, drains, forces,
+                 pressure_solver, dimensions, numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
-            vat, periodic, central_field, settling, forces, pressure_solver, dimensions, numerics);
+            vat, periodic, central_field, settling, emitters, drains, forces, pressure_solver,
+            dimensions, numerics);
   }
 
  private:

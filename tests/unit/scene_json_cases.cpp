@@ -15,6 +15,13 @@ const char* const kFullDocument = R"json({
   "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
   "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
   "settling": {"drag": 47.5, "until": 0.1875},
+  "emitters": [
+    {"name": "hose", "body": "pool", "position": [1.5, -0.5, 1.5], "direction": [0, 1, -1],
+     "size": [0.25, 0.125], "speed": 0.5, "from": 0.5, "until": 2.5, "most_particles": 4000},
+    {"name": "tap", "body": "pool", "position": [2.5, 0.5, 1.75], "radius": 0.125, "speed": 0.75,
+     "most_particles": 5000}
+  ],
+  "drains": [{"name": "hole", "min": [-1, -1, -0.5], "max": [-0.5, -0.5, -0.25]}],
   "forces": {"gravity": false, "pressure": false, "viscosity": false, "springs": false,
              "contacts": false, "walls": false},
   "materials": [
@@ -188,6 +195,22 @@ Scene full_scene() {
   scene.periodic = Periodicity{{-2, -1, -2.5}, {3, 5, 6}, {true, false, false}};
   scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
   scene.settling = Settling{47.5, 0.1875};
+  scene.emitters = {{.name = "hose",
+                     .body = "pool",
+                     .position = {1.5, -0.5, 1.5},
+                     .direction = {0, 1, -1},
+                     .size = {{0.25, 0.125}},
+                     .speed = 0.5,
+                     .from = 0.5,
+                     .until = 2.5,
+                     .most_particles = 4000},
+                    {.name = "tap",
+                     .body = "pool",
+                     .position = {2.5, 0.5, 1.75},
+                     .radius = 0.125,
+                     .speed = 0.75,
+                     .most_particles = 5000}};
+  scene.drains = {{"hole", {-1, -1, -0.5}, {-0.5, -0.5, -0.25}}};
   scene.forces = {false, false, false, false, false, false};
   scene.numerics = {IntegratorId::velocity_verlet, 0.0005, 0.01, StepControl::adaptive};
   scene.bodies = full_bodies();

@@ -143,6 +143,14 @@ std::set<std::string> required_members() {
                                  "/bodies/5/springs/0/stiffness",
                                  "/bodies/5/springs/1/particles",
                                  "/bodies/5/springs/1/stiffness"};
+  for (const char* member : {"/name", "/body", "/position", "/speed", "/most_particles"}) {
+    for (const char* emitter : {"/emitters/0", "/emitters/1"}) {
+      required.insert(std::string(emitter) + member);
+    }
+  }
+  for (const char* member : {"/name", "/min", "/max"}) {
+    required.insert(std::string("/drains/0") + member);
+  }
   for (const char* index : {"0", "1", "2", "3", "4"}) {
     required.insert("/interfaces/" + std::string(index) + "/materials");
   }

@@ -30,6 +30,7 @@ std::vector<Case> collect() {
                            tait_dam_break_cases,
                            liquid_tank_cases,
                            two_liquid_cases,
+                           liquid_jet_cases,
                            liquid_vortex_cases,
                            liquid_outlet_cases,
                            interaction_impact_cases,

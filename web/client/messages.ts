@@ -15,6 +15,7 @@ export interface BodyDescription {
   name: string;
   kind: BodyKindName;
   material: string;
+  /** When the epoch began; emitters and drains change it, and the frames' blocks tell. */
   particles: number;
   radius: number;
   /** Rigid bodies: particles about the centre of mass in body axes, 3 numbers each. */

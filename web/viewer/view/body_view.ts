@@ -26,6 +26,8 @@ const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2 };
 /** Of a particle's radius: splats overlap, so that a liquid closes up to one surface. */
 const kSplatSize = 2;
 
+const kGrowth = 1.5;
+
 const kGloss = { deformable: 0.1, rigid: 0.35 };
 
 /** Two triangles for each instance; `center` is the instance's place. */
@@ -35,7 +37,6 @@ function squares(centers: InstancedBufferAttribute): InstancedBufferGeometry {
   geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   geometry.setAttribute('center', centers);
-  geometry.instanceCount = centers.count;
   return geometry;
 }
 
@@ -46,7 +47,7 @@ function squares(centers: InstancedBufferAttribute): InstancedBufferGeometry {
  */
 export class BodyView {
   readonly group = new Group();
-  private readonly centers: InstancedBufferAttribute;
+  private centers: InstancedBufferAttribute;
   private readonly geometry: InstancedBufferGeometry;
   private readonly materials: ShaderMaterial[] = [];
 
@@ -60,16 +61,29 @@ export class BodyView {
       ? new InstancedBufferAttribute(new Float32Array(local), 3)
       : new InstancedBufferAttribute(new Uint16Array(3 * description.particles), 3);
     this.geometry = squares(this.centers);
+    this.count = this.centers.count;
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
     this.add(shadowMaterial(description.radius, floor), kOrder.shadow);
     this.addParticles(bodyColour(description.kind, nthOfKind));
   }
 
-  /** Takes the block's positions as they are: no copy is made. */
+  /** How many particles there are now: a liquid body may grow and shrink. */
+  get count(): number {
+    return this.geometry.instanceCount;
+  }
+
+  private set count(count: number) {
+    this.geometry.instanceCount = count;
+  }
+
+  /** Takes the block's positions as they are where their number stays: no copy is made. */
   showGrid(block: GridBlock, { origin, quantum }: FrameHeader): void {
-    if (block.positions.length !== this.centers.array.length) return;
-    this.centers.array = block.positions;
+    const { positions } = block;
+    this.count = positions.length / 3;
+    if (positions.length === this.centers.array.length) this.centers.array = positions;
+    else if (positions.length < this.centers.array.length) this.centers.array.set(positions);
+    else this.grow(positions);
     this.centers.needsUpdate = true;
     this.group.matrix.makeScale(quantum, quantum, quantum).setPosition(...origin);
     this.shown();
@@ -88,8 +102,18 @@ export class BodyView {
     const scale = this.group.matrix.getMaxScaleOnAxis();
     const local = ray.clone().applyMatrix4(new Matrix4().copy(this.group.matrix).invert());
     local.direction.normalize();
-    const hit = nearestSphere(local, this.centers.array, this.description.radius / scale);
+    const places = this.centers.array.subarray(0, 3 * this.count);
+    const hit = nearestSphere(local, places, this.description.radius / scale);
     return hit && { particle: hit.particle, distance: hit.distance * scale };
+  }
+
+  /** Graphics buffers keep their length: a longer one takes the place of the old, with room. */
+  private grow(positions: Uint16Array): void {
+    const room = new Uint16Array(3 * Math.ceil(kGrowth * (positions.length / 3)));
+    room.set(positions);
+    this.geometry.dispose(); // frees the old buffer
+    this.centers = new InstancedBufferAttribute(room, 3);
+    this.geometry.setAttribute('center', this.centers);
   }
 
   /** World position of a particle. */
@@ -102,7 +126,7 @@ export class BodyView {
   /** Makes the box hold all particles. */
   expand(box: Box3): void {
     if (!this.group.visible) return;
-    for (let i = 0; i < this.centers.count; ++i) box.expandByPoint(this.positionOf(i));
+    for (let i = 0; i < this.count; ++i) box.expandByPoint(this.positionOf(i));
     box.expandByScalar(this.description.radius);
   }
 

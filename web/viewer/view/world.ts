@@ -79,10 +79,11 @@ export class World {
     return nearest;
   }
 
-  /** Where a particle is now and its radius; undefined once its body is gone. */
+  /** Where a particle is now and its radius; undefined once it or its body is gone. */
   particle(body: number, particle: number): { position: Vector3; radius: number } | undefined {
     const view = this.bodies.get(body);
-    return view && { position: view.positionOf(particle), radius: view.description.radius };
+    if (!view || particle >= view.count) return undefined;
+    return { position: view.positionOf(particle), radius: view.description.radius };
   }
 
   paint(look: Theme): void {

@@ -1,0 +1,320 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/limits.h"
+#include "core/scene/nozzle.h"
+#include "core/scene/validate.h"
+#include "tests/support/scenes.h"
+#include "tests/support/thread_runner.h"
+
+// Emitters and drains.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kSpacing = 0.05;
+constexpr Real kSpeed = 0.75;
+constexpr Real kStep = 0.002;
+constexpr std::size_t kStart = 4 * 4;  // particles of the pool
+
+/// A puddle, and above it a square nozzle of 3 x 3 particles that points along x.
+Scene make_flow_scene(IntegratorId integrator = IntegratorId::velocity_verlet) {
+  Scene scene = make_scene(integrator, kStep);
+  scene.numerics.tick = 10 * kStep;
+  scene.pressure_solver = PressureSolver::tait;
+  scene.gravity = {0, 0, -10};
+  scene.materials = {make_liquid("water", 1000, {.stiffness = 100, .support_radius = 0.125}),
+                     make_material("wood", 500)};
+  BodyDescription pool;
+  pool.name = "pool";
+  pool.kind = BodyKind::liquid;
+  pool.material = "water";
+  pool.spacing = kSpacing;
+  pool.shape = BoxShape{{0.5, 0.5, 0.03}, {0.2, 0.2, 0.05}};
+  BodyDescription ball = make_body("ball", BodyKind::rigid, "wood",
+                                   make_particles(make_lattice(3, 3, 3, kSpacing), 0.05), 0.025);
+  ball.position = {0.9, 0.5, 0.1};
+  scene.bodies = {pool, ball};
+  scene.vat = Vat{{0, 0, 0}, {1.5, 1, 1}, false, {}, {}};
+  scene.emitters = {{.name = "tap",
+                     .body = "pool",
+                     .position = {0.2, 0.5, 0.5},
+                     .direction = {2, 0, 0},
+                     .size = {{3 * kSpacing, 3 * kSpacing}},
+                     .speed = kSpeed,
+                     .most_particles = 5000}};
+  return scene;
+}
+
+Drain make_floor_drain() {
+  return {"hole", {0, 0, 0}, {1.5, 1, 0.06}};
+}
+
+std::size_t pool_size(const Simulation& simulation) {
+  return simulation.bodies()[0].positions.size();
+}
+
+/// Particles of the pool that go as the nozzle does, to the bit.
+std::size_t count_steady(const Simulation& simulation) {
+  return static_cast<std::size_t>(
+      std::ranges::count(simulation.bodies()[0].velocities, Vec3(kSpeed, 0, 0)));
+}
+
+class Flows : public testing::TestWithParam<IntegratorId> {};
+
+// The flow through the opening is speed times area, and the tube in front of it is full.
+TEST_P(Flows, WithSpeedTimesAreaToTheParticle) {
+  Simulation simulation = make_simulation(make_flow_scene(GetParam()));
+  constexpr std::size_t kTube = 3;  // layers: 0.125 / 0.05, rounded up
+  for (int tick = 1; tick <= 20; ++tick) {
+    ASSERT_TRUE(simulation.advance(10).events.empty());
+    // The last step that began did so a step ago.
+    const Real time = simulation.time() - kStep;
+    const auto layers = static_cast<std::size_t>(kSpeed * time / kSpacing + 1e-6) + 1 + kTube;
+    ASSERT_EQ(simulation.diagnostics().emitted_particles, 9 * layers) << tick;
+    ASSERT_EQ(pool_size(simulation), kStart + 9 * layers);
+    ASSERT_EQ(simulation.particle_count(), pool_size(simulation) + 27);
+  }
+}
+
+TEST_P(Flows, InLayersASpacingApart) {
+  Scene scene = make_flow_scene(GetParam());
+  scene.gravity = Vec3::Zero();
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(73);
+  // Nothing pushes it, in the tube or behind the opening: each layer is where its time puts it.
+  const BodyView pool = simulation.bodies()[0];
+  std::vector<Real> places;
+  for (std::size_t i = kStart; i < pool.positions.size(); i += 9) {
+    places.push_back(pool.positions[i].x());
+    EXPECT_NEAR(pool.masses[i], 0.125, 1e-15);
+    EXPECT_EQ(pool.radii[i], kSpacing / 2);
+  }
+  const Real first = 0.2 + kSpeed * simulation.time();
+  for (std::size_t layer = 0; layer < places.size(); ++layer) {
+    EXPECT_NEAR(places[layer], first - static_cast<Real>(layer) * kSpacing, 2e-3) << layer;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Flows, testing::ValuesIn(kIntegrators),
+                         [](const auto& each) { return to_string(each.param); });
+
+TEST(Flow, InTheTubeIsSteadyWhateverPushes) {
+  Scene scene = make_flow_scene();
+  // A wall of liquid before the opening.
+  scene.bodies[0].shape = BoxShape{{0.4, 0.5, 0.5}, {0.3, 0.5, 0.5}};
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(100);
+  EXPECT_GE(count_steady(simulation), 9U * 2);
+  EXPECT_LE(count_steady(simulation), 9U * 4);
+}
+
+TEST(Flow, BeginsAndEndsOnTime) {
+  Scene scene = make_flow_scene();
+  scene.emitters[0].from = 0.2;
+  scene.emitters[0].until = 0.4;  // three intervals
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(1);
+  EXPECT_EQ(pool_size(simulation), kStart + 9);  // the first three layers come in up to 0.2 s
+  simulation.advance(299);
+  EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);
+  EXPECT_EQ(count_steady(simulation), 0U);
+}
+
+TEST(Flow, StopsWhereTheBodyIsFullAndGoesOnWhenThereIsRoom) {
+  Scene scene = make_flow_scene();
+  scene.emitters[0].most_particles = kStart + 50;
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(300);
+  EXPECT_EQ(pool_size(simulation), kStart + 45);
+  EXPECT_EQ(simulation.greatest_particle_count(), kStart + 50 + 27);
+  scene.drains = {make_floor_drain()};
+  Simulation drained = make_simulation(scene);
+  for (int tick = 0; tick < 100; ++tick) {
+    ASSERT_TRUE(drained.advance(10).events.empty());
+    ASSERT_LE(pool_size(drained), kStart + 50);
+  }
+  EXPECT_GT(drained.diagnostics().emitted_particles, 200U);
+}
+
+TEST(Flow, KeepsTheBooks) {
+  Scene scene = make_flow_scene();
+  scene.drains = {make_floor_drain()};
+  Simulation simulation = make_simulation(scene);
+  for (int tick = 0; tick < 150; ++tick) {
+    ASSERT_TRUE(simulation.advance(10).events.empty());
+    const Diagnostics now = simulation.diagnostics();
+    ASSERT_EQ(kStart + now.emitted_particles - now.drained_particles, pool_size(simulation));
+    ASSERT_NEAR(now.bodies[0].mass, 0.125 * static_cast<Real>(pool_size(simulation)), 1e-9);
+  }
+  EXPECT_GT(simulation.diagnostics().drained_particles, 300U);
+}
+
+TEST(Flow, DrainsAWholeBody) {
+  Scene scene = make_flow_scene();
+  scene.emitters[0].from = 0.5;
+  scene.drains = {make_floor_drain()};
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(11);
+  EXPECT_EQ(pool_size(simulation), 0U);
+  EXPECT_EQ(simulation.diagnostics().bodies[0].mass, 0);
+  EXPECT_FALSE(simulation.apply_force(simulation.bodies()[0].id, Vec3::UnitX(), 1).ok());
+  EXPECT_TRUE(simulation.advance(500).events.empty());
+  EXPECT_GT(pool_size(simulation), 0U);
+}
+
+TEST(Flow, LeavesAStableOrderOfWhatStays) {
+  Scene scene = make_flow_scene();
+  scene.emitters.clear();
+  scene.bodies.resize(1);
+  // The layer at the bottom goes.
+  scene.bodies[0].shape = BoxShape{{0.5, 0.5, 0.2}, {0.2, 0.2, 0.2}};
+  scene.drains = {{"slit", {0, 0, 0}, {1, 1, 0.15}}};
+  Simulation simulation = make_simulation(scene);
+  const std::vector<Vec3> start(simulation.bodies()[0].positions.begin(),
+                                simulation.bodies()[0].positions.end());
+  simulation.advance(1);
+  const auto left = simulation.bodies()[0].positions;
+  ASSERT_EQ(left.size(), 48U);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    EXPECT_LT((left[i] - start[16 + i]).norm(), 0.01) << i;
+  }
+}
+
+TEST(Flow, EndsGrabsOfWhatIsDrainedAlone) {
+  Scene scene = make_flow_scene();
+  scene.emitters.clear();
+  scene.bodies[0].shape = BoxShape{{0.5, 0.5, 0.2}, {0.2, 0.2, 0.2}};
+  scene.drains = {{"slit", {0, 0, 0}, {1, 1, 0.15}}};
+  Simulation simulation = make_simulation(scene);
+  const BodyId pool = simulation.bodies()[0].id;
+  ASSERT_TRUE(simulation.grab_start(1, pool, 3, {0.5, 0.5, 0.2}).ok());
+  ASSERT_TRUE(simulation.grab_start(2, pool, 63, {0.5, 0.5, 0.9}).ok());
+  ASSERT_TRUE(simulation.grab_start(3, simulation.bodies()[1].id, 0, {0.9, 0.5, 0.2}).ok());
+  EXPECT_EQ(simulation.advance(1).ended_grabs, std::vector<std::uint64_t>{1});
+  EXPECT_FALSE(simulation.grab_end(1).ok());
+  const Vec3 before = simulation.bodies()[0].positions.back();  // of those before it some are gone
+  simulation.advance(100);
+  EXPECT_GT(simulation.bodies()[0].positions.back().z(), before.z() + 0.05);
+  EXPECT_TRUE(simulation.grab_end(2).ok());
+  EXPECT_TRUE(simulation.grab_end(3).ok());
+}
+
+TEST(Flow, HasTheSameBitsForAnyThreadsAndAfterARestore) {
+  Scene scene = make_flow_scene();
+  scene.drains = {make_floor_drain()};
+  Simulation serial = make_simulation(scene);
+  ThreadRunner threads(3);
+  Simulation parallel = make_simulation(scene, &threads);
+  serial.advance(333);
+  for (int call = 0; call < 111; ++call) parallel.advance(3);
+  EXPECT_EQ(parallel.state_hash(), serial.state_hash());
+  const Snapshot snapshot = serial.snapshot();
+  serial.advance(200);
+  const std::uint64_t end = serial.state_hash();
+  const Diagnostics books = serial.diagnostics();
+  serial.restore(snapshot);
+  serial.advance(200);
+  EXPECT_EQ(serial.state_hash(), end);
+  EXPECT_EQ(serial.diagnostics().emitted_particles, books.emitted_particles);
+  EXPECT_EQ(serial.diagnostics().drained_particles, books.drained_particles);
+}
+
+TEST(Flow, InACallThatFailsIsUndone) {
+  Simulation simulation = make_simulation(make_flow_scene());
+  simulation.advance(3);
+  const BodyId ball = simulation.bodies()[1].id;
+  // Too fast for the guard after some 100 steps.
+  ASSERT_TRUE(simulation.apply_force(ball, {0, 0, 1500}, 10).ok());
+  const std::uint64_t hash = simulation.state_hash();
+  const AdvanceReport report = simulation.advance(1000);
+  ASSERT_TRUE(report.failed);
+  ASSERT_GT(report.steps - report.undone_steps, 40U);  // a layer came
+  EXPECT_EQ(simulation.state_hash(), hash);
+  EXPECT_EQ(simulation.diagnostics().emitted_particles, 9U * 4);
+  EXPECT_EQ(pool_size(simulation), kStart + 9 * 4);
+}
+
+TEST(Flow, GoesWithItsBody) {
+  Simulation simulation = make_simulation(make_flow_scene());
+  ASSERT_TRUE(simulation.remove_body(simulation.bodies()[0].id).ok());
+  EXPECT_TRUE(simulation.scene().emitters.empty());
+  EXPECT_TRUE(simulation.advance(100).events.empty());
+  EXPECT_EQ(simulation.particle_count(), 27U);
+}
+
+TEST(Flow, OfOtherBodiesGoesOnWhenOneIsRemoved) {
+  Scene scene = make_flow_scene();
+  BodyDescription other = scene.bodies[0];
+  other.name = "other";
+  std::get<BoxShape>(other.shape).center = {0.2, 0.2, 0.03};
+  scene.bodies.push_back(other);
+  scene.emitters.push_back(scene.emitters[0]);
+  scene.emitters[1].name = "second";
+  scene.emitters[1].body = "other";
+  scene.emitters[1].position = {0.2, 0.2, 0.8};
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(100);
+  ASSERT_TRUE(simulation.remove_body(simulation.bodies()[0].id).ok());
+  for (int call = 0; call < 3; ++call) {
+    ASSERT_TRUE(simulation.advance(100).events.empty());
+    const std::span<const Vec3> velocities = simulation.bodies()[1].velocities;
+    // Three layers are in the tube, and a fourth has been let go in the step at most.
+    EXPECT_LE(std::ranges::count(velocities, Vec3(kSpeed, 0, 0)), 9 * 4);
+    EXPECT_GE(std::ranges::count(velocities, Vec3(kSpeed, 0, 0)), 9 * 2);
+  }
+}
+
+TEST(Flow, LeavesNoRoomForBodiesBeyondTheLimit) {
+  Scene scene = make_flow_scene();
+  scene.emitters[0].most_particles = kMaxParticles - 27 - 10;
+  Simulation simulation = make_simulation(scene);
+  BodyDescription more = scene.bodies[1];
+  more.name = "more";
+  more.position = {0.5, 0.5, 0.8};
+  const Result<BodyId> added = simulation.add_body(more);
+  ASSERT_FALSE(added.ok());
+  EXPECT_EQ(added.errors()[0].code, "too_many");
+  scene.emitters[0].most_particles = kMaxParticles - 26;
+  const Errors errors = find_errors(scene);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].path, "/emitters");
+}
+
+TEST(Nozzle, HasALatticeAcrossTheStream) {
+  Scene scene = make_flow_scene();
+  Emitter& emitter = scene.emitters[0];
+  const auto layer_along = [&](const Vec3& direction) {
+    emitter.direction = direction;
+    return layer_of(emitter, kSpacing, 3);
+  };
+  emitter.size = {{4 * kSpacing, 2 * kSpacing}};
+  for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(1, 2, -3)}) {
+    const std::vector<Vec3> layer = layer_along(direction);
+    ASSERT_EQ(layer.size(), 8U);
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& place : layer) {
+      EXPECT_NEAR((place - emitter.position).dot(direction), 0, 1e-15);
+      sum += place;
+    }
+    EXPECT_LT((sum / 8 - emitter.position).norm(), 1e-15);
+    // The long edge is horizontal.
+    EXPECT_NEAR(layer[3].z(), layer[0].z(), 1e-15);
+    EXPECT_NEAR((layer[3] - layer[0]).norm(), 3 * kSpacing, 1e-15);
+  }
+  emitter.size.reset();
+  emitter.radius = 10 * kSpacing;
+  const auto points = static_cast<Real>(layer_along({0, 0, -1}).size());
+  EXPECT_NEAR(points / (100 * std::numbers::pi), 1, 0.05);
+  emitter.direction = {1, 0, 1};
+  const std::vector<Vec3> line = layer_of(emitter, kSpacing, 2);
+  ASSERT_EQ(line.size(), 20U);
+  for (const Vec3& place : line) EXPECT_EQ(place.y(), emitter.position.y());
+}
+
+}  // namespace
+}  // namespace vat

@@ -1,0 +1,47 @@
+import { Ray, Vector3 } from 'three';
+import { describe, expect, it } from 'vitest';
+import { BodyKind } from '../../web/client/index';
+import type { FrameHeader, GridBlock } from '../../web/client/index';
+import { BodyView } from '../../web/viewer/view/body_view';
+import { floorUniforms } from '../../web/viewer/view/shadow_material';
+
+const header = { origin: [0, 0, 0], quantum: 1 } as unknown as FrameHeader;
+
+/** Particles along x, ten apart. */
+function block(count: number): GridBlock {
+  const positions = new Uint16Array(3 * count);
+  for (let i = 0; i < count; ++i) positions[3 * i] = 10 * i;
+  return { kind: BodyKind.liquid, body: 1, positions };
+}
+
+function liquid(particles: number): BodyView {
+  const description = {
+    body: 1,
+    name: 'pool',
+    kind: 'liquid' as const,
+    material: 'water',
+    particles,
+    radius: 1,
+  };
+  return new BodyView(description, 0, floorUniforms());
+}
+
+/** The particle at 10 i, seen from above. */
+function pickAt(view: BodyView, i: number): number | undefined {
+  return view.pick(new Ray(new Vector3(10 * i, 0, 50), new Vector3(0, 0, -1)))?.particle;
+}
+
+describe('BodyView', () => {
+  it('shows as many particles as a frame has, whatever was described', () => {
+    const view = liquid(4);
+    for (const count of [4, 9, 3, 9, 40, 0, 1]) {
+      view.showGrid(block(count), header);
+      expect(view.count).toBe(count);
+      if (count > 0) {
+        expect(pickAt(view, count - 1)).toBe(count - 1);
+        expect(view.positionOf(count - 1).x).toBe(10 * (count - 1));
+      }
+      expect(pickAt(view, count)).toBeUndefined();
+    }
+  });
+});
