@@ -86,6 +86,8 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
   if (is_viscous_) collect_viscosity(f);
   has_images_ = is_viscous_ && has_no_slip_images(model);
   if (has_images_) images_.collect(f, time);
+  has_solid_drags_ = is_viscous_ && model.is_coupled && has_solids(model);
+  if (has_solid_drags_) solid_drags_.collect(f);
 }
 
 namespace {
@@ -219,6 +221,7 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
     }
   });
   if (has_images_) images_.add(f, w, force);
+  if (has_solid_drags_) solid_drags_.add(f, w, force);
 }
 
 }  // namespace vat

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/forces/no_slip_images.h"
+#include "core/forces/solid_drags.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -31,6 +32,8 @@ class DampingMatrix {
   bool is_viscous_ = false;
   bool has_images_ = false;
   NoSlipImages images_;
+  bool has_solid_drags_ = false;
+  SolidDrags solid_drags_;
   std::vector<DamperBlock> blocks_;             ///< of particles, without springs and contacts
   std::vector<std::vector<Real>> viscosities_;  ///< mu V_i V_j laplacian W, as liquid_pairs [N s/m]
   std::vector<Vec3> by_slot_;                   ///< w of liquid slots

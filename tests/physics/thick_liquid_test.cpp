@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.h"
+#include "tests/support/totals.h"
+
+// Solids in a weakly compressible liquid so thick that steps do not resolve its viscosity.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kStep = 1e-3;
+constexpr Real kSpacing = 0.1;
+constexpr Real kSupport = 0.3;
+constexpr Real kViscosity = 2e4;
+
+/// A cube of honey, seven particles wide, with a stone of three in its middle.
+Scene make_honey(bool fixed) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, kStep);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.materials = {make_liquid("honey", 1000, {1, kViscosity, kSupport}), make_material("stone")};
+  std::vector<Vec3> honey;
+  std::vector<Vec3> stone;
+  for (const Vec3& x : make_lattice(7, 7, 7, kSpacing)) {
+    (x.lpNorm<Eigen::Infinity>() < 1.5 * kSpacing ? stone : honey).push_back(x);
+  }
+  scene.bodies = {
+      make_body("honey", BodyKind::liquid, "honey", make_particles(honey, 1), kSpacing / 2),
+      make_body("stone", BodyKind::rigid, "stone", make_particles(stone, 2), kSpacing / 2)};
+  scene.bodies[0].angular_velocity = {0.1, 0.2, 0.3};
+  scene.bodies[0].velocity = {0, 0, 0.1};
+  scene.bodies[1].fixed = fixed;
+  return scene;
+}
+
+/// 2 / 0.028 nu / h^2: steps of at most 2 over it are stable where viscosity is not solved for.
+TEST(ThickLiquid, StepsOfTheseTestsDoNotResolveIt) {
+  EXPECT_GT(kStep * 2 / 0.028 * (kViscosity / 1000) / (kSupport * kSupport), 10);
+}
+
+TEST(ThickLiquid, AFixedStoneOnlyTakesItsEnergy) {
+  Simulation simulation = make_simulation(make_honey(true));
+  Real energy = simulation.diagnostics().kinetic_energy;
+  const Real start = energy;
+  for (int n = 0; n < 100; ++n) {
+    advance_to(simulation, simulation.time() + kStep);
+    const Real now = simulation.diagnostics().kinetic_energy;
+    ASSERT_LT(now, energy * (1 + 1e-9)) << n;
+    energy = now;
+  }
+  EXPECT_LT(energy, 1e-2 * start);
+}
+
+TEST(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
+  Scene scene = make_honey(false);
+  Simulation simulation = make_simulation(scene);
+  const Totals before = totals_of(simulation.diagnostics());
+  const Motion size = motion_of(simulation);
+  advance_to(simulation, 100 * kStep);
+  const Totals now = totals_of(simulation.diagnostics());
+  EXPECT_LT((now.momentum - before.momentum).norm(), 1e-12 * size.momentum);
+  EXPECT_LT((now.angular_momentum - before.angular_momentum).norm(), 1e-10 * size.angular_momentum);
+  const std::vector<BodyDiagnostics> bodies = simulation.diagnostics().bodies;
+  const Vec3 of_honey = bodies[0].linear_momentum / bodies[0].mass;
+  const Vec3 of_stone = bodies[1].linear_momentum / bodies[1].mass;
+  EXPECT_LT((of_stone - of_honey).norm(), 0.01 * of_honey.norm());
+}
+
+}  // namespace
+}  // namespace vat
