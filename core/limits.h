@@ -30,6 +30,8 @@ inline constexpr std::size_t kMaxAppliedForces = 256;         // pending timed f
 inline constexpr Real kMaxReachInSpacings = 8;   // support radius, contact threshold
 inline constexpr Real kMaxRadiusInSpacings = 4;  // particle radius: two of them make the reach
 
+inline constexpr Real kMinSurfaceSupport = 2.5;  // support radius with surface tension
+
 /// Entries in the neighbour lists of `particles` liquid particles, a pair counting twice: 256 each,
 /// 1 kB, or 16 million where that is more. Beyond them a step fails.
 constexpr std::size_t max_pairs(std::size_t particles) {
@@ -79,6 +81,7 @@ inline constexpr Real kMinStep = 1e-7;              // [s]
 inline constexpr Real kMaxStep = 0.1;               // [s]
 inline constexpr Real kMaxTick = 1.0;               // [s]
 inline constexpr Real kMaxArtificialViscosity = 1;  // alpha
+inline constexpr Real kMaxSurfaceTension = 1e6;     // [N/m]
 inline constexpr Real kMinAccuracy = 1e-8;          // of a tolerance too: rounding is not far below
 inline constexpr Real kMaxAccuracy = 0.1;           // error models are for small errors
 inline constexpr Real kMaxTolerance = 1;  // only stability and contacts unseen limit steps

@@ -16,6 +16,7 @@ LiquidConstants to_liquid(const Json& value, std::string path, Errors& errors) {
   liquid.support_radius = reader.real("support_radius", kMinLength, kMaxLength);
   liquid.artificial_viscosity =
       reader.real("artificial_viscosity", 0, kMaxArtificialViscosity, liquid.artificial_viscosity);
+  liquid.surface_tension = reader.real("surface_tension", 0, kMaxSurfaceTension, 0);
   reader.refuse_unknown();
   return liquid;
 }
@@ -167,6 +168,7 @@ InterfaceDescription to_interface(const Json& value, std::string path, Errors& e
   LawReader law(reader, errors);
   interface.constants = to_interface_constants(law, reader);
   interface.threshold = law.real("threshold", {penalty, lennard_jones, projection});
+  interface.contact_angle = reader.real("contact_angle", kAnyMin, kAnyMax, interface.contact_angle);
   reader.refuse_unknown();
   return interface;
 }

@@ -33,7 +33,8 @@ Json to_json(const Material& material) {
     json["liquid"] = {{"stiffness", material.liquid->stiffness},
                       {"viscosity", material.liquid->viscosity},
                       {"support_radius", material.liquid->support_radius},
-                      {"artificial_viscosity", material.liquid->artificial_viscosity}};
+                      {"artificial_viscosity", material.liquid->artificial_viscosity},
+                      {"surface_tension", material.liquid->surface_tension}};
   }
   if (material.springs) json["springs"] = to_json(*material.springs);
   if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
@@ -68,6 +69,7 @@ Json to_json(const InterfaceConstants& constants) {
 Json to_json(const InterfaceDescription& interface) {
   Json json = to_json(interface.constants);
   json["materials"] = interface.materials;
+  json["contact_angle"] = interface.contact_angle;
   const bool is_sph = interface.constants.law == InterfaceLaw::sph;
   if (interface.threshold && !is_sph) json["threshold"] = *interface.threshold;
   return json;

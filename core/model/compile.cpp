@@ -9,6 +9,7 @@
 #include "core/forces/vat_motion.h"
 #include "core/model/contacts.h"
 #include "core/model/limited_springs.h"
+#include "core/model/surface_tension.h"
 #include "core/rigid/mass_properties.h"
 #include "core/scene/step_limits.h"
 #include "core/scene/volumes.h"
@@ -269,6 +270,7 @@ LiquidModel::LiquidModel(const Material& material, int dimensions, Real particle
       rest_density(material.density),
       stiffness(material.liquid->stiffness),
       viscosity(material.liquid->viscosity),
+      surface_tension(material.liquid->surface_tension),
       density_kernel(support_radius, dimensions),
       pressure_kernel(support_radius, dimensions),
       viscosity_kernel(support_radius, dimensions),
@@ -299,6 +301,7 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
     find_rest_volumes(*model);
     model->is_filled = fills_world(model->scene, samples_of(*model));
   }
+  compile_surface_tension(*model);
   add_springs(*model);
   find_limited_springs(*model);
   add_cells(*model);

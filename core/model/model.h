@@ -52,6 +52,7 @@ struct LiquidModel {
   Real rest_density;
   Real stiffness;
   Real viscosity;
+  Real surface_tension;  ///< [N/m]
   Poly6 density_kernel;
   Spiky pressure_kernel;
   ViscosityKernel viscosity_kernel;
@@ -156,7 +157,8 @@ struct Model {
   std::vector<Real> radius;
   std::vector<Index> body;  ///< index into bodies
   std::vector<Index> material;
-  std::vector<Real> rest_volume;     ///< in a liquid at rest; weakly compressible ones only [m^3]
+  /// In a liquid at rest [m^3]; where solids and walls take part in liquids (is_coupled).
+  std::vector<Real> rest_volume;
   std::vector<Vec3> local_position;  ///< rigid particles, from free_count on: body axes, about cm
 
   std::vector<std::optional<LiquidModel>> liquids;  ///< by material
@@ -188,6 +190,8 @@ struct Model {
   bool is_filled = false;      ///< coupled, and without a free surface: pressure may be negative
   bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
+  bool has_surface_tension = false;  ///< some liquid body has
+  std::vector<Real> wall_cosines;    ///< by material, of the contact angle; the same
   // Whether some law of bodies or walls has it.
   bool has_friction = false;
   bool has_restitution = false;  ///< by dashpots

@@ -74,6 +74,23 @@ void warn_of_vat_walls(const Scene& scene, std::vector<Warning>& warnings) {
   }
 }
 
+bool has_surface_tension(const Scene& scene) {
+  return std::ranges::any_of(scene.bodies, [&](const BodyDescription& body) {
+    if (body.kind != BodyKind::liquid && !body.melting) return false;
+    const std::string& name = body.melting ? body.melting->into : body.material;
+    return std::ranges::find(scene.materials, name, &Material::name)->liquid->surface_tension > 0;
+  });
+}
+
+void warn_of_contact_angles(const Scene& scene, std::vector<Warning>& warnings) {
+  if (has_surface_tension(scene)) return;
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    if (scene.interfaces[i].contact_angle == kNeutralAngle) continue;
+    warn("/interfaces/" + std::to_string(i) + "/contact_angle",
+         "no liquid of the scene has surface tension", warnings);
+  }
+}
+
 void warn_of_tolerance(const Numerics& numerics, std::vector<Warning>& warnings) {
   if (numerics.accuracy || numerics.tolerance == Numerics{}.tolerance) return;
   if (numerics.control == StepControl::fixed) {
@@ -102,6 +119,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
     warn("/settling", "no body is liquid", warnings);
   }
   warn_of_tolerance(scene.numerics, warnings);
+  warn_of_contact_angles(scene, warnings);
   warn_of_friction(scene.default_interface, "/default_interface", warnings);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const std::string path = "/interfaces/" + std::to_string(i);

@@ -78,6 +78,7 @@ struct LiquidConstants {
   /// alpha: adds alpha rho c h / (4 (d + 2)) to the viscosity of weakly compressible liquids, in d
   /// dimensions, which calms the sound of impacts.
   Real artificial_viscosity = 0.02;
+  Real surface_tension = 0;  ///< sigma [N/m]; see core/forces/surface_tension.h
 };
 
 /// Static springs that the shape sampler puts between lattice neighbours of a deformable body:
@@ -216,6 +217,9 @@ struct BodyDescription {
 /// The name that stands for the vat's walls in an interface.
 inline constexpr const char* kVatMaterial = "vat";
 
+/// The contact angle [degrees] of walls that neither attract a liquid nor repel it.
+inline constexpr Real kNeutralAngle = 90;
+
 /// Interface (Boldt def. 0.6) between any two bodies of two materials, or a material and the vat's
 /// walls: dynamic connections of rest length `threshold`, present while the distance is below it,
 /// or below the reach of a layer.
@@ -223,6 +227,8 @@ struct InterfaceDescription {
   std::array<std::string, 2> materials;
   InterfaceConstants constants;
   std::optional<Real> threshold;  ///< [m]; default: the sum of the two particles' radii
+  /// Of a liquid with surface tension on the vat's walls, measured in the liquid [degrees].
+  Real contact_angle = kNeutralAngle;
 };
 
 /// Sliding along an axis and back: offset(t) = axis * stroke/2 * (1 - cos(2 pi t / period)).

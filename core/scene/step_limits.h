@@ -58,6 +58,7 @@ Real compressed_step_share(int dimensions);
 ///   Of the weakly compressible liquid 0.77 (in the plane 0.71), which allows for impacts that
 ///   compress it by an eighth, and 0.028, and a solid lighter than the liquid that it
 ///   is in has the liquid's omega^2 and rate times the ratio of densities, half of that if rigid;
+/// - surface tension: the shortest waves that a surface of the particles shows;
 /// - contacts: omega^2 = k (n_a / m_a + n_b / m_b) where n contacts act at once on the mass m: on a
 ///   rigid body as many as its flattest side has particles. How many particles of a lattice one
 ///   particle reaches is an estimate, and the springs or sound within the bodies are left out.

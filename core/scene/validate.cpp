@@ -31,6 +31,18 @@ void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeC
   check.real(liquid.support_radius, kMinLength, kMaxLength, path + "/support_radius");
   check.real(liquid.artificial_viscosity, 0, kMaxArtificialViscosity,
              path + "/artificial_viscosity");
+  check.real(liquid.surface_tension, 0, kMaxSurfaceTension, path + "/surface_tension");
+}
+
+/// The gas boils at its surface: its forces derive from no energy.
+void check_surface_tension(const Scene& scene, RangeCheck& check) {
+  if (scene.pressure_solver != PressureSolver::gas) return;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
+    if (!liquid || liquid->surface_tension == 0) continue;
+    check.add("not_allowed", element("/materials", m) + "/liquid/surface_tension",
+              "must be 0 with the pressure solver \"gas\"");
+  }
 }
 
 /// Its liquids share one kernel, and nothing has levels of its own.
@@ -169,6 +181,7 @@ Errors find_errors(const Scene& scene) {
   check_interfaces(scene, check);
   check_laws(scene, check);
   check_liquids_of_tait(scene, check);
+  check_surface_tension(scene, check);
   if (scene.dimensions != 2 && scene.dimensions != 3) {
     check.add("out_of_range", "/dimensions", "must be 2 or 3");
   }

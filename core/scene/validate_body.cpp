@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "core/limits.h"
 #include "core/scene/validate_parts.h"
@@ -67,6 +69,22 @@ void check_ratios(const BodyDescription& body, const Material& material, const s
   if (body.radius) {
     check.real(*body.radius, kMinLength, kMaxRadiusInSpacings * body.spacing, path + "/radius");
   }
+}
+
+/// With fewer neighbours a surface's curvature is noise, which heats the liquid.
+void check_surface_support(const Material& material, const SampledBody& sample, int dimensions,
+                           const std::string& path, RangeCheck& check) {
+  if (!material.liquid || material.liquid->surface_tension == 0 || sample.masses.empty()) return;
+  constexpr Real kRounding = 1 + 1e-9;
+  const Real volume = std::ranges::max(sample.masses) / material.density;
+  const Real spacing = dimensions == 3 ? std::cbrt(volume) : std::sqrt(volume);
+  const Real greatest = material.liquid->support_radius / kMinSurfaceSupport;
+  if (spacing <= greatest * kRounding) return;
+  std::ostringstream message;
+  message << "must be at most " << greatest
+          << " m for a liquid with surface tension: its support radius is at least "
+          << kMinSurfaceSupport << " spacings";
+  check.add("out_of_range", path + "/spacing", message.str());
 }
 
 void check_springs(const BodyDescription& body, std::size_t particles, const std::string& path,
@@ -186,6 +204,9 @@ std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset
   if (own.empty() && !allowance.is_exceeded()) {
     sample = sample_body(body, *material, scene.dimensions);
     check_start(body, *sample, path, own_check);
+    if (body.kind == BodyKind::liquid) {
+      check_surface_support(*material, *sample, scene.dimensions, path, own_check);
+    }
     if (scene.vat) check_inside_vat(scene, vat_offset, *sample, path, own_check);
   }
   if (!own.empty()) sample.reset();

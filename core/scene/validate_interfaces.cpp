@@ -30,6 +30,17 @@ void check_interface_constants(const InterfaceConstants& constants, const std::s
   }
 }
 
+/// Below 75 degrees the line where a surface meets a wall runs ahead as a film one particle thick,
+/// and above 150 the drop does not rest.
+void check_contact_angle(const InterfaceDescription& interface, const std::string& path,
+                         RangeCheck& check) {
+  if (interface.contact_angle != kNeutralAngle && !joins(interface, kVatMaterial)) {
+    check.add("not_allowed", path, "must be left out: it is for interfaces with \"vat\"");
+    return;
+  }
+  check.real(interface.contact_angle, 75, 150, path);
+}
+
 /// The threshold against the coarsest of the sampled bodies that meet by it; explicit particles may
 /// lie as they like.
 void check_threshold(const Scene& scene, const InterfaceDescription& interface,
@@ -76,6 +87,7 @@ void check_interface(const Scene& scene, const InterfaceDescription& interface,
     check.add("unknown_name", path + "/materials", "must name at least one of the materials");
   }
   check_interface_constants(interface.constants, path, check);
+  check_contact_angle(interface, path + "/contact_angle", check);
   if (interface.threshold) {
     check_threshold(scene, interface, path + "/threshold", check);
   }

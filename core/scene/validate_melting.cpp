@@ -26,6 +26,12 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
              material->liquid->support_radius > kMaxReachInSpacings * body.spacing) {
     check.add("out_of_range", into_path,
               "must have a support radius of at most 8 spacings of the body");
+  } else if (!std::holds_alternative<ParticleShape>(body.shape) &&
+             material->liquid->surface_tension > 0 &&
+             material->liquid->support_radius < kMinSurfaceSupport * body.spacing * (1 - 1e-9)) {
+    check.add("out_of_range", into_path,
+              "must have a support radius of at least 2.5 spacings of the body for its surface "
+              "tension");
   }
 }
 

@@ -11,6 +11,7 @@
 #include "core/forces/restitution.h"
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
+#include "core/forces/surface_tension.h"
 #include "core/forces/transport.h"
 #include "core/forces/volume.h"
 #include "core/forces/walls.h"
@@ -22,10 +23,10 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",     "velocity",      "rigid_state",    "force",
-    "liquid_cells", "liquid_pairs",  "density",        "filled_density",
-    "pressure",     "liquid_solids", "solid_pressure", "transport",
-    "contact_list", "yielding",      "cell_pressure",  "rigid_force"};
+    "position",       "velocity",      "rigid_state",    "force",           "liquid_cells",
+    "liquid_pairs",   "density",       "filled_density", "pressure",        "liquid_solids",
+    "solid_pressure", "transport",     "surface",        "surface_normals", "contact_list",
+    "yielding",       "cell_pressure", "rigid_force"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -124,6 +125,20 @@ void add_coupled_stages(const Model& model, PlanBuilder& plan) {
            {force}, &add_tait_forces_on_solids);
 }
 
+void add_surface_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  if (model.particle_count > model.liquid_count) {
+    plan.add("find_surface", {position, liquid_cells, liquid_pairs, liquid_solids}, {surface},
+             &find_surface);
+  } else {
+    plan.add("find_surface", {position, liquid_cells, liquid_pairs}, {surface}, &find_surface);
+  }
+  plan.add("surface_normals", {liquid_cells, liquid_pairs, surface}, {surface_normals},
+           &find_surface_normals);
+  plan.add("surface_tension", {liquid_cells, liquid_pairs, surface, surface_normals, force},
+           {force}, &add_surface_tension);
+}
+
 void add_contact_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   if (model.liquid_count > 0 && !model.is_coupled) {
@@ -195,6 +210,7 @@ StepPlan make_step_plan(const Model& model) {
   } else if (model.liquid_count > 0) {
     add_liquid_stages(model, plan);
   }
+  if (model.has_surface_tension) add_surface_stages(model, plan);
   if (model.contact_reach > 0) add_contact_stages(model, plan);
   add_push_stages(model, plan);
   if (model.spring_begin[model.implicit_begin] > 0) {

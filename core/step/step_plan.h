@@ -25,12 +25,14 @@ enum class Column : std::uint8_t {
   liquid_solids,
   solid_pressure,
   transport,
+  surface,
+  surface_normals,
   contact_list,
   yielding,
   cell_pressure,
   rigid_force,
 };
-inline constexpr std::size_t kColumnCount = 16;
+inline constexpr std::size_t kColumnCount = 18;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

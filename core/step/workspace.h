@@ -35,6 +35,31 @@ struct LiquidRecord {
   Real pressure;  ///< [Pa]
 };
 
+/// What surface tension sees of a liquid particle; see core/forces/surface_tension.h.
+struct SurfaceRecord {
+  Vec3 gradient;  ///< g [1/m]
+  Real lack;      ///< 1 - s, never below zero
+};
+
+/// Of one block of slots: sums of the forces of curvature and of what balances them, about the
+/// origin.
+struct SurfaceSum {
+  Vec3 force = Vec3::Zero();          ///< [N]
+  Vec3 torque = Vec3::Zero();         ///< [N m]
+  Real share = 0;                     ///< sigma times surface [J]
+  Vec3 moment = Vec3::Zero();         ///< share times x
+  Mat3 second_moment = Mat3::Zero();  ///< share times x x^T
+
+  SurfaceSum& operator+=(const SurfaceSum& other) {
+    force += other.force;
+    torque += other.torque;
+    share += other.share;
+    moment += other.moment;
+    second_moment += other.second_moment;
+    return *this;
+  }
+};
+
 /// Neighbours of one block of liquid slots: those of the block's k-th slot are
 /// [begin[k], begin[k + 1]) of `slots`. One buffer a block, so that blocks are filled side by side.
 struct PairBlock {
@@ -96,8 +121,12 @@ struct Workspace {
   std::vector<Real> density;       ///< by liquid particle [kg/m^3]
   /// The same with all of the space beyond no-slip walls filled with the liquid at rest density.
   std::vector<Real> filled_density;
-  std::vector<Real> filling;   ///< by liquid slot: density over filled density
-  std::vector<Real> pressure;  ///< by liquid particle [Pa]
+  std::vector<Real> filling;           ///< by liquid slot: density over filled density
+  std::vector<Real> pressure;          ///< by liquid particle [Pa]
+  std::vector<SurfaceRecord> surface;  ///< by liquid slot, as the next
+  std::vector<Vec3> surface_normals;   ///< of length 1, inwards; zero away from the surface
+  std::vector<Vec3> surface_forces;    ///< of its curvature [N]
+  std::vector<SurfaceSum> surface_sums;
   // Solids in a weakly compressible liquid: their slots near those of the liquid, and the reverse.
   CellSortedPoints solids_in_liquid;  ///< index 0 is the first solid particle
   std::vector<PairBlock> solids_of_liquid;

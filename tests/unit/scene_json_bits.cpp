@@ -51,8 +51,9 @@ class BitWriter {
     put_all(stiffness, damping, friction, law, restitution, reach);
   }
   void put(const LiquidConstants& liquid) {
-    const auto& [stiffness, viscosity, support_radius, artificial_viscosity] = liquid;
-    put_all(stiffness, viscosity, support_radius, artificial_viscosity);
+    const auto& [stiffness, viscosity, support_radius, artificial_viscosity, surface_tension] =
+        liquid;
+    put_all(stiffness, viscosity, support_radius, artificial_viscosity, surface_tension);
   }
   void put(const LatticeSprings& springs) {
     const auto& [structural, shear, bend] = springs;
@@ -69,8 +70,8 @@ class BitWriter {
             tearing_strain, elongation_limit, bulk_modulus);
   }
   void put(const InterfaceDescription& interface) {
-    const auto& [materials, constants, threshold] = interface;
-    put_all(materials, constants, threshold);
+    const auto& [materials, constants, threshold, contact_angle] = interface;
+    put_all(materials, constants, threshold, contact_angle);
   }
   void put(const SlideMotion& motion) {
     const auto& [axis, stroke, period] = motion;

@@ -41,7 +41,7 @@ const char* const kFullDocument = R"json({
   "default_interface": {"stiffness": 1500.5, "damping": 3.5, "friction": 0.375},
   "interfaces": [
     {"materials": ["water", "vat"], "stiffness": 2000.5, "damping": 5.5, "friction": 1.25,
-     "threshold": 0.0625},
+     "threshold": 0.0625, "contact_angle": 112.5},
     {"materials": ["rubber", "wood"], "stiffness": 800.5, "damping": 4.5, "threshold": 0.03125},
     {"materials": ["rubber", "vat"], "law": "penalty", "stiffness": 700.5, "restitution": 0.75},
     {"materials": ["water", "rubber"], "law": "lennard_jones", "stiffness": 90.5, "reach": 1.5,
@@ -180,7 +180,7 @@ Scene full_scene() {
   scene.gravity = {0.125, -0.25, -1.625};
   scene.materials = full_materials();
   scene.default_interface = {1500.5, 3.5, 0.375};
-  scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5, 1.25}, 0.0625},
+  scene.interfaces = {{{"water", "vat"}, {2000.5, 5.5, 1.25}, 0.0625, 112.5},
                       {{"rubber", "wood"}, {800.5, 4.5}, 0.03125},
                       {{"rubber", "vat"}, {.stiffness = 700.5, .restitution = 0.75}, {}},
                       {{"water", "rubber"},

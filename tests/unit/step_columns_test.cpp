@@ -75,6 +75,11 @@ void spoil(Column column, Columns& columns) {
       return;
     case Column::transport:
       return spoil_vectors(forces.transport);
+    case Column::surface:
+      for (SurfaceRecord& record : columns.work.surface) record = {Vec3::Constant(kNan), kNan};
+      return;
+    case Column::surface_normals:
+      return spoil_vectors(columns.work.surface_normals);
     case Column::contact_list:
       columns.work.contacts = {};
       return;
@@ -132,6 +137,10 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.solid_pressure);
     case Column::transport:
       return bytes_of(forces.transport);
+    case Column::surface:
+      return bytes_of(columns.work.surface);
+    case Column::surface_normals:
+      return bytes_of(columns.work.surface_normals);
     case Column::contact_list:
       return bytes_of(columns.work.solids.x);
     case Column::yielding:
@@ -266,6 +275,15 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereCellsKeepTheirVolume) {
   scene.bodies[2].shape = BoxShape{{0, 0, 0}, {0.15, 0.15, 0.15}};
   scene.bodies[2].spacing = 0.05;
   scene.bodies[2].displacement_field = VectorField{Vec3::Zero(), 0.1 * Mat3::Identity(), {}};
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWithSurfaceTension) {
+  Scene scene = crowded_scene(1);
+  scene.pressure_solver = PressureSolver::tait;
+  for (Material& material : scene.materials) {
+    if (material.liquid) material.liquid->surface_tension = 10;
+  }
   expect_declared(scene);
 }
 

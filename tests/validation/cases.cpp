@@ -25,6 +25,7 @@ std::vector<Case> collect() {
                            liquid_lattice_cases,
                            liquid_channel_cases,
                            liquid_drop_cases,
+                           liquid_surface_cases,
                            liquid_column_cases,
                            liquid_dam_break_cases,
                            tait_dam_break_cases,

@@ -28,6 +28,7 @@ std::vector<Case> rigid_sampling_cases();
 std::vector<Case> liquid_lattice_cases();
 std::vector<Case> liquid_channel_cases();
 std::vector<Case> liquid_drop_cases();
+std::vector<Case> liquid_surface_cases();
 std::vector<Case> liquid_column_cases();
 std::vector<Case> liquid_dam_break_cases();
 std::vector<Case> liquid_tank_cases();
