@@ -24,6 +24,19 @@ struct BodyDiagnostics {
   std::optional<Vec3> angular_velocity;  ///< rigid bodies, world axes [rad/s]
 };
 
+/// What one solve of an incompressible liquid took, and what it left.
+struct SolveReport {
+  int iterations = 0;  ///< products with the matrix
+  Real mean = 0;       ///< over liquid particles, of |relative change of density| that is too much
+  Real greatest = 0;   ///< the same
+};
+
+/// Of the last step's solves; see core/incompressible/volume_solve.h.
+struct VolumeReport {
+  SolveReport velocities;  ///< changes of density in one step
+  SolveReport places;      ///< densities above the one at rest
+};
+
 /// Measured over the present state; nothing here feeds back into it.
 struct Diagnostics {
   Real time;  ///< [s]
@@ -35,8 +48,9 @@ struct Diagnostics {
   Real contact_energy;        ///< [J] in dynamic connections and against the walls
   Real mean_density_error;    ///< liquid: mean of max(0, rho/rho_0 - 1); 0 without liquid
   Real max_density_error;     ///< liquid: greatest rho/rho_0 - 1, at least 0
-  std::size_t torn_springs;   ///< of static ones, which have no force any more
-  std::size_t particles_outside;    ///< beyond a wall of the vat
+  std::optional<VolumeReport> volume;  ///< of incompressible liquids
+  std::size_t torn_springs;            ///< of static ones, which have no force any more
+  std::size_t particles_outside;       ///< beyond a wall of the vat
   std::uint64_t emitted_particles;  ///< since time 0: what there was at the start, and this, less
   std::uint64_t drained_particles;  ///< this, is what there is, but for commands
 };

@@ -85,6 +85,10 @@ inline constexpr Real kMaxSurfaceTension = 1e6;     // [N/m]
 inline constexpr Real kMinAccuracy = 1e-8;          // of a tolerance too: rounding is not far below
 inline constexpr Real kMaxAccuracy = 0.1;           // error models are for small errors
 inline constexpr Real kMaxTolerance = 1;  // only stability and contacts unseen limit steps
-inline constexpr int kMaxStepLevel = 10;  // halvings of a step: a nominal step must end
+inline constexpr Real kMinVolumeTolerance = 1e-10;  // of densities: rounding is not far below
+inline constexpr Real kMaxVolumeTolerance = 0.1;
+inline constexpr int kMinIterations = 2;      // of a solve: one, and one that takes back
+inline constexpr int kMaxIterations = 10000;  // a step must end
+inline constexpr int kMaxStepLevel = 10;      // halvings of a step: a nominal step must end
 
 }  // namespace vat

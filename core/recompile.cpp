@@ -26,12 +26,17 @@ void carry_over(const Placed& from, const Configuration& source, const Placed& t
     for (std::size_t k = 0; k < kept->size(); ++k) {
       target.position[new_first + k] = source.position[first + (*kept)[k]];
       target.velocity[new_first + k] = source.velocity[first + (*kept)[k]];
+      if (source.pressure.empty()) continue;
+      target.pressure[new_first + k] = source.pressure[first + (*kept)[k]];
     }
     return;
   }
   const auto count = static_cast<std::ptrdiff_t>(from.body.particles.size());
   std::copy_n(source.position.begin() + first, count, target.position.begin() + new_first);
   std::copy_n(source.velocity.begin() + first, count, target.velocity.begin() + new_first);
+  if (from.body.kind == BodyKind::liquid && !source.pressure.empty()) {
+    std::copy_n(source.pressure.begin() + first, count, target.pressure.begin() + new_first);
+  }
   if (from.body.kind == BodyKind::rigid) {
     target.rigid[to.body.rigid] = source.rigid[from.body.rigid];
   } else if (to.body.kind == BodyKind::deformable && !source.springs.empty() &&

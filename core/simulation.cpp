@@ -183,6 +183,7 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
     hash.add(spring.rest_length);
     hash.add(std::uint64_t{spring.is_torn});
   }
+  for (const Real pressure : state.now.pressure) hash.add(pressure);
   const StepControl control = model.scene.numerics.control;
   if (control != StepControl::fixed) {
     hash.add(state.history.step);
@@ -235,6 +236,7 @@ Diagnostics Simulation::diagnostics() const {
   Diagnostics result = measure(force_model, impl_->state.now, impl_->time());
   result.emitted_particles = impl_->state.emitted;
   result.drained_particles = impl_->state.drained;
+  if (impl_->model->is_incompressible) result.volume = impl_->state.volume;
   return result;
 }
 

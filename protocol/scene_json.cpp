@@ -152,8 +152,9 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");
   // In the order of PressureSolver.
-  scene.pressure_solver = static_cast<PressureSolver>(reader.choice(
-      "pressure_solver", {"gas", "tait"}, static_cast<std::size_t>(scene.pressure_solver)));
+  scene.pressure_solver = static_cast<PressureSolver>(
+      reader.choice("pressure_solver", {"gas", "tait", "incompressible"},
+                    static_cast<std::size_t>(scene.pressure_solver)));
   scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);
@@ -175,6 +176,10 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   read_part(reader, "settling", scene.settling, errors, [&](const Json& value, std::string path) {
     return scene_parts::to_settling(value, std::move(path), errors);
   });
+  read_part(reader, "incompressible", scene.incompressible, errors,
+            [&](const Json& value, std::string path) {
+              return scene_parts::to_incompressible(value, std::move(path), errors);
+            });
   read_part(reader, "forces", scene.forces, errors, [&](const Json& value, std::string path) {
     return scene_parts::to_force_switches(value, std::move(path), errors);
   });

@@ -26,6 +26,7 @@ CentralField to_central_field(const Json& value, std::string path, Errors& error
 Settling to_settling(const Json& value, std::string path, Errors& errors);
 Emitter to_emitter(const Json& value, std::string path, Errors& errors);
 Drain to_drain(const Json& value, std::string path, Errors& errors);
+IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors);
 ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors);
 Numerics to_numerics(const Json& value, std::string path, Errors& errors);
 /// `bound` is that of the field's values at its waves' crests.

@@ -104,6 +104,20 @@ Settling to_settling(const Json& value, std::string path, Errors& errors) {
   return settling;
 }
 
+IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  IncompressibleSolve solve;
+  solve.density_tolerance = reader.real("density_tolerance", kMinVolumeTolerance,
+                                        kMaxVolumeTolerance, solve.density_tolerance);
+  solve.divergence_tolerance = reader.real("divergence_tolerance", kMinVolumeTolerance,
+                                           kMaxVolumeTolerance, solve.divergence_tolerance);
+  solve.most_iterations =
+      static_cast<int>(reader.count("most_iterations", kMinIterations, kMaxIterations,
+                                    static_cast<std::size_t>(solve.most_iterations)));
+  reader.refuse_unknown();
+  return solve;
+}
+
 ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   ForceSwitches forces;

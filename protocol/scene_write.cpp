@@ -219,6 +219,12 @@ Json to_json(const Drain& drain) {
   return {{"name", drain.name}, {"min", to_json(drain.min)}, {"max", to_json(drain.max)}};
 }
 
+Json to_json(const IncompressibleSolve& solve) {
+  return {{"density_tolerance", solve.density_tolerance},
+          {"divergence_tolerance", solve.divergence_tolerance},
+          {"most_iterations", static_cast<unsigned>(solve.most_iterations)}};
+}
+
 template <class T>
 Json to_list(const std::vector<T>& values) {
   Json list = Json::array();
@@ -239,6 +245,7 @@ Json write_scene(const Scene& scene) {
                {"interfaces", to_list(scene.interfaces)},
                {"dimensions", static_cast<unsigned>(scene.dimensions)},
                {"pressure_solver", to_string(scene.pressure_solver)},
+               {"incompressible", to_json(scene.incompressible)},
                {"forces", to_json(scene.forces)},
                {"numerics", to_json(scene.numerics)},
                {"bodies", to_list(scene.bodies)}};

@@ -7,15 +7,6 @@
 // Solids in a weakly compressible liquid.
 
 namespace vat {
-namespace {
-
-/// That of all liquids, which coupled ones share.
-Real support_of(const Model& model) {
-  return liquid_of(model, 0).support_radius;
-}
-
-}  // namespace
-
 void find_liquid_solids(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
   const Index first = c.model.liquid_count;

@@ -70,6 +70,11 @@ inline bool has_solids(const Model& model) {
   return model.particle_count > model.liquid_count;
 }
 
+/// That of all liquids, which coupled ones share.
+inline Real support_of(const Model& model) {
+  return model.liquids[model.material[0]]->support_radius;
+}
+
 inline VatMotion motion_of(const StepContext& c) {
   return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/incompressible/volume_solve.h"
 #include "core/integrators/damping_solve.h"
 #include "core/integrators/implicit_springs.h"
 #include "core/projection/projection.h"
@@ -18,6 +19,7 @@ struct IntegratorScratch {
   DampingScratch damping;   ///< of velocity Verlet, as are implicit springs
   ImplicitSpringsScratch implicit_springs;
   ContactProjection projection;
+  VolumeScratch volume;
 };
 
 /// One step of `dt` seconds from `time`. Free particles and rigid bodies advance together, and

@@ -73,6 +73,11 @@ void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Re
   f.evaluate(state.now, time, state.forces);
   kick(f.model, f.runner, state.forces, state.now, dt);
   limit_elongation(f.model, f.runner, state.now, dt);
+  if (f.model.is_incompressible) {
+    if (f.observer != nullptr) f.observer->stage_begins("keep_volume");
+    state.volume = keep_volume(f, state.now, time, dt, scratch.volume);
+    if (f.observer != nullptr) f.observer->stage_ends("keep_volume");
+  }
   drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
   change_springs(f.model, f.runner, state.now, dt);

@@ -211,7 +211,9 @@ Real spacing_of(const Model& model, Index material) {
 
 LiquidModel make_liquid(const Model& model, Index material) {
   const Scene& scene = model.scene;
-  LiquidModel liquid(scene.materials[material], scene.dimensions, spacing_of(model, material));
+  Material given = scene.materials[material];
+  if (scene.pressure_solver == PressureSolver::incompressible) given.liquid->stiffness = 0;
+  LiquidModel liquid(given, scene.dimensions, spacing_of(model, material));
   if (!scene.forces.viscosity) liquid.central_viscosity = 0;
   if (!scene.forces.pressure) liquid.stiffness = 0;
   if (!scene.forces.viscosity) liquid.viscosity = 0;
@@ -297,9 +299,11 @@ std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids
     if (model->scene.materials[m].liquid) model->liquids.back() = make_liquid(*model, m);
   }
   model->is_coupled = couples_liquids(model->scene.pressure_solver) && model->liquid_count > 0;
+  const bool is_tait = model->scene.pressure_solver == PressureSolver::tait;
+  model->is_incompressible = model->is_coupled && !is_tait && model->scene.forces.pressure;
   if (model->is_coupled) {
     find_rest_volumes(*model);
-    model->is_filled = fills_world(model->scene, samples_of(*model));
+    model->is_filled = is_tait && fills_world(model->scene, samples_of(*model));
   }
   compile_surface_tension(*model);
   add_springs(*model);

@@ -185,10 +185,11 @@ struct Model {
   // than they may come. Sorted; begins have an entry per free particle and one more.
   std::vector<Index> exclusion_begin;
   std::vector<Index> exclusions;
-  Real contact_reach = 0;      ///< [m] no contact between particles further apart than this
-  bool is_coupled = false;     ///< liquids meet solids and walls by SPH, not by contacts
-  bool is_filled = false;      ///< coupled, and without a free surface: pressure may be negative
-  bool liquids_touch = false;  ///< two liquid materials meet, so liquid particles collide
+  Real contact_reach = 0;   ///< [m] no contact between particles further apart than this
+  bool is_coupled = false;  ///< liquids meet solids and walls by SPH, not by contacts
+  bool is_filled = false;   ///< coupled, and without a free surface: pressure may be negative
+  bool is_incompressible = false;  ///< coupled liquids keep their volume by projections
+  bool liquids_touch = false;      ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
   bool has_surface_tension = false;  ///< some liquid body has
   std::vector<Real> wall_cosines;    ///< by material, of the contact angle; the same

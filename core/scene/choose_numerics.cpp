@@ -78,10 +78,12 @@ Numerics choose_numerics(const Scene& scene, std::span<const SampledBody* const>
   if (!numerics.accuracy) return numerics;
   const Real error = *numerics.accuracy / kAccurateRadians;
   const Motions motions = find_motions(scene, samples);
-  numerics.integrator = IntegratorId::velocity_verlet;
+  const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
+  numerics.integrator =
+      is_incompressible ? IntegratorId::symplectic_euler : IntegratorId::velocity_verlet;
   numerics.tolerance = std::max(error, kMinAccuracy);
   Real step = longest_step(motions, numerics.integrator, error);
-  if (motions.has_kinks) {
+  if (motions.has_kinks || is_incompressible) {
     numerics.control = StepControl::adaptive;
   } else {
     numerics.control = StepControl::fixed;

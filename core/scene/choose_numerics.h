@@ -18,6 +18,7 @@ namespace vat {
 /// - Where liquids flow or bodies may touch: velocity Verlet, since forces with kinks are of order
 ///   2 with any method, in adaptive steps with the tolerance e; the step is the longest that
 ///   springs and the central field allow, and that is stable for sound.
+/// - With an incompressible liquid: symplectic Euler, the only one to drive it, in the same way.
 /// - Elsewhere fixed steps, of velocity Verlet or of Runge-Kutta 4, whichever evaluates forces less
 ///   often: 1 / step against 4 / step. Where a material has implicit springs or an
 ///   elongation limit, always the former.

@@ -43,7 +43,7 @@ void warn_of_friction(const InterfaceConstants& constants, const std::string& pa
   }
 }
 
-/// With the solver tait liquids meet solids and walls by SPH, whatever the law.
+/// With coupled solvers liquids meet solids and walls by SPH, whatever the law.
 void warn_of_law(const Scene& scene, const InterfaceDescription& interface, const std::string& path,
                  std::vector<Warning>& warnings) {
   if (scene.pressure_solver == PressureSolver::gas) return;
@@ -56,7 +56,11 @@ void warn_of_law(const Scene& scene, const InterfaceDescription& interface, cons
     };
     return std::ranges::any_of(scene.bodies, is_of) && std::ranges::none_of(scene.bodies, is_solid);
   });
-  if (is_liquid) warn(path + "/law", "with \"tait\" liquids meet others by \"sph\"", warnings);
+  if (!is_liquid) return;
+  warn(path + "/law",
+       std::string("with \"") + to_string(scene.pressure_solver) +
+           "\" liquids meet others by \"sph\"",
+       warnings);
 }
 
 void warn_of_vat_walls(const Scene& scene, std::vector<Warning>& warnings) {
@@ -107,6 +111,25 @@ void warn_of_tolerance(const Numerics& numerics, std::vector<Warning>& warnings)
   }
 }
 
+/// What the solver of pressures does not use.
+void warn_of_solver(const Scene& scene, std::vector<Warning>& warnings) {
+  const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
+  const IncompressibleSolve& solve = scene.incompressible;
+  const IncompressibleSolve usual;
+  const bool is_set = solve.density_tolerance != usual.density_tolerance ||
+                      solve.divergence_tolerance != usual.divergence_tolerance ||
+                      solve.most_iterations != usual.most_iterations;
+  if (is_set && !is_incompressible) {
+    warn("/incompressible", "the pressure solver is another", warnings);
+  }
+  for (std::size_t m = 0; is_incompressible && m < scene.materials.size(); ++m) {
+    const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
+    if (!liquid || liquid->stiffness == 0) continue;
+    warn("/materials/" + std::to_string(m) + "/liquid/stiffness", "the liquid is incompressible",
+         warnings);
+  }
+}
+
 }  // namespace
 
 void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
@@ -118,6 +141,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   if (scene.settling && std::ranges::none_of(scene.bodies, is_liquid)) {
     warn("/settling", "no body is liquid", warnings);
   }
+  warn_of_solver(scene, warnings);
   warn_of_tolerance(scene.numerics, warnings);
   warn_of_contact_angles(scene, warnings);
   warn_of_friction(scene.default_interface, "/default_interface", warnings);

@@ -53,6 +53,8 @@ const char* to_string(PressureSolver solver) {
       return "gas";
     case PressureSolver::tait:
       return "tait";
+    case PressureSolver::incompressible:
+      return "incompressible";
   }
   VAT_CHECK(false && "not a pressure solver");
   return "";

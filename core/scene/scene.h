@@ -33,6 +33,16 @@ enum class StepControl : std::uint8_t {
 enum class PressureSolver : std::uint8_t {
   gas,   ///< Boldt eq. 14 with the kernels of [MCG03]; bodies and walls push with springs
   tait,  ///< weakly compressible, see core/forces/weakly_compressible.h; bodies and walls take part
+  incompressible,  ///< see core/incompressible/volume_solve.h; bodies and walls take part as in
+                   ///< tait
+};
+
+/// How well the solves of an incompressible liquid keep its volume: relative changes of density,
+/// means over its particles; 20 times as much is allowed to one particle.
+struct IncompressibleSolve {
+  Real density_tolerance = 5e-4;     ///< too dense at the end of a step, by linear theory
+  Real divergence_tolerance = 1e-5;  ///< by the velocities within a step
+  int most_iterations = 100;         ///< of each of a step's two solves
 };
 
 /// A Hooke spring's constants: stiffness k [N/m] of Boldt eq. 3 and damping along the spring
@@ -348,6 +358,7 @@ struct Scene {
   std::vector<Drain> drains;
   ForceSwitches forces;
   PressureSolver pressure_solver = PressureSolver::tait;
+  IncompressibleSolve incompressible;  ///< used by that solver
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
   /// dimensions, and masses, forces and energies are per metre of depth.
   int dimensions = 3;

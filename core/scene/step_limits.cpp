@@ -103,12 +103,27 @@ Real surface_omega2(const Material& material, Real spacing) {
          material.density;
 }
 
+/// Of the pressure under a liquid's own weight, as deep as it is at the start.
+Real weight_omega2(const Scene& scene, const SampledBody& body, Real support_radius) {
+  if (!scene.forces.pressure || !scene.forces.gravity) return 0;
+  Real top = -std::numeric_limits<Real>::infinity();
+  Real bottom = std::numeric_limits<Real>::infinity();
+  for (const Vec3& position : body.positions) {
+    const Real height = -scene.gravity.dot(position);
+    top = std::max(top, height);
+    bottom = std::min(bottom, height);
+  }
+  return pressed_lattice_omega2(std::max(Real{0}, top - bottom), support_radius);
+}
+
 /// Of the sound, viscosity and settling of a liquid of this material.
 Oscillation bound_liquid(const Scene& scene, const Material& material) {
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
   const bool is_coupled = couples_liquids(scene.pressure_solver);
-  const Real speed = std::sqrt(scene.forces.pressure ? liquid.stiffness : 0);
+  const bool has_sound =
+      scene.forces.pressure && scene.pressure_solver != PressureSolver::incompressible;
+  const Real speed = has_sound ? std::sqrt(liquid.stiffness) : 0;
   const Real tait_limit = kTaitSoundLimit * compressed_step_share(scene.dimensions);
   const Real sound = kVerletLimit / (is_coupled ? tait_limit : kSoundLimit) * speed / h;
   Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
@@ -142,6 +157,11 @@ void add_liquid(const Scene& scene, std::size_t index, const SampledBody& sample
   OscillatingPart part{body_path(index), "sound or viscosity in the liquid becomes unstable",
                        "sound in an inviscid liquid gains energy with this integrator", bound,
                        index};
+  if (scene.pressure_solver == PressureSolver::incompressible) {
+    part.bound.omega2 += weight_omega2(scene, sample, material.liquid->support_radius);
+    part.reason = "pressure or viscosity in the liquid becomes unstable";
+    part.gains = "a liquid under pressure gains energy with this integrator";
+  }
   if (body.melting) {
     part.path += kMeltingPath;
     part.body.reset();  // not yet
@@ -178,6 +198,12 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
 }
 
 }  // namespace
+
+Real pressed_lattice_omega2(Real pressure, Real support_radius) {
+  constexpr Real kLimit = 0.18;  // dt sqrt(p / rho) / h
+  const Real rate = kVerletLimit / (kLimit * support_radius);
+  return rate * rate * pressure;
+}
 
 Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions) {
   std::vector<Real> load(body.positions.size(), 0);

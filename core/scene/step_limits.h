@@ -46,6 +46,12 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
 /// / c in space, nine tenths of which are the step that is taken.
 Real compressed_step_share(int dimensions);
 
+/// Bounds omega^2 of particles that a pressure keeps in their places, where it gives way to
+/// nothing: `pressure` is over the density [m^2/s^2]. Under one pressure everywhere a lattice of
+/// Wendland's kernel has omega h = 6.2 sqrt(p / rho) at most, with h = 2 spacings, so that steps up
+/// to 0.32 h sqrt(rho / p) are stable; of liquid that has flowed 0.18, with some reserve.
+Real pressed_lattice_omega2(Real pressure, Real support_radius);
+
 /// The limits of the scene's springs, sound and viscosity (by body) and of its contacts (by
 /// interface, the default one included, and by self-contact), for its integrator. `samples` are the
 /// scene's bodies. Each is the step that is stable for upper bounds of frequency and damping:

@@ -45,9 +45,26 @@ void check_surface_tension(const Scene& scene, RangeCheck& check) {
   }
 }
 
-/// Its liquids share one kernel, and nothing has levels of its own.
-void check_liquids_of_tait(const Scene& scene, RangeCheck& check) {
-  if (scene.pressure_solver != PressureSolver::tait) return;
+void check_incompressible(const Scene& scene, RangeCheck& check) {
+  const IncompressibleSolve& solve = scene.incompressible;
+  check.real(solve.density_tolerance, kMinVolumeTolerance, kMaxVolumeTolerance,
+             "/incompressible/density_tolerance");
+  check.real(solve.divergence_tolerance, kMinVolumeTolerance, kMaxVolumeTolerance,
+             "/incompressible/divergence_tolerance");
+  check.real(solve.most_iterations, kMinIterations, kMaxIterations,
+             "/incompressible/most_iterations");
+  const Numerics& numerics = scene.numerics;
+  const bool drives = numerics.accuracy || numerics.integrator == IntegratorId::symplectic_euler;
+  if (scene.pressure_solver != PressureSolver::incompressible || drives) return;
+  check.add(
+      "not_allowed", "/numerics/integrator",
+      std::string("the pressure solver \"incompressible\" needs \"symplectic_euler\", not \"") +
+          to_string(numerics.integrator) + '"');
+}
+
+/// Coupled liquids share one kernel, and nothing has levels of its own.
+void check_coupled_liquids(const Scene& scene, RangeCheck& check) {
+  if (scene.pressure_solver == PressureSolver::gas) return;
   const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
   if (scene.numerics.control == StepControl::local &&
       std::ranges::any_of(scene.bodies, is_liquid)) {
@@ -59,8 +76,10 @@ void check_liquids_of_tait(const Scene& scene, RangeCheck& check) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
     if (!liquid) continue;
     if (support && liquid->support_radius != *support) {
-      check.add("out_of_range", element("/materials", m) + "/liquid/support_radius",
-                "must be that of the scene's other liquids with the pressure solver \"tait\"");
+      check.add(
+          "out_of_range", element("/materials", m) + "/liquid/support_radius",
+          std::string("must be that of the scene's other liquids with the pressure solver \"") +
+              to_string(scene.pressure_solver) + '"');
     }
     support = support.value_or(liquid->support_radius);
   }
@@ -180,7 +199,8 @@ Errors find_errors(const Scene& scene) {
   check_materials(scene, check);
   check_interfaces(scene, check);
   check_laws(scene, check);
-  check_liquids_of_tait(scene, check);
+  check_incompressible(scene, check);
+  check_coupled_liquids(scene, check);
   check_surface_tension(scene, check);
   if (scene.dimensions != 2 && scene.dimensions != 3) {
     check.add("out_of_range", "/dimensions", "must be 2 or 3");

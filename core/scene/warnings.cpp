@@ -220,7 +220,7 @@ void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>&
 
 /// Their own symmetry keeps such particles on the streamlines along which voids open.
 void warn_of_lattices(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
-  if (!couples_liquids(scene.pressure_solver)) return;
+  if (scene.pressure_solver != PressureSolver::tait) return;
   if (!fills_world(scene, pointers_to(start.bodies))) return;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];

@@ -36,6 +36,7 @@ State initial_state(const Model& model) {
   state.now.position.resize(model.particle_count);
   state.now.velocity.resize(model.particle_count);
   state.now.rigid.resize(model.rigid_bodies.size());
+  if (model.is_incompressible) state.now.pressure.assign(model.liquid_count, 0);
   for (const ModelBody& body : model.bodies) place_body(model, body, state.now);
   if (model.springs_change) {
     for (const SpringEnd& spring : model.spring_ends) {

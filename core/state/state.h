@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/diagnostics.h"
 #include "core/model/model.h"
 #include "core/types.h"
 
@@ -41,6 +42,7 @@ struct Configuration {
   std::vector<RigidState> rigid;
   std::vector<ContactImpulse> contacts{};  ///< by projection, by particle and other
   std::vector<SpringState> springs{};      ///< by end; empty where no spring may flow or tear
+  std::vector<Real> pressure{};  ///< of liquid, that the next step starts from; incompressible [Pa]
 };
 
 /// Forces at a configuration: on every particle [N], and their resultants on rigid bodies.
@@ -79,6 +81,7 @@ struct State {
   Oscillation bound;
   bool forces_current = false;  ///< false: something but the integrator changed what they depend on
   StepHistory history;
+  VolumeReport volume;        ///< of the last step, for diagnostics
   LocalLevels levels;         ///< with which the forces were evaluated; local control only
   std::uint64_t emitted = 0;  ///< particles, since time 0
   std::uint64_t drained = 0;  ///< the same

@@ -73,6 +73,7 @@ struct ClearBox {
 /// Where walls are mirrors a particle that passes one is its image: stopped at the plane it would
 /// stay there, for its own image would not push it.
 bool hold_particle(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& velocity) {
+  const bool bounces = is_mirrored && !walls.model.is_incompressible;
   bool is_stopped = false;
   for (const int wall : walls.model.walls) {
     const Real distance = walls.distance(wall, position);
@@ -82,7 +83,7 @@ bool hold_particle(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& v
     const Real speed = walls.motion.velocity[axis];
     const bool leaves = inward(wall) * (velocity[axis] - speed) < 0;
     position[axis] = plane_of(walls, wall, position);
-    if (leaves) velocity[axis] = is_mirrored ? 2 * speed - velocity[axis] : speed;
+    if (leaves) velocity[axis] = bounces ? 2 * speed - velocity[axis] : speed;
     if (!is_mirrored) continue;
     const Vec3 image = position - distance * wall_normal(wall);
     const bool fits = std::ranges::none_of(

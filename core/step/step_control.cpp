@@ -19,7 +19,8 @@ namespace {
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kTravelShare = 0.5;         // of the guard's: two bodies may approach each other
 constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, by each of two particles
-constexpr Real kGreatestTurn = 0.5;        // [rad] a step; the guard's is 1
+constexpr Real kIncompressibleTravelShare = 0.15;  // densities change by a percent in a step
+constexpr Real kGreatestTurn = 0.5;                // [rad] a step; the guard's is 1
 
 /// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they lie in `at`.
 template <class Constant>
@@ -41,6 +42,10 @@ Oscillation compressed(const Model& model, const Oscillation& liquid) {
   if (model.is_coupled) return liquid;  // its bound allows for that
   const Real share = compressed_step_share(model.scene.dimensions);
   return {liquid.omega2 / (share * share), liquid.rate};
+}
+
+Real travel_share(const Model& model) {
+  return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
 }
 
 std::vector<Vec3> starting_places(const Model& model) {
@@ -156,6 +161,20 @@ Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
   return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
 }
 
+/// Of a body's own forces: sound and viscosity, or the greatest pressure and viscosity.
+Oscillation liquid_bound(const Present& present, std::size_t body) {
+  const Model& model = present.model;
+  if (!model.is_incompressible) return compressed(model, model.damping.own[body]);
+  const ModelBody& liquid = model.bodies[body];
+  Real pressure = 0;
+  for (Index i = liquid.particles.begin; i < liquid.particles.end; ++i) {
+    pressure = std::max(pressure, present.state.now.pressure[i]);
+  }
+  const LiquidModel& constants = *model.liquids[liquid.material];
+  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius),
+          model.damping.own[body].rate};
+}
+
 Real liquid_step(const Present& present) {
   const Vec3 mean = mean_liquid_velocity(present.model, present.state.now);
   Real step = kInfinity;
@@ -168,10 +187,9 @@ Real liquid_step(const Present& present) {
       speed2 = std::max(speed2, (present.state.now.velocity[i] - mean).squaredNorm());
       acceleration = std::max(acceleration, present.acceleration(i));
     }
-    const Real way = kLiquidTravelShare * present.model.liquids[body.material]->support_radius;
-    step = std::min({step,
-                     safe_step(present.model.scene.numerics,
-                               compressed(present.model, present.model.damping.own[b])),
+    const Real way =
+        travel_share(present.model) * present.model.liquids[body.material]->support_radius;
+    step = std::min({step, safe_step(present.model.scene.numerics, liquid_bound(present, b)),
                      travel_time(way, std::sqrt(speed2), acceleration)});
   }
   return step;

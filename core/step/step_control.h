@@ -30,7 +30,9 @@ struct PresentSteps {
 /// - contacts that act, or may before the step's end, are resolved to the tolerance;
 /// - travel, at the present speed and force: half the way at which the guard interferes; in a
 /// liquid
-///   a quarter of its support radius, measured in the liquids' mean motion;
+///   a quarter of its support radius, of an incompressible one 0.15, measured in the liquids' mean
+///   motion;
+/// - the greatest pressure of an incompressible liquid: see pressed_lattice_omega2();
 /// - rigid bodies turn by at most half a radian;
 /// - users' grabs are stable, and the central field is resolved to the tolerance.
 ///

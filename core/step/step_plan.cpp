@@ -16,6 +16,7 @@
 #include "core/forces/volume.h"
 #include "core/forces/walls.h"
 #include "core/forces/weakly_compressible.h"
+#include "core/incompressible/volume_solve.h"
 #include "core/model/model.h"
 #include "core/support/check.h"
 
@@ -26,7 +27,7 @@ constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
     "position",       "velocity",      "rigid_state",    "force",           "liquid_cells",
     "liquid_pairs",   "density",       "filled_density", "pressure",        "liquid_solids",
     "solid_pressure", "transport",     "surface",        "surface_normals", "contact_list",
-    "yielding",       "cell_pressure", "rigid_force"};
+    "yielding",       "cell_pressure", "rigid_force",    "kept_pressure"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -101,10 +102,17 @@ void add_coupled_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   plan.add("sort_liquid", {position}, {liquid_cells}, &sort_liquid);
   const bool has_solids = model.particle_count > model.liquid_count;
+  const auto add_pressure = [&] {
+    if (model.is_incompressible) {
+      plan.add("recall_pressure", {kept_pressure}, {pressure}, &recall_pressure);
+    } else {
+      plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
+    }
+  };
   if (!has_solids) {
     plan.add("liquid_density", {position, liquid_cells}, {liquid_pairs, density},
              &compute_tait_density);
-    plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
+    add_pressure();
     plan.add("liquid_forces",
              {position, velocity, liquid_cells, liquid_pairs, density, pressure, force}, {force},
              &add_tait_forces);
@@ -113,7 +121,7 @@ void add_coupled_stages(const Model& model, PlanBuilder& plan) {
   plan.add("find_liquid_solids", {position, liquid_cells}, {liquid_solids}, &find_liquid_solids);
   plan.add("liquid_density", {position, liquid_cells, liquid_solids}, {liquid_pairs, density},
            &compute_tait_density);
-  plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
+  add_pressure();
   plan.add("solid_pressure", {position, liquid_cells, liquid_solids, pressure}, {solid_pressure},
            &extrapolate_pressure);
   plan.add("liquid_forces",
@@ -195,7 +203,7 @@ bool has_no_slip_images(const Model& model) {
 
 StepPlan make_step_plan(const Model& model) {
   using enum Column;
-  PlanBuilder plan({position, velocity, rigid_state});
+  PlanBuilder plan({position, velocity, rigid_state, kept_pressure});
   if (!model.rigid_bodies.empty()) {
     plan.add("pose_rigid_bodies", {rigid_state}, {position, velocity}, &pose_rigid_bodies);
   }

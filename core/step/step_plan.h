@@ -31,8 +31,9 @@ enum class Column : std::uint8_t {
   yielding,
   cell_pressure,
   rigid_force,
+  kept_pressure,
 };
-inline constexpr std::size_t kColumnCount = 18;
+inline constexpr std::size_t kColumnCount = 19;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

@@ -22,6 +22,11 @@ std::string header_row(const Diagnostics& diagnostics) {
       "time,kinetic_energy,gravitational_energy,elastic_energy,contact_energy,"
       "mean_density_error,max_density_error,torn_springs,particles_outside,emitted_particles,"
       "drained_particles,guard_events";
+  if (diagnostics.volume) {
+    row +=
+        ",velocity_iterations,mean_velocity_residual,max_velocity_residual,"
+        "place_iterations,mean_place_residual,max_place_residual";
+  }
   for (const BodyDiagnostics& body : diagnostics.bodies) {
     append_names(row, body.name,
                  {"mass", "x", "y", "z", "px", "py", "pz", "lx", "ly", "lz", "fx", "fy", "fz", "tx",
@@ -65,6 +70,11 @@ std::string value_row(const Diagnostics& d, std::uint64_t guard_events) {
   row += ',' + std::to_string(d.torn_springs) + ',' + std::to_string(d.particles_outside) + ',' +
          std::to_string(d.emitted_particles) + ',' + std::to_string(d.drained_particles) + ',' +
          std::to_string(guard_events);
+  if (d.volume) {
+    for (const SolveReport& solve : {d.volume->velocities, d.volume->places}) {
+      append_values(row, {static_cast<Real>(solve.iterations), solve.mean, solve.greatest});
+    }
+  }
   for (const BodyDiagnostics& body : d.bodies) append_body(row, body);
   return row + '\n';
 }

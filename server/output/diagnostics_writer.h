@@ -10,9 +10,10 @@
 namespace vat {
 
 /// One CSV row per output time: time, energies, density errors, particles outside, guard events so
-/// far, then for each body NAME.mass, the centre of mass NAME.x y z, the linear and angular
-/// momentum about the origin NAME.px py pz lx ly lz, the outer force and its torque about the
-/// centre of mass NAME.fx fy fz tx ty tz (see BodyDiagnostics), and for a rigid body its
+/// far, for an incompressible liquid the iterations and residuals of the last step's solves of its
+/// velocities and places, then for each body NAME.mass, the centre of mass NAME.x y z, the linear
+/// and angular momentum about the origin NAME.px py pz lx ly lz, the outer force and its torque
+/// about the centre of mass NAME.fx fy fz tx ty tz (see BodyDiagnostics), and for a rigid body its
 /// orientation NAME.qw qx qy qz and angular velocity NAME.wx wy wz.
 class DiagnosticsWriter {
  public:

@@ -183,6 +183,28 @@ TEST(ExactOutput, Diagnostics) {
   });
 }
 
+TEST(ExactOutput, DiagnosticsOfAnIncompressibleLiquid) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_vat({"simulate", test_scene("column"), "--until", "0.04", "--every", "0.02", "--output",
+               folder.file("run.npy"), "--diagnostics", folder.file("d.csv")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv(folder.file("d.csv"));
+  ASSERT_EQ(table.rows.size(), 3U);
+  Simulation simulation = Simulation::create(read_scene_file(test_scene("column")).value()).value();
+  simulation.advance(8);
+  const Diagnostics now = simulation.diagnostics();
+  const auto& [velocities, places] = now.volume.value();
+  EXPECT_GT(velocities.iterations, 0);
+  EXPECT_EQ(table.number(2, "velocity_iterations"), velocities.iterations);
+  EXPECT_EQ(table.number(2, "mean_velocity_residual"), velocities.mean);
+  EXPECT_EQ(table.number(2, "max_velocity_residual"), velocities.greatest);
+  EXPECT_EQ(table.number(2, "place_iterations"), places.iterations);
+  EXPECT_EQ(table.number(2, "mean_place_residual"), places.mean);
+  EXPECT_EQ(table.number(2, "max_place_residual"), places.greatest);
+  EXPECT_EQ(table.number(2, "column.z"), now.bodies[0].center_of_mass.z());
+}
+
 TEST(ExactOutput, Hash) {
   Simulation simulation = reference();
   simulation.advance(120);

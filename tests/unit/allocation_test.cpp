@@ -45,5 +45,16 @@ TEST(Allocation, NoneInASteadyStepOfVariedLength) {
   }
 }
 
+TEST(Allocation, NoneInASteadyStepOfAnIncompressibleLiquid) {
+  Scene scene = make_shaken_vat(IntegratorId::symplectic_euler);
+  scene.vat->motion.reset();
+  scene.pressure_solver = PressureSolver::incompressible;
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(2000);
+  const std::size_t before = allocation_count();
+  simulation.advance(200);
+  EXPECT_EQ(allocation_count(), before);
+}
+
 }  // namespace
 }  // namespace vat

@@ -97,6 +97,10 @@ class BitWriter {
     const auto& [drag, until] = settling;
     put_all(drag, until);
   }
+  void put(const IncompressibleSolve& solve) {
+    const auto& [density_tolerance, divergence_tolerance, most_iterations] = solve;
+    put_all(density_tolerance, divergence_tolerance, most_iterations);
+  }
   void put(const ForceSwitches& forces) {
     const auto& [gravity, pressure, viscosity, springs, contacts, walls] = forces;
     put_all(gravity, pressure, viscosity, springs, contacts, walls);
@@ -159,10 +163,10 @@ class BitWriter {
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
                  bodies, vat, periodic, central_field, settling, emitters, drains, forces,
-                 pressure_solver, dimensions, numerics] = scene;
+                 pressure_solver, incompressible, dimensions, numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
             vat, periodic, central_field, settling, emitters, drains, forces, pressure_solver,
-            dimensions, numerics);
+            incompressible, dimensions, numerics);
   }
 
  private:

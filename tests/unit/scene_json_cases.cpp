@@ -14,6 +14,8 @@ const char* const kFullDocument = R"json({
   "pressure_solver": "gas",
   "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
   "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
+  "incompressible": {"density_tolerance": 0.00025, "divergence_tolerance": 2e-05,
+                     "most_iterations": 40},
   "settling": {"drag": 47.5, "until": 0.1875},
   "emitters": [
     {"name": "hose", "body": "pool", "position": [1.5, -0.5, 1.5], "direction": [0, 1, -1],
@@ -194,6 +196,7 @@ Scene full_scene() {
   scene.vat->walls[5].no_slip = true;
   scene.periodic = Periodicity{{-2, -1, -2.5}, {3, 5, 6}, {true, false, false}};
   scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
+  scene.incompressible = {0.00025, 2e-5, 40};
   scene.settling = Settling{47.5, 0.1875};
   scene.emitters = {{.name = "hose",
                      .body = "pool",

@@ -88,6 +88,9 @@ void spoil(Column column, Columns& columns) {
     case Column::rigid_force:
       spoil_vectors(forces.rigid_force);
       return spoil_vectors(forces.rigid_torque);
+    case Column::kept_pressure:
+      std::ranges::fill(now.pressure, kNan);
+      return;
   }
 }
 
@@ -149,6 +152,8 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.cell_pressure);
     case Column::rigid_force:
       return bytes_of(forces.rigid_force);
+    case Column::kept_pressure:
+      return bytes_of(now.pressure);
   }
   return {};
 }
@@ -284,6 +289,12 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredWithSurfaceTension) {
   for (Material& material : scene.materials) {
     if (material.liquid) material.liquid->surface_tension = 10;
   }
+  expect_declared(scene);
+}
+
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWherePressureIsKept) {
+  Scene scene = crowded_scene(1);
+  scene.pressure_solver = PressureSolver::incompressible;
   expect_declared(scene);
 }
 

@@ -265,6 +265,27 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/bodies/3/springs/0/rest_length", "out_of_range",
                 [](Scene& s) { s.bodies[3].springs[0].rest_length = -1; }}));
 
+TEST(Validate, NamesTheIntegratorAndTheSolverThatItCannotDrive) {
+  Scene scene = valid_scene();
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.numerics.integrator = IntegratorId::runge_kutta_4;
+  const Errors errors = find_errors(scene);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].path, "/numerics/integrator");
+  EXPECT_THAT(errors[0].message, testing::AllOf(testing::HasSubstr("incompressible"),
+                                                testing::HasSubstr("runge_kutta_4")));
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  EXPECT_THAT(find_errors(scene), testing::IsEmpty());
+  scene.numerics.control = StepControl::local;
+  EXPECT_FALSE(find_errors(scene).empty());
+  scene.numerics = {};
+  scene.numerics.accuracy = 0.01;
+  EXPECT_THAT(find_errors(scene), testing::IsEmpty());
+  const Simulation simulation = Simulation::create(scene).value();
+  EXPECT_EQ(simulation.scene().numerics.integrator, IntegratorId::symplectic_euler);
+  EXPECT_EQ(simulation.scene().numerics.control, StepControl::adaptive);
+}
+
 TEST(Validate, ReportsEveryMistakeAtOnce) {
   Scene scene = valid_scene();
   scene.numerics.step = -1;

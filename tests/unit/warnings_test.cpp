@@ -158,6 +158,9 @@ TEST(Warnings, OfSettingsWithoutEffect) {
   scene.central_field.reset();
   scene.settling = Settling{1, 1};
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /settling"));
+  scene.settling.reset();
+  scene.incompressible.most_iterations = 50;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /incompressible"));
 }
 
 TEST(Warnings, OfLawsThatALiquidOfTaitDoesNotHave) {

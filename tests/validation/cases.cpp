@@ -34,6 +34,7 @@ std::vector<Case> collect() {
                            liquid_jet_cases,
                            liquid_vortex_cases,
                            liquid_outlet_cases,
+                           liquid_solver_cases,
                            interaction_impact_cases,
                            interaction_buoyancy_cases,
                            tait_body_cases}) {

@@ -36,6 +36,7 @@ std::vector<Case> two_liquid_cases();
 std::vector<Case> liquid_jet_cases();
 std::vector<Case> liquid_vortex_cases();
 std::vector<Case> liquid_outlet_cases();
+std::vector<Case> liquid_solver_cases();
 std::vector<Case> interaction_impact_cases();
 std::vector<Case> interaction_buoyancy_cases();
 std::vector<Case> tait_body_cases();

@@ -1,3 +1,5 @@
+#include "tests/validation/cases/liquid_dam_break.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,36 +16,41 @@ constexpr Real kWidth = 0.2;  // a of Martin and Moyce; the column is 2a high [m
 constexpr Real kGravity = 9.81;
 const std::string kSeries = "/data_series/martin_moyce_1952/n2_2/";
 
-/// Values over times, in Martin and Moyce's units.
-struct Series {
-  std::vector<Real> times;
-  std::vector<Real> values;
-
-  Real at(Real time) const {
-    const auto next = std::ranges::upper_bound(times, time);
-    if (next == times.begin()) return values.front();
-    if (next == times.end()) return values.back();
-    const auto i = static_cast<std::size_t>(next - times.begin());
-    const Real part = (time - times[i - 1]) / (times[i] - times[i - 1]);
-    return values[i - 1] + part * (values[i] - values[i - 1]);
-  }
-};
-
 Series measured_series(const char* times, const char* values) {
   return {reference_at(kSeries + times).get<std::vector<Real>>(),
           reference_at(kSeries + values).get<std::vector<Real>>()};
 }
 
-struct DamBreak {
-  Series front;   ///< Z = x/a over T = t sqrt(2 g/a)
-  Series height;  ///< of the column, over 2a, over tau = t sqrt(g/a)
-};
+/// RMS relative distance of the front from the experiment for T >= 0.8, where the gate of the
+/// experiment has let the liquid go `shift` later.
+Real front_error(const Series& front, Real shift) {
+  const Series experiment = measured_series("T_values", "Z_values");
+  Real sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < experiment.times.size(); ++i) {
+    if (experiment.times[i] < 0.8) continue;
+    const Real z = front.at(experiment.times[i] - shift);
+    sum += std::pow(z / experiment.values[i] - 1, 2);
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
 
-/// The foremost and the highest of the particles at the back wall. A particle on its own, which has
-/// a third of the rest density, is spray and no part of the liquid.
-DamBreak watch(Run& run, Real spacing) {
+}  // namespace
+
+Real Series::at(Real time) const {
+  const auto next = std::ranges::upper_bound(times, time);
+  if (next == times.begin()) return values.front();
+  if (next == times.end()) return values.back();
+  const auto i = static_cast<std::size_t>(next - times.begin());
+  const Real part = (time - times[i - 1]) / (times[i] - times[i - 1]);
+  return values[i - 1] + part * (values[i] - values[i - 1]);
+}
+
+DamBreak watch_dam_break(Run& run, Real spacing, const std::function<void()>& observe) {
   DamBreak seen;
   run.observe_until(0.38, 0.005, [&] {
+    if (observe) observe();
     const BodyView body = run.body();
     const std::vector<Real> density = run.simulation().liquid_fields(body.id).value().density;
     Real x = 0;
@@ -60,21 +67,6 @@ DamBreak watch(Run& run, Real spacing) {
     seen.height.values.push_back((z + spacing / 2) / (2 * kWidth));
   });
   return seen;
-}
-
-/// RMS relative distance of the front from the experiment for T >= 0.8, where the gate of the
-/// experiment has let the liquid go `shift` later.
-Real front_error(const Series& front, Real shift) {
-  const Series experiment = measured_series("T_values", "Z_values");
-  Real sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < experiment.times.size(); ++i) {
-    if (experiment.times[i] < 0.8) continue;
-    const Real z = front.at(experiment.times[i] - shift);
-    sum += std::pow(z / experiment.values[i] - 1, 2);
-    ++count;
-  }
-  return std::sqrt(sum / count);
 }
 
 Real best_front_error(const Series& front) {
@@ -95,6 +87,8 @@ Real height_error(const Series& height) {
   return std::sqrt(sum / count);
 }
 
+namespace {
+
 void check_dam_break(Sheet& sheet, int layers) {
   const Real spacing = kWidth / layers;
   Scene scene = load_scene("LIQ-15");
@@ -102,7 +96,7 @@ void check_dam_break(Sheet& sheet, int layers) {
   set_walls_like_liquid(scene);
   scene.materials[0].liquid->viscosity = 1000 * artificial_viscosity(scene, 0.05);
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.005)));
-  const DamBreak seen = watch(run, spacing);
+  const DamBreak seen = watch_dam_break(run, spacing);
   const std::string of = ", a/dx = " + std::to_string(layers);
   const Tolerance target = within(0.04, "published target");
   const bool fine = layers >= 40;
@@ -134,7 +128,7 @@ void check_tait_dam_break(Sheet& sheet, int layers) {
   Scene scene = load_scene("LIQ-15-tait");
   set_spacing(scene, spacing);
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.005)));
-  const DamBreak seen = watch(run, spacing);
+  const DamBreak seen = watch_dam_break(run, spacing);
   const std::string of = ", a/dx = " + std::to_string(layers);
   const std::string asked = "what the best explicit solvers reach";
   const std::string published =

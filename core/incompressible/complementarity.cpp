@@ -1,0 +1,103 @@
+#include "core/incompressible/complementarity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vat {
+namespace {
+
+std::size_t block_count(std::size_t count) {
+  return (count + kBlockSize - 1) / kBlockSize;
+}
+
+}  // namespace
+
+void Complementarity::resize(std::size_t count) {
+  for (std::vector<Real>* column :
+       {&x, &excess, &diagonal, &scale, &gradient_, &direction_, &product_}) {
+    column->resize(count);
+  }
+  partial_.resize(block_count(count));
+  sums_.resize(block_count(count));
+}
+
+template <class F>
+Real Complementarity::sum(TaskRunner* runner, F&& f) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    Real sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += f(i);
+    partial_[begin / kBlockSize] = sum;
+  });
+  Real total = 0;
+  for (const Real part : partial_) total += part;
+  return total;
+}
+
+void Complementarity::find_gradient(TaskRunner* runner, SolveReport& report) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    Sums sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Real e = x[i] > 0 ? excess[i] : std::max(Real{0}, excess[i]);
+      const Real residual = std::abs(e) / scale[i];
+      sums.residual += residual;
+      sums.greatest = std::max(sums.greatest, residual);
+      sums.mixed += e * gradient_[i];
+      gradient_[i] = e / diagonal[i];
+      sums.square += e * gradient_[i];
+    }
+    sums_[begin / kBlockSize] = sums;
+  });
+  Sums total;
+  for (const Sums& part : sums_) {
+    total.residual += part.residual;
+    total.greatest = std::max(total.greatest, part.greatest);
+    total.square += part.square;
+    total.mixed += part.mixed;
+  }
+  report.mean = x.empty() ? 0 : total.residual / static_cast<Real>(x.size());
+  report.greatest = total.greatest;
+  last_square_ = square_;
+  square_ = total.square;
+  mixed_ = total.mixed;
+}
+
+bool Complementarity::find_way_to_bounds(TaskRunner* runner) {
+  const Real below = sum(runner, [&](std::size_t i) {
+    direction_[i] = x[i] < 0 ? -x[i] : 0;
+    return direction_[i];
+  });
+  return below > 0;
+}
+
+Real Complementarity::choose_direction(bool is_new, TaskRunner* runner) {
+  const Real share =
+      is_new || !(last_square_ > 0) ? 0 : std::max(Real{0}, (square_ - mixed_) / last_square_);
+  const Real slope = follow(share, runner);
+  return slope > 0 || share == 0 ? slope : follow(0, runner);
+}
+
+Real Complementarity::follow(Real share, TaskRunner* runner) {
+  return sum(runner, [&](std::size_t i) {
+    Real d = gradient_[i];
+    if (share > 0) d += share * direction_[i];
+    if (d < 0 && !(x[i] > 0)) d = 0;
+    direction_[i] = d;
+    return d * excess[i];
+  });
+}
+
+Real Complementarity::length_of_step(TaskRunner* runner, Real slope) {
+  const Real curvature = sum(runner, [&](std::size_t i) { return direction_[i] * product_[i]; });
+  return curvature > 0 ? slope / curvature : 0;
+}
+
+void Complementarity::take_step(Real length, TaskRunner* runner) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x[i] += length * direction_[i];
+      excess[i] -= length * product_[i];
+    }
+  });
+}
+
+}  // namespace vat

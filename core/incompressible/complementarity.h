@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/support/parallel.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// Until when a Complementarity is solved. Residuals are |excess| over the unknown's scale, of
+/// those excesses that are above 0, or whose x is.
+struct SolveLimits {
+  Real mean = 0;
+  Real greatest = 0;
+  int most_iterations = 0;
+};
+
+/// Find x >= 0 whose excess e(x) = e(0) - A x is nowhere above 0, and 0 where x > 0, with A
+/// symmetric and positive semi-definite.
+///
+/// By conjugate gradients with the diagonal as preconditioner (E. Polak, G. Ribiere, Rev. Franc.
+/// Inform. Rech. Oper. 16 (1969) 35) for the x that are above 0 or whose excess is; once these are
+/// solved, x below 0 become 0 and the search begins anew (an active set that is corrected as a
+/// whole, as by M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865). The same bits
+/// for any number of threads.
+class Complementarity {
+ public:
+  std::vector<Real> x;
+  std::vector<Real> excess;    ///< e(x), kept up to date
+  std::vector<Real> diagonal;  ///< of A, or a bound of it; above 0
+  std::vector<Real> scale;     ///< of the residuals; above 0
+
+  void resize(std::size_t count);
+
+  /// From the present x >= 0 and its excess; `multiply(d, product)` sets product = A d. At the end
+  /// no x is below 0.
+  template <class Multiply>
+  SolveReport solve(const SolveLimits& limits, TaskRunner* runner, Multiply&& multiply) {
+    SolveReport report;
+    bool is_new = true;
+    for (;;) {
+      find_gradient(runner, report);
+      // A NaN ends it, and is the guard's to see.
+      const bool is_open = !std::isnan(report.mean) &&
+                           (report.mean > limits.mean || report.greatest > limits.greatest);
+      const bool is_last = report.iterations + 1 >= limits.most_iterations;
+      const bool is_clamped = !is_open || is_last;
+      if (is_clamped && !find_way_to_bounds(runner)) return report;
+      const Real slope = is_clamped ? 0 : choose_direction(is_new, runner);
+      multiply(direction_, product_);
+      ++report.iterations;
+      take_step(is_clamped ? 1 : length_of_step(runner, slope), runner);
+      is_new = is_clamped;
+    }
+  }
+
+ private:
+  /// Sums and greatest values over one block.
+  struct Sums {
+    Real residual = 0;
+    Real greatest = 0;
+    Real square = 0;  ///< g.D g of the gradient g = D^-1 e where x may change
+    Real mixed = 0;   ///< the same with that before
+  };
+
+  void find_gradient(TaskRunner* runner, SolveReport& report);
+  /// Makes the direction that from each x below 0 to 0; false where there is none.
+  bool find_way_to_bounds(TaskRunner* runner);
+  /// d = g + beta d, or g where that does not lead down; the slope d.e.
+  Real choose_direction(bool is_new, TaskRunner* runner);
+  Real follow(Real share, TaskRunner* runner);
+  /// To the least x.A x / 2 - e(0).x along the direction.
+  Real length_of_step(TaskRunner* runner, Real slope);
+  void take_step(Real length, TaskRunner* runner);
+  template <class F>
+  Real sum(TaskRunner* runner, F&& f);
+
+  std::vector<Real> gradient_;
+  std::vector<Real> direction_;
+  std::vector<Real> product_;
+  std::vector<Real> partial_;  ///< by block
+  std::vector<Sums> sums_;     ///< by block
+  Real square_ = 0;
+  Real mixed_ = 0;
+  Real last_square_ = 0;
+};
+
+}  // namespace vat

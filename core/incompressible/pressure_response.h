@@ -1,0 +1,77 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/incompressible/pressure_pairs.h"
+#include "core/step/force_model.h"
+
+namespace vat {
+
+/// Scratch of PressureResponse.
+struct ResponseScratch {
+  std::vector<Vec3> solid_motion;  ///< by solid slot: velocity [m/s] or acceleration [m/s^2]
+  std::vector<Vec3> solid_force;   ///< by solid particle [N]
+  std::vector<Vec3> rigid_force;   ///< by rigid body [N]
+  std::vector<Vec3> rigid_torque;  ///< by rigid body, about its centre of mass [N m]
+};
+
+/// What pressures do to a liquid and to the solids in it, in the places of one step, and what
+/// motions do to the liquid's density.
+///
+/// With rest volumes V, s_i = sum_j V_j W_ij and pressures p, both at liquid particles:
+///
+///   D_i(v) = sum_j V_j grad_i W_ij . (v_i - v_j)                      ds_i/dt
+///   F_i = -V_i sum_j V_j (p_i + p_j) G grad_i W_ij                    G: the kernel's slope_scale
+///
+/// so that F = -G (V D)^T p, and -V D M^-1 F is symmetric and positive semi-definite. Images in
+/// walls take part as what they are. To particle i a solid particle b has the pressure p_i and the
+/// velocity 2 v_b - v_i, as if it mirrored i: F_i = -2 V_i V_b p_i G grad_i W_ib = -F_b.
+///
+/// The present motion is kept in the records' velocities and in the scratch.
+class PressureResponse {
+ public:
+  /// `at` has the places that `pairs` were built of; the solids move, or are held.
+  PressureResponse(const ForceModel& force_model, Configuration& at, PressurePairs& pairs,
+                   ResponseScratch& scratch, bool solids_move);
+
+  /// Sets the motion to the accelerations by `pressure`, by slot.
+  void accelerate(std::span<const Real> pressure);
+  /// Sets the motion to the velocities, seen from walls that move with `wall_velocity`.
+  void see_velocities(const Vec3& wall_velocity);
+
+  /// rate = D of the motion, by slot.
+  void compress(std::span<Real> rate) const;
+  /// The part of D that solids have in it, with their own velocities.
+  Real compression_by_solids(std::size_t slot) const;
+  /// Bounds the diagonal of -V D M^-1 F, by slot.
+  void find_diagonal(std::span<Real> diagonal);
+
+  /// Adds `dt` times the motion, which must be of accelerations, to the velocities.
+  void kick(Real dt);
+  /// Adds `share` times the liquid's motion to its places.
+  void shift(Real share);
+
+ private:
+  template <bool periodic>
+  void accelerate_liquid();
+  template <bool periodic>
+  void compress_liquid(std::span<Real> rate) const;
+  void push_solids();
+  void sum_rigid_forces();
+  Vec3 solid_acceleration(Index particle) const;
+  Real mobility_of_liquid(Index particle) const;
+  Real mobility_of(Index particle) const;
+  Real diagonal_of(std::size_t slot) const;
+
+  const ForceModel& f_;
+  Configuration& at_;
+  PressurePairs& pairs_;
+  ResponseScratch& scratch_;
+  const std::span<const Index> order_;
+  const std::span<const Index> solids_;
+  const bool has_solids_;
+  const bool solids_move_;
+};
+
+}  // namespace vat

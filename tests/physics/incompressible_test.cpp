@@ -1,0 +1,289 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/mixed_scenes.h"
+#include "tests/support/same_bits.h"
+#include "tests/support/totals.h"
+
+// The incompressible liquid: what it keeps, and how well it stands.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+constexpr Real kGravity = 9.81;
+
+/// Adaptive steps within a tick of `tick` seconds.
+Scene make_liquid_scene(Real tick, Real spacing) {
+  Scene scene = make_scene(IntegratorId::symplectic_euler, tick);
+  scene.numerics.control = StepControl::adaptive;
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.gravity = {0, 0, -kGravity};
+  scene.materials = {make_liquid("water", 1000, {0, 0, 2 * spacing})};
+  return scene;
+}
+
+/// A column in the plane, `height` and `width` in spacings, in a vat that is `gap` spacings wider
+/// than it on each side, and lower by it.
+Scene make_column(int width, int height, Real spacing, Real gap = 0) {
+  Scene scene = make_liquid_scene(0.01, spacing);
+  scene.dimensions = 2;
+  scene.vat = Vat{{-gap * spacing, -1, -gap * spacing},
+                  {(width + gap) * spacing, 1, 2 * height * spacing},
+                  false,
+                  {}};
+  scene.bodies = {BodyDescription{"water", BodyKind::liquid, "water",
+                                  BoxShape{{width * spacing / 2, 0, height * spacing / 2},
+                                           {width * spacing, 1, height * spacing}},
+                                  spacing}};
+  return scene;
+}
+
+/// Over `ticks`, watching after each.
+struct Watched {
+  Real mean_density_error = 0;           ///< mean over the ticks
+  Real mean_greatest_density_error = 0;  ///< the same of the greatest
+  Real max_density_error = 0;
+  Real top = 0;  ///< the highest particle [m]
+  Real speed = 0;
+  std::uint64_t undone_steps = 0;
+};
+
+Watched watch(Simulation& simulation, int ticks) {
+  Watched watched;
+  for (int n = 0; n < ticks; ++n) {
+    const AdvanceReport report = simulation.advance(1);
+    watched.undone_steps += report.undone_steps;
+    const Diagnostics now = simulation.diagnostics();
+    watched.mean_density_error += now.mean_density_error / ticks;
+    watched.mean_greatest_density_error += now.max_density_error / ticks;
+    watched.max_density_error = std::max(watched.max_density_error, now.max_density_error);
+    const BodyView water = simulation.bodies()[0];
+    for (std::size_t i = 0; i < water.positions.size(); ++i) {
+      watched.top = std::max(watched.top, water.positions[i].z());
+      watched.speed = std::max(watched.speed, water.velocities[i].norm());
+    }
+  }
+  return watched;
+}
+
+/// Mean over a second of each particle's height and pressure.
+struct Profile {
+  std::vector<Real> heights;
+  std::vector<Real> pressures;
+};
+
+Profile observe(Simulation& simulation) {
+  constexpr int kSamples = 50;
+  Profile mean;
+  for (int n = 0; n < kSamples; ++n) {
+    simulation.advance(2);
+    const BodyView water = simulation.bodies()[0];
+    const std::vector<Real> pressures = simulation.liquid_fields(water.id).value().pressure;
+    mean.heights.resize(pressures.size());
+    mean.pressures.resize(pressures.size());
+    for (std::size_t i = 0; i < pressures.size(); ++i) {
+      mean.heights[i] += water.positions[i].z() / kSamples;
+      mean.pressures[i] += pressures[i] / kSamples;
+    }
+  }
+  return mean;
+}
+
+// LIQ-3: p = rho g (H - z), within the bound that twice a good solver's error is.
+TEST(Incompressible, ColumnStandsWithTheRightPressure) {
+  constexpr int kLayers = 20;
+  constexpr Real kHeight = 0.5;
+  Simulation simulation = make_simulation(make_column(12, kLayers, kHeight / kLayers));
+  const Watched watched = watch(simulation, 300);
+  const Profile mean = observe(simulation);
+  Real error = 0;
+  Real norm = 0;
+  for (std::size_t i = 0; i < mean.heights.size(); ++i) {
+    const Real expected = 1000 * kGravity * (kHeight - mean.heights[i]);
+    error += std::pow(mean.pressures[i] - expected, 2);
+    norm += expected * expected;
+  }
+  EXPECT_LT(std::sqrt(error / norm), 0.06);
+  EXPECT_LE(watched.mean_density_error, 5e-4);
+  EXPECT_LT(watched.max_density_error, 0.02);
+  EXPECT_NEAR(watched.top, kHeight, kHeight / kLayers);
+  EXPECT_EQ(watched.undone_steps, 0U);
+}
+
+// Up to where it meets the far wall, and through the impact: a good solver's mean of the greatest
+// errors is 1.3 to 4.5 %.
+TEST(Incompressible, DamBreakKeepsItsVolume) {
+  constexpr Real kSpacing = 0.01;
+  Scene scene = make_column(20, 40, kSpacing);
+  scene.vat->max.x() = 0.8;
+  Simulation simulation = make_simulation(scene);
+  const Watched fall = watch(simulation, 30);
+  EXPECT_LE(fall.mean_density_error, 5e-4);
+  EXPECT_LT(fall.max_density_error, 0.02);
+  const Watched impact = watch(simulation, 60);
+  EXPECT_LE(impact.mean_density_error, 6e-4);
+  EXPECT_LT(impact.mean_greatest_density_error, 0.045);
+  EXPECT_LT(std::max(fall.speed, impact.speed), 2 * std::sqrt(2 * kGravity * 0.4));
+  EXPECT_EQ(fall.undone_steps + impact.undone_steps, 0U);
+}
+
+// Too close to the walls, by up to a third of a spacing: the liquid makes room and gets no speed.
+TEST(Incompressible, StartsOverDenseWithoutAnExplosion) {
+  constexpr Real kSpacing = 0.025;
+  for (const Real gap : {-0.15, -0.3}) {
+    Scene scene = make_column(12, 20, kSpacing, gap);
+    Simulation simulation = make_simulation(scene);
+    const Watched watched = watch(simulation, 100);
+    const Real height = 20.0 * 12 / (12 + 2 * gap) * kSpacing;  // of as much volume
+    EXPECT_LT(watched.top, height + kSpacing) << gap;
+    EXPECT_LT(watched.speed, 0.35 * std::sqrt(kGravity * height)) << gap;
+    EXPECT_LT(simulation.diagnostics().mean_density_error, 1e-3) << gap;
+    EXPECT_EQ(watched.undone_steps, 0U) << gap;
+  }
+}
+
+/// Liquids of two densities, a deformable and a rigid body, all in contact.
+Scene make_mixture() {
+  Scene scene = make_two_material_scene(IntegratorId::symplectic_euler, 1e-3, 5);
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.materials[1].density = 700;
+  const auto add = [&](const char* name, BodyKind kind, const char* material, const Vec3& center,
+                       const Vec3& velocity) {
+    scene.bodies.push_back(make_block(name, kind, material, 4, center, velocity));
+  };
+  add("water", BodyKind::liquid, "a", {0, 0, 0}, {0.3, 0, 0});
+  add("oil", BodyKind::liquid, "b", {0.2, 0, 0}, {-0.5, 0.1, 0});
+  add("jelly", BodyKind::deformable, "a", {0, 0.2, 0.05}, {0, -0.5, 0});
+  add("crate", BodyKind::rigid, "b", {0.1, 0, 0.2}, {0, 0, -0.4});
+  std::ranges::fill(std::get<ParticleShape>(scene.bodies[1].shape).masses, 0.7 * 0.125);
+  return scene;
+}
+
+// Forces and shifts are opposite in every pair, so momentum is kept to round-off; shifts keep
+// angular momentum as well as the liquid its density.
+TEST(Incompressible, KeepsTheMomentumOfLiquidsAndSolids) {
+  Simulation simulation = make_simulation(make_mixture());
+  const Totals before = totals_of(simulation.diagnostics());
+  const Motion size = motion_of(simulation);
+  std::vector<Real> greatest(4, 0);
+  int iterations = 0;
+  for (int n = 0; n < 40; ++n) {
+    simulation.advance(10);
+    const Diagnostics now = simulation.diagnostics();
+    for (std::size_t b = 0; b < 4; ++b) {
+      greatest[b] = std::max(greatest[b], now.bodies[b].outer_force.norm());
+    }
+    iterations += now.volume->velocities.iterations;
+  }
+  const Totals after = totals_of(simulation.diagnostics());
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12 * size.momentum);
+  EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(),
+            1e-3 * size.angular_momentum);
+  EXPECT_THAT(greatest, testing::Each(testing::Gt(1))) << "of outer forces [N]";
+  EXPECT_GT(iterations, 20);
+}
+
+TEST(Incompressible, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
+  Scene scene = make_mixture();
+  scene.gravity = {0, 0, -kGravity};
+  scene.vat =
+      Vat{Vec3(-0.15, -0.15, -0.15), Vec3(0.5, 0.4, 1), false, SlideMotion{{1, 0, 0}, 0.2, 2}};
+  expect_same_bits(scene, 20, 10);
+  scene.numerics.control = StepControl::adaptive;
+  expect_same_bits(scene, 20, 10);
+}
+
+TEST(Incompressible, GoesOnWithItsPressureWhereABodyIsAdded) {
+  Simulation simulation = make_simulation(make_column(12, 20, 0.025));
+  simulation.advance(20);
+  const BodyId water = simulation.bodies()[0].id;
+  const std::vector<Real> before = simulation.liquid_fields(water).value().pressure;
+  ASSERT_GT(std::ranges::max(before), 1000);
+  BodyDescription drop =
+      make_body("drop", BodyKind::liquid, "water", make_particles({{0.1, 0, 0.9}}, 0.625), 0.0125);
+  ASSERT_TRUE(simulation.add_body(drop));
+  EXPECT_EQ(simulation.liquid_fields(water).value().pressure, before);
+}
+
+/// A ball of `density` over or in a pool of water as wide as three diameters.
+Scene make_ball_in_pool(Real density, Real height) {
+  constexpr Real kSpacing = 0.05;
+  Scene scene = make_liquid_scene(0.01, kSpacing);
+  scene.materials.push_back(make_material("ball", density));
+  scene.default_interface = {1e5, 100};
+  scene.vat = Vat{{0, 0, 0}, {0.6, 0.6, 1.5}, false, {}};
+  const SphereShape ball{Vec3(0.3, 0.3, height), 0.125};
+  std::vector<Vec3> points;
+  for (const Vec3& point : make_lattice(12, 12, 10, kSpacing)) {
+    const Vec3 p = point + Vec3(0.3, 0.3, 0.25);
+    if ((p - ball.center).norm() > ball.radius + kSpacing / 4) points.push_back(p);
+  }
+  scene.bodies = {
+      make_body("water", BodyKind::liquid, "water", make_particles(points, 0.125), kSpacing / 2),
+      BodyDescription{"ball", BodyKind::rigid, "ball", ball, kSpacing}};
+  return scene;
+}
+
+// Pressure and body are solved for together: however light, they do not fight.
+TEST(Incompressible, IsStableWithBodiesOfAnyDensity) {
+  for (const Real density : {10.0, 3000.0}) {
+    const Scene scene = make_ball_in_pool(density, 0.3);
+    Simulation simulation = make_simulation(scene);
+    const Watched watched = watch(simulation, 60);
+    EXPECT_EQ(watched.undone_steps, 0U) << density;
+    EXPECT_LT(watched.speed, 8) << density;
+    const Real z = simulation.bodies()[1].pose->center_of_mass.z();
+    if (density < 1000) {
+      EXPECT_GT(z, 0.45);
+    } else {
+      EXPECT_LT(z, 0.2);
+    }
+  }
+}
+
+// A thrown drop, in 2 and 3 dimensions, against walls that move.
+TEST(Incompressible, DropThrownIntoAMovingVatStaysInIt) {
+  for (const int dimensions : {2, 3}) {
+    constexpr Real kSpacing = 0.05;
+    Scene scene = make_liquid_scene(0.01, kSpacing);
+    scene.dimensions = dimensions;
+    scene.vat = Vat{{-0.5, -0.5, 0}, {0.5, 0.5, 1}, true, SlideMotion{{1, 0, 0}, 0.4, 0.8}};
+    BodyDescription drop{"drop", BodyKind::liquid, "water", SphereShape{Vec3(0, 0, 0.5), 0.2},
+                         kSpacing};
+    drop.velocity = {5, 0, -8};
+    scene.bodies = {drop};
+    Simulation simulation = make_simulation(scene);
+    const Watched watched = watch(simulation, 200);
+    EXPECT_EQ(watched.undone_steps, 0U);
+    EXPECT_EQ(simulation.diagnostics().particles_outside, 0U);
+    EXPECT_LT(watched.mean_density_error, 2e-3);
+  }
+}
+
+// What it solved is told.
+TEST(Incompressible, TellsWhatItsSolvesTookAndLeft) {
+  Scene scene = make_column(12, 20, 0.025);
+  scene.incompressible.divergence_tolerance = 1e-6;
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(1);
+  const VolumeReport loose = *simulation.diagnostics().volume;
+  EXPECT_GT(loose.velocities.iterations, 0);
+  EXPECT_LE(loose.velocities.mean, 1e-6);
+  EXPECT_LE(loose.velocities.mean, loose.velocities.greatest);
+  EXPECT_LE(loose.places.mean, scene.incompressible.density_tolerance);
+  scene.incompressible.most_iterations = 3;
+  Simulation short_solves = make_simulation(scene);
+  short_solves.advance(1);
+  EXPECT_LE(short_solves.diagnostics().volume->velocities.iterations, 3);
+  EXPECT_GT(short_solves.diagnostics().volume->velocities.mean, 1e-6);
+  scene.pressure_solver = PressureSolver::tait;
+  EXPECT_FALSE(make_simulation(scene).diagnostics().volume);
+}
+
+}  // namespace
+}  // namespace vat
