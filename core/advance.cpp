@@ -141,8 +141,7 @@ Real Simulation::Impl::wanted_step(const ForceModel& force_model, Real start) {
         probe_start(force_model, start, kShort * std::min(step, numerics.step));
   }
   if (state.history.observed_rate > 0) {
-    step = std::min(step, resolving_phase(numerics.integrator, numerics.tolerance) /
-                              state.history.observed_rate);
+    step = std::min(step, resolving_phase_of_places(numerics) / state.history.observed_rate);
   }
   return step;
 }

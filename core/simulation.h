@@ -96,7 +96,8 @@ struct AdvanceReport {
 };
 
 /// Told when each stage of the plan begins and ends, and each of implicit_springs,
-/// implicit_dashpots, keep_volume, project_contacts and solve_damping; no clock.
+/// implicit_dashpots, project_velocities, correct_density, project_contacts and solve_damping; no
+/// clock.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

@@ -7,6 +7,7 @@
 // Solids in a weakly compressible liquid.
 
 namespace vat {
+
 void find_liquid_solids(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
   const Index first = c.model.liquid_count;

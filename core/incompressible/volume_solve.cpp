@@ -2,17 +2,23 @@
 
 #include <algorithm>
 
+#include "core/forces/liquid.h"
 #include "core/forces/liquid_pairs.h"
+#include "core/forces/rigid.h"
 #include "core/forces/vat_motion.h"
+#include "core/forces/weakly_compressible.h"
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/incompressible/pressure_response.h"
+#include "core/step/hold_inside.h"
 
 namespace vat {
 namespace {
 
 constexpr Real kGreatestOverMean = 20;  // of residuals
 constexpr Real kClosing = 0.5;          // of what is missing at rest density, in a step
-constexpr Real kMostExpansion = 0.02;   // by shifts, in a step: theirs is linear theory
+constexpr int kMostCorrections = 12;    // rounds of Newton's method
+constexpr Real kLinearShare = 0.25;     // of the density tolerance, for the solve of one round
+constexpr Real kMostExpansion = 0.05;   // in one round: further, linear theory leads astray
 constexpr Real kAlone = 1;              // the diagonal of a particle with nothing around it
 
 /// Of the vat's walls over the step.
@@ -22,22 +28,24 @@ Vec3 wall_velocity(const Model& model, Real time, Real dt) {
   return (vat_motion(vat, time + dt).offset - vat_motion(vat, time).offset) / dt;
 }
 
-/// One step's solves, over liquid slots.
+/// Solves over the liquid's slots, for pressures times dt^2.
 class VolumeSolve {
  public:
-  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, const Vec3& walls,
-              VolumeScratch& scratch)
+  /// The workspace has cells, pairs and densities of the present places.
+  VolumeSolve(const StepContext& c, const ForceModel& f, Real dt, VolumeScratch& scratch)
       : f_(f),
-        now_(now),
+        now_(c.configuration),
         dt_(dt),
-        walls_(walls),
         s_(scratch),
         problem_(scratch.problem),
-        order_(f.work.liquid.grid.order()) {}
+        order_(f.work.liquid.grid.order()) {
+    scratch.pairs.build(c);
+    set_up();
+  }
 
-  void set_up();
-  SolveReport project_velocities();
-  SolveReport correct_places();
+  SolveReport project_velocities(const Vec3& wall_velocity);
+  /// The number of iterations.
+  int shift_places();
 
  private:
   template <class F>
@@ -46,13 +54,13 @@ class VolumeSolve {
       for (std::size_t s = begin; s < end; ++s) f(s);
     });
   }
+  void set_up();
   SolveReport solve(PressureResponse& response, Real mean);
   void apply_impulses(PressureResponse& response);
 
   const ForceModel& f_;
   Configuration& now_;
   const Real dt_;
-  const Vec3 walls_;
   VolumeScratch& s_;
   Complementarity& problem_;
   const std::span<const Index> order_;
@@ -72,9 +80,9 @@ void VolumeSolve::set_up() {
   });
 }
 
-SolveReport VolumeSolve::project_velocities() {
+SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   PressureResponse response(f_, now_, s_.pairs, s_.response, true);
-  response.see_velocities(walls_);
+  response.see_velocities(wall_velocity);
   response.compress(problem_.excess);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
@@ -100,23 +108,18 @@ void VolumeSolve::apply_impulses(PressureResponse& response) {
   response.kick(dt_);
 }
 
-SolveReport VolumeSolve::correct_places() {
+int VolumeSolve::shift_places() {
   PressureResponse response(f_, now_, s_.pairs, s_.response, false);
-  const bool solids = has_solids(f_.model);
-  if (solids) response.see_velocities(walls_);
   each_slot([&](std::size_t s) {
-    const Real density = s_.relative_density[s];
-    Real excess = density > 1 ? density - 1 : (1 - kClosing) * (density - 1);
-    if (solids) excess -= dt_ * response.compression_by_solids(s);
-    excess += problem_.excess[s] / problem_.scale[s];
-    problem_.excess[s] = problem_.scale[s] * std::min(excess, kMostExpansion);
+    problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMostExpansion);
     problem_.x[s] = 0;
   });
-  const SolveReport report = solve(response, f_.model.scene.incompressible.density_tolerance);
-  if (report.iterations == 0) return report;
+  const Real tolerance = kLinearShare * f_.model.scene.incompressible.density_tolerance;
+  const SolveReport report = solve(response, tolerance);
+  if (report.iterations == 0) return 0;
   response.accelerate(problem_.x);
   response.shift(dt_ * dt_);
-  return report;
+  return report.iterations;
 }
 
 SolveReport VolumeSolve::solve(PressureResponse& response, Real mean) {
@@ -129,22 +132,56 @@ SolveReport VolumeSolve::solve(PressureResponse& response, Real mean) {
   });
 }
 
+/// Cells, pairs and densities of places that have changed.
+void find_density(StepContext& c) {
+  sort_liquid(c);
+  if (has_solids(c.model)) find_liquid_solids(c);
+  compute_tait_density(c);
+}
+
+/// How much is too dense.
+void measure_excess(const StepContext& c, SolveReport& report) {
+  report.mean = 0;
+  report.greatest = 0;
+  for (Index i = 0; i < c.model.liquid_count; ++i) {
+    const Real excess = c.work.density[i] / liquid_of(c.model, i).rest_density - 1;
+    // A NaN is the guard's to see.
+    report.mean += std::max(Real{0}, excess) / c.model.liquid_count;
+    report.greatest = std::max(report.greatest, excess);
+  }
+}
+
 }  // namespace
 
 void recall_pressure(StepContext& c) {
   c.work.pressure = c.configuration.pressure;
 }
 
-VolumeReport keep_volume(const ForceModel& f, Configuration& now, Real time, Real dt,
-                         VolumeScratch& scratch) {
+SolveReport project_velocities(const ForceModel& f, Configuration& now, Real time, Real dt,
+                               VolumeScratch& scratch) {
   Forces unused;
-  scratch.pairs.build({f.model, f.controls, time, f.step, now, unused, f.work, f.runner});
-  VolumeSolve solve(f, now, dt, wall_velocity(f.model, time, dt), scratch);
-  solve.set_up();
-  VolumeReport report;
-  report.velocities = solve.project_velocities();
-  report.places = solve.correct_places();
-  return report;
+  const StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};
+  return VolumeSolve(c, f, dt, scratch).project_velocities(wall_velocity(f.model, time, dt));
+}
+
+SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
+                            VolumeScratch& scratch) {
+  Forces unused;
+  StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};
+  const Real tolerance = f.model.scene.incompressible.density_tolerance;
+  if (!f.model.rigid_bodies.empty()) pose_rigid_bodies(c);
+  SolveReport report;
+  for (int round = 0;; ++round) {
+    const std::uint64_t stops = hold_liquid_inside(f.model, time, f.runner, now);
+    if (f.report != nullptr) f.report->wall_stops += stops;
+    find_density(c);
+    measure_excess(c, report);
+    const bool is_solved =
+        report.mean <= tolerance && report.greatest <= kGreatestOverMean * tolerance;
+    if (is_solved || round == kMostCorrections || f.work.too_many_pairs) return report;
+    constexpr Real kUnit = 1;  // shifts take no time
+    report.iterations += VolumeSolve(c, f, kUnit, scratch).shift_places();
+  }
 }
 
 }  // namespace vat

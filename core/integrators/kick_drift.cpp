@@ -74,12 +74,17 @@ void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Re
   kick(f.model, f.runner, state.forces, state.now, dt);
   limit_elongation(f.model, f.runner, state.now, dt);
   if (f.model.is_incompressible) {
-    if (f.observer != nullptr) f.observer->stage_begins("keep_volume");
-    state.volume = keep_volume(f, state.now, time, dt, scratch.volume);
-    if (f.observer != nullptr) f.observer->stage_ends("keep_volume");
+    if (f.observer != nullptr) f.observer->stage_begins("project_velocities");
+    state.volume.velocities = project_velocities(f, state.now, time, dt, scratch.volume);
+    if (f.observer != nullptr) f.observer->stage_ends("project_velocities");
   }
   drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
+  if (f.model.is_incompressible) {
+    if (f.observer != nullptr) f.observer->stage_begins("correct_density");
+    state.volume.places = correct_density(f, state.now, time + dt, scratch.volume);
+    if (f.observer != nullptr) f.observer->stage_ends("correct_density");
+  }
   change_springs(f.model, f.runner, state.now, dt);
   finish_contacts(f, state, time, dt, scratch);
 }

@@ -22,4 +22,10 @@ Real resolving_phase(IntegratorId integrator, Real error) {
   return 0;
 }
 
+Real resolving_phase_of_places(const Numerics& numerics) {
+  const bool is_euler = numerics.integrator == IntegratorId::symplectic_euler;
+  return resolving_phase(is_euler ? IntegratorId::velocity_verlet : numerics.integrator,
+                         numerics.tolerance);
+}
+
 }  // namespace vat

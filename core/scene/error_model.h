@@ -12,4 +12,9 @@ namespace vat {
 /// ch. I and IX.)
 Real resolving_phase(IntegratorId integrator, Real error);
 
+/// The same for an error of places alone, which varied steps are chosen for: the places of
+/// symplectic Euler are those of velocity Verlet, and where a contact begins or ends so are its
+/// velocities.
+Real resolving_phase_of_places(const Numerics& numerics);
+
 }  // namespace vat

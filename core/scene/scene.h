@@ -40,9 +40,9 @@ enum class PressureSolver : std::uint8_t {
 /// How well the solves of an incompressible liquid keep its volume: relative changes of density,
 /// means over its particles; 20 times as much is allowed to one particle.
 struct IncompressibleSolve {
-  Real density_tolerance = 5e-4;     ///< too dense at the end of a step, by linear theory
+  Real density_tolerance = 5e-4;     ///< too dense at the end of a step
   Real divergence_tolerance = 1e-5;  ///< by the velocities within a step
-  int most_iterations = 100;         ///< of each of a step's two solves
+  int most_iterations = 100;         ///< of each linear solve
 };
 
 /// A Hooke spring's constants: stiffness k [N/m] of Boldt eq. 3 and damping along the spring

@@ -93,8 +93,8 @@ StepBounds find_step_bounds(const Model& model) {
   bounds.scene_step = kInfinity;
   if (model.scene.forces.gravity && model.scene.central_field &&
       model.scene.central_field->angular_frequency > 0) {
-    bounds.scene_step = resolving_phase(numerics.integrator, numerics.tolerance) /
-                        model.scene.central_field->angular_frequency;
+    bounds.scene_step =
+        resolving_phase_of_places(numerics) / model.scene.central_field->angular_frequency;
   }
   for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
     if (model.bodies[b].kind == BodyKind::liquid) continue;

@@ -136,8 +136,7 @@ ContactOutlook look_at_walls(const Search& search, Real inverse_mass, Index i) {
 /// A force with a kink is of order 2 with any method: a contact that begins and ends within steps
 /// changes the speed of parting by up to z^2 / 8.
 Real contact_phase(const Numerics& numerics) {
-  return std::min(resolving_phase(numerics.integrator, numerics.tolerance),
-                  std::sqrt(8 * numerics.tolerance));
+  return std::min(resolving_phase_of_places(numerics), std::sqrt(8 * numerics.tolerance));
 }
 
 /// `contacts` alone, and with all other forces.

@@ -10,12 +10,14 @@
 #include "server/task_runner.h"
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/control_report.h"
+#include "tests/bench/accuracy/solver_report.h"
 #include "tests/bench/options.h"
 
 namespace vat::bench {
 
 namespace {
 
+constexpr const char* kSolversName = "solvers";
 constexpr SweepSettings kQuick{.repetitions = 1, .stride = 3, .longest_run = 0.2};
 
 ProblemResult solve_with_all(const ProblemEntry& entry, const SweepSettings& settings,
@@ -37,10 +39,19 @@ ProblemResult solve_with_all(const ProblemEntry& entry, const SweepSettings& set
   return result;
 }
 
+Status solvers(const Options& options, TaskRunner* runner) {
+  std::cout << kSolversName << ": pressure solvers, error against time" << std::endl;
+  const auto results =
+      options.quick ? compare_solvers(1, 20, runner) : compare_solvers(5, 40, runner);
+  std::cout << to_markdown(solvers_table(results)) << std::endl;
+  return write_solvers(results, options.output);
+}
+
 int accuracy(const Options& options) {
   const std::vector<ProblemEntry>& problems = all_problems();
   std::vector<std::string> names;
   for (const ProblemEntry& entry : problems) names.push_back(entry.name);
+  names.push_back(kSolversName);
   if (options.list) {
     print_names(names);
     return kExitOk;
@@ -51,10 +62,17 @@ int accuracy(const Options& options) {
   ThreadPoolRunner runner(options.threads);
   std::vector<ProblemResult> results;
   for (const std::size_t index : chosen.value()) {
+    if (index == problems.size()) {
+      if (const Status done = solvers(options, &runner); !done) {
+        return fail(options.output, done.errors());
+      }
+      continue;
+    }
     if (options.quick && options.cases.empty() && problems[index].is_long) continue;
     results.push_back(
         solve_with_all(problems[index], options.quick ? kQuick : SweepSettings{}, &runner));
   }
+  if (results.empty()) return kExitOk;
   const Status written = write_accuracy(results, options.output);
   if (!written) return fail(options.output, written.errors());
   std::cout << '\n'

@@ -52,6 +52,8 @@ Result<std::map<std::string, std::string>> make_contents(const fs::path& folder)
   if (!cheapest) return cheapest.errors();
   const Result<Json> control = read_rows(folder, "accuracy", "control");
   if (!control) return control.errors();
+  const Result<Json> solvers = read_rows(folder, "accuracy", "solvers");
+  if (!solvers) return solvers.errors();
   const Result<Json> stability = read_rows(folder, "stability", "stability");
   if (!stability) return stability.errors();
   try {
@@ -59,6 +61,7 @@ Result<std::map<std::string, std::string>> make_contents(const fs::path& folder)
         {"cases", to_markdown(cases_table(validation.value(), case_titles()))},
         {"limits", to_markdown(limits_table(validation.value()))},
         {"methods", to_markdown(methods_table(cheapest.value()))},
+        {"solvers", to_markdown(solvers_table(solvers.value()))},
         {"steps", to_markdown(steps_table(control.value()))},
         {"counts", to_markdown(counts_table(stability.value()))}};
   } catch (const std::exception& error) {

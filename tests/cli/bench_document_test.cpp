@@ -80,6 +80,11 @@ class Results {
                "its evaluations per particle": 100, "best adaptive": "heun",
                "evaluations / fixed": 0.5, "time / fixed": 0.625,
                "local: evaluations / fixed": null, "local: time / fixed": null}])");
+    write(
+        "accuracy/solvers.json",
+        R"([{"problem": "dam", "solver": "tait", "layers": 20, "error of": "front", "error": 0.125,
+               "mean density error": 0.5, "greatest density error": 0.75, "steps": 7,
+               "seconds": 1.5, "hash": "0"}])");
     write("stability/stability.json",
           R"([{"part": "random", "scenes": 30, "not finite": 0, "aborts": 0, "outside": 0,
                "guard events": 5, "retries": 6, "wall stops": 0, "stopped": 0, "refused": 0,
@@ -97,6 +102,7 @@ class Results {
 
   static constexpr const char* kEmptyPage =
       "<!-- begin cases -->\n<!-- end cases -->\n<!-- begin limits -->\n<!-- end limits -->\n"
+      "<!-- begin solvers -->\n<!-- end solvers -->\n"
       "<!-- begin methods -->\n<!-- end methods -->\n<!-- begin steps -->\n<!-- end steps -->\n"
       "<!-- begin counts -->\n<!-- end counts -->\n![P](figures/P-time.svg)\n";
 
@@ -123,6 +129,12 @@ TEST(BenchDocument, WritesTablesAndCopiesPictures) {
           "|---|---|---|---|---|\n"
           "| DEF-1 | z [m] | 4 | 3 | too soft |\n"
           "<!-- end limits -->\n"
+          "<!-- begin solvers -->\n"
+          "| problem | solver | layers | error of | error | mean density error "
+          "| greatest density error | steps |\n"
+          "|---|---|---|---|---|---|---|---|\n"
+          "| dam | tait | 20 | front | 0.125 | 0.5 | 0.75 | 7 |\n"
+          "<!-- end solvers -->\n"
           "<!-- begin methods -->\n"
           "| problem | error 0.01 | error 1e-06 |\n"
           "|---|---|---|\n"
@@ -156,8 +168,12 @@ TEST(BenchDocument, MissingResultChangesNothing) {
 
 TEST(BenchDocument, PageHasEveryMarkerFigureAndCase) {
   const std::string page = read_file(kPage);
-  const Result<std::string> filled = fill_markers(
-      page, {{"cases", ""}, {"limits", ""}, {"methods", ""}, {"steps", ""}, {"counts", ""}});
+  const Result<std::string> filled = fill_markers(page, {{"cases", ""},
+                                                         {"limits", ""},
+                                                         {"methods", ""},
+                                                         {"solvers", ""},
+                                                         {"steps", ""},
+                                                         {"counts", ""}});
   EXPECT_TRUE(filled) << filled.errors()[0].path << ' ' << filled.errors()[0].message;
   EXPECT_GE(pictures_of(page).size(), 6u);
   constexpr std::uintmax_t kLargest = 160'000;  // bytes

@@ -93,7 +93,11 @@ RandomVat random_vat(std::uint64_t seed, PressureSolver solver) {
   RandomVat vat;
   const Real spacing = random.scale(0.005, 0.2);
   const Vec3 cells(8 + random.below(7), 8 + random.below(7), 9 + random.below(6));
-  vat.scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+  const bool is_incompressible = solver == PressureSolver::incompressible;
+  vat.scene = test::make_scene(
+      is_incompressible ? IntegratorId::symplectic_euler : IntegratorId::velocity_verlet, 1e-3);
+  // How long its steps may be depends on its pressure.
+  if (is_incompressible) vat.scene.numerics.control = StepControl::adaptive;
   vat.scene.name = std::string(to_string(solver)) + "-vat-" + std::to_string(seed);
   vat.scene.pressure_solver = solver;
   vat.scene.vat = Vat{Vec3::Zero(), spacing * cells, random.chance(0.7), {}, {}};

@@ -11,7 +11,8 @@ namespace vat::stability {
 namespace {
 
 constexpr std::uint64_t kVats = 6;
-constexpr PressureSolver kSolvers[] = {PressureSolver::gas, PressureSolver::tait};
+constexpr PressureSolver kSolvers[] = {PressureSolver::gas, PressureSolver::tait,
+                                       PressureSolver::incompressible};
 
 TEST(RandomVats, AreValidAndTheSameForTheSameSeed) {
   std::set<std::string> texts;
@@ -23,7 +24,7 @@ TEST(RandomVats, AreValidAndTheSameForTheSameSeed) {
       texts.insert(write_scene(scene).dump());
     }
   }
-  EXPECT_EQ(texts.size(), 2 * kVats);
+  EXPECT_EQ(texts.size(), std::size(kSolvers) * kVats);
 }
 
 class RandomVatsOf : public testing::TestWithParam<PressureSolver> {};

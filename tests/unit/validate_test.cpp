@@ -278,6 +278,7 @@ TEST(Validate, NamesTheIntegratorAndTheSolverThatItCannotDrive) {
   EXPECT_THAT(find_errors(scene), testing::IsEmpty());
   scene.numerics.control = StepControl::local;
   EXPECT_FALSE(find_errors(scene).empty());
+  scene.bodies.resize(1);  // springs would need steps too short for a method of order 1
   scene.numerics = {};
   scene.numerics.accuracy = 0.01;
   EXPECT_THAT(find_errors(scene), testing::IsEmpty());

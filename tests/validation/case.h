@@ -25,6 +25,7 @@ class Sheet {
   explicit Sheet(const Settings& settings) : settings_(settings) {}
 
   bool quick() const { return settings_.quick; }
+  TaskRunner* runner() const { return settings_.runner; }
   /// A run with the settings' runner.
   Run start(const Scene& scene) const { return Run(scene, settings_.runner); }
 

@@ -100,6 +100,20 @@ Table steps_table(const Json& control) {
   return table;
 }
 
+Table solvers_table(const Json& solvers) {
+  Table table{{"problem", "solver", "layers", "error of", "error", "mean density error",
+               "greatest density error", "steps"},
+              {}};
+  for (const Json& row : solvers) {
+    table.rows.push_back({text(row, "problem"), text(row, "solver"),
+                          row.at("layers").get<std::uint64_t>(), text(row, "error of"),
+                          row.at("error").get<Real>(), row.at("mean density error").get<Real>(),
+                          row.at("greatest density error").get<Real>(),
+                          row.at("steps").get<std::uint64_t>()});
+  }
+  return table;
+}
+
 Table counts_table(const Json& stability) {
   Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
                "wall stops", "stopped", "refused", "faults"},

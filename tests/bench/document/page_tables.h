@@ -21,6 +21,9 @@ Table methods_table(const Json& cheapest);
 /// One row for each problem and error that fixed steps can reach.
 Table steps_table(const Json& control);
 
+/// Everything but the seconds and hashes.
+Table solvers_table(const Json& solvers);
+
 /// Everything but the seconds.
 Table counts_table(const Json& stability);
 

@@ -11,7 +11,8 @@ Result<StabilityCount> run_vat_part(const Options& options) {
   Table table{{"vat", "bodies", "particles", "step [s]", "steps", "guard events", "wall stops",
                "outside", "greatest speed / speed of sound", "hash", "fault"},
               {}};
-  for (const PressureSolver solver : {PressureSolver::gas, PressureSolver::tait}) {
+  for (const PressureSolver solver :
+       {PressureSolver::gas, PressureSolver::tait, PressureSolver::incompressible}) {
     for (std::uint64_t seed = 1; seed <= vats; ++seed) {
       const stability::RandomVat vat = stability::random_vat(seed, solver);
       const stability::VatReport report = stability::shake(vat);
