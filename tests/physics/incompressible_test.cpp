@@ -265,6 +265,40 @@ TEST(Incompressible, DropThrownIntoAMovingVatStaysInIt) {
   }
 }
 
+// What is in a nozzle keeps the flow's velocity, whatever the pressure.
+TEST(Incompressible, FlowsFromANozzleAndOutThroughADrain) {
+  constexpr Real kSpacing = 0.025;
+  constexpr Real kSpeed = 1;
+  Scene scene = make_column(20, 8, kSpacing);
+  scene.bodies[0].velocity = {0, 0, 0};
+  scene.emitters = {{.name = "tap",
+                     .body = "water",
+                     .position = {0.1, 0, 0.1},  // below the surface
+                     .direction = {1, 0, 0},
+                     .radius = 2 * kSpacing,
+                     .speed = kSpeed,
+                     .most_particles = 2000}};
+  scene.drains = {{"overflow", {0.45, -1, 0.2}, {0.5, 1, 0.4}}};
+  Simulation simulation = make_simulation(scene);
+  const std::size_t start = simulation.bodies()[0].positions.size();
+  const Watched watched = watch(simulation, 100);
+  const Diagnostics now = simulation.diagnostics();
+  EXPECT_NEAR(static_cast<Real>(now.emitted_particles), 4 * kSpeed / kSpacing, 4 * 6);
+  EXPECT_GT(now.drained_particles, 50U);
+  const BodyView water = simulation.bodies()[0];
+  EXPECT_EQ(water.positions.size(), start + now.emitted_particles - now.drained_particles);
+  EXPECT_LT(watched.mean_density_error, 1e-3);
+  EXPECT_LT(watched.speed, 3 * kSpeed);
+  EXPECT_EQ(watched.undone_steps, 0U);
+  const auto is_in_nozzle = [&](std::size_t i) {
+    return std::abs(water.positions[i].z() - 0.1) < 2 * kSpacing &&
+           water.positions[i].x() < 0.1 - kSpacing / 2 && water.velocities[i].x() == kSpeed;
+  };
+  std::size_t in_nozzle = 0;
+  for (std::size_t i = 0; i < water.positions.size(); ++i) in_nozzle += is_in_nozzle(i) ? 1 : 0;
+  EXPECT_GE(in_nozzle, 4U);
+}
+
 // What it solved is told.
 TEST(Incompressible, TellsWhatItsSolvesTookAndLeft) {
   Scene scene = make_column(12, 20, 0.025);
