@@ -65,6 +65,18 @@ Status Simulation::remove_body(BodyId id) {
   return {};
 }
 
+Status Simulation::set_emitter(std::string_view name, bool open) {
+  const auto found = std::ranges::find(impl_->model->scene.emitters, name, &Emitter::name);
+  if (found == impl_->model->scene.emitters.end()) {
+    return Error{"unknown_name", "/emitter", "must be the name of one of the scene's emitters"};
+  }
+  const auto index = found - impl_->model->scene.emitters.begin();
+  auto model = std::make_shared<Model>(*impl_->model);
+  model->scene.emitters[static_cast<std::size_t>(index)].open = open;
+  impl_->model = std::move(model);
+  return {};
+}
+
 Status Simulation::melt_body(BodyId id, const std::string& material) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();

@@ -64,6 +64,7 @@ class Flow {
   /// Layers whose time to come into their nozzle is since the step before, at `before`.
   void emit(Real time, Real before) {
     for (std::size_t e = 0; e < model_.nozzles.size(); ++e) {
+      if (!model_.scene.emitters[e].open) continue;
       const Nozzle& nozzle = model_.nozzles[e];
       const std::uint64_t first = state_.step_count == 0 ? 0 : nozzle.entered(before);
       const std::uint64_t end = nozzle.entered(time);

@@ -226,6 +226,9 @@ std::uint64_t Simulation::state_hash() const {
   StateHash hash;
   add_state(*impl_->model, impl_->state, hash);
   hash.add(impl_->model->scene.gravity);
+  for (const Emitter& emitter : impl_->model->scene.emitters) {
+    hash.add(std::uint64_t{emitter.open});
+  }
   add_controls(impl_->controls, hash);
   return hash.value();
 }

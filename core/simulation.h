@@ -146,7 +146,8 @@ class Simulation {
   Result<LiquidFields> liquid_fields(BodyId id) const;
 
   /// 64-bit hash of all that the next steps start from: the state, with the forces that are kept
-  /// from the last step, gravity, grabs and applied forces. Equal futures for one scene.
+  /// from the last step, gravity, open emitters, grabs and applied forces. Equal futures for one
+  /// scene.
   std::uint64_t state_hash() const;
   /// A copy of the present state, with the bodies and the commands in force.
   Snapshot snapshot() const;
@@ -166,6 +167,9 @@ class Simulation {
   /// Ends the body's grabs and applied forces too, and its emitters. Fails if there is no such
   /// body.
   Status remove_body(BodyId id);
+  /// Opens or closes an emitter: of a closed one what is in its tube goes on, and nothing comes
+  /// after it. Fails if there is no emitter of that name.
+  Status set_emitter(std::string_view name, bool open);
   /// Makes a deformable body liquid, of a material with liquid constants: its particles keep their
   /// places, velocities and masses, so that momentum is kept, and lose their springs; none stays
   /// fixed. Ends the body's grabs and applied forces. Fails if there is no such body or material,

@@ -25,6 +25,7 @@ Emitter to_emitter(const Json& value, std::string path, Errors& errors) {
   emitter.from = reader.real("from", 0, Emitter::kNoEnd, emitter.from);
   emitter.until = reader.real("until", 0, Emitter::kNoEnd, emitter.until);
   emitter.most_particles = reader.count("most_particles", 1, kMaxParticles);
+  emitter.open = reader.boolean("open", emitter.open);
   reader.refuse_unknown();
   return emitter;
 }

@@ -209,7 +209,8 @@ Json to_json(const Emitter& emitter) {
                {"speed", emitter.speed},
                {"from", emitter.from},
                {"until", emitter.until},
-               {"most_particles", emitter.most_particles}};
+               {"most_particles", emitter.most_particles},
+               {"open", emitter.open}};
   if (emitter.radius) json["radius"] = *emitter.radius;
   if (emitter.size) json["size"] = *emitter.size;
   return json;

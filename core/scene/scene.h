@@ -299,12 +299,13 @@ struct Emitter {
   Vec3 position = Vec3::Zero();  ///< of the opening's centre [m]
   Vec3 direction{0, 0, -1};      ///< of the flow; any length but zero
   std::optional<Real> radius{};  ///< of a round opening [m]; in the plane half its width
-  std::optional<std::array<Real, 2>> size{};  ///< of a rectangular one [m]: across and along z, or
-                                              ///< where the flow is vertical along x and y
-  Real speed = 0;                             ///< [m/s]
-  Real from = 0;                              ///< when the flow reaches the opening [s]
-  Real until = kNoEnd;                        ///< the first time without flow [s]
+  /// Edges of a rectangular one [m], the first horizontal, along x where the flow is vertical.
+  std::optional<std::array<Real, 2>> size{};
+  Real speed = 0;                  ///< [m/s]
+  Real from = 0;                   ///< when the flow reaches the opening [s]
+  Real until = kNoEnd;             ///< the first time without flow [s]
   std::size_t most_particles = 0;  ///< of the body: a layer that would be more is left out
+  bool open = true;                ///< no layer comes into the tube of a closed one
 
   static constexpr Real kNoEnd = 1e9;
 };

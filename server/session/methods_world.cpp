@@ -58,6 +58,16 @@ SessionAction read_melt_body(ObjectReader& params, Errors&) {
   };
 }
 
+SessionAction read_set_emitter(ObjectReader& params, Errors&) {
+  std::string emitter = params.text("emitter", kMaxNameLength);
+  const bool open = params.boolean("open");
+  return [emitter = std::move(emitter), open](SessionCore& core, Member&) -> ActionResult {
+    const Status set = core.run().simulation().set_emitter(emitter, open);
+    if (!set) return refused(set.errors());
+    return Json::object();
+  };
+}
+
 SessionAction read_set_gravity(ObjectReader& params, Errors&) {
   const Vec3 gravity = params.vector("gravity", kAnyMin, kAnyMax);
   return [gravity](SessionCore& core, Member&) -> ActionResult {
@@ -99,9 +109,10 @@ SessionAction read_apply_force(ObjectReader& params, Errors&) {
 }
 
 constexpr Method kMethods[] = {
-    {"world.add_body", read_add_body, true},     {"world.remove_body", read_remove_body},
-    {"world.melt_body", read_melt_body},         {"world.set_gravity", read_set_gravity},
-    {"world.set_interface", read_set_interface}, {"world.apply_force", read_apply_force},
+    {"world.add_body", read_add_body, true}, {"world.remove_body", read_remove_body},
+    {"world.melt_body", read_melt_body},     {"world.set_emitter", read_set_emitter},
+    {"world.set_gravity", read_set_gravity}, {"world.set_interface", read_set_interface},
+    {"world.apply_force", read_apply_force},
 };
 
 }  // namespace

@@ -184,6 +184,17 @@ TEST_F(SessionCommands, LiquidFlowsInWithoutANewEpoch) {
   EXPECT_EQ(state.at("bodies").at(0).at("positions").size(), particles + 4);
 }
 
+TEST_F(SessionCommands, AnEmitterCloses) {
+  const Json scene = scene_with_nozzle(1000);
+  client->result("scene.load", {{"scene", scene}});
+  client->result("world.set_emitter", {{"emitter", "tap"}, {"open", false}});
+  client->result("control.step", {{"ticks", 10}});
+  Simulation closed = std::move(Simulation::create(to_scene(scene.dump()))).value();
+  ASSERT_TRUE(closed.set_emitter("tap", false));
+  advance_ticks(closed, 10);
+  EXPECT_EQ(hash(), hash_of(closed));
+}
+
 TEST_F(SessionCommands, WhatMayFlowInCountsForTheLimits) {
   const Json error = client->error("scene.load", {{"scene", scene_with_nozzle(200'000)}});
   EXPECT_EQ(error.at("code"), 1005);

@@ -69,6 +69,8 @@ const std::vector<BadParams>& bad_params() {
       {"world.melt_body", R"({"body":2})", "/material", "must be given"},
       {"world.melt_body", R"({"body":2,"material":"wood"})", "/material", "liquid constants"},
       {"world.melt_body", R"({"body":3,"material":"water"})", "/body", "only a deformable body"},
+      {"world.set_emitter", R"({"emitter":"tap"})", "/open", "must be given"},
+      {"world.set_emitter", R"({"emitter":"tap","open":true})", "/emitter", "scene's emitters"},
       {"world.set_gravity", R"({"gravity":9.81})", "/gravity", "[x, y, z]"},
       {"world.set_gravity", R"({"gravity":[0,0]})", "/gravity", "[x, y, z]"},
       {"world.set_gravity", R"({"gravity":[0,0,-1001]})", "/gravity", "at most 1000"},
@@ -184,6 +186,7 @@ TEST_F(BadParameters, MethodsOfASessionNeedOne) {
       {"world.add_body", {{"body", Json::object()}}},
       {"world.remove_body", {{"body", 1}}},
       {"world.melt_body", {{"body", 1}, {"material", "water"}}},
+      {"world.set_emitter", {{"emitter", "tap"}, {"open", true}}},
       {"world.set_gravity", {{"gravity", target}}},
       {"world.set_interface", {{"interface", Json::object()}}},
       {"world.apply_force", {{"body", 1}, {"force", target}, {"duration", 1}}},
@@ -207,15 +210,16 @@ class GoodParameters : public SessionTest {};
 TEST_F(GoodParameters, EveryMethodOfTheProtocolIsThere) {
   const Json info = client->result("server.info");
   EXPECT_EQ(info.at("methods"),
-            Json({"server.info",       "scene.list",        "session.create",
-                  "session.list",      "session.join",      "session.leave",
-                  "session.close",     "scene.load",        "control.play",
-                  "control.pause",     "control.step",      "control.reset",
-                  "control.set_speed", "world.add_body",    "world.remove_body",
-                  "world.melt_body",   "world.set_gravity", "world.set_interface",
-                  "world.apply_force", "grab.start",        "grab.move",
-                  "grab.end",          "frames.subscribe",  "frames.unsubscribe",
-                  "frames.ack",        "state.query",       "session.hash"}));
+            Json({"server.info",         "scene.list",        "session.create",
+                  "session.list",        "session.join",      "session.leave",
+                  "session.close",       "scene.load",        "control.play",
+                  "control.pause",       "control.step",      "control.reset",
+                  "control.set_speed",   "world.add_body",    "world.remove_body",
+                  "world.melt_body",     "world.set_emitter", "world.set_gravity",
+                  "world.set_interface", "world.apply_force", "grab.start",
+                  "grab.move",           "grab.end",          "frames.subscribe",
+                  "frames.unsubscribe",  "frames.ack",        "state.query",
+                  "session.hash"}));
   EXPECT_EQ(info.at("name"), "vat");
   EXPECT_EQ(info.at("version"), "1.2.3");
   EXPECT_EQ(info.at("protocol"), "vat.v1");

@@ -125,6 +125,25 @@ TEST(Flow, BeginsAndEndsOnTime) {
   EXPECT_EQ(count_steady(simulation), 0U);
 }
 
+TEST(Flow, StopsAndGoesOnByCommand) {
+  Scene scene = make_flow_scene();
+  scene.emitters[0].open = false;
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(50);
+  EXPECT_EQ(pool_size(simulation), kStart);
+  const std::uint64_t closed = simulation.state_hash();
+  EXPECT_EQ(simulation.set_emitter("hose", true).errors().at(0).path, "/emitter");
+  EXPECT_EQ(simulation.state_hash(), closed);
+  ASSERT_TRUE(simulation.set_emitter("tap", true).ok());
+  EXPECT_NE(simulation.state_hash(), closed);
+  simulation.advance(100);
+  EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);  // a layer every 33 steps
+  ASSERT_TRUE(simulation.set_emitter("tap", false).ok());
+  simulation.advance(150);
+  EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);
+  EXPECT_EQ(count_steady(simulation), 0U);  // the tube is empty
+}
+
 TEST(Flow, StopsWhereTheBodyIsFullAndGoesOnWhenThereIsRoom) {
   Scene scene = make_flow_scene();
   scene.emitters[0].most_particles = kStart + 50;

@@ -146,8 +146,9 @@ class BitWriter {
     put_all(a, b, constants, rest_length);
   }
   void put(const Emitter& emitter) {
-    const auto& [name, body, position, direction, radius, size, speed, from, until, most] = emitter;
-    put_all(name, body, position, direction, radius, size, speed, from, until);
+    const auto& [name, body, position, direction, radius, size, speed, from, until, most, open] =
+        emitter;
+    put_all(name, body, position, direction, radius, size, speed, from, until, open);
     put_number(most);
   }
   void put(const Drain& drain) { put_all(drain.name, drain.min, drain.max); }

@@ -19,7 +19,8 @@ const char* const kFullDocument = R"json({
   "settling": {"drag": 47.5, "until": 0.1875},
   "emitters": [
     {"name": "hose", "body": "pool", "position": [1.5, -0.5, 1.5], "direction": [0, 1, -1],
-     "size": [0.25, 0.125], "speed": 0.5, "from": 0.5, "until": 2.5, "most_particles": 4000},
+     "size": [0.25, 0.125], "speed": 0.5, "from": 0.5, "until": 2.5, "most_particles": 4000,
+     "open": false},
     {"name": "tap", "body": "pool", "position": [2.5, 0.5, 1.75], "radius": 0.125, "speed": 0.75,
      "most_particles": 5000}
   ],
@@ -206,7 +207,8 @@ Scene full_scene() {
                      .speed = 0.5,
                      .from = 0.5,
                      .until = 2.5,
-                     .most_particles = 4000},
+                     .most_particles = 4000,
+                     .open = false},
                     {.name = "tap",
                      .body = "pool",
                      .position = {2.5, 0.5, 1.75},
