@@ -1,35 +1,55 @@
 // The part of the stability run in which vats of liquid slide, shake and tilt.
 
+#include <vector>
+
+#include "server/task_runner.h"
 #include "tests/bench/stability/stability_parts.h"
 #include "tests/stability/random_vat.h"
 
 namespace vat::bench {
 
+namespace {
+
+struct Shaken {
+  stability::RandomVat vat;
+  stability::VatReport report;
+};
+
+/// Vats side by side, for each of them is too small for threads of its own.
+std::vector<Shaken> shake_all(std::uint64_t vats, std::size_t threads) {
+  std::vector<Shaken> all;
+  for (const PressureSolver solver :
+       {PressureSolver::gas, PressureSolver::tait, PressureSolver::incompressible}) {
+    for (std::uint64_t seed = 1; seed <= vats; ++seed) {
+      all.push_back({stability::random_vat(seed, solver), {}});
+    }
+  }
+  ThreadPoolRunner runner(threads);
+  runner.run(all.size(), [&](std::size_t n) { all[n].report = stability::shake(all[n].vat); });
+  return all;
+}
+
+}  // namespace
+
 Result<StabilityCount> run_vat_part(const Options& options) {
-  const std::uint64_t vats = options.quick ? 3 : 200;
   StabilityCount count;
   Table table{{"vat", "bodies", "particles", "step [s]", "steps", "guard events", "wall stops",
                "outside", "greatest speed / speed of sound", "hash", "fault"},
               {}};
-  for (const PressureSolver solver :
-       {PressureSolver::gas, PressureSolver::tait, PressureSolver::incompressible}) {
-    for (std::uint64_t seed = 1; seed <= vats; ++seed) {
-      const stability::RandomVat vat = stability::random_vat(seed, solver);
-      const stability::VatReport report = stability::shake(vat);
-      ++count.scenes;
-      count.events += report.events;
-      count.retries += report.events;
-      count.wall_stops += report.wall_stops;
-      count.outside += report.outside;
-      if (!report.fault.empty()) {
-        ++count.faults;
-        print_fault(vat.scene.name, report.fault);
-      }
-      table.rows.push_back({vat.scene.name, std::uint64_t{vat.scene.bodies.size()},
-                            std::uint64_t{report.particles}, vat.scene.numerics.step, report.steps,
-                            report.events, report.wall_stops, std::uint64_t{report.outside},
-                            report.greatest_speed, hash_text(report.hash), report.fault});
+  for (const auto& [vat, report] : shake_all(options.quick ? 3 : 200, options.threads)) {
+    ++count.scenes;
+    count.events += report.events;
+    count.retries += report.events;
+    count.wall_stops += report.wall_stops;
+    count.outside += report.outside;
+    if (!report.fault.empty()) {
+      ++count.faults;
+      print_fault(vat.scene.name, report.fault);
     }
+    table.rows.push_back({vat.scene.name, std::uint64_t{vat.scene.bodies.size()},
+                          std::uint64_t{report.particles}, vat.scene.numerics.step, report.steps,
+                          report.events, report.wall_stops, std::uint64_t{report.outside},
+                          report.greatest_speed, hash_text(report.hash), report.fault});
   }
   const Status written = write_table(table, options.output, "vats", "# Vats of liquid");
   if (!written) return written.errors();
