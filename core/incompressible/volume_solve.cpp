@@ -9,7 +9,6 @@
 #include "core/forces/weakly_compressible.h"
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/incompressible/pressure_response.h"
-#include "core/step/hold_inside.h"
 
 namespace vat {
 namespace {
@@ -172,8 +171,6 @@ SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
   if (!f.model.rigid_bodies.empty()) pose_rigid_bodies(c);
   SolveReport report;
   for (int round = 0;; ++round) {
-    const std::uint64_t stops = hold_liquid_inside(f.model, time, f.runner, now);
-    if (f.report != nullptr) f.report->wall_stops += stops;
     find_density(c);
     measure_excess(c, report);
     const bool is_solved =

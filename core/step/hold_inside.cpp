@@ -93,24 +93,6 @@ bool hold_particle(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& v
   return is_stopped;
 }
 
-/// Of the first `count` particles.
-std::uint64_t hold_particles(const Walls& walls, Index count, TaskRunner* runner,
-                             Configuration& now) {
-  const Model& model = walls.model;
-  const ClearBox clear(walls);
-  std::atomic<std::uint64_t> stops = 0;
-  for_blocks(runner, count, [&](std::size_t begin, std::size_t stop) {
-    for (std::size_t i = begin; i < stop; ++i) {
-      if (clear.has(now.position[i]) || model.inverse_mass[i] == 0) continue;
-      const bool is_mirrored = model.is_coupled && i < model.liquid_count;
-      if (hold_particle(walls, is_mirrored, now.position[i], now.velocity[i])) {
-        stops.fetch_add(1, std::memory_order_relaxed);
-      }
-    }
-  });
-  return stops;
-}
-
 /// Of a rigid body's particles, seen from one wall.
 struct Reach {
   Real distance = std::numeric_limits<Real>::infinity();  ///< the least [m]
@@ -210,7 +192,17 @@ std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const S
                           const Configuration& before, TaskRunner* runner, Configuration& now) {
   if (model.walls.empty()) return 0;
   const Walls walls{model, vat_motion(*model.scene.vat, end.time)};
-  std::uint64_t stops = hold_particles(walls, model.free_count, runner, now);
+  const ClearBox clear(walls);
+  std::atomic<std::uint64_t> stops = 0;
+  for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t stop) {
+    for (std::size_t i = begin; i < stop; ++i) {
+      if (clear.has(now.position[i]) || model.inverse_mass[i] == 0) continue;
+      const bool is_mirrored = model.is_coupled && i < model.liquid_count;
+      if (hold_particle(walls, is_mirrored, now.position[i], now.velocity[i])) {
+        stops.fetch_add(1, std::memory_order_relaxed);
+      }
+    }
+  });
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = now.rigid[b];
@@ -220,13 +212,6 @@ std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const S
     if (hold_body(walls, rigid, before.rigid[b].orientation, state, now)) ++stops;
   }
   return stops;
-}
-
-std::uint64_t hold_liquid_inside(const Model& model, Real time, TaskRunner* runner,
-                                 Configuration& now) {
-  if (model.walls.empty()) return 0;
-  const Walls walls{model, vat_motion(*model.scene.vat, time)};
-  return hold_particles(walls, model.liquid_count, runner, now);
 }
 
 }  // namespace vat

@@ -29,8 +29,4 @@ struct StepEnd {
 std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const StepEnd& end,
                           const Configuration& before, TaskRunner* runner, Configuration& now);
 
-/// The same of the liquid alone, with the walls at `time`.
-std::uint64_t hold_liquid_inside(const Model& model, Real time, TaskRunner* runner,
-                                 Configuration& now);
-
 }  // namespace vat
