@@ -81,14 +81,6 @@ void for_each_place(const StepContext& c, F&& f) {
   });
 }
 
-Vec3 mirrored(Vec3 v, const Mirror* mirror) {
-  if (mirror == nullptr) return v;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (mirror->axes[static_cast<std::size_t>(axis)]) v[axis] = -v[axis];
-  }
-  return v;
-}
-
 /// The normal of a surface that meets a wall, of normal `inwards`, at the contact angle, turned as
 /// `normal` is along the wall; zero where it is not.
 Vec3 contact_normal(const Vec3& normal, int axis, Real inwards, Real cosine) {
@@ -109,7 +101,7 @@ Real wall_cosine(const Place& at) {
 /// the surface has at the wall.
 Vec3 image_normal(const Place& at, Vec3 normal, const Mirror& mirror) {
   const Real cosine = wall_cosine(at);
-  if (cosine == 0) return mirrored(normal, &mirror);
+  if (cosine == 0) return mirror.turn(normal);
   const Vec3 place = at.position();
   for (int axis = 0; axis < 3; ++axis) {
     if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
@@ -164,8 +156,9 @@ Vec3 normal_at(const Place& at) {
   Vec3 sum = at.volume(at.slot) * liquid.kernel.value(0) * own;
   for_each_liquid(at, [&](Index other, const Vec3& x, const Mirror* mirror) {
     if (!at.is_alike(other)) return;
+    const Vec3& there = surface[other].gradient;
     sum += (at.volume(other) * liquid.kernel.value(x.norm())) *
-           mirrored(surface[other].gradient, mirror);
+           (mirror == nullptr ? there : mirror->turn(there));
   });
   const Real length = sum.norm();
   return length > 0 ? turn_at_walls(at, sum / length) : Vec3(Vec3::Zero());

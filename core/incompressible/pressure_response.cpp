@@ -4,18 +4,12 @@
 #include <cmath>
 
 #include "core/forces/liquid_pairs.h"
+#include "core/forces/mirrors.h"
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/rigid/rigid_motion.h"
 
 namespace vat {
 namespace {
-
-Vec3 mirrored(Vec3 v, const std::array<bool, 3>& axes) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (axes[static_cast<std::size_t>(axis)]) v[axis] = -v[axis];
-  }
-  return v;
-}
 
 /// Calls f(gradient) for those of one slot.
 template <class F>
@@ -170,7 +164,7 @@ void PressureResponse::compress_liquid(std::span<Real> rate) const {
       for_each_gradient(pairs_.images, s, [&](const KernelGradient& image) {
         const LiquidRecord& other = records[image.slot];
         sum += other.volume *
-               image.gradient.dot(own.velocity - mirrored(other.velocity, image.mirrored));
+               image.gradient.dot(own.velocity - Mirror{image.mirrored}.turn(other.velocity));
       });
       rate[s] = has_solids_ ? sum + 2 * compression_by_solids(s) : sum;
     }
@@ -180,7 +174,7 @@ void PressureResponse::compress_liquid(std::span<Real> rate) const {
 Real PressureResponse::compression_by_solids(std::size_t slot) const {
   Real sum = 0;
   for_each_gradient(pairs_.solids, slot, [&](const KernelGradient& solid) {
-    const Vec3 other = mirrored(scratch_.solid_motion[solid.slot], solid.mirrored);
+    const Vec3 other = Mirror{solid.mirrored}.turn(scratch_.solid_motion[solid.slot]);
     sum +=
         pairs_.solid_volume[solid.slot] * solid.gradient.dot(pairs_.records[slot].velocity - other);
   });

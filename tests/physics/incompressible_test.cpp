@@ -147,19 +147,9 @@ TEST(Incompressible, StartsOverDenseWithoutAnExplosion) {
   }
 }
 
-/// Liquids of two densities, a deformable and a rigid body, all in contact.
+/// The mixture with oil that is at its rest density.
 Scene make_mixture() {
-  Scene scene = make_two_material_scene(IntegratorId::symplectic_euler, 1e-3, 5);
-  scene.pressure_solver = PressureSolver::incompressible;
-  scene.materials[1].density = 700;
-  const auto add = [&](const char* name, BodyKind kind, const char* material, const Vec3& center,
-                       const Vec3& velocity) {
-    scene.bodies.push_back(make_block(name, kind, material, 4, center, velocity));
-  };
-  add("water", BodyKind::liquid, "a", {0, 0, 0}, {0.3, 0, 0});
-  add("oil", BodyKind::liquid, "b", {0.2, 0, 0}, {-0.5, 0.1, 0});
-  add("jelly", BodyKind::deformable, "a", {0, 0.2, 0.05}, {0, -0.5, 0});
-  add("crate", BodyKind::rigid, "b", {0.1, 0, 0.2}, {0, 0, -0.4});
+  Scene scene = make_wet_mixture(IntegratorId::symplectic_euler, PressureSolver::incompressible);
   std::ranges::fill(std::get<ParticleShape>(scene.bodies[1].shape).masses, 0.7 * 0.125);
   return scene;
 }

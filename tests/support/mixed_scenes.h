@@ -35,4 +35,20 @@ inline BodyDescription make_block(std::string name, BodyKind kind, std::string m
   return body;
 }
 
+/// Liquids of two densities, a deformable and a rigid body, all in contact.
+inline Scene make_wet_mixture(IntegratorId integrator, PressureSolver solver) {
+  Scene scene = make_two_material_scene(integrator, 1e-3, 5);
+  scene.pressure_solver = solver;
+  scene.materials[1].density = 700;
+  const auto add = [&](const char* name, BodyKind kind, const char* material, const Vec3& center,
+                       const Vec3& velocity) {
+    scene.bodies.push_back(make_block(name, kind, material, 4, center, velocity));
+  };
+  add("water", BodyKind::liquid, "a", {0, 0, 0}, {0.3, 0, 0});
+  add("oil", BodyKind::liquid, "b", {0.2, 0, 0}, {-0.5, 0.1, 0});
+  add("jelly", BodyKind::deformable, "a", {0, 0.2, 0.05}, {0, -0.5, 0});
+  add("crate", BodyKind::rigid, "b", {0.1, 0, 0.2}, {0, 0, -0.4});
+  return scene;
+}
+
 }  // namespace vat::test
