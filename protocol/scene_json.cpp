@@ -155,6 +155,16 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.pressure_solver = static_cast<PressureSolver>(
       reader.choice("pressure_solver", {"gas", "tait", "incompressible"},
                     static_cast<std::size_t>(scene.pressure_solver)));
+  scene.printed_pressure_force =
+      reader.boolean("printed_pressure_force", scene.printed_pressure_force);
+  // In the order of KernelId.
+  scene.kernel =
+      static_cast<KernelId>(reader.choice("kernel", {"wendland_c2", "wendland_c4", "cubic_spline"},
+                                          static_cast<std::size_t>(scene.kernel)));
+  // In the order of SurfaceModel.
+  scene.surface_model =
+      static_cast<SurfaceModel>(reader.choice("surface_tension_model", {"curvature", "cohesion"},
+                                              static_cast<std::size_t>(scene.surface_model)));
   scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);

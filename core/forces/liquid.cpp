@@ -89,7 +89,8 @@ void fill_records(StepContext& c) {
       record.position = {points.x[slot], points.y[slot], points.z[slot]};
       record.volume = c.model.mass[i] / c.work.density[i];
       if constexpr (terms.viscosity) record.velocity = c.configuration.velocity[i];
-      if constexpr (terms.pressure) record.pressure = c.work.pressure[i];
+      if constexpr (terms.pressure)
+        record.pressure = liquid_of(c.model, i).pressure_share * c.work.pressure[i];
       if constexpr (terms.filled) {
         c.work.filling[slot] = c.work.density[i] / c.work.filled_density[i];
       }
@@ -97,9 +98,9 @@ void fill_records(StepContext& c) {
   });
 }
 
-// Pressure: -V_i V_j (p_i + p_j) grad W. Boldt and [MCG03] eq. 10 have half of it, which tends to
-// half the pressure gradient in the bulk (there sum_j V_j grad W is near zero); Boldt also prints
-// densities for the pressures and drops the sign.
+// Pressure: -V_i V_j (p_i + p_j) grad W. Boldt and [MCG03] eq. 10 have half of it (pressure_share),
+// which tends to half the pressure gradient in the bulk (there sum_j V_j grad W is near zero);
+// Boldt also prints densities for the pressures and drops the sign, which pulls.
 // Viscosity: mu V_i V_j (v_j - v_i) laplacian W.                                  [MCG03] eq. 14
 // Both are forces on particles: the papers' force densities times the particle's volume, which the
 // caller multiplies by.

@@ -131,7 +131,7 @@ Vec3 turn_at_walls(const Place& at, Vec3 normal) {
 
 SurfaceRecord surface_at(const Place& at) {
   const LiquidModel& liquid = at.liquid();
-  const WendlandC2& kernel = liquid.kernel;
+  const SmoothingKernel& kernel = liquid.kernel;
   Vec3 gradient = Vec3::Zero();
   Real sum = at.volume(at.slot) * kernel.value(0);
   for_each_liquid(at, [&](Index other, const Vec3& x, const Mirror*) {
@@ -175,7 +175,7 @@ Real lift_to_surface(const Place& at, Real curvature) {
 /// -div n over particles at the surface and their images.
 Real curvature_at(const Place& at) {
   const std::vector<Vec3>& normals = at.c.work.surface_normals;
-  const WendlandC2& kernel = at.liquid().kernel;
+  const SmoothingKernel& kernel = at.liquid().kernel;
   const Vec3& own = normals[at.slot];
   Real divergence = 0;
   Real weight = at.volume(at.slot) * kernel.value(0);

@@ -18,7 +18,7 @@ template <bool periodic>
 Real sum_volumes(const StepContext& c, Index self, std::span<const Index> neighbours) {
   const CellSortedPoints& points = c.work.liquid;
   const std::span<const Index> order = points.grid.order();
-  const WendlandC2& kernel = liquid_of(c.model, order[self]).kernel;
+  const SmoothingKernel& kernel = liquid_of(c.model, order[self]).kernel;
   const Vec3 place(points.x[self], points.y[self], points.z[self]);
   Real sum = c.model.rest_volume[order[self]] * kernel.value(0);
   for (const Index slot : neighbours) {

@@ -4,8 +4,8 @@ namespace vat {
 
 struct StepContext;
 
-/// Stages of the weakly compressible liquid: one kernel for density and force (WendlandC2), Tait's
-/// equation of state, a pressure force that derives from an energy, central viscosity.
+/// Stages of the weakly compressible liquid: one kernel for density and force, Tait's equation of
+/// state, a pressure force that derives from an energy, central viscosity.
 ///
 /// With the rest volume V_i = m_i / rho_0 and s_i = rho_i / rho_0 = sum_j V_j W_ij over liquid,
 /// solids and the walls' mirror images, the energy sum_i V_i u(s_i), du/ds = p / s^2, gives F_i =

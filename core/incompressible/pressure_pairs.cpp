@@ -33,7 +33,7 @@ void fill_slopes(const StepContext& c, PressurePairs& pairs) {
     std::vector<Real>& slopes = pairs.slopes[begin / kBlockSize];
     slopes.resize(block.begin[end - begin]);
     for (std::size_t s = begin; s < end; ++s) {
-      const WendlandC2& kernel = liquid_of(c.model, order[s]).kernel;
+      const SmoothingKernel& kernel = liquid_of(c.model, order[s]).kernel;
       for (Index k = block.begin[s - begin]; k < block.begin[s - begin + 1]; ++k) {
         const Vec3 x = pairs.records[s].position - pairs.records[block.slots[k]].position;
         slopes[k] = kernel.slope_over_r(nearest_image(c.model, x).norm());

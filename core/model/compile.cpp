@@ -213,7 +213,7 @@ LiquidModel make_liquid(const Model& model, Index material) {
   const Scene& scene = model.scene;
   Material given = scene.materials[material];
   if (scene.pressure_solver == PressureSolver::incompressible) given.liquid->stiffness = 0;
-  LiquidModel liquid(given, scene.dimensions, spacing_of(model, material));
+  LiquidModel liquid(scene, given, spacing_of(model, material));
   if (!scene.forces.viscosity) liquid.central_viscosity = 0;
   if (!scene.forces.pressure) liquid.stiffness = 0;
   if (!scene.forces.viscosity) liquid.viscosity = 0;
@@ -252,10 +252,10 @@ ModelDamping find_damping(const Model& model) {
 
 namespace {
 
-WendlandC2 calibrated_kernel(Real h, int dimensions, Real spacing) {
-  const WendlandC2 kernel(h, dimensions);
+SmoothingKernel calibrated_kernel(KernelId id, Real h, int dimensions, Real spacing) {
+  const SmoothingKernel kernel(id, h, dimensions);
   const Real sum = lattice_sum(kernel, h, spacing, dimensions);
-  return WendlandC2(h, dimensions, 1 / sum);
+  return SmoothingKernel(id, h, dimensions, 1 / sum);
 }
 
 Real central_viscosity_of(const Material& material, int dimensions) {
@@ -267,20 +267,21 @@ Real central_viscosity_of(const Material& material, int dimensions) {
 
 }  // namespace
 
-LiquidModel::LiquidModel(const Material& material, int dimensions, Real particle_spacing)
+LiquidModel::LiquidModel(const Scene& scene, const Material& material, Real particle_spacing)
     : support_radius(material.liquid->support_radius),
       rest_density(material.density),
       stiffness(material.liquid->stiffness),
+      pressure_share(scene.printed_pressure_force ? 0.5 : 1),
       viscosity(material.liquid->viscosity),
       surface_tension(material.liquid->surface_tension),
-      density_kernel(support_radius, dimensions),
-      pressure_kernel(support_radius, dimensions),
-      viscosity_kernel(support_radius, dimensions),
-      kernel(calibrated_kernel(support_radius, dimensions, particle_spacing)),
+      density_kernel(support_radius, scene.dimensions),
+      pressure_kernel(support_radius, scene.dimensions),
+      viscosity_kernel(support_radius, scene.dimensions),
+      kernel(calibrated_kernel(scene.kernel, support_radius, scene.dimensions, particle_spacing)),
       spacing(particle_spacing),
-      slope_scale(1 / lattice_slope(kernel, support_radius, particle_spacing, dimensions)),
-      central_viscosity(central_viscosity_of(material, dimensions)),
-      half_space(support_radius, dimensions) {}
+      slope_scale(1 / lattice_slope(kernel, support_radius, particle_spacing, scene.dimensions)),
+      central_viscosity(central_viscosity_of(material, scene.dimensions)),
+      half_space(support_radius, scene.dimensions) {}
 
 std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids,
                                      std::vector<std::shared_ptr<const SampledBody>> samples) {

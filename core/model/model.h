@@ -9,9 +9,9 @@
 
 #include "core/kernels/half_space.h"
 #include "core/kernels/poly6.h"
+#include "core/kernels/smoothing_kernel.h"
 #include "core/kernels/spiky.h"
 #include "core/kernels/viscosity_kernel.h"
-#include "core/kernels/wendland_c2.h"
 #include "core/neighbours/periodic_box.h"
 #include "core/scene/nozzle.h"
 #include "core/scene/sampling.h"
@@ -47,17 +47,18 @@ struct ModelBody {
 /// One material's SPH constants with everything that depends on h alone.
 struct LiquidModel {
   /// `spacing`: of the particles at rest density [m].
-  LiquidModel(const Material& material, int dimensions, Real spacing);
+  LiquidModel(const Scene& scene, const Material& material, Real spacing);
   Real support_radius;
   Real rest_density;
   Real stiffness;
+  Real pressure_share;  ///< of the gas's pressure force: 1/2 as printed
   Real viscosity;
   Real surface_tension;  ///< [N/m]
   Poly6 density_kernel;
   Spiky pressure_kernel;
   ViscosityKernel viscosity_kernel;
   // Of the weakly compressible liquid.
-  WendlandC2 kernel;  ///< scaled so that a lattice of that spacing has the rest density
+  SmoothingKernel kernel;  ///< scaled so that a lattice of that spacing has the rest density
   Real spacing;
   Real slope_scale;  ///< of that kernel, so that a slope over that lattice has its own steepness
   Real central_viscosity;  ///< 2 (d + 2) mu, with the artificial one [Pa s]

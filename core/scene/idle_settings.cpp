@@ -122,6 +122,13 @@ void warn_of_solver(const Scene& scene, std::vector<Warning>& warnings) {
   if (is_set && !is_incompressible) {
     warn("/incompressible", "the pressure solver is another", warnings);
   }
+  const bool is_gas = scene.pressure_solver == PressureSolver::gas;
+  if (scene.printed_pressure_force && !is_gas) {
+    warn("/printed_pressure_force", "the pressure solver is not \"gas\"", warnings);
+  }
+  if (scene.kernel != Scene{}.kernel && is_gas) {
+    warn("/kernel", "the pressure solver \"gas\" has kernels of its own", warnings);
+  }
   for (std::size_t m = 0; is_incompressible && m < scene.materials.size(); ++m) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
     if (!liquid || liquid->stiffness == 0) continue;

@@ -60,6 +60,30 @@ const char* to_string(PressureSolver solver) {
   return "";
 }
 
+const char* to_string(KernelId id) {
+  switch (id) {
+    case KernelId::wendland_c2:
+      return "wendland_c2";
+    case KernelId::wendland_c4:
+      return "wendland_c4";
+    case KernelId::cubic_spline:
+      return "cubic_spline";
+  }
+  VAT_CHECK(false && "not a kernel");
+  return "";
+}
+
+const char* to_string(SurfaceModel model) {
+  switch (model) {
+    case SurfaceModel::curvature:
+      return "curvature";
+    case SurfaceModel::cohesion:
+      return "cohesion";
+  }
+  VAT_CHECK(false && "not a surface model");
+  return "";
+}
+
 const char* to_string(InterfaceLaw law) {
   switch (law) {
     case InterfaceLaw::penalty:

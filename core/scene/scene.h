@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/kernels/kernel_id.h"
 #include "core/types.h"
 
 /// A scene as plain values: what a user writes. Nothing here is checked; see core/scene/validate.h
@@ -35,6 +36,12 @@ enum class PressureSolver : std::uint8_t {
   tait,  ///< weakly compressible, see core/forces/weakly_compressible.h; bodies and walls take part
   incompressible,  ///< see core/incompressible/volume_solve.h; bodies and walls take part as in
                    ///< tait
+};
+
+/// What pulls a liquid's surface together.
+enum class SurfaceModel : std::uint8_t {
+  curvature,  ///< a force at the surface, see core/forces/surface_tension.h
+  cohesion,   ///< attraction of all pairs, see core/forces/cohesion.h
 };
 
 /// How well the solves of an incompressible liquid keep its volume: relative changes of density,
@@ -360,6 +367,10 @@ struct Scene {
   ForceSwitches forces;
   PressureSolver pressure_solver = PressureSolver::tait;
   IncompressibleSolve incompressible;  ///< used by that solver
+  /// Of the gas: half of the pressure force, as Boldt and [MCG03] print it, for comparison.
+  bool printed_pressure_force = false;
+  KernelId kernel = KernelId::wendland_c2;  ///< of liquids; the gas has those of [MCG03]
+  SurfaceModel surface_model = SurfaceModel::curvature;
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
   /// dimensions, and masses, forces and energies are per metre of depth.
   int dimensions = 3;
@@ -372,5 +383,7 @@ const char* to_string(IntegratorId id);
 const char* to_string(StepControl control);
 const char* to_string(PressureSolver solver);
 const char* to_string(InterfaceLaw law);
+const char* to_string(KernelId id);
+const char* to_string(SurfaceModel model);
 
 }  // namespace vat

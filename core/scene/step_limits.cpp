@@ -15,12 +15,27 @@
 namespace vat {
 namespace {
 
-constexpr Real kSoundLimit = 0.96;      // c dt / h, velocity Verlet, cubic lattice, h = 2 spacings
-constexpr Real kTaitSoundLimit = 0.86;  // the same of the weakly compressible liquid
-constexpr Real kTaitViscousLimit = 0.028;
+constexpr Real kSoundLimit = 0.96;     // c dt / h, velocity Verlet, cubic lattice, h = 2 spacings
 constexpr Real kViscousLimit = 0.126;  // nu dt / h^2, the same, 2 / (greatest eigenvalue)
 constexpr Real kNoSlipShare = 2.5;     // a wall's drag is up to 1.5 times the neighbours'
 constexpr Real kVerletLimit = 2;       // omega dt, and rate dt, at those
+
+/// The same of liquids with a smoothing kernel, at the worst of 2 to 4 spacings.
+struct KernelLimits {
+  Real sound;
+  Real viscous;
+};
+constexpr KernelLimits limits_of(KernelId kernel) {
+  switch (kernel) {
+    case KernelId::wendland_c4:
+      return {0.75, 0.021};
+    case KernelId::cubic_spline:
+      return {0.91, 0.03};
+    case KernelId::wendland_c2:
+      break;
+  }
+  return {0.86, 0.028};
+}
 
 const Material& material_of(const Scene& scene, const BodyDescription& body) {
   return *std::ranges::find(scene.materials, body.material, &Material::name);
@@ -92,13 +107,14 @@ void add_solid(const Scene& scene, std::size_t index, const SampledBody& body,
 /// The shortest waves that a surface of these particles shows, two spacings long, have dt <=
 /// sqrt(rho spacing^3 / (2 pi sigma)) (J. U. Brackbill, D. B. Kothe, C. Zemach, J. Comput. Phys.
 /// 100 (1992) 335, eq. 61); and the cohesion is a sound with c^2 = 2 kCohesion sigma / (rho h).
-Real surface_omega2(const Material& material, Real spacing) {
+Real surface_omega2(const Scene& scene, const Material& material, Real spacing) {
   const LiquidConstants& liquid = *material.liquid;
   if (liquid.surface_tension == 0 || spacing == 0) return 0;
   const Real spacing3 = spacing * spacing * spacing;
   const Real h = liquid.support_radius;
   const Real waves = 2 * std::numbers::pi / spacing3;
-  const Real cohesion = 2 * kCohesion / (kTaitSoundLimit * kTaitSoundLimit * h * h * h);
+  const Real sound_limit = limits_of(scene.kernel).sound;
+  const Real cohesion = 2 * kCohesion / (sound_limit * sound_limit * h * h * h);
   return kVerletLimit * kVerletLimit * (waves + cohesion) * liquid.surface_tension /
          material.density;
 }
@@ -124,7 +140,7 @@ Oscillation bound_liquid(const Scene& scene, const Material& material) {
   const bool has_sound =
       scene.forces.pressure && scene.pressure_solver != PressureSolver::incompressible;
   const Real speed = has_sound ? std::sqrt(liquid.stiffness) : 0;
-  const Real tait_limit = kTaitSoundLimit * compressed_step_share(scene.dimensions);
+  const Real tait_limit = limits_of(scene.kernel).sound * compressed_step_share(scene.dimensions);
   const Real sound = kVerletLimit / (is_coupled ? tait_limit : kSoundLimit) * speed / h;
   Real viscosity = scene.forces.viscosity ? liquid.viscosity / material.density : 0;
   if (is_coupled && scene.forces.viscosity) {
@@ -132,7 +148,7 @@ Oscillation bound_liquid(const Scene& scene, const Material& material) {
   }
   const auto is_no_slip = [](const Wall& wall) { return wall.no_slip; };
   if (scene.vat && std::ranges::any_of(scene.vat->walls, is_no_slip)) viscosity *= kNoSlipShare;
-  const Real viscous_limit = is_coupled ? kTaitViscousLimit : kViscousLimit;
+  const Real viscous_limit = is_coupled ? limits_of(scene.kernel).viscous : kViscousLimit;
   const Real drag = scene.settling ? scene.settling->drag : 0;
   return {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h) + drag};
 }
@@ -153,7 +169,7 @@ void add_liquid(const Scene& scene, std::size_t index, const SampledBody& sample
   if (!sample.masses.empty()) {
     spacing = std::pow(std::ranges::min(sample.masses) / material.density, 1.0 / scene.dimensions);
   }
-  bound.omega2 += surface_omega2(material, spacing);
+  bound.omega2 += surface_omega2(scene, material, spacing);
   OscillatingPart part{body_path(index), "sound or viscosity in the liquid becomes unstable",
                        "sound in an inviscid liquid gains energy with this integrator", bound,
                        index};

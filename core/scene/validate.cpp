@@ -34,14 +34,19 @@ void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeC
   check.real(liquid.surface_tension, 0, kMaxSurfaceTension, path + "/surface_tension");
 }
 
-/// The gas boils at its surface: its forces derive from no energy.
+/// The gas boils at its surface: its forces derive from no energy. What a surface is corrected by
+/// is of Wendland's kernel.
 void check_surface_tension(const Scene& scene, RangeCheck& check) {
-  if (scene.pressure_solver != PressureSolver::gas) return;
+  const bool is_gas = scene.pressure_solver == PressureSolver::gas;
+  if (!is_gas && scene.kernel == KernelId::wendland_c2) return;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
     if (!liquid || liquid->surface_tension == 0) continue;
+    const std::string reason = is_gas
+                                   ? "the pressure solver \"gas\""
+                                   : std::string("the kernel \"") + to_string(scene.kernel) + '"';
     check.add("not_allowed", element("/materials", m) + "/liquid/surface_tension",
-              "must be 0 with the pressure solver \"gas\"");
+              "must be 0 with " + reason);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/kernels/wendland_c2.h"
+#include "core/kernels/smoothing_kernel.h"
 #include "tests/support/same_bits.h"
 
 // No-slip walls of the weakly compressible liquid in long steps; LIQ-7-tait and LIQ-19 have theory.
@@ -49,7 +49,7 @@ Scene make_channel(int across, Real support, Real step) {
 /// Of shear along the axes of the lattice at rest: the central force is too weak there and too
 /// strong along its diagonals (LIQ-5).
 Real lattice_viscosity(Real support) {
-  const WendlandC2 kernel(support, 2);
+  const SmoothingKernel kernel(KernelId::wendland_c2, support, 2);
   const int reach = static_cast<int>(support);
   Real sum = 0;
   for (int x = -reach; x <= reach; ++x) {

@@ -12,6 +12,9 @@ const char* const kFullDocument = R"json({
   "gravity": [0.125, -0.25, -1.625],
   "dimensions": 3,
   "pressure_solver": "gas",
+  "printed_pressure_force": true,
+  "kernel": "cubic_spline",
+  "surface_tension_model": "cohesion",
   "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
   "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
   "incompressible": {"density_tolerance": 0.00025, "divergence_tolerance": 2e-05,
@@ -177,6 +180,9 @@ std::vector<BodyDescription> full_bodies() {
 Scene full_scene() {
   Scene scene;
   scene.pressure_solver = PressureSolver::gas;
+  scene.printed_pressure_force = true;
+  scene.kernel = KernelId::cubic_spline;
+  scene.surface_model = SurfaceModel::cohesion;
   scene.name = "everything";
   scene.title = "Every member";
   scene.description = "One body of each kind and shape";

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/kernels/wendland_c2.h"
+#include "core/kernels/smoothing_kernel.h"
 #include "tests/validation/cases.h"
 #include "tests/validation/order.h"
 #include "tests/validation/reference.h"
@@ -77,7 +77,7 @@ Real lattice_viscosity(int reach) {
 /// The same of the weakly compressible liquid's central viscosity, whose force acts along the line
 /// between two particles: too weak along the axes of a lattice, too strong along its diagonals.
 Real central_lattice_viscosity(int reach) {
-  const WendlandC2 kernel(reach, 2);
+  const SmoothingKernel kernel(KernelId::wendland_c2, reach, 2);
   Real sum = 0;
   for (int i = -reach; i <= reach; ++i) {
     for (int j = -reach; j <= reach; ++j) {

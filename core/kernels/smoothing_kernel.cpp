@@ -1,0 +1,70 @@
+#include "core/kernels/smoothing_kernel.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+struct Constants {
+  Real in_space;  ///< C h^3
+  Real in_plane;  ///< C h^2
+  Real slope;     ///< h^2 of slope_over_r() over its polynomial and C
+};
+
+Constants constants_of(KernelId id) {
+  using std::numbers::pi;
+  switch (id) {
+    case KernelId::wendland_c2:
+      return {21 / (2 * pi), 7 / pi, -20};
+    case KernelId::wendland_c4:
+      return {495 / (32 * pi), 9 / pi, Real{-56} / 3};
+    case KernelId::cubic_spline:
+      return {8 / pi, 40 / (7 * pi), -6};
+  }
+  VAT_CHECK(false && "not a kernel");
+  return {};
+}
+
+}  // namespace
+
+SmoothingKernel::SmoothingKernel(KernelId id, Real h, int dimensions, Real scale)
+    : id_(id), inverse_h_(1 / h) {
+  const Constants constants = constants_of(id);
+  scale_ =
+      scale * (dimensions == 3 ? constants.in_space / (h * h * h) : constants.in_plane / (h * h));
+  slope_scale_ = constants.slope * scale_ / (h * h);
+}
+
+namespace {
+
+template <class F>
+Real sum_over_lattice(Real h, Real spacing, int dimensions, F&& f) {
+  const int reach = static_cast<int>(h / spacing);
+  const int depth = dimensions == 3 ? reach : 0;
+  Real sum = 0;
+  for (int z = -reach; z <= reach; ++z) {
+    for (int y = -depth; y <= depth; ++y) {
+      for (int x = -reach; x <= reach; ++x) {
+        const Real r = spacing * std::sqrt(static_cast<Real>(x * x + y * y + z * z));
+        if (r < h) sum += f(spacing * static_cast<Real>(x), r);
+      }
+    }
+  }
+  return sum * std::pow(spacing, dimensions);
+}
+
+}  // namespace
+
+Real lattice_sum(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions) {
+  return sum_over_lattice(h, spacing, dimensions, [&](Real, Real r) { return kernel.value(r); });
+}
+
+Real lattice_slope(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions) {
+  return -sum_over_lattice(h, spacing, dimensions,
+                           [&](Real x, Real r) { return x * x * kernel.slope_over_r(r); });
+}
+
+}  // namespace vat

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/kernels/kernel_id.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// A kernel W(r) = C w(q), q = r/h <= 1, for the density and the pressure force of a liquid alike:
+///
+/// - wendland_c2: (1 - q)^4 (1 + 4q), C = 21/(2 pi h^3) in three dimensions and 7/(pi h^2) in two;
+/// - wendland_c4: (1 - q)^6 (1 + 6q + 35/3 q^2), C = 495/(32 pi h^3) and 9/(pi h^2) (H. Wendland,
+///   Adv. Comput. Math. 4 (1995) 389; the Fourier transforms of both are positive, so that
+///   particles do not pair: W. Dehnen, H. Aly, Mon. Not. R. Astron. Soc. 425 (2012) 1068);
+/// - cubic_spline: 1 - 6 q^2 (1 - q) up to q = 1/2 and 2 (1 - q)^3 beyond, C = 8/(pi h^3) and
+///   40/(7 pi h^2) (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543).
+class SmoothingKernel {
+ public:
+  /// `h`: support radius [m]; `dimensions`: 3 or 2; `scale`: of C.
+  SmoothingKernel(KernelId id, Real h, int dimensions, Real scale = 1);
+
+  /// r is at most h.
+  Real value(Real r) const {
+    const Real q = r * inverse_h_;
+    const Real rest = 1 - q;
+    const Real rest2 = rest * rest;
+    switch (id_) {
+      case KernelId::wendland_c4:
+        return scale_ * rest2 * rest2 * rest2 * (1 + q * (6 + Real{35} / 3 * q));
+      case KernelId::cubic_spline:
+        return scale_ * (q < Real{0.5} ? 1 - 6 * q * q * rest : 2 * rest2 * rest);
+      case KernelId::wendland_c2:
+        break;
+    }
+    return scale_ * rest2 * rest2 * (1 + 4 * q);
+  }
+  /// dW/dr / r, which is finite at the centre; the gradient at x_ij is slope_over_r(|x_ij|) x_ij.
+  Real slope_over_r(Real r) const {
+    const Real q = r * inverse_h_;
+    const Real rest = 1 - q;
+    switch (id_) {
+      case KernelId::wendland_c4:
+        return slope_scale_ * rest * rest * rest * rest * rest * (1 + 5 * q);
+      case KernelId::cubic_spline:
+        return slope_scale_ * (q < Real{0.5} ? 2 - 3 * q : rest * rest / q);
+      case KernelId::wendland_c2:
+        break;
+    }
+    return slope_scale_ * rest * rest * rest;
+  }
+
+ private:
+  KernelId id_;
+  Real inverse_h_;
+  Real scale_;
+  Real slope_scale_;
+};
+
+/// -sum_j V_j x dW/dx over the same lattice: how steep the kernel takes a slope along an axis for.
+Real lattice_slope(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions);
+
+/// The sum of W over the points of a cubic (in two dimensions square) lattice, seen from one of
+/// them, times a cell's volume: how dense the kernel takes such a lattice for, 1 at best.
+Real lattice_sum(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions);
+
+}  // namespace vat
