@@ -159,7 +159,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
       reader.boolean("printed_pressure_force", scene.printed_pressure_force);
   // In the order of KernelId.
   scene.kernel =
-      static_cast<KernelId>(reader.choice("kernel", {"wendland_c2", "wendland_c4", "cubic_spline"},
+      static_cast<KernelId>(reader.choice("kernel", {"wendland_c2", "cubic_spline"},
                                           static_cast<std::size_t>(scene.kernel)));
   // In the order of SurfaceModel.
   scene.surface_model =

@@ -5,6 +5,6 @@
 namespace vat {
 
 /// The kernels that core/kernels/smoothing_kernel.h has.
-enum class KernelId : std::uint8_t { wendland_c2, wendland_c4, cubic_spline };
+enum class KernelId : std::uint8_t { wendland_c2, cubic_spline };
 
 }  // namespace vat

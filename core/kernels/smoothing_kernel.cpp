@@ -19,8 +19,6 @@ Constants constants_of(KernelId id) {
   switch (id) {
     case KernelId::wendland_c2:
       return {21 / (2 * pi), 7 / pi, -20};
-    case KernelId::wendland_c4:
-      return {495 / (32 * pi), 9 / pi, Real{-56} / 3};
     case KernelId::cubic_spline:
       return {8 / pi, 40 / (7 * pi), -6};
   }

@@ -7,12 +7,13 @@ namespace vat {
 
 /// A kernel W(r) = C w(q), q = r/h <= 1, for the density and the pressure force of a liquid alike:
 ///
-/// - wendland_c2: (1 - q)^4 (1 + 4q), C = 21/(2 pi h^3) in three dimensions and 7/(pi h^2) in two;
-/// - wendland_c4: (1 - q)^6 (1 + 6q + 35/3 q^2), C = 495/(32 pi h^3) and 9/(pi h^2) (H. Wendland,
-///   Adv. Comput. Math. 4 (1995) 389; the Fourier transforms of both are positive, so that
-///   particles do not pair: W. Dehnen, H. Aly, Mon. Not. R. Astron. Soc. 425 (2012) 1068);
-/// - cubic_spline: 1 - 6 q^2 (1 - q) up to q = 1/2 and 2 (1 - q)^3 beyond, C = 8/(pi h^3) and
-///   40/(7 pi h^2) (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543).
+/// wendland_c2: w = (1 - q)^4 (1 + 4q), C = 21/(2 pi h^3) in three dimensions and 7/(pi h^2) in two
+/// (H. Wendland, Adv. Comput. Math. 4 (1995) 389; its Fourier transform is positive, so that
+/// particles do not pair: W. Dehnen, H. Aly, Mon. Not. R. Astron. Soc. 425 (2012) 1068).
+///
+/// cubic_spline: w = 1 - 6 q^2 (1 - q) up to q = 1/2 and 2 (1 - q)^3 beyond, C = 8/(pi h^3) and
+/// 40/(7 pi h^2) (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543); particles pair
+/// where a support holds more than about 60.
 class SmoothingKernel {
  public:
   /// `h`: support radius [m]; `dimensions`: 3 or 2; `scale`: of C.
@@ -21,15 +22,9 @@ class SmoothingKernel {
   /// r is at most h.
   Real value(Real r) const {
     const Real q = r * inverse_h_;
-    const Real rest = 1 - q;
-    const Real rest2 = rest * rest;
-    switch (id_) {
-      case KernelId::wendland_c4:
-        return scale_ * rest2 * rest2 * rest2 * (1 + q * (6 + Real{35} / 3 * q));
-      case KernelId::cubic_spline:
-        return scale_ * (q < Real{0.5} ? 1 - 6 * q * q * rest : 2 * rest2 * rest);
-      case KernelId::wendland_c2:
-        break;
+    const Real rest2 = (1 - q) * (1 - q);
+    if (id_ == KernelId::cubic_spline) {
+      return scale_ * (q < Real{0.5} ? 1 - 6 * q * q * (1 - q) : 2 * rest2 * (1 - q));
     }
     return scale_ * rest2 * rest2 * (1 + 4 * q);
   }
@@ -37,13 +32,8 @@ class SmoothingKernel {
   Real slope_over_r(Real r) const {
     const Real q = r * inverse_h_;
     const Real rest = 1 - q;
-    switch (id_) {
-      case KernelId::wendland_c4:
-        return slope_scale_ * rest * rest * rest * rest * rest * (1 + 5 * q);
-      case KernelId::cubic_spline:
-        return slope_scale_ * (q < Real{0.5} ? 2 - 3 * q : rest * rest / q);
-      case KernelId::wendland_c2:
-        break;
+    if (id_ == KernelId::cubic_spline) {
+      return slope_scale_ * (q < Real{0.5} ? 2 - 3 * q : rest * rest / q);
     }
     return slope_scale_ * rest * rest * rest;
   }

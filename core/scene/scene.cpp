@@ -64,8 +64,6 @@ const char* to_string(KernelId id) {
   switch (id) {
     case KernelId::wendland_c2:
       return "wendland_c2";
-    case KernelId::wendland_c4:
-      return "wendland_c4";
     case KernelId::cubic_spline:
       return "cubic_spline";
   }

@@ -26,15 +26,7 @@ struct KernelLimits {
   Real viscous;
 };
 constexpr KernelLimits limits_of(KernelId kernel) {
-  switch (kernel) {
-    case KernelId::wendland_c4:
-      return {0.75, 0.021};
-    case KernelId::cubic_spline:
-      return {0.91, 0.03};
-    case KernelId::wendland_c2:
-      break;
-  }
-  return {0.86, 0.028};
+  return kernel == KernelId::cubic_spline ? KernelLimits{0.91, 0.03} : KernelLimits{0.86, 0.028};
 }
 
 const Material& material_of(const Scene& scene, const BodyDescription& body) {

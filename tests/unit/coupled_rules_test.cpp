@@ -40,6 +40,18 @@ TEST(CoupledLiquids, HaveNoLocalSteps) {
   EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
 }
 
+TEST(CoupledLiquids, HaveSurfacesOfCurvatureByWendlandsKernel) {
+  Scene scene = make_coupled();
+  scene.materials[0].liquid->surface_tension = 0.073;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+  const char* const mistake = "not_allowed /materials/0/liquid/surface_tension";
+  scene.kernel = KernelId::cubic_spline;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::ElementsAre(mistake));
+  scene.kernel = KernelId::wendland_c2;
+  scene.pressure_solver = PressureSolver::gas;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::ElementsAre(mistake));
+}
+
 TEST(CoupledLiquids, ShareOneSupportRadius) {
   Scene scene = make_coupled();
   scene.materials.push_back(make_liquid("oil", 900, {100, 1, 0.2}));

@@ -61,21 +61,20 @@ TEST_P(Smoothing, LatticeSlopesTendToOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, Smoothing,
-                         testing::Values(KernelId::wendland_c2, KernelId::wendland_c4,
-                                         KernelId::cubic_spline),
+                         testing::Values(KernelId::wendland_c2, KernelId::cubic_spline),
                          [](const auto& kernel) { return std::string(to_string(kernel.param)); });
 
 // LIQ-1: sums over a simple cubic lattice.
 TEST(SmoothingKernel, LatticeSumsAreThoseOfTheDossier) {
   struct Row {
     Real ratio;
-    std::array<Real, 3> sums;  ///< in the order of KernelId
+    std::array<Real, 2> sums;  ///< in the order of KernelId
   };
-  constexpr std::array<Row, 5> kRows = {{{1.8, {1.065562, 1.166740, 1.000184}},
-                                         {2.0, {1.033843, 1.066655, 0.999972}},
-                                         {2.5, {1.013365, 1.010556, 0.998517}},
-                                         {3.0, {1.003141, 1.002898, 1.001795}},
-                                         {4.0, {1.000549, 1.000306, 1.000079}}}};
+  constexpr std::array<Row, 5> kRows = {{{1.8, {1.065562, 1.000184}},
+                                         {2.0, {1.033843, 0.999972}},
+                                         {2.5, {1.013365, 0.998517}},
+                                         {3.0, {1.003141, 1.001795}},
+                                         {4.0, {1.000549, 1.000079}}}};
   for (const auto& [ratio, sums] : kRows) {
     for (std::size_t k = 0; k < sums.size(); ++k) {
       const SmoothingKernel kernel(static_cast<KernelId>(k), kSupport, 3);

@@ -179,6 +179,16 @@ TEST(Warnings, OfLawsThatALiquidOfTaitDoesNotHave) {
   EXPECT_THAT(warnings_of(scene), testing::Not(idle));
 }
 
+TEST(Warnings, OfWhatThePressureSolverDoesNotUse) {
+  Scene scene = two_balls(1);
+  scene.printed_pressure_force = true;
+  scene.kernel = KernelId::cubic_spline;
+  scene.pressure_solver = PressureSolver::tait;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /printed_pressure_force"));
+  scene.pressure_solver = PressureSolver::gas;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /kernel"));
+}
+
 TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {
   Scene scene;
   scene.pressure_solver = PressureSolver::gas;

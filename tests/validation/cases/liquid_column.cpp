@@ -113,11 +113,16 @@ void run_column(Sheet& sheet) {
   }
 }
 
-void check_tait_column(Sheet& sheet, int layers) {
+void check_tait_column(Sheet& sheet, int layers, KernelId kernel = KernelId::wendland_c2) {
   const std::string published =
       "/measured_yardsticks/hydrostatic/wcsph N=" + std::to_string(layers) + "/L2p";
-  const std::string of = ", " + std::to_string(layers) + " layers";
+  std::string of = ", " + std::to_string(layers) + " layers";
   Scene scene = load_scene("LIQ-3-tait");
+  if (kernel == KernelId::cubic_spline) {
+    of += ", cubic spline of 2.5 spacings";
+    scene.kernel = kernel;
+    scene.materials[0].liquid->support_radius = 2.5 * scene.bodies[0].spacing;
+  }
   set_spacing(scene, kDepth / layers);
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.02)));
   const MeanPressure mean = mean_pressure(run, 2, 3);
@@ -139,6 +144,7 @@ void run_tait_column(Sheet& sheet) {
     if (sheet.quick() && layers == 40) continue;
     check_tait_column(sheet, layers);
   }
+  check_tait_column(sheet, 20, KernelId::cubic_spline);
 }
 
 }  // namespace
