@@ -15,7 +15,7 @@ constexpr int kMaxIterations = 200;
 struct Equation {
   const ForceModel& force_model;
   const Configuration& at;
-  Real half_step;
+  Real dt;
   DampingScratch& scratch;
 
   const Model& model() const { return force_model.model; }
@@ -126,14 +126,14 @@ Real size_of(const Equation& eq, const Motion& w) {
 void iterate(const Equation& eq) {
   auto& [matrix, w, residual, direction, inertia, product, rub_torque, partial_sums] = eq.scratch;
   apply_damping(eq, w, residual);
-  for_entries(eq, residual, residual, [&](Vec3& r, const Vec3&) { r *= eq.half_step; });
+  for_entries(eq, residual, residual, [&](Vec3& r, const Vec3&) { r *= eq.dt; });
   apply_inverse_mass(eq, residual, direction);
   Real error = dot(eq, residual, direction);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (!(error > kTolerance * kTolerance * size_of(eq, w))) return;
     apply_damping(eq, direction, product);
     apply_mass(eq, direction, inertia);
-    for_entries(eq, product, inertia, [&](Vec3& q, const Vec3& m) { q = m - eq.half_step * q; });
+    for_entries(eq, product, inertia, [&](Vec3& q, const Vec3& m) { q = m - eq.dt * q; });
     const Real curvature = dot(eq, direction, product);
     if (!(curvature > 0)) return;  // too small for numbers
     const Real length = error / curvature;
@@ -190,18 +190,23 @@ bool must_solve_viscosity(const Model& model, Real dt) {
   return false;
 }
 
-void solve_damping(const ForceModel& f, const Configuration& half, const Configuration& at,
+bool must_solve_own_damping(const Model& model, Real dt) {
+  return std::ranges::any_of(model.damping.own,
+                             [&](const Oscillation& own) { return must_solve_damping(own, dt); });
+}
+
+void solve_damping(const ForceModel& f, const Configuration& from, const Configuration& at,
                    Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
-  const Equation eq{f, at, dt / 2, scratch};
+  const Equation eq{f, at, dt, scratch};
   auto& [matrix, w, residual, direction, inertia, product, rub_torque, partial_sums] = scratch;
   matrix.collect(f, at, time, viscosity);
   for (Motion* motion : {&w, &residual, &direction, &inertia, &product}) resize(f.model, *motion);
   if (f.model.has_friction) rub_torque.resize(f.model.particle_count);
   product = {forces.particle, forces.rigid_force, forces.rigid_torque};
   apply_inverse_mass(eq, product, w);
-  for_entries(eq, w, w, [&](Vec3& x, const Vec3&) { x *= eq.half_step; });
+  for_entries(eq, w, w, [&](Vec3& x, const Vec3&) { x *= eq.dt; });
   for (Index i = 0; i < f.model.free_count; ++i) {
-    w.particle[i] += half.velocity[i] - at.velocity[i];
+    w.particle[i] += from.velocity[i] - at.velocity[i];
   }
   iterate(eq);
   apply_damping(eq, w, product);

@@ -34,16 +34,20 @@ Oscillation find_bound(const ForceModel& force_model, const Configuration& at);
 bool must_solve_damping(const Oscillation& bound, Real dt);
 
 /// Changes `forces`, evaluated at `at` with velocities near those at the end of a step, into those
-/// at the velocities v that they lead to: M (v - half) = dt/2 (f + D (v - at)), with `half` the
-/// velocities at the half step. Linear in what acts at `at`; by conjugate gradients for w = v - at.
+/// at the velocities v that they lead to: M (v - from) = dt (f + D (v - at)), with `from` the
+/// velocities that forces over `dt` begin from: half a step of velocity Verlet's, or a whole one of
+/// symplectic Euler's. Linear in what acts at `at`; by conjugate gradients for w = v - at.
 /// D w is a sum of equal and opposite forces, so momentum is conserved after any number of
-/// iterations. Needs the dampers that the workspace kept; the rigid bodies of `at` move as at the
-/// half step.
-void solve_damping(const ForceModel& force_model, const Configuration& half,
+/// iterations. Needs the dampers that the workspace kept; the rigid bodies of `at` move as those of
+/// `from`.
+void solve_damping(const ForceModel& force_model, const Configuration& from,
                    const Configuration& at, Real time, Real dt, bool viscosity, Forces& forces,
                    DampingScratch& scratch);
 
 /// Whether the viscosity of some liquid takes part in that.
 bool must_solve_viscosity(const Model& model, Real dt);
+
+/// The same of what liquids do to solids in them too: of any body's own damping.
+bool must_solve_own_damping(const Model& model, Real dt);
 
 }  // namespace vat

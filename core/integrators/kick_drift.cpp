@@ -68,9 +68,23 @@ void finish_contacts(const ForceModel& f, State& state, Real time, Real dt,
   if (f.observer != nullptr) f.observer->stage_ends("project_contacts");
 }
 
+/// The forces of a step of symplectic Euler: with an incompressible liquid, those that damp are at
+/// the velocities that they lead to, where the step does not resolve them.
+void evaluate_for_kick(const ForceModel& f, State& state, Real time, Real dt,
+                       IntegratorScratch& scratch) {
+  const bool must_solve = f.model.is_incompressible && must_solve_own_damping(f.model, dt);
+  f.work.keep_dampers = must_solve;
+  f.evaluate(state.now, time, state.forces);
+  f.work.keep_dampers = false;
+  if (!must_solve) return;
+  if (f.observer != nullptr) f.observer->stage_begins("solve_damping");
+  solve_damping(f, state.now, state.now, time, dt, true, state.forces, scratch.damping);
+  if (f.observer != nullptr) f.observer->stage_ends("solve_damping");
+}
+
 void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Real dt,
                                 IntegratorScratch& scratch) {
-  f.evaluate(state.now, time, state.forces);
+  evaluate_for_kick(f, state, time, dt, scratch);
   kick(f.model, f.runner, state.forces, state.now, dt);
   limit_elongation(f.model, f.runner, state.now, dt);
   if (f.model.is_incompressible) {
@@ -126,7 +140,8 @@ void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
   f.evaluate(state.now, time, state.forces);
   f.work.keep_dampers = false;
   if (f.observer != nullptr) f.observer->stage_begins("solve_damping");
-  solve_damping(f, scratch.start, state.now, time, dt, viscosity, state.forces, scratch.damping);
+  solve_damping(f, scratch.start, state.now, time, dt / 2, viscosity, state.forces,
+                scratch.damping);
   if (f.observer != nullptr) f.observer->stage_ends("solve_damping");
   restore_velocities(f.model, scratch.start, state.now);
 }

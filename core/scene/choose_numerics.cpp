@@ -45,7 +45,7 @@ Motions find_motions(const Scene& scene, std::span<const SampledBody* const> sam
       motions.smooth.push_back(part.bound);
     } else if (part.bound.omega2 > 0 || part.bound.rate > 0) {
       motions.has_kinks = true;
-      if (is_body) motions.liquid.push_back(part.bound);
+      if (is_body) motions.liquid.push_back(part.limiting());
     }
   }
   if (scene.forces.gravity && scene.central_field) {

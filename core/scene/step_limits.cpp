@@ -167,7 +167,7 @@ void add_liquid(const Scene& scene, std::size_t index, const SampledBody& sample
                        index};
   if (scene.pressure_solver == PressureSolver::incompressible) {
     part.bound.omega2 += weight_omega2(scene, sample, material.liquid->support_radius);
-    part.reason = "pressure or viscosity in the liquid becomes unstable";
+    part.reason = "pressure in the liquid becomes unstable";
     part.gains = "a liquid under pressure gains energy with this integrator";
   }
   if (body.melting) {
@@ -238,6 +238,13 @@ bool has_implicit_springs(const Scene& scene, const Material& material) {
   return scene.forces.springs && material.implicit_springs;
 }
 
+/// Bodies' own, beside an incompressible liquid; see core/integrators/kick_drift.cpp.
+bool solves_damping(const Scene& scene) {
+  const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
+  return scene.pressure_solver == PressureSolver::incompressible && scene.forces.pressure &&
+         std::ranges::any_of(scene.bodies, is_liquid);
+}
+
 Real compressed_step_share(int dimensions) {
   return dimensions == 2 ? 0.82 : 0.9;
 }
@@ -251,6 +258,8 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
     if (scene.forces.springs) add_solid(scene, b, *samples[b], parts);
     if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, b, *samples[b], parts);
   }
+  const bool is_solved = solves_damping(scene);
+  for (OscillatingPart& part : parts) part.damping_is_solved = is_solved;
   add_contacts(scene, samples, parts);
   return parts;
 }
@@ -259,7 +268,7 @@ std::vector<StepLimit> find_step_limits(const Scene& scene,
                                         const std::vector<SampledBody>& samples) {
   std::vector<StepLimit> limits;
   for (OscillatingPart& part : find_oscillating_parts(scene, pointers_to(samples))) {
-    const Real step = stable_step(scene.numerics.integrator, part.bound);
+    const Real step = stable_step(scene.numerics.integrator, part.limiting());
     if (!std::isfinite(step)) continue;
     const bool is_same = !limits.empty() && limits.back().path == part.path;
     if (is_same && limits.back().step <= step) continue;

@@ -28,6 +28,10 @@ struct OscillatingPart {
   std::string gains;   ///< "... gain energy", with an integrator for which no step is short enough
   Oscillation bound;
   std::optional<std::size_t> body{};  ///< where it is one body's springs or liquid
+  bool damping_is_solved = false;     ///< by the integrator, where steps do not resolve it
+
+  /// What is left of the bound for the length of steps.
+  Oscillation limiting() const { return {bound.omega2, damping_is_solved ? 0 : bound.rate}; }
 };
 
 /// Whether static springs of the material limit no step.

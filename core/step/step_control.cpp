@@ -44,6 +44,11 @@ Oscillation compressed(const Model& model, const Oscillation& liquid) {
   return {liquid.omega2 / (share * share), liquid.rate};
 }
 
+/// What is left of bodies' own bounds for the length of steps; see OscillatingPart::limiting().
+Oscillation limiting(const Model& model, const Oscillation& own) {
+  return {own.omega2, model.is_incompressible ? 0 : own.rate};
+}
+
 Real travel_share(const Model& model) {
   return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
 }
@@ -86,6 +91,7 @@ StepBounds find_step_bounds(const Model& model) {
     }
   }
   add_cell_bounds(model, bounds);
+  for (Oscillation& own : bounds.own) own = limiting(model, own);
   bounds.own_step.resize(model.free_count);
   const Numerics& numerics = model.scene.numerics;
   std::ranges::transform(bounds.own, bounds.own_step.begin(),
@@ -98,7 +104,7 @@ StepBounds find_step_bounds(const Model& model) {
   }
   for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
     if (model.bodies[b].kind == BodyKind::liquid) continue;
-    const Oscillation own = compressed(model, model.damping.own[b]);
+    const Oscillation own = limiting(model, compressed(model, model.damping.own[b]));
     bounds.scene_step = std::min(bounds.scene_step, safe_step(numerics, own));
   }
   return bounds;
@@ -161,7 +167,8 @@ Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
   return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
 }
 
-/// Of a body's own forces: sound and viscosity, or the greatest pressure and viscosity.
+/// Of a body's own forces: sound and viscosity, or the greatest pressure, where viscosity is solved
+/// for.
 Oscillation liquid_bound(const Present& present, std::size_t body) {
   const Model& model = present.model;
   if (!model.is_incompressible) return compressed(model, model.damping.own[body]);
@@ -171,8 +178,7 @@ Oscillation liquid_bound(const Present& present, std::size_t body) {
     pressure = std::max(pressure, present.state.now.pressure[i]);
   }
   const LiquidModel& constants = *model.liquids[liquid.material];
-  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius),
-          model.damping.own[body].rate};
+  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius), 0};
 }
 
 Real liquid_step(const Present& present) {

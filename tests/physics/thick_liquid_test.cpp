@@ -5,7 +5,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"
 
-// Solids in a weakly compressible liquid so thick that steps do not resolve its viscosity.
+// Solids in a liquid so thick that steps do not resolve its viscosity.
 
 namespace vat {
 namespace {
@@ -18,9 +18,11 @@ constexpr Real kSupport = 0.3;
 constexpr Real kViscosity = 2e4;
 
 /// A cube of honey, seven particles wide, with a stone of three in its middle.
-Scene make_honey(bool fixed) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, kStep);
-  scene.pressure_solver = PressureSolver::tait;
+Scene make_honey(PressureSolver solver, bool fixed) {
+  const bool is_tait = solver == PressureSolver::tait;
+  Scene scene =
+      make_scene(is_tait ? IntegratorId::velocity_verlet : IntegratorId::symplectic_euler, kStep);
+  scene.pressure_solver = solver;
   scene.materials = {make_liquid("honey", 1000, {1, kViscosity, kSupport}), make_material("stone")};
   std::vector<Vec3> honey;
   std::vector<Vec3> stone;
@@ -37,12 +39,14 @@ Scene make_honey(bool fixed) {
 }
 
 /// 2 / 0.028 nu / h^2: steps of at most 2 over it are stable where viscosity is not solved for.
-TEST(ThickLiquid, StepsOfTheseTestsDoNotResolveIt) {
+TEST(ThickLiquids, StepsOfTheseTestsDoNotResolveIt) {
   EXPECT_GT(kStep * 2 / 0.028 * (kViscosity / 1000) / (kSupport * kSupport), 10);
 }
 
-TEST(ThickLiquid, AFixedStoneOnlyTakesItsEnergy) {
-  Simulation simulation = make_simulation(make_honey(true));
+class ThickLiquid : public testing::TestWithParam<PressureSolver> {};
+
+TEST_P(ThickLiquid, AFixedStoneOnlyTakesItsEnergy) {
+  Simulation simulation = make_simulation(make_honey(GetParam(), true));
   Real energy = simulation.diagnostics().kinetic_energy;
   const Real start = energy;
   for (int n = 0; n < 100; ++n) {
@@ -54,8 +58,8 @@ TEST(ThickLiquid, AFixedStoneOnlyTakesItsEnergy) {
   EXPECT_LT(energy, 1e-2 * start);
 }
 
-TEST(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
-  Scene scene = make_honey(false);
+TEST_P(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
+  Scene scene = make_honey(GetParam(), false);
   Simulation simulation = make_simulation(scene);
   const Totals before = totals_of(simulation.diagnostics());
   const Motion size = motion_of(simulation);
@@ -68,6 +72,10 @@ TEST(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
   const Vec3 of_stone = bodies[1].linear_momentum / bodies[1].mass;
   EXPECT_LT((of_stone - of_honey).norm(), 0.01 * of_honey.norm());
 }
+
+INSTANTIATE_TEST_SUITE_P(Solvers, ThickLiquid,
+                         testing::Values(PressureSolver::tait, PressureSolver::incompressible),
+                         [](const auto& solver) { return std::string(to_string(solver.param)); });
 
 }  // namespace
 }  // namespace vat
