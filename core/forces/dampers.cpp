@@ -84,7 +84,7 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
     block.start(end - begin);
   });
   if (is_viscous_) collect_viscosity(f);
-  has_images_ = is_viscous_ && has_no_slip_images(model);
+  has_images_ = is_viscous_ && has_viscous_images(model);
   if (has_images_) images_.collect(f, time);
   has_solid_drags_ = is_viscous_ && model.is_coupled && has_solids(model);
   if (has_solid_drags_) solid_drags_.collect(f);

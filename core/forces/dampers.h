@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/forces/no_slip_images.h"
 #include "core/forces/solid_drags.h"
+#include "core/forces/viscous_images.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -31,7 +31,7 @@ class DampingMatrix {
 
   bool is_viscous_ = false;
   bool has_images_ = false;
-  NoSlipImages images_;
+  ViscousImages images_;
   bool has_solid_drags_ = false;
   SolidDrags solid_drags_;
   std::vector<DamperBlock> blocks_;             ///< of particles, without springs and contacts

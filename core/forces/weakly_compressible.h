@@ -17,7 +17,7 @@ struct StepContext;
 /// A wall of the vat is a mirror: the liquid's images complete it (A. Colagrossi, M. Landrini, J.
 /// Comput. Phys. 191 (2003) 448), which keeps energy, with the weight between the two sides added
 /// to the images' pressure. Along walls the liquid slips freely, but for no_slip ones
-/// (core/forces/no_slip_images.h). Solid particles take part with their volumes, at rest density,
+/// (core/forces/viscous_images.h). Solid particles take part with their volumes, at rest density,
 /// and with a pressure of their surroundings.
 
 /// Which solid particles are near which liquid ones, both ways.

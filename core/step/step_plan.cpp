@@ -7,12 +7,12 @@
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
 #include "core/forces/no_slip.h"
-#include "core/forces/no_slip_images.h"
 #include "core/forces/restitution.h"
 #include "core/forces/rigid.h"
 #include "core/forces/springs.h"
 #include "core/forces/surface_tension.h"
 #include "core/forces/transport.h"
+#include "core/forces/viscous_images.h"
 #include "core/forces/volume.h"
 #include "core/forces/walls.h"
 #include "core/forces/weakly_compressible.h"
@@ -194,8 +194,18 @@ bool has_viscosity(const Model& model) {
   return false;
 }
 
-bool has_no_slip_images(const Model& model) {
-  if (!model.is_coupled || model.no_slip_walls.empty()) return false;
+bool has_thick_liquid(const Model& model) {
+  return std::ranges::any_of(model.bodies, [&](const ModelBody& body) {
+    if (body.kind != BodyKind::liquid) return false;
+    const LiquidModel& liquid = *model.liquids[body.material];
+    const Real own = 2 * (model.scene.dimensions + 2) * liquid.viscosity;
+    return own > liquid.central_viscosity / 2;
+  });
+}
+
+bool has_viscous_images(const Model& model) {
+  if (!model.is_coupled || model.walls.empty()) return false;
+  if (model.no_slip_walls.empty()) return has_thick_liquid(model);
   return std::ranges::any_of(model.bodies, [&](const ModelBody& body) {
     return body.kind == BodyKind::liquid && model.liquids[body.material]->central_viscosity > 0;
   });
@@ -210,9 +220,9 @@ StepPlan make_step_plan(const Model& model) {
   plan.add("external_forces", {position, velocity}, {force}, &set_external_forces);
   if (model.is_coupled) {
     add_coupled_stages(model, plan);
-    if (has_no_slip_images(model)) {
-      plan.add("no_slip_images", {velocity, liquid_cells, force}, {force},
-               &add_no_slip_image_forces);
+    if (has_viscous_images(model)) {
+      plan.add("viscous_images", {velocity, liquid_cells, force}, {force},
+               &add_viscous_image_forces);
     }
     if (model.is_filled) add_transport_stages(model, plan);
   } else if (model.liquid_count > 0) {

@@ -66,8 +66,10 @@ class PlanBuilder {
 /// Whether some liquid of the model is viscous, and viscosity on.
 bool has_viscosity(const Model& model);
 
-/// Whether no-slip walls drag a weakly compressible liquid along, see core/forces/no_slip_images.h.
-bool has_no_slip_images(const Model& model);
+/// Whether walls take part in the viscosity of liquids, see core/forces/viscous_images.h; and
+/// whether slip ones do.
+bool has_viscous_images(const Model& model);
+bool has_thick_liquid(const Model& model);
 
 /// The plan for a model whose bodies and contact tables are complete.
 StepPlan make_step_plan(const Model& model);

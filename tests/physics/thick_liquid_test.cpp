@@ -73,6 +73,21 @@ TEST_P(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
   EXPECT_LT((of_stone - of_honey).norm(), 0.01 * of_honey.norm());
 }
 
+// Slip walls bear what presses against them, and nothing has to be put back behind them.
+TEST_P(ThickLiquid, SinksOntoASlipFloorAndStaysAboveIt) {
+  Scene scene = make_honey(GetParam(), true);
+  scene.gravity = {0, 0, -9.81};
+  scene.bodies.resize(1);
+  scene.bodies[0].angular_velocity.setZero();
+  scene.vat = Vat{{-1, -1, -4 * kSpacing}, {1, 1, 1}, true, {}, {}};
+  Simulation simulation = make_simulation(scene);
+  for (int n = 0; n < 500; ++n) {
+    const AdvanceReport report = simulation.advance(1);
+    ASSERT_TRUE(report.events.empty()) << n;
+    ASSERT_EQ(report.wall_stops, 0U) << n;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, ThickLiquid,
                          testing::Values(PressureSolver::tait, PressureSolver::incompressible),
                          [](const auto& solver) { return std::string(to_string(solver.param)); });

@@ -1,4 +1,4 @@
-#include "core/forces/no_slip_images.h"
+#include "core/forces/viscous_images.h"
 
 #include "core/forces/liquid_pairs.h"
 #include "core/forces/weakly_compressible_pairs.h"
@@ -34,17 +34,18 @@ MirroredVelocity mirrored_velocity(const Vat& vat, const VatMotion& motion, cons
 }
 
 /// Calls f(particle, velocity's mirror, strength by axis) for the images of liquid near slot `self`
-/// that no-slip walls make.
+/// that take part.
 template <class F>
-void for_each_dragging_image(const Model& model, const Workspace& work, const VatMotion& motion,
-                             Index self, F&& f) {
+void for_each_viscous_image(const Model& model, const Workspace& work, const VatMotion& motion,
+                            Index self, F&& f) {
   const CellSortedPoints& points = work.liquid;
   const std::span<const Index> order = points.grid.order();
   const LiquidModel& liquid = liquid_of(model, order[self]);
   const Vec3 place(points.x[self], points.y[self], points.z[self]);
+  const bool is_thick = has_thick_liquid(model);
   const auto drag = [&](Index slot, const Vec3& x, const Mirror& mirror) {
     const MirroredVelocity velocity = mirrored_velocity(*model.scene.vat, motion, mirror, place);
-    if (!velocity.is_dragged) return;
+    if (!velocity.is_dragged && !is_thick) return;
     const Real r = x.norm();
     const Real volumes = model.rest_volume[order[self]] * model.rest_volume[order[slot]];
     const Real strength = -mean_viscosity(liquid, liquid_of(model, order[slot])) * volumes *
@@ -57,7 +58,7 @@ void for_each_dragging_image(const Model& model, const Workspace& work, const Va
 
 }  // namespace
 
-void add_no_slip_image_forces(StepContext& c) {
+void add_viscous_image_forces(StepContext& c) {
   const VatMotion motion = motion_of(c);
   const std::span<const Index> order = c.work.liquid.grid.order();
   const std::vector<Vec3>& velocities = c.configuration.velocity;
@@ -65,18 +66,18 @@ void add_no_slip_image_forces(StepContext& c) {
     for (std::size_t s = begin; s < end; ++s) {
       const Index i = order[s];
       Vec3 sum = Vec3::Zero();
-      for_each_dragging_image(c.model, c.work, motion, static_cast<Index>(s),
-                              [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
-                                const Vec3 image =
-                                    mirrored.factor.cwiseProduct(velocities[j]) + mirrored.shift;
-                                sum -= strength.cwiseProduct(velocities[i] - image);
-                              });
+      for_each_viscous_image(c.model, c.work, motion, static_cast<Index>(s),
+                             [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
+                               const Vec3 image =
+                                   mirrored.factor.cwiseProduct(velocities[j]) + mirrored.shift;
+                               sum -= strength.cwiseProduct(velocities[i] - image);
+                             });
       c.forces.particle[i] += sum;
     }
   });
 }
 
-void NoSlipImages::collect(const ForceModel& f, Real time) {
+void ViscousImages::collect(const ForceModel& f, Real time) {
   const VatMotion motion = vat_motion(*f.model.scene.vat, time);
   const std::size_t count = f.work.liquid.grid.order().size();
   blocks_.resize((count + kBlockSize - 1) / kBlockSize);
@@ -85,17 +86,17 @@ void NoSlipImages::collect(const ForceModel& f, Real time) {
     block.images.clear();
     for (std::size_t s = begin; s < end; ++s) {
       block.begin[s - begin] = static_cast<Index>(block.images.size());
-      for_each_dragging_image(f.model, f.work, motion, static_cast<Index>(s),
-                              [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
-                                block.images.push_back({j, strength, mirrored.factor});
-                              });
+      for_each_viscous_image(f.model, f.work, motion, static_cast<Index>(s),
+                             [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
+                               block.images.push_back({j, strength, mirrored.factor});
+                             });
     }
     block.begin[end - begin] = static_cast<Index>(block.images.size());
   });
 }
 
-void NoSlipImages::add(const ForceModel& f, const std::vector<Vec3>& w,
-                       std::vector<Vec3>& force) const {
+void ViscousImages::add(const ForceModel& f, const std::vector<Vec3>& w,
+                        std::vector<Vec3>& force) const {
   const std::span<const Index> order = f.work.liquid.grid.order();
   for_blocks(f.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     const Block& block = blocks_[begin / kBlockSize];

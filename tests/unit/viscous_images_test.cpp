@@ -1,4 +1,4 @@
-// What no-slip walls do to a liquid that they take part in: the force between two particles and
+// What walls do to a viscous liquid that they take part in: the force between two particles and
 // their images.
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ Real strength(const ForceProbe& probe, Real r) {
 
 // Across the wall the image comes towards the particle, along it the image goes the other way: both
 // differ from the particle by twice its velocity. The force has what is along x, axis by axis.
-TEST(NoSlipImages, HaveTheVelocityTurnedRound) {
+TEST(ViscousImages, HaveTheVelocityTurnedRound) {
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
     const int along = (axis + 1) % 3;
@@ -67,7 +67,23 @@ TEST(NoSlipImages, HaveTheVelocityTurnedRound) {
   }
 }
 
-TEST(NoSlipImages, MoveWithTheWallAndTheVat) {
+// Only what goes across a slip wall meets its image.
+TEST(ViscousImages, OfSlipWallsResistWhatComesTowardsThem) {
+  for (int wall = 0; wall < 6; ++wall) {
+    const int axis = wall / 2;
+    Scene scene = make_wall_scene(wall, (axis + 1) % 3);
+    scene.vat->walls[static_cast<std::size_t>(wall)].no_slip = false;
+    const ForceProbe probe(scene);
+    const Real across = 2 * kDistance;
+    const Real both = strength(probe, across) + strength(probe, std::hypot(across, kSpacing));
+    Vec3 expected = Vec3::Zero();
+    expected[axis] = -both * across * across * 2 * kVelocity[axis];
+    EXPECT_LT((probe.force(0, 0) - expected).norm(), 1e-12 * expected.norm()) << wall;
+    EXPECT_LT((probe.force(0, 1) - expected).norm(), 1e-12 * expected.norm()) << wall;
+  }
+}
+
+TEST(ViscousImages, MoveWithTheWallAndTheVat) {
   constexpr int kAlong = 0;
   Scene scene = make_wall_scene(4, kAlong);
   scene.bodies[0].velocity = Vec3::Zero();
@@ -81,9 +97,9 @@ TEST(NoSlipImages, MoveWithTheWallAndTheVat) {
   EXPECT_NEAR(probe.force(0).x(), others * 2 * (0.5 + 0.05 * std::numbers::pi), 1e-12 * others);
 }
 
-TEST(NoSlipImages, CostNothingWhereTheyDoNothing) {
+TEST(ViscousImages, CostNothingWhereTheyDoNothing) {
   const auto has_stage = [](const Scene& scene) {
-    return has_no_slip_images(ForceProbe(scene).model());
+    return has_viscous_images(ForceProbe(scene).model());
   };
   Scene scene = make_wall_scene(4, 0);
   EXPECT_TRUE(has_stage(scene));
@@ -95,6 +111,10 @@ TEST(NoSlipImages, CostNothingWhereTheyDoNothing) {
   EXPECT_FALSE(has_stage(scene));
   scene.materials[0].liquid->viscosity = kViscosity;
   scene.vat->walls[4].no_slip = false;
+  EXPECT_TRUE(has_stage(scene));
+  // 1 * rho c h / 2 = 50 Pa s of artificial viscosity, beside 2 (3 + 2) mu = 30 Pa s.
+  scene.materials[0].liquid->stiffness = 1;
+  scene.materials[0].liquid->artificial_viscosity = 1;
   EXPECT_FALSE(has_stage(scene));
   EXPECT_EQ(ForceProbe(scene).force(0), Vec3::Zero());
 }
