@@ -37,7 +37,8 @@ std::vector<Case> collect() {
                            liquid_solver_cases,
                            interaction_impact_cases,
                            interaction_buoyancy_cases,
-                           tait_body_cases}) {
+                           tait_body_cases,
+                           soft_bed_cases}) {
     std::ranges::move(group(), std::back_inserter(cases));
   }
   return cases;

@@ -40,6 +40,7 @@ std::vector<Case> liquid_solver_cases();
 std::vector<Case> interaction_impact_cases();
 std::vector<Case> interaction_buoyancy_cases();
 std::vector<Case> tait_body_cases();
+std::vector<Case> soft_bed_cases();
 std::vector<Case> tait_dam_break_cases();
 
 }  // namespace vat::validation
