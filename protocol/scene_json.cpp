@@ -143,6 +143,22 @@ void read_part(ObjectReader& reader, std::string_view key, Target& target, const
   if (errors.size() == errors_before) target = std::move(value);
 }
 
+/// A choice of one of an enumeration's names, in its order.
+template <class Enum>
+void read_enum(ObjectReader& reader, std::string_view key,
+               std::initializer_list<std::string_view> names, Enum& value) {
+  value = static_cast<Enum>(reader.choice(key, names, static_cast<std::size_t>(value)));
+}
+
+/// What all liquids of the scene have in common.
+void read_liquid_model(ObjectReader& reader, Scene& scene) {
+  read_enum(reader, "pressure_solver", {"gas", "tait", "incompressible"}, scene.pressure_solver);
+  scene.printed_pressure_force =
+      reader.boolean("printed_pressure_force", scene.printed_pressure_force);
+  read_enum(reader, "kernel", {"wendland_c2", "cubic_spline"}, scene.kernel);
+  read_enum(reader, "surface_tension_model", {"curvature", "cohesion"}, scene.surface_model);
+}
+
 PartialScene read_document(const Json& document, const MeshSource& meshes, Errors& errors) {
   PartialScene partial;
   Scene& scene = partial.scene;
@@ -151,20 +167,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.name = reader.text("name", kMaxNameLength, "");
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");
-  // In the order of PressureSolver.
-  scene.pressure_solver = static_cast<PressureSolver>(
-      reader.choice("pressure_solver", {"gas", "tait", "incompressible"},
-                    static_cast<std::size_t>(scene.pressure_solver)));
-  scene.printed_pressure_force =
-      reader.boolean("printed_pressure_force", scene.printed_pressure_force);
-  // In the order of KernelId.
-  scene.kernel =
-      static_cast<KernelId>(reader.choice("kernel", {"wendland_c2", "cubic_spline"},
-                                          static_cast<std::size_t>(scene.kernel)));
-  // In the order of SurfaceModel.
-  scene.surface_model =
-      static_cast<SurfaceModel>(reader.choice("surface_tension_model", {"curvature", "cohesion"},
-                                              static_cast<std::size_t>(scene.surface_model)));
+  read_liquid_model(reader, scene);
   scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);

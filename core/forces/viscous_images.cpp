@@ -22,7 +22,7 @@ MirroredVelocity mirrored_velocity(const Vat& vat, const VatMotion& motion, cons
   for (int axis = 0; axis < 3; ++axis) {
     if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
     const bool is_low = 2 * place[axis] > mirror.twice_plane[axis];
-    const Wall& wall = vat.walls[static_cast<std::size_t>(2 * axis + (is_low ? 0 : 1))];
+    const Wall& wall = vat.walls[2 * static_cast<std::size_t>(axis) + (is_low ? 0 : 1)];
     Vec3 factor = Vec3::Constant(wall.no_slip ? -1 : 1);
     factor[axis] = -1;
     const Vec3 of_wall = motion.velocity + wall.velocity;

@@ -47,8 +47,8 @@ std::vector<Case> collect() {
 }  // namespace
 
 const std::vector<Case>& all_cases() {
-  static const std::vector<Case> cases = collect();
-  return cases;
+  static const std::vector<Case> kCases = collect();
+  return kCases;
 }
 
 }  // namespace vat::validation
