@@ -10,6 +10,7 @@
 #include "server/task_runner.h"
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/control_report.h"
+#include "tests/bench/accuracy/law_report.h"
 #include "tests/bench/accuracy/solver_report.h"
 #include "tests/bench/options.h"
 
@@ -73,11 +74,15 @@ int accuracy(const Options& options) {
         solve_with_all(problems[index], options.quick ? kQuick : SweepSettings{}, &runner));
   }
   if (results.empty()) return kExitOk;
-  const Status written = write_accuracy(results, options.output);
+  const std::vector<LawPair> pairs = pairs_of_laws(results);
+  Status written = write_accuracy(results, options.output);
+  if (written) written = write_laws(pairs, options.output);
   if (!written) return fail(options.output, written.errors());
   std::cout << '\n'
             << to_markdown(cheapest_table(results)) << '\n'
-            << to_markdown(control_table(results)) << "\nwritten to " << options.output << '\n';
+            << to_markdown(control_table(results)) << '\n';
+  if (!pairs.empty()) std::cout << to_markdown(laws_table(pairs)) << '\n';
+  std::cout << "written to " << options.output << '\n';
   return kExitOk;
 }
 

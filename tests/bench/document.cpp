@@ -54,6 +54,8 @@ Result<std::map<std::string, std::string>> make_contents(const fs::path& folder)
   if (!control) return control.errors();
   const Result<Json> solvers = read_rows(folder, "accuracy", "solvers");
   if (!solvers) return solvers.errors();
+  const Result<Json> laws = read_rows(folder, "accuracy", "laws");
+  if (!laws) return laws.errors();
   const Result<Json> stability = read_rows(folder, "stability", "stability");
   if (!stability) return stability.errors();
   try {
@@ -62,6 +64,7 @@ Result<std::map<std::string, std::string>> make_contents(const fs::path& folder)
         {"limits", to_markdown(limits_table(validation.value()))},
         {"methods", to_markdown(methods_table(cheapest.value()))},
         {"solvers", to_markdown(solvers_table(solvers.value()))},
+        {"laws", to_markdown(laws_table(laws.value()))},
         {"steps", to_markdown(steps_table(control.value()))},
         {"counts", to_markdown(counts_table(stability.value()))}};
   } catch (const std::exception& error) {

@@ -6,6 +6,7 @@
 
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/control_report.h"
+#include "tests/bench/accuracy/law_report.h"
 #include "tests/bench/report/plot.h"
 #include "tests/cli/program.h"
 
@@ -88,6 +89,26 @@ TEST(BenchAccuracy, PlotHasTheFrontAndEveryMethodThatWorked) {
   EXPECT_EQ(plot.series[1].label, "velocity_verlet, fixed");
   EXPECT_EQ(plot.series[1].points.size(), 3u);
   EXPECT_EQ(plot.series[2].label, "heun, adaptive");
+}
+
+TEST(BenchAccuracy, LawsStandBesideEachOther) {
+  const std::vector<ProblemResult> results = {{"X", "t", "e", some_solutions()},
+                                              {"Y-implicit", "t", "e", some_solutions()},
+                                              {"X-projection", "t", "e", some_solutions()}};
+  const std::vector<LawPair> pairs = pairs_of_laws(results);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].first, &results[0]);
+  EXPECT_EQ(pairs[0].second, &results[2]);
+  const Table table = laws_table(pairs);
+  ASSERT_EQ(table.rows.size(), 2 * kTargetErrors.size());
+  EXPECT_EQ(to_csv({table.columns, {table.rows[1], table.rows[kTargetErrors.size() + 2]}}),
+            "problem,law,error at most,least time,step [s],evaluations per particle,seconds\n"
+            "X,penalties,0.01,\"heun, adaptive\",0.5,30,4\n"
+            "X,projection,0.001,\"velocity_verlet, fixed\",0.125,40,18\n");
+  const LogPlot plot = laws_plot(pairs[0]);
+  ASSERT_EQ(plot.series.size(), 2u);
+  EXPECT_EQ(plot.series[1].label, "projection");
+  EXPECT_EQ(plot.series[1].points.size(), 3u);
 }
 
 TEST(BenchAccuracy, RowsAreTheSameButForTheSeconds) {

@@ -85,6 +85,16 @@ class Results {
         R"([{"problem": "dam", "solver": "tait", "layers": 20, "error of": "front", "error": 0.125,
                "mean density error": 0.5, "greatest density error": 0.75, "steps": 7,
                "seconds": 1.5, "hash": "0"}])");
+    write(
+        "accuracy/laws.json",
+        R"([{"problem": "P", "law": "penalties", "error at most": 0.01, "least time": "heun, fixed",
+               "seconds": 0.00125},
+              {"problem": "P", "law": "penalties", "error at most": 1e-6,
+               "least time": "none reaches it", "seconds": null},
+              {"problem": "P", "law": "projection", "error at most": 0.01,
+               "least time": "heun, fixed", "seconds": 0.002},
+              {"problem": "P", "law": "projection", "error at most": 1e-6,
+               "least time": "heun, adaptive", "seconds": 0.5}])");
     write("stability/stability.json",
           R"([{"part": "random", "scenes": 30, "not finite": 0, "aborts": 0, "outside": 0,
                "guard events": 5, "retries": 6, "wall stops": 0, "stopped": 0, "refused": 0,
@@ -104,6 +114,7 @@ class Results {
       "<!-- begin cases -->\n<!-- end cases -->\n<!-- begin limits -->\n<!-- end limits -->\n"
       "<!-- begin solvers -->\n<!-- end solvers -->\n"
       "<!-- begin methods -->\n<!-- end methods -->\n<!-- begin steps -->\n<!-- end steps -->\n"
+      "<!-- begin laws -->\n<!-- end laws -->\n"
       "<!-- begin counts -->\n<!-- end counts -->\n![P](figures/P-time.svg)\n";
 
  private:
@@ -146,6 +157,12 @@ TEST(BenchDocument, WritesTablesAndCopiesPictures) {
           "|---|---|---|---|---|---|---|---|---|\n"
           "| P | 0.01 | heun | 100 | heun | 0.5 | 0.625 | – | – |\n"
           "<!-- end steps -->\n"
+          "<!-- begin laws -->\n"
+          "| problem | law | error 0.01 | error 1e-06 |\n"
+          "|---|---|---|---|\n"
+          "| P | penalties | heun, fixed: 1.2 ms | – |\n"
+          "| P | projection | heun, fixed: 2 ms | heun, adaptive: 5e+02 ms |\n"
+          "<!-- end laws -->\n"
           "<!-- begin counts -->\n"
           "| part | scenes | not finite | aborts | outside | guard events | retries | wall "
           "stops | stopped "
@@ -173,6 +190,7 @@ TEST(BenchDocument, PageHasEveryMarkerFigureAndCase) {
                                                          {"methods", ""},
                                                          {"solvers", ""},
                                                          {"steps", ""},
+                                                         {"laws", ""},
                                                          {"counts", ""}});
   EXPECT_TRUE(filled) << filled.errors()[0].path << ' ' << filled.errors()[0].message;
   EXPECT_GE(pictures_of(page).size(), 6u);

@@ -165,7 +165,8 @@ LinearCase make_balls(std::string name, const std::vector<Real>& masses, Real st
 
 std::vector<LinearCase> implicit_cases(bool quick) {
   std::vector<LinearCase> cases;
-  for (const Real stiffness : quick ? std::vector<Real>{1e8} : std::vector<Real>{1e4, 1e8, 1e12}) {
+  for (const Real stiffness :
+       quick ? std::vector<Real>{1e8} : std::vector<Real>{1, 1e4, 1e8, 1e12}) {
     for (const Real ratio : {0.0, 0.05, 1.0}) {
       cases.push_back(make_oscillator(stiffness, ratio));
       for (const Real mass_ratio :

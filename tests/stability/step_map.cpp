@@ -70,11 +70,17 @@ StepMapPoint empty_point(const LinearCase& linear, IntegratorId integrator, Real
           std::sqrt(fastest), theory};
 }
 
+constexpr int kLongestDecade = 5;  // of omega dt
+
 }  // namespace
+
+Real longest_tried_step(Real frequency) {
+  return std::min(kMaxStep, std::pow(Real{10}, kLongestDecade) / frequency);
+}
 
 StepMapPoint map_point_without_limit(const LinearCase& linear, IntegratorId integrator) {
   StepMapPoint point = empty_point(linear, integrator, std::numeric_limits<Real>::infinity());
-  for (int decade = 0; decade <= 5; ++decade) {
+  for (int decade = 0; decade <= kLongestDecade; ++decade) {
     const Real step = std::min(kMaxStep, std::pow(Real{10}, decade) / point.frequency);
     if (!is_stable(linear, integrator, step, linear.steps)) break;
     point.measured = step;

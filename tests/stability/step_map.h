@@ -54,8 +54,12 @@ struct StepMapPoint {
 /// Theory must be finite.
 StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator);
 
-/// The same where theory is infinite: measured is the longest of steps from 1 to 10^5 over the
-/// frequency, and kMaxStep, up to which all are stable.
+/// The longest of the steps that are tried where theory is infinite: 10^5 over the frequency
+/// [rad/s], or kMaxStep.
+Real longest_tried_step(Real frequency);
+
+/// The same where theory is infinite: measured is the longest of steps from 1 over the frequency to
+/// longest_tried_step(), a decade apart, up to which all are stable.
 StepMapPoint map_point_without_limit(const LinearCase& linear, IntegratorId integrator);
 
 }  // namespace vat::stability

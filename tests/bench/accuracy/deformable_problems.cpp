@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "tests/bench/accuracy/problem.h"
 #include "tests/support/scenes.h"
@@ -22,6 +23,23 @@ Problem pendulum(TaskRunner*) {
             const Vec3 place = run.body().positions[1];
             return std::hypot(place.x() - reference("/deformable/DEF-4b_k10000/state/5/0"),
                               place.y() - reference("/deformable/DEF-4b_k10000/state/5/1"));
+          }};
+}
+
+/// So stiff that it is a pendulum of one length: after 5/4 of its period it hangs down again, drawn
+/// out by three times its weight. What it is drawn out before delays it by 2e-6 lengths.
+Problem stiff_pendulum(TaskRunner*) {
+  constexpr Real kStiffness = 1e8;  // [N/m]
+  Scene scene = validation::load_scene("DEF-4");
+  scene.bodies[0].springs[0].constants.stiffness = kStiffness;
+  return {.title = "Pendulum on a spring as stiff as steel",
+          .error_name = "place after 5/4 of a period, in lengths of the pendulum",
+          .scene = std::move(scene),
+          .end = 1.25 * reference("/deformable/DEF-4a/period/90"),
+          .step_counts = doubled(16000, 5),
+          .error = [](const Run& run) {
+            const Real length = 1 + 3 * reference("/g") / kStiffness;
+            return (run.body().positions[1] - Vec3(0, -length, 0)).norm();
           }};
 }
 
@@ -62,6 +80,11 @@ Problem with_implicit_springs(Problem problem) {
 
 Problem implicit_pendulum(TaskRunner* runner) {
   return with_implicit_springs(pendulum(runner));
+}
+Problem implicit_stiff_pendulum(TaskRunner* runner) {
+  Problem problem = with_implicit_springs(stiff_pendulum(runner));
+  problem.step_counts = doubled(32, 12);
+  return problem;
 }
 Problem implicit_beam(TaskRunner* runner) {
   return with_implicit_springs(beam(runner));
@@ -127,7 +150,9 @@ std::vector<ProblemEntry> deformable_problems() {
           {"DEF-5", beam},
           {"DEF-6b", cube},
           {"lamp", lamp, true},
+          {"DEF-4-stiff", stiff_pendulum},
           {"DEF-4-implicit", implicit_pendulum},
+          {"DEF-4-stiff-implicit", implicit_stiff_pendulum},
           {"DEF-5-implicit", implicit_beam},
           {"DEF-6b-implicit", implicit_cube}};
 }

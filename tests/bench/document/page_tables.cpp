@@ -46,6 +46,13 @@ std::string method_cell(const Json& row) {
   return method + ": " + number(row, "evaluations per particle");
 }
 
+std::string law_cell(const Json& row) {
+  if (row.at("seconds").is_null()) return "–";
+  char milliseconds[32];
+  std::snprintf(milliseconds, sizeof milliseconds, "%.2g", 1e3 * row.at("seconds").get<Real>());
+  return text(row, "least time") + ": " + milliseconds + " ms";
+}
+
 }  // namespace
 
 Table cases_table(const Json& validation, const std::map<std::string, std::string>& titles) {
@@ -96,6 +103,22 @@ Table steps_table(const Json& control) {
                           number(row, "evaluations / fixed"), number(row, "time / fixed"),
                           number(row, "local: evaluations / fixed"),
                           number(row, "local: time / fixed")});
+  }
+  return table;
+}
+
+Table laws_table(const Json& laws) {
+  Table table{{"problem", "law"}, {}};
+  const auto is_of = [](const std::vector<Cell>& cells, const Json& row) {
+    return std::get<std::string>(cells[0]) == text(row, "problem") &&
+           std::get<std::string>(cells[1]) == text(row, "law");
+  };
+  for (const Json& row : laws) {
+    if (table.rows.empty() || !is_of(table.rows.back(), row)) {
+      table.rows.push_back({text(row, "problem"), text(row, "law")});
+    }
+    if (table.rows.size() == 1) table.columns.push_back("error " + number(row, "error at most"));
+    table.rows.back().emplace_back(law_cell(row));
   }
   return table;
 }

@@ -21,6 +21,9 @@ Table methods_table(const Json& cheapest);
 /// One row for each problem and error that fixed steps can reach.
 Table steps_table(const Json& control);
 
+/// One row for each problem and law: for each error the method with the least time, and the time.
+Table laws_table(const Json& laws);
+
 /// Everything but the seconds and hashes.
 Table solvers_table(const Json& solvers);
 

@@ -114,6 +114,55 @@ LogPlot measured_against_theory(const std::vector<StepMapPoint>& points) {
   return plot;
 }
 
+/// The field of these names, which are added where they are new; infinite, so empty, at first.
+Real& field_of(const std::string& x_name, const std::string& y_name, GridPlot& plot) {
+  const std::size_t x = place_of(x_name, plot.x_names);
+  const std::size_t y = place_of(y_name, plot.y_names);
+  plot.values.resize(plot.y_names.size());
+  std::vector<Real>& row = plot.values[y];
+  row.resize(plot.x_names.size(), std::numeric_limits<Real>::infinity());
+  return row[x];
+}
+
+/// The longest stable step of implicit springs over the longest that is tried, by stiffness and
+/// body; of points that share a field the least.
+GridPlot implicit_grid_of(const std::vector<StepMapPoint>& points) {
+  GridPlot plot{.title = "Longest stable step over the longest tried",
+                .x_label = "stiffness [N/m]",
+                .y_label = "body, mass ratio",
+                .value_label = "stable / tried",
+                .x_names = {},
+                .y_names = {},
+                .values = {}};
+  for (const StepMapPoint& point : points) {
+    if (!std::isinf(point.theory)) continue;
+    Real& value = field_of(short_text(point.stiffness),
+                           point.body + ", " + short_text(point.mass_ratio), plot);
+    value = std::min(value, point.measured / stability::longest_tried_step(point.frequency));
+  }
+  return plot;
+}
+
+/// Digits of the balls' distances that overlaps leave by step, and integrator and mass ratio, from
+/// those that stability needs; none where nothing overlaps.
+GridPlot projection_grid_of(const std::vector<stability::ProjectionPoint>& points) {
+  GridPlot plot{.title = "A stack of balls by projection: overlap, in diameters",
+                .x_label = "step [s]",
+                .y_label = "integrator, mass ratio",
+                .value_label = "-log10(overlap)",
+                .x_names = {},
+                .y_names = {},
+                .values = {},
+                .min = 3,
+                .max = 9};
+  for (const stability::ProjectionPoint& point : points) {
+    field_of(short_text(point.step),
+             std::string(to_string(point.integrator)) + ", " + short_text(point.mass_ratio), plot) =
+        -std::log10(point.overlap);
+  }
+  return plot;
+}
+
 Status write_maps(const std::vector<StepMapPoint>& points, const Options& options) {
   Status written =
       write_table(map_table(points), options.output, "step-map", "# The largest stable step");
@@ -130,7 +179,9 @@ Status write_maps(const std::vector<StepMapPoint>& points, const Options& option
   if (!written) return written;
   written = write_plot(limits_of(points), options.output, "step-limits");
   if (!written) return written;
-  return write_plot(measured_against_theory(points), options.output, "step-map");
+  written = write_plot(measured_against_theory(points), options.output, "step-map");
+  if (!written) return written;
+  return write_plot(implicit_grid_of(points), options.output, "implicit-map");
 }
 
 Status write_projections(const std::vector<stability::ProjectionPoint>& points,
@@ -143,7 +194,9 @@ Status write_projections(const std::vector<stability::ProjectionPoint>& points,
                           point.energy_gain, point.overlap, point.kinetic_energy,
                           stability::is_stable(point)});
   }
-  return write_table(table, options.output, "projection-map", "# A stack by projection");
+  Status written = write_table(table, options.output, "projection-map", "# A stack by projection");
+  if (!written) return written;
+  return write_plot(projection_grid_of(points), options.output, "projection-map");
 }
 
 /// Contacts by projection have no largest step: every one must be stable.
