@@ -26,7 +26,7 @@ void find_liquid_solids(StepContext& context);
 /// s_i rho_0, as density; keeps the neighbours found.
 void compute_tait_density(StepContext& context);
 
-/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), along its tangent from 1.1 rho_0 on, and never below zero
+/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 on, and never below zero
 /// (see compute_liquid_pressure()) but where liquid fills its world.
 void compute_tait_pressure(StepContext& context);
 

@@ -54,14 +54,16 @@ inline Real pressure_force(const LiquidModel& liquid, Real pressures, Real r) {
   return -pressures * liquid.slope_scale * liquid.kernel.slope_over_r(r);
 }
 
-/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2. From s = 1.1 on it goes along its tangent:
-/// impacts that press a liquid further together are no longer weakly compressible, and sound at
-/// twice the density would be 8 times as fast as the step allows for.
+/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2, up to s = 1.03, and from there on linear
+/// in the volume 1 / s. Only impacts press a liquid further together, with pressures rho c v that
+/// are those of the chosen speed of sound; and the denser a lattice, the shorter its stable step.
+/// On this line that stays above 0.77 h / c up to twice the density, the limit in
+/// find_step_limits(); with s^7 it is 0.62 h / c at s = 1.1 already.
 inline Real tait_pressure(Real s) {
-  constexpr Real kTangent = 1.1;
-  constexpr Real kSlope = 1.771561;  // 1.1^6
-  constexpr Real kPressure = (kTangent * kSlope - 1) / 7;
-  if (s > kTangent) return kPressure + kSlope * (s - kTangent);
+  constexpr Real kEnd = 1.03;
+  constexpr Real kPressure = (kEnd * kEnd * kEnd * kEnd * kEnd * kEnd * kEnd - 1) / 7;
+  constexpr Real kSlope = 0.9;
+  if (s > kEnd) return kPressure + kSlope * (1 / kEnd - 1 / s);
   const Real s2 = s * s;
   return (s2 * s2 * s2 * s - 1) / 7;
 }

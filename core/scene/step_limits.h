@@ -45,9 +45,10 @@ Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions);
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples);
 
-/// What is left of the step that is stable for sound where an impact compresses the liquid by up to
-/// an eighth: lattices of h / 2 are then stable up to 0.71 h / c of the gas in the plane and 0.78 h
-/// / c in space, nine tenths of which are the step that is taken.
+/// What is left of the step that is stable for sound where an impact compresses the liquid. Of the
+/// gas by up to an eighth: lattices of h / 2 are then stable up to 0.71 h / c in the plane and 0.78
+/// h / c in space, nine tenths of which are the step that is taken. Of the weakly compressible
+/// liquid to twice its density, see tait_pressure().
 Real compressed_step_share(int dimensions);
 
 /// Bounds omega^2 of particles that a pressure keeps in their places, where it gives way to
@@ -66,7 +67,7 @@ Real pressed_lattice_omega2(Real pressure, Real support_radius);
 /// - sound: c dt / h <= 0.96 and viscosity: nu dt / h^2 <= 0.126, the limits of the corrected
 ///   [MCG03] forces on a cubic lattice under velocity Verlet, as omega dt = 2 and rate dt = 2;
 ///   Of the weakly compressible liquid 0.77 (in the plane 0.71), which allows for impacts that
-///   compress it by an eighth, and 0.028, and a solid lighter than the liquid that it
+///   compress it to twice its density, and 0.028, and a solid lighter than the liquid that it
 ///   is in has the liquid's omega^2 and rate times the ratio of densities, half of that if rigid;
 /// - surface tension: the shortest waves that a surface of the particles shows;
 /// - contacts: omega^2 = k (n_a / m_a + n_b / m_b) where n contacts act at once on the mass m: on a

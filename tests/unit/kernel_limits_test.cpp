@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "core/forces/weakly_compressible_pairs.h"
 #include "core/kernels/smoothing_kernel.h"
 #include "core/scene/step_limits.h"
 #include "tests/support/scenes.h"
@@ -92,6 +94,84 @@ TEST_P(KernelLimits, AreThoseOfTheShortestWavesOnALattice) {
   }
   EXPECT_NEAR(sound, least_sound, 0.01 * least_sound);
   EXPECT_NEAR(viscous, least_viscous, 0.03 * least_viscous);
+}
+
+/// Of the waves in a lattice of rest spacing `spacing` that is pressed together to `compression`
+/// times its density, with a speed of sound of 1 m/s at rest: their pairs' pressure p / s^2 is
+/// greater there and, by Tait's equation, changes more with the density.
+class PressedLattice {
+ public:
+  PressedLattice(const SmoothingKernel& kernel, Real spacing, Real compression) {
+    const Real pressed = spacing / std::cbrt(compression);
+    const int reach = static_cast<int>(kSupport / pressed);
+    volume_ = spacing * spacing * spacing / lattice_sum(kernel, kSupport, spacing, 3);
+    steepness_ = lattice_slope(kernel, kSupport, spacing, 3) * volume_ / std::pow(spacing, 3);
+    Real density = volume_ * kernel.value(0);
+    for (int i = -reach; i <= reach; ++i) {
+      for (int j = -reach; j <= reach; ++j) {
+        for (int k = -reach; k <= reach; ++k) {
+          const Vec3 x = pressed * Vec3(i, j, k);
+          const Real r = x.norm();
+          if (r == 0 || r >= kSupport) continue;
+          density += volume_ * kernel.value(r);
+          pairs_.push_back({x, kernel.slope_over_r(r), curvature(kernel, r)});
+        }
+      }
+    }
+    term_ = term(density);
+    constexpr Real kStep = 1e-6;
+    slope_ = (term(density + kStep) - term(density)) / kStep;
+  }
+
+  Real omega2(const Vec3& wave) const {
+    Vec3 density = Vec3::Zero();
+    Mat3 stiffness = Mat3::Zero();
+    for (const Pair& pair : pairs_) {
+      const Mat3 along = pair.x * pair.x.transpose() / pair.x.squaredNorm();
+      density += volume_ * std::sin(wave.dot(pair.x)) * pair.slope * pair.x;
+      stiffness += volume_ * 2 * term_ * (1 - std::cos(wave.dot(pair.x))) *
+                   (pair.curvature * along + pair.slope * (Mat3::Identity() - along));
+    }
+    stiffness += slope_ * density * density.transpose();
+    return Eigen::SelfAdjointEigenSolver<Mat3>(stiffness).eigenvalues().maxCoeff() / steepness_;
+  }
+
+ private:
+  struct Pair {
+    Vec3 x;
+    Real slope;      ///< dW/dr / r
+    Real curvature;  ///< d2W/dr2
+  };
+  static Real term(Real s) { return tait_pressure(s) / (s * s); }
+  static Real curvature(const SmoothingKernel& kernel, Real r) {
+    constexpr Real kStep = 1e-6;
+    return (kernel.slope_over_r(r) * r - kernel.slope_over_r(r - kStep) * (r - kStep)) / kStep;
+  }
+
+  std::vector<Pair> pairs_;
+  Real volume_ = 0;
+  Real steepness_ = 0;
+  Real term_ = 0;
+  Real slope_ = 0;
+};
+
+TEST_P(KernelLimits, HoldForALatticePressedToTwiceItsDensity) {
+  const Real limit = step_limit(GetParam(), 1, 0);
+  const SmoothingKernel kernel(GetParam(), kSupport, 3);
+  for (const Real reach : {2.0, 2.5, 3.0}) {
+    for (const Real compression : {1.02, 1.03, 1.05, 1.1, 1.3, 2.0}) {
+      const PressedLattice lattice(kernel, kSupport / reach, compression);
+      const Real shortest = std::numbers::pi * reach * std::cbrt(compression);
+      Real greatest = 0;
+      for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(2, 1, 1)}) {
+        for (int n = 1; n <= 10; ++n) {
+          const Real length = shortest * n / (10 * direction.maxCoeff());
+          greatest = std::max(greatest, lattice.omega2(length * direction));
+        }
+      }
+      EXPECT_GT(2 / std::sqrt(greatest), limit) << reach << ' ' << compression;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, KernelLimits,
