@@ -47,16 +47,26 @@ Real sum_solid_volumes(const StepContext& c, Index self, const LiquidModel& liqu
   return sum;
 }
 
+/// What the walls' images add to s_i. A particle and its own images, up to seven in a corner, do
+/// not count for more than liquid at rest: alone they have no pressure, and the mirror turns back
+/// what flies into a corner as it does at a face. By their pressure they would be on a spring of up
+/// to six times c / h, where a step allows for half of that.
 Real sum_mirrored_volumes(const StepContext& c, Index self, const LiquidModel& liquid,
                           const VatMotion& motion) {
   const CellSortedPoints& points = c.work.liquid;
   const Vec3 place(points.x[self], points.y[self], points.z[self]);
+  const auto share = [&](Index slot, Real r) {
+    return c.model.rest_volume[points.grid.order()[slot]] * liquid.kernel.value(r);
+  };
   Real sum = 0;
+  Real own = share(self, 0);
   for_each_image(c.model, motion, points, place, liquid.support_radius,
                  [&](Index slot, const Vec3& x, const Mirror&) {
-                   sum += c.model.rest_volume[points.grid.order()[slot]] *
-                          liquid.kernel.value(x.norm());
+                   const Real part = share(slot, x.norm());
+                   sum += part;
+                   if (slot == self) own += part;
                  });
+  sum -= std::max(Real{0}, own - 1);
   if (!has_solids(c.model)) return sum;
   const CellSortedPoints& solids = c.work.solids_in_liquid;
   for_each_image(c.model, motion, solids, place, liquid.support_radius,
