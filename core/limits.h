@@ -30,7 +30,11 @@ inline constexpr std::size_t kMaxAppliedForces = 256;         // pending timed f
 inline constexpr Real kMaxReachInSpacings = 8;   // support radius, contact threshold
 inline constexpr Real kMaxRadiusInSpacings = 4;  // particle radius: two of them make the reach
 
-inline constexpr Real kMinSurfaceSupport = 2.5;  // support radius with surface tension
+/// Support radius with surface tension, in spacings: with less, curvature is noise, and particles
+/// that attract each other lie as on a lattice.
+inline constexpr Real min_surface_support(bool is_cohesive) {
+  return is_cohesive ? 3 : 2.5;
+}
 
 /// Entries in the neighbour lists of `particles` liquid particles, a pair counting twice: 256 each,
 /// 1 kB, or 16 million where that is more. Beyond them a step fails.
@@ -82,9 +86,11 @@ inline constexpr Real kMaxStep = 0.1;               // [s]
 inline constexpr Real kMaxTick = 1.0;               // [s]
 inline constexpr Real kMaxArtificialViscosity = 1;  // alpha
 inline constexpr Real kMaxSurfaceTension = 1e6;     // [N/m]
-inline constexpr Real kMinAccuracy = 1e-8;          // of a tolerance too: rounding is not far below
-inline constexpr Real kMaxAccuracy = 0.1;           // error models are for small errors
-inline constexpr Real kMaxTolerance = 1;  // only stability and contacts unseen limit steps
+inline constexpr Real kMinContactAngle = 30;        // [degrees] of liquids that attract themselves
+inline constexpr Real kMaxContactAngle = 135;
+inline constexpr Real kMinAccuracy = 1e-8;  // of a tolerance too: rounding is not far below
+inline constexpr Real kMaxAccuracy = 0.1;   // error models are for small errors
+inline constexpr Real kMaxTolerance = 1;    // only stability and contacts unseen limit steps
 inline constexpr Real kMinVolumeTolerance = 1e-10;  // of densities: rounding is not far below
 inline constexpr Real kMaxVolumeTolerance = 0.1;
 inline constexpr int kMinIterations = 2;      // of a solve: one, and one that takes back

@@ -104,9 +104,10 @@ void compute_tait_pressure(StepContext& c) {
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const LiquidModel& liquid = liquid_of(c.model, i);
-      const Real pressure = liquid.rest_density * liquid.stiffness *
-                            tait_pressure(c.work.density[i] / liquid.rest_density);
-      c.work.pressure[i] = c.model.is_filled ? pressure : std::max(Real{0}, pressure);
+      const Real s = c.work.density[i] / liquid.rest_density;
+      const Real pressure = liquid.rest_density * liquid.stiffness * tait_pressure(s);
+      c.work.pressure[i] =
+          c.model.is_filled ? pressure : std::max(least_pressure(liquid, s), pressure);
     }
   });
 }

@@ -68,6 +68,11 @@ inline Real tait_pressure(Real s) {
   return (s2 * s2 * s2 * s - 1) / 7;
 }
 
+/// What a liquid with a free surface bears at the density s, over that at rest.
+inline Real least_pressure(const LiquidModel& liquid, Real s) {
+  return 0 - liquid.tensile_strength * s * s;
+}
+
 inline bool has_solids(const Model& model) {
   return model.particle_count > model.liquid_count;
 }
@@ -115,7 +120,7 @@ class ImagePressure {
                   const Mirror& mirror) const {
     const Real more = liquid.rest_density * fall_.dot(mirror.place(position) - position);
     if (may_pull_) return pressure + more;
-    if (pressure <= 0) return 0;
+    if (pressure <= 0) return pressure;
     // What the weight of one layer of particles makes.
     const Real layer = liquid.rest_density * acceleration_ * liquid.spacing;
     return std::max(Real{0}, pressure + pressure / (pressure + layer) * more);

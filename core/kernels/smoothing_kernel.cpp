@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/kernels/lattice_sum.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -35,26 +36,6 @@ SmoothingKernel::SmoothingKernel(KernelId id, Real h, int dimensions, Real scale
       scale * (dimensions == 3 ? constants.in_space / (h * h * h) : constants.in_plane / (h * h));
   slope_scale_ = constants.slope * scale_ / (h * h);
 }
-
-namespace {
-
-template <class F>
-Real sum_over_lattice(Real h, Real spacing, int dimensions, F&& f) {
-  const int reach = static_cast<int>(h / spacing);
-  const int depth = dimensions == 3 ? reach : 0;
-  Real sum = 0;
-  for (int z = -reach; z <= reach; ++z) {
-    for (int y = -depth; y <= depth; ++y) {
-      for (int x = -reach; x <= reach; ++x) {
-        const Real r = spacing * std::sqrt(static_cast<Real>(x * x + y * y + z * z));
-        if (r < h) sum += f(spacing * static_cast<Real>(x), r);
-      }
-    }
-  }
-  return sum * std::pow(spacing, dimensions);
-}
-
-}  // namespace
 
 Real lattice_sum(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions) {
   return sum_over_lattice(h, spacing, dimensions, [&](Real, Real r) { return kernel.value(r); });

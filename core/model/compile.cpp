@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/forces/cohesion.h"
 #include "core/forces/vat_motion.h"
 #include "core/model/contacts.h"
 #include "core/model/limited_springs.h"
@@ -265,6 +266,13 @@ Real central_viscosity_of(const Material& material, int dimensions) {
                                                        liquid.support_radius / 2;
 }
 
+/// See core/forces/cohesion.h.
+Real tensile_strength_of(const Scene& scene, const LiquidConstants& liquid) {
+  if (scene.surface_model != SurfaceModel::cohesion) return 0;
+  return kTensileShare / 2 *
+         attraction_of(liquid.surface_tension, liquid.support_radius, scene.dimensions);
+}
+
 }  // namespace
 
 LiquidModel::LiquidModel(const Scene& scene, const Material& material, Real particle_spacing)
@@ -281,6 +289,7 @@ LiquidModel::LiquidModel(const Scene& scene, const Material& material, Real part
       spacing(particle_spacing),
       slope_scale(1 / lattice_slope(kernel, support_radius, particle_spacing, scene.dimensions)),
       central_viscosity(central_viscosity_of(material, scene.dimensions)),
+      tensile_strength(tensile_strength_of(scene, *material.liquid)),
       half_space(support_radius, scene.dimensions) {}
 
 std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids,

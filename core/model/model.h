@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/cohesion_kernel.h"
 #include "core/kernels/half_space.h"
 #include "core/kernels/poly6.h"
 #include "core/kernels/smoothing_kernel.h"
@@ -62,6 +63,7 @@ struct LiquidModel {
   Real spacing;
   Real slope_scale;  ///< of that kernel, so that a slope over that lattice has its own steepness
   Real central_viscosity;  ///< 2 (d + 2) mu, with the artificial one [Pa s]
+  Real tensile_strength;   ///< the greatest tension of a liquid that attracts itself [Pa]
   HalfSpace half_space;
 };
 
@@ -192,8 +194,13 @@ struct Model {
   bool is_incompressible = false;  ///< coupled liquids keep their volume by projections
   bool liquids_touch = false;      ///< two liquid materials meet, so liquid particles collide
   bool has_self_contact = false;
-  bool has_surface_tension = false;  ///< some liquid body has
+  bool has_surface_tension = false;  ///< some liquid body has, by its curvature
   std::vector<Real> wall_cosines;    ///< by material, of the contact angle; the same
+  // Of liquids that attract themselves, see core/forces/cohesion.h.
+  std::optional<CohesionKernel> cohesion;  ///< where some liquid body does
+  std::vector<Real> cohesions;             ///< A by material [Pa]
+  /// Shares of materials, row by row, in what solids of others pull, the walls last in each.
+  std::vector<Real> adhesion_shares;
   // Whether some law of bodies or walls has it.
   bool has_friction = false;
   bool has_restitution = false;  ///< by dashpots
@@ -206,6 +213,11 @@ struct Model {
 
   StepPlan plan;
 
+  /// Of a liquid's material and solids of another, or with no other walls.
+  Real adhesion_share(Index liquid, std::optional<Index> solid) const {
+    const std::size_t count = scene.materials.size();
+    return adhesion_shares[liquid * (count + 1) + solid.value_or(static_cast<Index>(count))];
+  }
   const ContactLaw& contact_law(Index material_a, Index material_b) const {
     return contact_laws[material_a * scene.materials.size() + material_b];
   }

@@ -86,12 +86,30 @@ bool has_surface_tension(const Scene& scene) {
   });
 }
 
-void warn_of_contact_angles(const Scene& scene, std::vector<Warning>& warnings) {
-  if (has_surface_tension(scene)) return;
+/// Whether it joins a liquid with surface tension to something.
+bool has_surface(const Scene& scene, const InterfaceDescription& interface) {
+  return std::ranges::any_of(interface.materials, [&](const std::string& name) {
+    const auto material = std::ranges::find(scene.materials, name, &Material::name);
+    return material != scene.materials.end() && material->liquid &&
+           material->liquid->surface_tension > 0;
+  });
+}
+
+void warn_of_surfaces(const Scene& scene, std::vector<Warning>& warnings) {
+  const bool is_idle = !has_surface_tension(scene);
+  const char* const reason = "no liquid of the scene has surface tension";
+  if (is_idle && scene.surface_model != Scene{}.surface_model) {
+    warn("/surface_tension_model", reason, warnings);
+  }
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
-    if (scene.interfaces[i].contact_angle == kNeutralAngle) continue;
-    warn("/interfaces/" + std::to_string(i) + "/contact_angle",
-         "no liquid of the scene has surface tension", warnings);
+    const InterfaceDescription& interface = scene.interfaces[i];
+    if (interface.contact_angle == kNeutralAngle) continue;
+    const std::string path = "/interfaces/" + std::to_string(i) + "/contact_angle";
+    if (is_idle) {
+      warn(path, reason, warnings);
+    } else if (!has_surface(scene, interface)) {
+      warn(path, "neither material has surface tension", warnings);
+    }
   }
 }
 
@@ -150,7 +168,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   }
   warn_of_solver(scene, warnings);
   warn_of_tolerance(scene.numerics, warnings);
-  warn_of_contact_angles(scene, warnings);
+  warn_of_surfaces(scene, warnings);
   warn_of_friction(scene.default_interface, "/default_interface", warnings);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const std::string path = "/interfaces/" + std::to_string(i);

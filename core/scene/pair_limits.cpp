@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "core/kernels/cohesion_kernel.h"
 #include "core/limits.h"
 #include "core/neighbours/periodic_box.h"
 #include "core/neighbours/uniform_grid.h"
@@ -216,8 +217,13 @@ bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, cons
   RangeCheck own(errors);
   if (const auto widest = widest_liquid(scene, bodies)) {
     const Material& material = scene.materials[*widest];
-    check_length(*scene.periodic, material.liquid->support_radius, name_support(material), path,
-                 own);
+    const bool attracts =
+        scene.surface_model == SurfaceModel::cohesion && material.liquid->surface_tension > 0;
+    const Real support = material.liquid->support_radius;
+    const std::string cause =
+        attracts ? "the attraction of \"" + material.name + '"' : name_support(material);
+    check_length(*scene.periodic, attracts ? CohesionKernel::kReach * support : support, cause,
+                 path, own);
   }
   const ContactReach reach = find_reach(scene, bodies);
   check_length(*scene.periodic, reach.distance, reach.cause, path, own);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/forces/cell_volume.h"
+#include "core/forces/cohesion.h"
 #include "core/forces/surface_tension.h"
 #include "core/scene/contact_limits.h"
 #include "core/scene/volumes.h"
@@ -96,19 +97,30 @@ void add_solid(const Scene& scene, std::size_t index, const SampledBody& body,
   }
 }
 
+/// What holds a surface together: with curvature a sound of c^2 = 2 kCohesion sigma / (rho h). The
+/// attraction of pairs makes density waves of k have omega^2 = A k^2 (W'(k) - W(k)) / rho, W and W'
+/// the Fourier transforms of its parts, at most 8.6 A / (rho h^2).
+Real cohesion_omega2(const Scene& scene, const Material& material) {
+  const LiquidConstants& liquid = *material.liquid;
+  const Real h = liquid.support_radius;
+  if (scene.surface_model == SurfaceModel::cohesion) {
+    constexpr Real kGreatest = 8.6;
+    const Real attraction = attraction_of(liquid.surface_tension, h, scene.dimensions);
+    return kGreatest * attraction / (material.density * h * h);
+  }
+  const Real limit = kVerletLimit / limits_of(scene.kernel).sound;
+  return limit * limit * 2 * kCohesion * liquid.surface_tension / (material.density * h * h * h);
+}
+
 /// The shortest waves that a surface of these particles shows, two spacings long, have dt <=
 /// sqrt(rho spacing^3 / (2 pi sigma)) (J. U. Brackbill, D. B. Kothe, C. Zemach, J. Comput. Phys.
-/// 100 (1992) 335, eq. 61); and the cohesion is a sound with c^2 = 2 kCohesion sigma / (rho h).
+/// 100 (1992) 335, eq. 61).
 Real surface_omega2(const Scene& scene, const Material& material, Real spacing) {
   const LiquidConstants& liquid = *material.liquid;
   if (liquid.surface_tension == 0 || spacing == 0) return 0;
-  const Real spacing3 = spacing * spacing * spacing;
-  const Real h = liquid.support_radius;
-  const Real waves = 2 * std::numbers::pi / spacing3;
-  const Real sound_limit = limits_of(scene.kernel).sound;
-  const Real cohesion = 2 * kCohesion / (sound_limit * sound_limit * h * h * h);
-  return kVerletLimit * kVerletLimit * (waves + cohesion) * liquid.surface_tension /
-         material.density;
+  const Real waves = 2 * std::numbers::pi / (spacing * spacing * spacing);
+  return kVerletLimit * kVerletLimit * waves * liquid.surface_tension / material.density +
+         cohesion_omega2(scene, material);
 }
 
 /// Of the pressure under a liquid's own weight, as deep as it is at the start.
@@ -196,7 +208,10 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
     const Real share = scene.bodies[index].kind == BodyKind::rigid ? 0.5 : 1;
     const Real ratio = share * material.density / lightest;
     if (ratio <= 1) continue;
-    const Oscillation liquid = bound_liquid(scene, material);
+    Oscillation liquid = bound_liquid(scene, material);
+    if (scene.surface_model == SurfaceModel::cohesion) {
+      liquid.omega2 += cohesion_omega2(scene, material);  // which pulls at it too
+    }
     bound = {std::max(bound.omega2, ratio * liquid.omega2),
              std::max(bound.rate, ratio * liquid.rate)};
   }

@@ -34,17 +34,27 @@ void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeC
   check.real(liquid.surface_tension, 0, kMaxSurfaceTension, path + "/surface_tension");
 }
 
-/// The gas boils at its surface: its forces derive from no energy. What a surface is corrected by
-/// is of Wendland's kernel.
+/// What the scene has that surface tension does not work with. The gas boils at its surface: its
+/// forces derive from no energy. An incompressible liquid never pulls, which cohesion needs. What a
+/// surface is corrected by is of Wendland's kernel.
+std::string adverse_to_surfaces(const Scene& scene) {
+  const bool is_cohesive = scene.surface_model == SurfaceModel::cohesion;
+  if (scene.pressure_solver == PressureSolver::gas) return "the pressure solver \"gas\"";
+  if (scene.kernel != KernelId::wendland_c2) {
+    return std::string("the kernel \"") + to_string(scene.kernel) + '"';
+  }
+  if (is_cohesive && scene.pressure_solver == PressureSolver::incompressible) {
+    return "the model \"cohesion\" and the pressure solver \"incompressible\"";
+  }
+  return "";
+}
+
 void check_surface_tension(const Scene& scene, RangeCheck& check) {
-  const bool is_gas = scene.pressure_solver == PressureSolver::gas;
-  if (!is_gas && scene.kernel == KernelId::wendland_c2) return;
+  const std::string reason = adverse_to_surfaces(scene);
+  if (reason.empty()) return;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
     if (!liquid || liquid->surface_tension == 0) continue;
-    const std::string reason = is_gas
-                                   ? "the pressure solver \"gas\""
-                                   : std::string("the kernel \"") + to_string(scene.kernel) + '"';
     check.add("not_allowed", element("/materials", m) + "/liquid/surface_tension",
               "must be 0 with " + reason);
   }

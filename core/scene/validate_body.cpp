@@ -71,19 +71,19 @@ void check_ratios(const BodyDescription& body, const Material& material, const s
   }
 }
 
-/// With fewer neighbours a surface's curvature is noise, which heats the liquid.
-void check_surface_support(const Material& material, const SampledBody& sample, int dimensions,
+void check_surface_support(const Scene& scene, const Material& material, const SampledBody& sample,
                            const std::string& path, RangeCheck& check) {
   if (!material.liquid || material.liquid->surface_tension == 0 || sample.masses.empty()) return;
   constexpr Real kRounding = 1 + 1e-9;
   const Real volume = std::ranges::max(sample.masses) / material.density;
-  const Real spacing = dimensions == 3 ? std::cbrt(volume) : std::sqrt(volume);
-  const Real greatest = material.liquid->support_radius / kMinSurfaceSupport;
+  const Real spacing = scene.dimensions == 3 ? std::cbrt(volume) : std::sqrt(volume);
+  const Real least = min_surface_support(scene.surface_model == SurfaceModel::cohesion);
+  const Real greatest = material.liquid->support_radius / least;
   if (spacing <= greatest * kRounding) return;
   std::ostringstream message;
   message << "must be at most " << greatest
-          << " m for a liquid with surface tension: its support radius is at least "
-          << kMinSurfaceSupport << " spacings";
+          << " m for a liquid with surface tension: its support radius is at least " << least
+          << " spacings";
   check.add("out_of_range", path + "/spacing", message.str());
 }
 
@@ -205,7 +205,7 @@ std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset
     sample = sample_body(body, *material, scene.dimensions);
     check_start(body, *sample, path, own_check);
     if (body.kind == BodyKind::liquid) {
-      check_surface_support(*material, *sample, scene.dimensions, path, own_check);
+      check_surface_support(scene, *material, *sample, path, own_check);
     }
     if (scene.vat) check_inside_vat(scene, vat_offset, *sample, path, own_check);
   }

@@ -30,12 +30,19 @@ void check_interface_constants(const InterfaceConstants& constants, const std::s
   }
 }
 
-/// Below 75 degrees the line where a surface meets a wall runs ahead as a film one particle thick,
-/// and above 150 the drop does not rest.
-void check_contact_angle(const InterfaceDescription& interface, const std::string& path,
-                         RangeCheck& check) {
+/// With cohesion, below 30 degrees a drop becomes a film one or two particles thick, and above 135
+/// what holds it together at the wall is more than what pushes it off. Of curvature, below 75
+/// degrees the line where a surface meets a wall runs ahead as a film one particle thick, and above
+/// 150 the drop does not rest.
+void check_contact_angle(const Scene& scene, const InterfaceDescription& interface,
+                         const std::string& path, RangeCheck& check) {
+  if (scene.surface_model == SurfaceModel::cohesion) {
+    check.real(interface.contact_angle, kMinContactAngle, kMaxContactAngle, path);
+    return;
+  }
   if (interface.contact_angle != kNeutralAngle && !joins(interface, kVatMaterial)) {
-    check.add("not_allowed", path, "must be left out: it is for interfaces with \"vat\"");
+    check.add("not_allowed", path,
+              "must be left out: with the model \"curvature\" it is for interfaces with \"vat\"");
     return;
   }
   check.real(interface.contact_angle, 75, 150, path);
@@ -87,7 +94,7 @@ void check_interface(const Scene& scene, const InterfaceDescription& interface,
     check.add("unknown_name", path + "/materials", "must name at least one of the materials");
   }
   check_interface_constants(interface.constants, path, check);
-  check_contact_angle(interface, path + "/contact_angle", check);
+  check_contact_angle(scene, interface, path + "/contact_angle", check);
   if (interface.threshold) {
     check_threshold(scene, interface, path + "/threshold", check);
   }

@@ -16,6 +16,7 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
     check.add("not_allowed", path,
               "a liquid needs the pressure solver \"gas\" for \"local\" steps");
   }
+  const Real least_support = min_surface_support(scene.surface_model == SurfaceModel::cohesion);
   const auto material = std::ranges::find(scene.materials, into, &Material::name);
   if (material == scene.materials.end()) {
     check.add("unknown_name", into_path, "must be the name of one of the scene's materials");
@@ -28,10 +29,11 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
               "must have a support radius of at most 8 spacings of the body");
   } else if (!std::holds_alternative<ParticleShape>(body.shape) &&
              material->liquid->surface_tension > 0 &&
-             material->liquid->support_radius < kMinSurfaceSupport * body.spacing * (1 - 1e-9)) {
+             material->liquid->support_radius < least_support * body.spacing * (1 - 1e-9)) {
     check.add("out_of_range", into_path,
-              "must have a support radius of at least 2.5 spacings of the body for its surface "
-              "tension");
+              std::string("must have a support radius of at least ") +
+                  (least_support == 3 ? "3" : "2.5") +
+                  " spacings of the body for its surface tension");
   }
 }
 

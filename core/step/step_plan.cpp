@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/forces/cohesion.h"
 #include "core/forces/contacts.h"
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
@@ -147,6 +148,14 @@ void add_surface_stages(const Model& model, PlanBuilder& plan) {
            {force}, &add_surface_tension);
 }
 
+void add_cohesion_stages(const Model& model, PlanBuilder& plan) {
+  using enum Column;
+  plan.add("cohesion", {position, liquid_cells, force}, {force}, &add_cohesion);
+  if (model.particle_count > model.liquid_count) {
+    plan.add("adhesion", {position, liquid_cells, liquid_solids, force}, {force}, &add_adhesion);
+  }
+}
+
 void add_contact_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   if (model.liquid_count > 0 && !model.is_coupled) {
@@ -229,6 +238,7 @@ StepPlan make_step_plan(const Model& model) {
     add_liquid_stages(model, plan);
   }
   if (model.has_surface_tension) add_surface_stages(model, plan);
+  if (model.cohesion) add_cohesion_stages(model, plan);
   if (model.contact_reach > 0) add_contact_stages(model, plan);
   add_push_stages(model, plan);
   if (model.spring_begin[model.implicit_begin] > 0) {

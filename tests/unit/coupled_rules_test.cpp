@@ -52,6 +52,55 @@ TEST(CoupledLiquids, HaveSurfacesOfCurvatureByWendlandsKernel) {
   EXPECT_THAT(paths_of(find_errors(scene)), testing::ElementsAre(mistake));
 }
 
+TEST(CoupledLiquids, AttractThemselvesWhereTheyMayPull) {
+  Scene scene = make_coupled();
+  scene.surface_model = SurfaceModel::cohesion;
+  scene.materials[0].liquid->surface_tension = 0.073;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  EXPECT_THAT(paths_of(find_errors(scene)),
+              testing::ElementsAre("not_allowed /materials/0/liquid/surface_tension"));
+}
+
+TEST(CoupledLiquids, MeetWallsAndBodiesAtAnglesThatTheirModelHas) {
+  Scene scene = make_coupled();
+  scene.materials.push_back(make_material("stone"));
+  InterfaceDescription interface;
+  interface.materials = {"water", "stone"};
+  interface.contact_angle = 40;
+  scene.interfaces = {interface};
+  const char* const path = "/interfaces/0/contact_angle";
+  EXPECT_THAT(paths_of(find_errors(scene)),
+              testing::ElementsAre(std::string("not_allowed ") + path));
+  scene.surface_model = SurfaceModel::cohesion;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+  for (const Real angle : {29.0, 136.0}) {
+    scene.interfaces[0].contact_angle = angle;
+    EXPECT_THAT(paths_of(find_errors(scene)),
+                testing::ElementsAre(std::string("out_of_range ") + path));
+  }
+}
+
+// Attraction reaches twice as far as the support radius, and wants three spacings in the plane.
+TEST(CoupledLiquids, ThatAttractThemselvesNeedRoomAndNeighbours) {
+  Scene scene = make_coupled();
+  scene.surface_model = SurfaceModel::cohesion;
+  scene.materials[0].liquid->surface_tension = 0.073;
+  scene.dimensions = 2;
+  BodyDescription drop{"drop", BodyKind::liquid, "water", SphereShape{Vec3::Zero(), 0.15}, 0.033};
+  scene.bodies = {drop};
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+  scene.periodic = Periodicity{{-0.19, -1, -1}, {0.19, 1, 1}, {true, false, false}};
+  EXPECT_EQ(find_errors(scene).size(), 1u);
+  scene.periodic = Periodicity{{-0.21, -1, -1}, {0.21, 1, 1}, {true, false, false}};
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+  scene.bodies[0].spacing = 0.036;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::ElementsAre("out_of_range /bodies/0/spacing"));
+  scene.surface_model = SurfaceModel::curvature;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+}
+
 TEST(CoupledLiquids, ShareOneSupportRadius) {
   Scene scene = make_coupled();
   scene.materials.push_back(make_liquid("oil", 900, {100, 1, 0.2}));

@@ -292,6 +292,16 @@ TEST(StepColumns, AreReadAndWrittenAsDeclaredWithSurfaceTension) {
   expect_declared(scene);
 }
 
+TEST(StepColumns, AreReadAndWrittenAsDeclaredWhereLiquidsAttractThemselves) {
+  Scene scene = crowded_scene(1);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.surface_model = SurfaceModel::cohesion;
+  for (Material& material : scene.materials) {
+    if (material.liquid) material.liquid->surface_tension = 10;
+  }
+  expect_declared(scene);
+}
+
 TEST(StepColumns, AreReadAndWrittenAsDeclaredWherePressureIsKept) {
   Scene scene = crowded_scene(1);
   scene.pressure_solver = PressureSolver::incompressible;

@@ -374,5 +374,26 @@ TEST(Warnings, OfSoundAndViscosityBeyondTheStep) {
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("unstable_step /numerics/step"));
 }
 
+TEST(Warnings, NameIdleSettingsOfSurfaces) {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-4);
+  scene.pressure_solver = PressureSolver::tait;
+  LiquidConstants water{100, 1, 0.12};
+  scene.materials = {test::make_liquid("water", 1000, water), test::make_material("stone"),
+                     test::make_material("wood")};
+  scene.bodies = {{"drop", BodyKind::liquid, "water", SphereShape{Vec3::Zero(), 0.1}, 0.04}};
+  scene.surface_model = SurfaceModel::cohesion;
+  InterfaceDescription wet;
+  wet.materials = {"stone", "water"};
+  wet.contact_angle = 60;
+  InterfaceDescription dry = wet;
+  dry.materials = {"stone", "wood"};
+  scene.interfaces = {wet, dry};
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /surface_tension_model",
+                                                       "no_effect /interfaces/0/contact_angle",
+                                                       "no_effect /interfaces/1/contact_angle"));
+  scene.materials[0].liquid->surface_tension = 0.07;
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /interfaces/1/contact_angle"));
+}
+
 }  // namespace
 }  // namespace vat
