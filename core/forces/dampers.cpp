@@ -175,7 +175,7 @@ Vec3 damp_springs(const Model& model, const std::vector<Vec3>& directions,
 void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
                              const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                              std::vector<Vec3>& torque) {
-  const bool has_contacts = f.model.contact_reach > 0;
+  const bool has_contacts = has_contact_forces(f.model);
   const bool has_springs = !f.model.spring_ends.empty();
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     const std::size_t block = begin / kBlockSize;

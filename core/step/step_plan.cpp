@@ -168,8 +168,7 @@ void add_contact_stages(const Model& model, PlanBuilder& plan) {
 /// What contacts and walls do, once it is known which contacts there are.
 void add_push_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
-  const bool has_contacts =
-      model.contact_reach > 0 && (model.bodies_push || model.has_self_contact);
+  const bool has_contacts = has_contact_forces(model);
   if (!model.has_restitution) {
     if (has_contacts) {
       plan.add("contacts", {position, velocity, contact_list, force}, {force}, &add_contacts);
@@ -201,6 +200,10 @@ bool has_viscosity(const Model& model) {
     if (body.kind == BodyKind::liquid && model.liquids[body.material]->viscosity > 0) return true;
   }
   return false;
+}
+
+bool has_contact_forces(const Model& model) {
+  return model.contact_reach > 0 && (model.bodies_push || model.has_self_contact);
 }
 
 bool has_thick_liquid(const Model& model) {

@@ -295,5 +295,22 @@ TEST(Projection, DoesNotLimitAdaptiveSteps) {
   EXPECT_EQ(simulation.advance(60).steps, 60U);
 }
 
+// Where no contact is by a force, the solve for damping has none to ask for.
+TEST(Projection, GoesWithDashpotsThatStepsDoNotResolve) {
+  Scene scene = make_floor_scene(kFrame);
+  scene.default_interface = projection();
+  scene.bodies = {make_body("dumbbell", BodyKind::deformable, "steel",
+                            make_particles({{0, 0, 0.1}, {0.3, 0, 0.1}}, 1), kRadius),
+                  make_ball("ball", {0, 0, 0.25})};
+  scene.bodies[0].springs = {{0, 1, {10, 1e4}, {}}};
+  Simulation simulation = make_simulation(scene);
+  const AdvanceReport report = simulation.advance(60);
+  EXPECT_TRUE(report.events.empty());
+  for (const Index particle : {0U, 1U}) {
+    EXPECT_NEAR(position_of(simulation, 0, particle).z(), kRadius, 1e-9);
+  }
+  EXPECT_GT(height_of(simulation, 1), kRadius - 1e-9);
+}
+
 }  // namespace
 }  // namespace vat
