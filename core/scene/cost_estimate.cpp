@@ -1,5 +1,8 @@
 #include "core/scene/cost_estimate.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace vat {
 namespace {
 
@@ -15,11 +18,31 @@ constexpr UnitCost kIncompressible{1200, 2e-6};  // with ten to twenty iteration
 constexpr UnitCost kDeformable{400, 2e-8};
 constexpr UnitCost kSpring{300, 1.3e-8};
 constexpr UnitCost kRigid{360, 2e-8};
+// Of a surface, over the time that a liquid takes for its neighbours.
+constexpr Real kCurvature = 2;   // four passes over them, for two
+constexpr Real kCohesion = 0.5;  // of those within twice the support radius
 
-UnitCost particle_cost(const Scene& scene, BodyKind kind) {
+/// Of a liquid's particle: time goes by its neighbours.
+UnitCost liquid_cost(const Scene& scene, const BodyDescription& body, const SampledBody& sample) {
+  const Material& material = *std::ranges::find(scene.materials, body.material, &Material::name);
+  const LiquidConstants& liquid = *material.liquid;
+  const Real dimensions = scene.dimensions;
+  const Real mass = std::ranges::min(sample.masses);
+  const Real spacing = std::pow(mass / material.density, 1 / dimensions);
+  Real share = std::pow(liquid.support_radius / (2 * spacing), dimensions);
+  if (liquid.surface_tension > 0) {
+    share *= scene.surface_model == SurfaceModel::cohesion ? 1 + kCohesion * std::pow(2, dimensions)
+                                                           : 1 + kCurvature;
+  }
   const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
-  if (kind == BodyKind::liquid) return is_incompressible ? kIncompressible : kLiquid;
-  return kind == BodyKind::deformable ? kDeformable : kRigid;
+  UnitCost cost = is_incompressible ? kIncompressible : kLiquid;
+  cost.seconds *= share;
+  return cost;
+}
+
+UnitCost particle_cost(const Scene& scene, const BodyDescription& body, const SampledBody& sample) {
+  if (body.kind == BodyKind::liquid) return liquid_cost(scene, body, sample);
+  return body.kind == BodyKind::deformable ? kDeformable : kRigid;
 }
 
 Real evaluations_a_step(IntegratorId integrator) {
@@ -36,7 +59,8 @@ CostEstimate estimate_cost(const Scene& scene, std::span<const SampledBody* cons
     sum.seconds += cost.seconds * static_cast<Real>(count);
   };
   for (std::size_t b = 0; b < samples.size(); ++b) {
-    add(particle_cost(scene, scene.bodies[b].kind), samples[b]->positions.size());
+    if (samples[b]->positions.empty()) continue;  // an emitter's body
+    add(particle_cost(scene, scene.bodies[b], *samples[b]), samples[b]->positions.size());
     add(kSpring, samples[b]->springs.size());
   }
   sum.seconds *= evaluations_a_step(scene.numerics.integrator) / scene.numerics.step;

@@ -123,6 +123,22 @@ TEST(CostEstimate, AddsUpWhatBodiesNeed) {
   EXPECT_EQ(cost(scene).memory, once.memory);
 }
 
+TEST(CostEstimate, GoesByTheNeighboursOfALiquid) {
+  const auto cost = [](const Scene& scene) {
+    const std::vector<SampledBody> bodies = sample_bodies(scene);
+    return estimate_cost(scene, pointers_to(bodies)).seconds;
+  };
+  Scene scene = sea(0.001);
+  const Real once = cost(scene);
+  LiquidConstants& liquid = *scene.materials[0].liquid;
+  liquid.support_radius *= 2;
+  EXPECT_NEAR(cost(scene), 8 * once, 1e-9 * once);
+  liquid.surface_tension = 0.1;
+  EXPECT_NEAR(cost(scene), 24 * once, 1e-9 * once);
+  scene.surface_model = SurfaceModel::cohesion;
+  EXPECT_NEAR(cost(scene), 40 * once, 1e-9 * once);
+}
+
 TEST(Warnings, OfATolerance) {
   Scene scene = oscillator(1, 0);
   EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
