@@ -202,7 +202,9 @@ void solve_damping(const ForceModel& f, const Configuration& from, const Configu
   matrix.collect(f, at, time, viscosity);
   for (Motion* motion : {&w, &residual, &direction, &inertia, &product}) resize(f.model, *motion);
   if (f.model.has_friction) rub_torque.resize(f.model.particle_count);
-  product = {forces.particle, forces.rigid_force, forces.rigid_torque};
+  product.particle = forces.particle;  // one by one, which keeps their room
+  product.linear = forces.rigid_force;
+  product.angular = forces.rigid_torque;
   apply_inverse_mass(eq, product, w);
   for_entries(eq, w, w, [&](Vec3& x, const Vec3&) { x *= eq.dt; });
   for (Index i = 0; i < f.model.free_count; ++i) {

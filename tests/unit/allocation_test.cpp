@@ -56,5 +56,41 @@ TEST(Allocation, NoneInASteadyStepOfAnIncompressibleLiquid) {
   EXPECT_EQ(allocation_count(), before);
 }
 
+/// A cube of thick liquid on the floor of a vat, with a speed of sound of 10 m/s.
+Scene make_wet_vat(PressureSolver solver) {
+  constexpr Real kSpacing = 0.1;
+  const bool is_tait = solver == PressureSolver::tait;
+  Scene scene =
+      make_scene(is_tait ? IntegratorId::velocity_verlet : IntegratorId::symplectic_euler, 2e-3);
+  scene.pressure_solver = solver;
+  scene.materials = {make_liquid("honey", 1000, {100, 1000, 3 * kSpacing})};
+  scene.bodies = {make_body("honey", BodyKind::liquid, "honey",
+                            make_particles(make_lattice(5, 5, 5, kSpacing), 1), kSpacing / 2)};
+  scene.vat = Vat{{-1, -1, -0.25}, {1, 1, 1}, true, {}, {}};
+  return scene;
+}
+
+void expect_no_allocations(const Scene& scene) {
+  Simulation simulation = make_simulation(scene);
+  ASSERT_TRUE(simulation.advance(500).events.empty());
+  const std::size_t before = allocation_count();
+  simulation.advance(100);
+  EXPECT_EQ(allocation_count(), before);
+}
+
+TEST(Allocation, NoneInASteadyStepThatSolvesForViscosity) {
+  expect_no_allocations(make_wet_vat(PressureSolver::tait));
+  expect_no_allocations(make_wet_vat(PressureSolver::incompressible));
+}
+
+TEST(Allocation, NoneInASteadyStepOfASurface) {
+  Scene scene = make_wet_vat(PressureSolver::tait);
+  scene.materials[0].liquid->surface_tension = 10;
+  for (const SurfaceModel model : {SurfaceModel::curvature, SurfaceModel::cohesion}) {
+    scene.surface_model = model;
+    expect_no_allocations(scene);
+  }
+}
+
 }  // namespace
 }  // namespace vat
