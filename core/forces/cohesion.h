@@ -23,7 +23,7 @@ struct StepContext;
 /// that is the pi/8 int r^4 f of a force f between two (J. G. Kirkwood, F. P. Buff, J. Chem. Phys.
 /// 17 (1949) 338). A surface at rest is not that of a uniform liquid: particles there sit denser,
 /// until forces across it balance. With the pressure's energy a plane surface at rest, of liquid as
-/// a continuum, has kRelaxation times as much, the same to 1 % in space and in the plane and for
+/// a continuum, has kRelaxation times as much, the same to 3 % in space and in the plane and for
 /// any sound that is fast against capillary waves.
 ///
 /// Walls of the vat, and solids by their particles' volumes, repel a liquid as it repels itself and
@@ -31,7 +31,7 @@ struct StepContext;
 /// half space, which needs no sum and lets a liquid slip along it. Young's equation, cos theta =
 /// -sigma_wall / sigma, wants the energy sigma_wall that a liquid at rest has at a wall; of uniform
 /// liquid it would be linear in the share. As a continuum whose density is mirrored at the wall it
-/// has that of adhesion_share(), to 0.01 in cos theta.
+/// has that of adhesion_share(), to 0.03 in cos theta.
 
 inline constexpr Real kTensileShare = 0.4;
 inline constexpr Real kRelaxation = 1.52;

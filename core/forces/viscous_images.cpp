@@ -42,15 +42,16 @@ void for_each_viscous_image(const Model& model, const Workspace& work, const Vat
   const std::span<const Index> order = points.grid.order();
   const LiquidModel& liquid = liquid_of(model, order[self]);
   const Vec3 place(points.x[self], points.y[self], points.z[self]);
-  const bool is_thick = has_thick_liquid(model);
+  const int dimensions = model.scene.dimensions;
+  const bool is_own_thick = is_thick(liquid, dimensions);
   const auto drag = [&](Index slot, const Vec3& x, const Mirror& mirror) {
     const MirroredVelocity velocity = mirrored_velocity(*model.scene.vat, motion, mirror, place);
-    if (!velocity.is_dragged && !is_thick) return;
+    const LiquidModel& other = liquid_of(model, order[slot]);
+    if (!velocity.is_dragged && !is_own_thick && !is_thick(other, dimensions)) return;
     const Real r = x.norm();
     const Real volumes = model.rest_volume[order[self]] * model.rest_volume[order[slot]];
-    const Real strength = -mean_viscosity(liquid, liquid_of(model, order[slot])) * volumes *
-                          liquid.slope_scale * liquid.kernel.slope_over_r(r) /
-                          softened_square(liquid, r);
+    const Real strength = -mean_viscosity(liquid, other) * volumes * liquid.slope_scale *
+                          liquid.kernel.slope_over_r(r) / softened_square(liquid, r);
     f(order[slot], velocity, Vec3(strength * x.cwiseAbs2()));
   };
   for_each_image(model, motion, points, place, liquid.support_radius, drag);

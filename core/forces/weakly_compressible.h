@@ -26,9 +26,10 @@ void find_liquid_solids(StepContext& context);
 /// s_i rho_0, as density; keeps the neighbours found.
 void compute_tait_density(StepContext& context);
 
-/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 on, and never below zero
-/// (see compute_liquid_pressure()) but where liquid fills its world or attracts itself, down to what
-/// it bears (core/forces/cohesion.h).
+/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 on and in rho from 2 rho_0
+/// on, and never below zero
+/// (see compute_liquid_pressure()) but where liquid fills its world or attracts itself, down to
+/// what it bears (core/forces/cohesion.h).
 void compute_tait_pressure(StepContext& context);
 
 /// The pressure of solid particles, from that of the liquid around them and the weight between (S.

@@ -58,11 +58,17 @@ inline Real pressure_force(const LiquidModel& liquid, Real pressures, Real r) {
 /// in the volume 1 / s. Only impacts press a liquid further together, with pressures rho c v that
 /// are those of the chosen speed of sound; and the denser a lattice, the shorter its stable step.
 /// On this line that stays above 0.77 h / c up to twice the density, the limit in
-/// find_step_limits(); with s^7 it is 0.62 h / c at s = 1.1 already.
+/// find_step_limits(); with s^7 it is 0.62 h / c at s = 1.1 already. From twice the density on it
+/// goes along its tangent: the line has an end, and a liquid that is too soft for its own weight
+/// would fall together.
 inline Real tait_pressure(Real s) {
   constexpr Real kEnd = 1.03;
   constexpr Real kPressure = (kEnd * kEnd * kEnd * kEnd * kEnd * kEnd * kEnd - 1) / 7;
   constexpr Real kSlope = 0.9;
+  constexpr Real kTwice = 2;
+  if (s > kTwice) {
+    return kPressure + kSlope * (1 / kEnd - 1 / kTwice + (s - kTwice) / (kTwice * kTwice));
+  }
   if (s > kEnd) return kPressure + kSlope * (1 / kEnd - 1 / s);
   const Real s2 = s * s;
   return (s2 * s2 * s2 * s - 1) / 7;

@@ -4,6 +4,7 @@
 #include "core/integrators/elongation_limit.h"
 #include "core/integrators/integrator.h"
 #include "core/rigid/rigid_motion.h"
+#include "core/scene/step_limits.h"
 
 namespace vat {
 
@@ -68,11 +69,11 @@ void finish_contacts(const ForceModel& f, State& state, Real time, Real dt,
   if (f.observer != nullptr) f.observer->stage_ends("project_contacts");
 }
 
-/// The forces of a step of symplectic Euler: with an incompressible liquid, those that damp are at
-/// the velocities that they lead to, where the step does not resolve them.
+/// The forces of a step of symplectic Euler: in scenes of incompressible liquids, those that damp
+/// are at the velocities that they lead to, where the step does not resolve them.
 void evaluate_for_kick(const ForceModel& f, State& state, Real time, Real dt,
                        IntegratorScratch& scratch) {
-  const bool must_solve = f.model.is_incompressible && must_solve_own_damping(f.model, dt);
+  const bool must_solve = solves_damping(f.model.scene) && must_solve_own_damping(f.model, dt);
   f.work.keep_dampers = must_solve;
   f.evaluate(state.now, time, state.forces);
   f.work.keep_dampers = false;

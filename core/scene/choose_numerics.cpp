@@ -42,7 +42,7 @@ Motions find_motions(const Scene& scene, std::span<const SampledBody* const> sam
     const bool is_liquid = is_body && (scene.bodies[body].kind == BodyKind::liquid ||
                                        part.path.ends_with(kMeltingPath));
     if (is_body && !is_liquid && scene.bodies[body].kind == BodyKind::deformable) {
-      motions.smooth.push_back(part.bound);
+      motions.smooth.push_back(part.limiting());
     } else if (part.bound.omega2 > 0 || part.bound.rate > 0) {
       motions.has_kinks = true;
       if (is_body) motions.liquid.push_back(part.limiting());

@@ -22,6 +22,11 @@ constexpr UnitCost kRigid{360, 2e-8};
 constexpr Real kCurvature = 2;   // four passes over them, for two
 constexpr Real kCohesion = 0.5;  // of those within twice the support radius
 
+// Of the neighbours of two spacings: those of a lone particle's own work, and of the finest lattice
+// that kernels are made for.
+constexpr Real kLeastShare = 0.1;
+constexpr Real kMostSpacings = 8;
+
 /// Of a liquid's particle: time goes by its neighbours.
 UnitCost liquid_cost(const Scene& scene, const BodyDescription& body, const SampledBody& sample) {
   const Material& material = *std::ranges::find(scene.materials, body.material, &Material::name);
@@ -29,7 +34,8 @@ UnitCost liquid_cost(const Scene& scene, const BodyDescription& body, const Samp
   const Real dimensions = scene.dimensions;
   const Real mass = std::ranges::min(sample.masses);
   const Real spacing = std::pow(mass / material.density, 1 / dimensions);
-  Real share = std::pow(liquid.support_radius / (2 * spacing), dimensions);
+  const Real reach = std::min(liquid.support_radius / spacing, kMostSpacings);
+  Real share = std::max(kLeastShare, std::pow(reach / 2, dimensions));
   if (liquid.surface_tension > 0) {
     share *= scene.surface_model == SurfaceModel::cohesion ? 1 + kCohesion * std::pow(2, dimensions)
                                                            : 1 + kCurvature;

@@ -86,8 +86,14 @@ bool has_surface_tension(const Scene& scene) {
   });
 }
 
-/// Whether it joins a liquid with surface tension to something.
+/// Whether it joins a liquid with surface tension to a wall or solid.
 bool has_surface(const Scene& scene, const InterfaceDescription& interface) {
+  const auto is_liquid_body = [&](const std::string& name) {
+    return std::ranges::any_of(scene.bodies, [&](const BodyDescription& body) {
+      return body.kind == BodyKind::liquid && body.material == name;
+    });
+  };
+  if (std::ranges::all_of(interface.materials, is_liquid_body)) return false;
   return std::ranges::any_of(interface.materials, [&](const std::string& name) {
     const auto material = std::ranges::find(scene.materials, name, &Material::name);
     return material != scene.materials.end() && material->liquid &&
@@ -108,7 +114,7 @@ void warn_of_surfaces(const Scene& scene, std::vector<Warning>& warnings) {
     if (is_idle) {
       warn(path, reason, warnings);
     } else if (!has_surface(scene, interface)) {
-      warn(path, "neither material has surface tension", warnings);
+      warn(path, "it joins no liquid with surface tension to a solid", warnings);
     }
   }
 }

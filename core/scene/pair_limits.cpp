@@ -215,8 +215,10 @@ bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, cons
   if (!scene.periodic) return true;
   Errors errors;
   RangeCheck own(errors);
-  if (const auto widest = widest_liquid(scene, bodies)) {
-    const Material& material = scene.materials[*widest];
+  for (const PairBody& body : bodies) {
+    if (body.description->kind != BodyKind::liquid) continue;
+    const Material& material =
+        scene.materials[material_index(scene.materials, body.description->material)];
     const bool attracts =
         scene.surface_model == SurfaceModel::cohesion && material.liquid->surface_tension > 0;
     const Real support = material.liquid->support_radius;
@@ -224,6 +226,7 @@ bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, cons
         attracts ? "the attraction of \"" + material.name + '"' : name_support(material);
     check_length(*scene.periodic, attracts ? CohesionKernel::kReach * support : support, cause,
                  path, own);
+    if (!errors.empty()) break;
   }
   const ContactReach reach = find_reach(scene, bodies);
   check_length(*scene.periodic, reach.distance, reach.cause, path, own);

@@ -253,11 +253,8 @@ bool has_implicit_springs(const Scene& scene, const Material& material) {
   return scene.forces.springs && material.implicit_springs;
 }
 
-/// Bodies' own, beside an incompressible liquid; see core/integrators/kick_drift.cpp.
 bool solves_damping(const Scene& scene) {
-  const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
-  return scene.pressure_solver == PressureSolver::incompressible && scene.forces.pressure &&
-         std::ranges::any_of(scene.bodies, is_liquid);
+  return scene.pressure_solver == PressureSolver::incompressible && scene.forces.pressure;
 }
 
 Real compressed_step_share(int dimensions) {

@@ -37,6 +37,10 @@ struct OscillatingPart {
 /// Whether static springs of the material limit no step.
 bool has_implicit_springs(const Scene& scene, const Material& material);
 
+/// Whether symplectic Euler solves for what damps bodies, so that it limits no step: in scenes of
+/// incompressible liquids, while there is liquid and when there is none.
+bool solves_damping(const Scene& scene);
+
 /// A bound of omega^2 of the cells of a body that keep their volume [1/s^2]: max_i sum_j |H_ij| /
 /// m_i of H = K / V0 sum of slope slope^T over all cells as they start.
 Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions);

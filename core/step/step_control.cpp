@@ -46,7 +46,7 @@ Oscillation compressed(const Model& model, const Oscillation& liquid) {
 
 /// What is left of bodies' own bounds for the length of steps; see OscillatingPart::limiting().
 Oscillation limiting(const Model& model, const Oscillation& own) {
-  return {own.omega2, model.is_incompressible ? 0 : own.rate};
+  return {own.omega2, solves_damping(model.scene) ? 0 : own.rate};
 }
 
 Real travel_share(const Model& model) {

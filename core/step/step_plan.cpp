@@ -206,20 +206,17 @@ bool has_contact_forces(const Model& model) {
   return model.contact_reach > 0 && (model.bodies_push || model.has_self_contact);
 }
 
-bool has_thick_liquid(const Model& model) {
-  return std::ranges::any_of(model.bodies, [&](const ModelBody& body) {
-    if (body.kind != BodyKind::liquid) return false;
-    const LiquidModel& liquid = *model.liquids[body.material];
-    const Real own = 2 * (model.scene.dimensions + 2) * liquid.viscosity;
-    return own > liquid.central_viscosity / 2;
-  });
+bool is_thick(const LiquidModel& liquid, int dimensions) {
+  return 2 * (dimensions + 2) * liquid.viscosity > liquid.central_viscosity / 2;
 }
 
 bool has_viscous_images(const Model& model) {
   if (!model.is_coupled || model.walls.empty()) return false;
-  if (model.no_slip_walls.empty()) return has_thick_liquid(model);
+  const bool is_dragged = !model.no_slip_walls.empty();
   return std::ranges::any_of(model.bodies, [&](const ModelBody& body) {
-    return body.kind == BodyKind::liquid && model.liquids[body.material]->central_viscosity > 0;
+    if (body.kind != BodyKind::liquid) return false;
+    const LiquidModel& liquid = *model.liquids[body.material];
+    return (is_dragged && liquid.central_viscosity > 0) || is_thick(liquid, model.scene.dimensions);
   });
 }
 

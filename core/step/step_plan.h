@@ -8,6 +8,7 @@
 
 namespace vat {
 
+struct LiquidModel;
 struct Model;
 struct StepContext;
 
@@ -72,7 +73,7 @@ bool has_contact_forces(const Model& model);
 /// Whether walls take part in the viscosity of liquids, see core/forces/viscous_images.h; and
 /// whether slip ones do.
 bool has_viscous_images(const Model& model);
-bool has_thick_liquid(const Model& model);
+bool is_thick(const LiquidModel& liquid, int dimensions);
 
 /// The plan for a model whose bodies and contact tables are complete.
 StepPlan make_step_plan(const Model& model);

@@ -110,5 +110,25 @@ TEST(CoupledLiquids, ShareOneSupportRadius) {
   EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
 }
 
+TEST(CoupledLiquids, ThatAttractThemselvesNeedRoomWhereverTheyAreListed) {
+  Scene scene = make_coupled();
+  scene.surface_model = SurfaceModel::cohesion;
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].name = "oil";
+  scene.materials[0].liquid->surface_tension = 0.1;
+  scene.materials[0].liquid->support_radius = scene.materials[1].liquid->support_radius = 0.31;
+  scene.bodies = {make_drop(), make_drop()};
+  scene.bodies[0].name = "slick";
+  scene.bodies[0].material = "oil";
+  std::get<ParticleShape>(scene.bodies[0].shape).positions = {{0.2, 0, 0}};
+  scene.periodic = Periodicity{{0, 0, 0}, {1.2, 0, 0}, {true, false, false}};
+  for (int order = 0; order < 2; ++order) {
+    EXPECT_THAT(paths_of(find_errors(scene)), testing::ElementsAre("out_of_range /periodic/max"));
+    std::swap(scene.bodies[0], scene.bodies[1]);
+  }
+  scene.periodic->max.x() = 1.3;
+  EXPECT_THAT(paths_of(find_errors(scene)), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace vat

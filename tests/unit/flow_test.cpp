@@ -335,5 +335,21 @@ TEST(Nozzle, HasALatticeAcrossTheStream) {
   for (const Vec3& place : line) EXPECT_EQ(place.y(), emitter.position.y());
 }
 
+// Dashpots whose steps are long for them go on being solved for.
+TEST(Flow, TheLastLiquidMayLeaveAnIncompressibleScene) {
+  Scene scene = make_flow_scene(IntegratorId::symplectic_euler);
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.emitters.clear();
+  scene.drains = {make_floor_drain()};
+  scene.bodies[1] = make_body("gel", BodyKind::deformable, "wood",
+                              make_particles({{0.9, 0.5, 0.3}, {0.95, 0.5, 0.3}}, 0.05), 0.02);
+  scene.bodies[1].springs = {{0, 1, {10, 1000}, 0.06}};
+  Simulation simulation = make_simulation(scene);
+  EXPECT_TRUE(simulation.advance(30).events.empty());
+  EXPECT_EQ(pool_size(simulation), 0U);
+  const BodyView gel = simulation.bodies()[1];
+  EXPECT_LT((gel.velocities[1] - gel.velocities[0]).norm(), 0.01);
+}
+
 }  // namespace
 }  // namespace vat

@@ -98,6 +98,17 @@ Scene sea(Real step) {
   return scene;
 }
 
+// It is 1.95 m deep: 10 g H is 191 m^2/s^2.
+TEST(Warnings, OfALiquidTooSoftForItsWeight) {
+  Scene scene = sea(0.01);
+  scene.pressure_solver = PressureSolver::tait;
+  const char* const path = "soft_liquid /materials/0/liquid/stiffness";
+  scene.materials[0].liquid->stiffness = 200;
+  EXPECT_THAT(warnings_of(scene), testing::Not(testing::Contains(path)));
+  scene.materials[0].liquid->stiffness = 180;
+  EXPECT_THAT(warnings_of(scene), testing::Contains(path));
+}
+
 TEST(Warnings, OfRunTime) {
   const auto is_slow = [](const Scene& scene) {
     return std::ranges::any_of(find_warnings(scene), [](const Warning& warning) {
