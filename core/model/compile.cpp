@@ -195,7 +195,6 @@ void add_rigid_bodies(Model& model) {
   }
 }
 
-/// A force that is off has the constant zero.
 /// Of the first liquid's particles at rest density, for all liquids share one kernel; half a
 /// support radius where there are none.
 Real spacing_of(const Model& model, Index material) {
@@ -210,6 +209,7 @@ Real spacing_of(const Model& model, Index material) {
   return model.scene.materials[material].liquid->support_radius / 2;
 }
 
+/// A force that is off has the constant zero.
 LiquidModel make_liquid(const Model& model, Index material) {
   const Scene& scene = model.scene;
   Material given = scene.materials[material];

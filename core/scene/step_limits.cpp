@@ -126,14 +126,7 @@ Real surface_omega2(const Scene& scene, const Material& material, Real spacing) 
 /// Of the pressure under a liquid's own weight, as deep as it is at the start.
 Real weight_omega2(const Scene& scene, const SampledBody& body, Real support_radius) {
   if (!scene.forces.pressure || !scene.forces.gravity) return 0;
-  Real top = -std::numeric_limits<Real>::infinity();
-  Real bottom = std::numeric_limits<Real>::infinity();
-  for (const Vec3& position : body.positions) {
-    const Real height = -scene.gravity.dot(position);
-    top = std::max(top, height);
-    bottom = std::min(bottom, height);
-  }
-  return pressed_lattice_omega2(std::max(Real{0}, top - bottom), support_radius);
+  return pressed_lattice_omega2(weight_of(scene, body), support_radius);
 }
 
 /// Of the sound, viscosity and settling of a liquid of this material.
@@ -251,6 +244,17 @@ Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions) {
 
 bool has_implicit_springs(const Scene& scene, const Material& material) {
   return scene.forces.springs && material.implicit_springs;
+}
+
+Real weight_of(const Scene& scene, const SampledBody& body) {
+  Real top = -std::numeric_limits<Real>::infinity();
+  Real bottom = std::numeric_limits<Real>::infinity();
+  for (const Vec3& position : body.positions) {
+    const Real height = -scene.gravity.dot(position);
+    top = std::max(top, height);
+    bottom = std::min(bottom, height);
+  }
+  return std::max(Real{0}, top - bottom);
 }
 
 bool solves_damping(const Scene& scene) {

@@ -37,6 +37,10 @@ struct OscillatingPart {
 /// Whether static springs of the material limit no step.
 bool has_implicit_springs(const Scene& scene, const Material& material);
 
+/// The scene's gravity times how deep a body is along it [m^2/s^2]: the greatest pressure of a
+/// liquid at rest over its density.
+Real weight_of(const Scene& scene, const SampledBody& body);
+
 /// Whether symplectic Euler solves for what damps bodies, so that it limits no step: in scenes of
 /// incompressible liquids, while there is liquid and when there is none.
 bool solves_damping(const Scene& scene);

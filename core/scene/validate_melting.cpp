@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <sstream>
 
 #include "core/limits.h"
 #include "core/scene/validate_parts.h"
@@ -30,10 +31,10 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
   } else if (!std::holds_alternative<ParticleShape>(body.shape) &&
              material->liquid->surface_tension > 0 &&
              material->liquid->support_radius < least_support * body.spacing * (1 - 1e-9)) {
-    check.add("out_of_range", into_path,
-              std::string("must have a support radius of at least ") +
-                  (least_support == 3 ? "3" : "2.5") +
-                  " spacings of the body for its surface tension");
+    std::ostringstream message;
+    message << "must have a support radius of at least " << least_support
+            << " spacings of the body for its surface tension";
+    check.add("out_of_range", into_path, message.str());
   }
 }
 

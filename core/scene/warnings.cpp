@@ -232,18 +232,6 @@ void warn_of_lattices(const Scene& scene, const Start& start, std::vector<Warnin
   }
 }
 
-/// How deep a body is along gravity [m^2/s^2].
-Real weight_of(const Scene& scene, const SampledBody& sample) {
-  Real top = -std::numeric_limits<Real>::infinity();
-  Real bottom = std::numeric_limits<Real>::infinity();
-  for (const Vec3& position : sample.positions) {
-    const Real height = -scene.gravity.dot(position);
-    top = std::max(top, height);
-    bottom = std::min(bottom, height);
-  }
-  return std::max(Real{0}, top - bottom);
-}
-
 void warn_of_soft_liquids(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
   constexpr Real kShare = 0.1;
   const bool is_pressed = scene.forces.gravity && scene.forces.pressure;

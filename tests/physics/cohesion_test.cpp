@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/drops.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/totals.h"
 
@@ -14,16 +15,8 @@ namespace {
 
 using namespace test;
 
-constexpr Real kRadius = 0.05;
-constexpr Real kSigma = 0.5;
-constexpr Real kDensity = 1000;
 constexpr int kLayers = 12;
 constexpr Real kSpacing = kRadius / kLayers;
-
-/// Of surface waves as long as the drop [m/s].
-Real capillary_speed() {
-  return std::sqrt(kSigma / (kDensity * kRadius));
-}
 
 /// In the plane; sound is 20 times as fast as that.
 Scene make_wet_scene(Real viscosity = 1) {
@@ -64,12 +57,6 @@ BodyDescription make_slab(bool below) {
                        BoxShape{{0, 0, below ? -0.025 : 0.025}, {0.4, kSpacing, 0.05}}, kSpacing};
   slab.fixed = true;
   return slab;
-}
-
-void advance_for(Simulation& simulation, Real time) {
-  const AdvanceReport report =
-      simulation.advance(static_cast<std::uint32_t>(std::lround(time / simulation.step_size())));
-  EXPECT_TRUE(report.events.empty());
 }
 
 /// Height of the centre of mass over the root of the area, of a part of a disc that meets the floor

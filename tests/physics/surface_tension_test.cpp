@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/drops.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/totals.h"
 
@@ -13,15 +14,6 @@ namespace vat {
 namespace {
 
 using namespace test;
-
-constexpr Real kRadius = 0.05;
-constexpr Real kSigma = 0.5;
-constexpr Real kDensity = 1000;
-
-/// Of surface waves as long as the drop [m/s].
-Real capillary_speed() {
-  return std::sqrt(kSigma / (kDensity * kRadius));
-}
 
 /// Sound is 20 times as fast as that, and the radius `layers` spacings.
 Scene make_wet_scene(int dimensions, int layers) {
@@ -42,12 +34,6 @@ BodyDescription make_drop(const char* name, Shape shape, int layers) {
   body.jitter = 0.05;
   body.seed = 7;
   return body;
-}
-
-void advance_for(Simulation& simulation, Real time) {
-  const AdvanceReport report =
-      simulation.advance(static_cast<std::uint32_t>(std::lround(time / simulation.step_size())));
-  EXPECT_TRUE(report.events.empty());
 }
 
 /// The greatest distance from the centre of mass over the least that a surface particle has, seen

@@ -6,6 +6,7 @@
 #include "tests/validation/cases.h"
 #include "tests/validation/cases/liquid_fit.h"
 #include "tests/validation/cases/liquid_rest.h"
+#include "tests/validation/cases/pool.h"
 #include "tests/validation/reference.h"
 
 // The incompressible liquid, and beside it the weakly compressible one: their errors against the
@@ -115,17 +116,7 @@ Scene pool_with_ball(const std::string& ratio, Real draft) {
   ball.position.z() = 0.8 + kRadius * (1 - 2 * draft);
   ball.fixed = false;
   scene.materials[1].density = 1000 * std::stod(ratio);
-  Scene pool = scene;
-  pool.bodies.resize(1);
-  const Run run(pool);
-  const BodyView lattice = run.body();
-  ParticleShape shape;
-  for (std::size_t i = 0; i < lattice.positions.size(); ++i) {
-    if ((lattice.positions[i] - ball.position).norm() < kRadius + 0.0125) continue;
-    shape.positions.push_back(lattice.positions[i]);
-    shape.masses.push_back(lattice.masses[i]);
-  }
-  scene.bodies[0].shape = shape;
+  clear_around_ball(scene, kRadius + 0.0125);
   return scene;
 }
 
