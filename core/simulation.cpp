@@ -45,7 +45,9 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
+Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner,
+                                      InstructionSet instructions) {
+  if (Status available = check_available(instructions); !available) return available.errors();
   Errors errors = find_errors(scene);
   if (!errors.empty()) return errors;
   Scene resolved = scene;
@@ -53,6 +55,7 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner) {
   Simulation simulation;
   Impl& impl = *simulation.impl_;
   impl.runner = runner;
+  impl.work.instructions = impl.measured.instructions = instructions;
   std::vector<BodyId> ids;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(impl.next_id++);
   std::vector<std::shared_ptr<const SampledBody>> samples(ids.size());
@@ -71,11 +74,17 @@ void Simulation::Impl::adopt(Content content, GuardBounds content_bounds,
   static_cast<Content&>(*this) = std::move(content);
   bounds = std::move(content_bounds);
   step_bounds = std::move(content_step_bounds);
-  work = {};
   local.forget();
-  measured = {};
+  for (Workspace* space : {&work, &measured}) {
+    const InstructionSet instructions = space->instructions;
+    *space = {};
+    space->instructions = instructions;
+  }
 }
 
+InstructionSet Simulation::instruction_set() const {
+  return impl_->work.instructions;
+}
 Real Simulation::time() const {
   return impl_->time();
 }

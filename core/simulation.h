@@ -10,6 +10,7 @@
 
 #include "core/diagnostics.h"
 #include "core/scene/scene.h"
+#include "core/support/instruction_set.h"
 #include "core/support/parallel.h"
 #include "core/support/result.h"
 #include "core/types.h"
@@ -108,13 +109,15 @@ class StageObserver {
 class Snapshot;
 
 /// A particle simulation of one scene. Commands take effect between steps. Not thread-safe; one
-/// simulation must not be used from two threads at once. Same scene, same commands: same bits, for
-/// any TaskRunner.
+/// simulation must not be used from two threads at once. Same scene, same commands, same
+/// instruction set: same bits, for any TaskRunner.
 class Simulation {
  public:
-  /// Fails with every error of the scene. `runner` may be null (serial) and must outlive this. An
-  /// accuracy chooses the numerics once: commands do not change them.
-  static Result<Simulation> create(const Scene& scene, TaskRunner* runner = nullptr);
+  /// Fails with every error of the scene, and where this machine lacks the instruction set (see
+  /// check_available()). `runner` may be null (serial) and must outlive this. An accuracy chooses
+  /// the numerics once: commands do not change them.
+  static Result<Simulation> create(const Scene& scene, TaskRunner* runner = nullptr,
+                                   InstructionSet instructions = best_instruction_set());
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -125,8 +128,9 @@ class Simulation {
   /// is the one before the call.
   AdvanceReport advance(std::uint32_t steps);
 
-  Real time() const;       ///< [s]
-  Real step_size() const;  ///< [s]
+  InstructionSet instruction_set() const;  ///< of the vectorised loops
+  Real time() const;                       ///< [s]
+  Real step_size() const;                  ///< [s]
   std::uint32_t steps_per_tick() const;
   std::size_t particle_count() const;
   /// With all that emitters may add.

@@ -90,7 +90,7 @@ bool ContactList::may_touch(const StepContext& c, Index i) const {
 void ContactList::search(StepContext& c, Real skin) {
   built_at_ = c.configuration.position;
   find_near_bodies(c, skin);
-  blocks_.resize((c.model.particle_count + kBlockSize - 1) / kBlockSize);
+  blocks_.resize(block_count(c.model.particle_count));
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     Block& block = blocks_[begin / kBlockSize];
     block.others.clear();

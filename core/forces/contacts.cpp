@@ -129,7 +129,7 @@ void add_terms(StepContext& c, std::size_t begin, std::size_t end) {
 void add_contacts(StepContext& c) {
   c.work.contact_loads.resize(c.model.particle_count);
   if (c.work.keep_dampers) {
-    c.work.contact_dampers.resize((c.model.particle_count + kBlockSize - 1) / kBlockSize);
+    c.work.contact_dampers.resize(block_count(c.model.particle_count));
   }
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     c.work.keep_dampers ? add_terms<true>(c, begin, end) : add_terms<false>(c, begin, end);

@@ -63,7 +63,7 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
   const Model& model = f.model;
   is_viscous_ = viscosity && (model.is_coupled || has_viscosity(model));
   const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
-  blocks_.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
+  blocks_.resize(block_count(model.particle_count));
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     DamperBlock& block = blocks_[begin / kBlockSize];
     block.clear();
@@ -115,7 +115,7 @@ Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
 }  // namespace
 
 void DampingMatrix::collect_viscosity(const ForceModel& f) {
-  viscosities_.resize((f.model.liquid_count + kBlockSize - 1) / kBlockSize);
+  viscosities_.resize(block_count(f.model.liquid_count));
   for_blocks(f.runner, f.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];
     std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];

@@ -16,7 +16,7 @@ void find_liquid_solids(StepContext& c) {
   const auto find = [&](const CellSortedPoints& from, const CellSortedPoints& to,
                         std::vector<PairBlock>& blocks) {
     const std::size_t count = from.grid.order().size();
-    blocks.resize((count + kBlockSize - 1) / kBlockSize);
+    blocks.resize(block_count(count));
     for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
       PairBlock& block = blocks[begin / kBlockSize];
       std::size_t found = 0;

@@ -13,7 +13,7 @@ void SolidDrags::collect_of(const ForceModel& f, const CellSortedPoints& from, I
                             const std::vector<PairBlock>& near, std::vector<Block>& blocks) {
   const Model& model = f.model;
   const std::size_t count = from.grid.order().size();
-  blocks.resize((count + kBlockSize - 1) / kBlockSize);
+  blocks.resize(block_count(count));
   for_blocks(f.runner, count, [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = near[begin / kBlockSize];
     Block& block = blocks[begin / kBlockSize];

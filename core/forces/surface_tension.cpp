@@ -241,7 +241,7 @@ Real share_of(const Place& at) {
 
 SurfaceSum sum_surface(StepContext& c, const std::vector<Vec3>& force) {
   std::vector<SurfaceSum>& sums = c.work.surface_sums;
-  sums.assign((force.size() + kBlockSize - 1) / kBlockSize, {});
+  sums.assign(block_count(force.size()), {});
   for_each_place(c, [&](const Place& at) {
     SurfaceSum& sum = sums[at.slot / kBlockSize];
     const Real share = share_of(at);

@@ -81,7 +81,7 @@ void add_viscous_image_forces(StepContext& c) {
 void ViscousImages::collect(const ForceModel& f, Real time) {
   const VatMotion motion = vat_motion(*f.model.scene.vat, time);
   const std::size_t count = f.work.liquid.grid.order().size();
-  blocks_.resize((count + kBlockSize - 1) / kBlockSize);
+  blocks_.resize(block_count(count));
   for_blocks(f.runner, count, [&](std::size_t begin, std::size_t end) {
     Block& block = blocks_[begin / kBlockSize];
     block.images.clear();

@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace vat {
-namespace {
-
-std::size_t block_count(std::size_t count) {
-  return (count + kBlockSize - 1) / kBlockSize;
-}
-
-}  // namespace
 
 void Complementarity::resize(std::size_t count) {
   for (std::vector<Real>* column :

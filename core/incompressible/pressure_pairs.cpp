@@ -6,10 +6,6 @@
 namespace vat {
 namespace {
 
-std::size_t block_count(std::size_t count) {
-  return (count + kBlockSize - 1) / kBlockSize;
-}
-
 Vec3 place_of(const CellSortedPoints& points, std::size_t slot) {
   return {points.x[slot], points.y[slot], points.z[slot]};
 }

@@ -46,7 +46,7 @@ void for_entries(const Equation& eq, Motion& a, const Motion& b, F&& f) {
 
 Real dot(const Equation& eq, const Motion& a, const Motion& b) {
   std::vector<Real>& sums = eq.scratch.partial_sums;
-  sums.assign((eq.model().free_count + kBlockSize - 1) / kBlockSize, 0);
+  sums.assign(block_count(eq.model().free_count), 0);
   for_blocks(eq.force_model.runner, eq.model().free_count, [&](std::size_t begin, std::size_t end) {
     Real sum = 0;
     for (std::size_t i = begin; i < end; ++i) sum += a.particle[i].dot(b.particle[i]);

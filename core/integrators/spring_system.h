@@ -60,7 +60,7 @@ class SpringSystem {
   template <class F>
   Real sum(F&& f) {
     std::vector<Real>& sums = scratch_.partial_sums;
-    sums.assign((particles_.size() + kBlockSize - 1) / kBlockSize, 0);
+    sums.assign(block_count(particles_.size()), 0);
     for_blocks(runner_, particles_.size(), [&](std::size_t begin, std::size_t end) {
       Real part = 0;
       for (std::size_t k = begin; k < end; ++k) part += f(particles_.begin + static_cast<Index>(k));

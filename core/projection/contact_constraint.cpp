@@ -97,7 +97,7 @@ bool ConstraintSearch::find(const ForceModel& f, const Configuration& at, const 
   constraints.clear();
   // Before there is memory for all of them.
   if (f.model.contact_reach > 0 && f.work.contacts.size() > 4 * kMaxProjections) return false;
-  blocks_.resize((f.model.particle_count + kBlockSize - 1) / kBlockSize);
+  blocks_.resize(block_count(f.model.particle_count));
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     std::vector<ContactConstraint>& found = blocks_[begin / kBlockSize];
     found.clear();

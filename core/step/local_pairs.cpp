@@ -31,7 +31,7 @@ void sort_by_level(std::span<LocalPair> pairs) {
 template <class Collect>
 void LocalPairs::fill(const ForceModel& f, std::vector<Block>& blocks, Collect&& collect) {
   const Model& model = f.model;
-  blocks.resize((model.particle_count + kBlockSize - 1) / kBlockSize);
+  blocks.resize(block_count(model.particle_count));
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     Block& block = blocks[begin / kBlockSize];
     block.pairs.clear();

@@ -9,6 +9,7 @@
 #include "core/neighbours/uniform_grid.h"
 #include "core/state/state.h"
 #include "core/step/controls.h"
+#include "core/support/instruction_set.h"
 #include "core/support/parallel.h"
 
 namespace vat {
@@ -113,6 +114,7 @@ struct DamperBlock {
 /// step. Nothing here outlives an evaluation in meaning, but lists that tell when they are out of
 /// date.
 struct Workspace {
+  InstructionSet instructions = InstructionSet::baseline;  ///< of the vectorised loops
   CellSortedPoints liquid;
   std::vector<LiquidRecord> liquid_records;  ///< by slot
   std::vector<PairBlock> liquid_pairs;

@@ -20,18 +20,23 @@ class TaskRunner {
 /// every bit of the result, does not depend on the number of threads.
 inline constexpr std::size_t kBlockSize = 256;
 
+/// Number of blocks that hold `count` elements.
+constexpr std::size_t block_count(std::size_t count) {
+  return (count + kBlockSize - 1) / kBlockSize;
+}
+
 /// Calls `body(begin, end)` over [0, count) in blocks; serially where `runner` is null or the range
 /// is a single block. `body` may write only what belongs to its own range.
 template <class Body>
 void for_blocks(TaskRunner* runner, std::size_t count, Body&& body) {
-  const std::size_t block_count = (count + kBlockSize - 1) / kBlockSize;
+  const std::size_t blocks = block_count(count);
   const auto block = [&](std::size_t b) {
     body(b * kBlockSize, std::min(count, (b + 1) * kBlockSize));
   };
-  if (runner == nullptr || runner->thread_count() < 2 || block_count < 2) {
-    for (std::size_t b = 0; b < block_count; ++b) block(b);
+  if (runner == nullptr || runner->thread_count() < 2 || blocks < 2) {
+    for (std::size_t b = 0; b < blocks; ++b) block(b);
   } else {
-    runner->run(block_count, block);
+    runner->run(blocks, block);
   }
 }
 

@@ -29,4 +29,19 @@ CLI::Validator csv_file_name() {
   return CLI::Validator(check, "FILE");
 }
 
+void add_isa_option(CLI::App& command, InstructionSet& instructions) {
+  const auto check = [](const std::string& name) {
+    const Result<InstructionSet> set = parse_instruction_set(name);
+    const Status usable = set ? check_available(set.value()) : Status(set.errors());
+    return usable ? std::string() : usable.errors().front().message;
+  };
+  const auto keep = [&instructions](const std::string& name) {
+    instructions = parse_instruction_set(name).value();
+  };
+  command
+      .add_option_function<std::string>(
+          "--isa", keep, "Instruction set: baseline, avx2 or avx512; default: the machine's best")
+      ->check(CLI::Validator(check, "SET"));
+}
+
 }  // namespace vat

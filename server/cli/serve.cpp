@@ -18,6 +18,7 @@
 
 #include "protocol/scene_json.h"
 #include "server/cli/command.h"
+#include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
@@ -44,6 +45,7 @@ struct Options {
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
   std::string web_folder = VAT_DEFAULT_WEB_DIR;
   std::size_t threads = 0;
+  InstructionSet instructions = best_instruction_set();
   std::string log_level = "info";
 };
 
@@ -99,6 +101,8 @@ int serve(const Options& options, const Catalogue& catalogue, const Scene& scene
   ServerSettings settings;
   settings.version = VAT_VERSION;
   settings.threads = options.threads;
+  settings.instructions = options.instructions;
+  spdlog::info("instruction set: {}", to_string(settings.instructions));
   SessionServer sessions(catalogue, settings);
   const Result<SessionId> session = sessions.create_session(scene.name, scene);
   if (!session) return fail(options.scene, session.errors());
@@ -147,6 +151,7 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("--threads", options.threads, "Threads that step sessions; 0: one per core")
       ->check(CLI::Range(std::size_t{0}, kMaxThreads))
       ->capture_default_str();
+  add_isa_option(command, options.instructions);
   command.add_option("--log-level", options.log_level, "What to log")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();

@@ -86,6 +86,7 @@ struct Options {
   std::string control;     ///< empty: the scene's
   std::optional<Real> accuracy;
   std::size_t threads = 1;
+  InstructionSet instructions = best_instruction_set();
   std::string output;
   std::string diagnostics;
   bool plan = false;
@@ -168,7 +169,8 @@ void print_summary(const Simulation& simulation, const RunTotals& totals) {
   std::cerr << std::setprecision(6) << simulation.time() << " s simulated in " << totals.steps
             << " steps and " << std::setprecision(3) << totals.stepping.count()
             << " s of wall time: " << real_time_factor(simulation, totals)
-            << " times real time, guard events: " << totals.guard_events;
+            << " times real time, instruction set " << to_string(simulation.instruction_set())
+            << ", guard events: " << totals.guard_events;
   if (totals.wall_stops > 0) std::cerr << ", wall stops: " << totals.wall_stops;
   if (totals.unsolved_drifts > 0) {
     std::cerr << ", implicit springs not solved to the tolerance: " << totals.unsolved_drifts;
@@ -183,12 +185,14 @@ void print_profile(const StageProfile& profile, const Simulation& simulation,
   std::cout << std::fixed << std::setprecision(4)
             << "ms per step: " << (totals.steps > 0 ? ms / static_cast<double>(totals.steps) : 0)
             << "\nreal-time factor: " << std::setprecision(3)
-            << real_time_factor(simulation, totals) << '\n';
+            << real_time_factor(simulation, totals)
+            << "\ninstruction set: " << to_string(simulation.instruction_set()) << '\n';
 }
 
 void print_hash(const Simulation& simulation) {
-  std::cout << "hash " << std::hex << std::setfill('0') << std::setw(16) << simulation.state_hash()
-            << '\n';
+  std::string line = "hash ";
+  append_hash(line, simulation.state_hash());
+  std::cout << line << ' ' << to_string(simulation.instruction_set()) << '\n';
 }
 
 Result<Scene> load_scene_for(const Options& options, Schedule& schedule) {
@@ -219,7 +223,7 @@ int simulate(const Options& options) {
   if (!scene) return fail(options.scene, scene.errors());
   for (const std::string& notice : schedule.notices) std::cerr << notice << '\n';
   ThreadPoolRunner runner(options.threads);
-  Result<Simulation> created = Simulation::create(scene.value(), &runner);
+  Result<Simulation> created = Simulation::create(scene.value(), &runner, options.instructions);
   if (!created) return fail(options.scene, created.errors());
   Simulation& simulation = created.value();
   if (options.plan) std::cout << simulation.plan_text();
@@ -270,6 +274,7 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("--threads", options.threads, "Threads of one step; never change a result")
       ->check(CLI::Range(std::size_t{1}, kMaxThreads))
       ->capture_default_str();
+  add_isa_option(command, options.instructions);
   command
       .add_option("--output", options.output, "File for the particles: .csv, .vtk, .ply or .npy")
       ->check(CLI::Validator(check_frame_file_name, "FILE"));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -17,6 +18,9 @@ void append_number(std::string& text, Number value) {
   VAT_CHECK(result.ec == std::errc{});
   text.append(buffer, result.ptr);
 }
+
+/// Appends 16 hexadecimal digits.
+void append_hash(std::string& text, std::uint64_t hash);
 
 /// Appends a CSV field (RFC 4180): quoted only where it has to be.
 void append_csv_field(std::string& text, std::string_view field);

@@ -1,7 +1,8 @@
 #include "server/session/describe.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "server/output/text.h"
 
 namespace vat {
 namespace {
@@ -81,8 +82,8 @@ Json describe_guard(const GuardEvent& event, std::uint64_t tick) {
 }
 
 std::string describe_hash(std::uint64_t hash) {
-  char digits[17];
-  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
+  std::string digits;
+  append_hash(digits, hash);
   return digits;
 }
 

@@ -10,7 +10,7 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
   const SessionEnvironment& environment = core.environment();
   auto scene = read_client_scene(value, environment.catalogue);
   if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
-  auto simulation = make_simulation(std::get<Scene>(scene), environment.limits);
+  auto simulation = make_simulation(std::get<Scene>(scene), environment);
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
   core.load(std::get<Simulation>(std::move(simulation)));
   return Json::object();

@@ -44,6 +44,7 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
       {"name", "vat"},
       {"version", directory.settings().version},
       {"protocol", "vat.v1"},
+      {"instruction_set", to_string(directory.settings().instructions)},
       {"time", seconds_since_1970()},
       {"limits", describe_limits(directory.settings().limits)},
       {"methods", std::move(methods)},

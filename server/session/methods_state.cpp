@@ -65,7 +65,9 @@ SessionAction read_query(ObjectReader& params, Errors& errors) {
 SessionAction read_hash(ObjectReader&, Errors&) {
   return [](SessionCore& core, Member&) -> ActionResult {
     const Simulation& simulation = core.run().simulation();
-    return Json{{"hash", describe_hash(simulation.state_hash())}, {"time", simulation.time()}};
+    return Json{{"hash", describe_hash(simulation.state_hash())},
+                {"instruction_set", to_string(simulation.instruction_set())},
+                {"time", simulation.time()}};
   };
 }
 

@@ -38,10 +38,11 @@ std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLi
   return {};
 }
 
-std::variant<Simulation, RpcError> make_simulation(const Scene& scene, const ServerLimits& limits) {
-  Result<Simulation> simulation = Simulation::create(scene);
+std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
+                                                   const SessionEnvironment& environment) {
+  Result<Simulation> simulation = Simulation::create(scene, nullptr, environment.instructions);
   if (!simulation) return scene_refused(simulation.errors());
-  if (auto excess = find_excess(simulation.value(), limits)) return *std::move(excess);
+  if (auto excess = find_excess(simulation.value(), environment.limits)) return *std::move(excess);
   return std::move(simulation).value();
 }
 

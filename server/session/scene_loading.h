@@ -4,9 +4,8 @@
 #include <variant>
 
 #include "core/simulation.h"
-#include "protocol/scene_json.h"
-#include "server/limits.h"
 #include "server/session/rpc_message.h"
+#include "server/session/session_environment.h"
 
 namespace vat {
 
@@ -20,6 +19,7 @@ std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalog
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits);
 
 /// A simulation within the limits; errors point into the parameter `scene`.
-std::variant<Simulation, RpcError> make_simulation(const Scene& scene, const ServerLimits& limits);
+std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
+                                                   const SessionEnvironment& environment);
 
 }  // namespace vat

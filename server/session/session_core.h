@@ -7,21 +7,14 @@
 #include <string>
 #include <variant>
 
-#include "protocol/scene_json.h"
-#include "server/limits.h"
 #include "server/session/frame_domain.h"
 #include "server/session/members.h"
 #include "server/session/rpc_message.h"
+#include "server/session/session_environment.h"
 #include "server/session/session_run.h"
 #include "server/session/tick_clock.h"
 
 namespace vat {
-
-/// What all sessions share.
-struct SessionEnvironment {
-  const Catalogue& catalogue;
-  const ServerLimits& limits;
-};
 
 /// A session as `session.list` tells it.
 struct SessionSummary {

@@ -27,7 +27,7 @@ SessionId to_id(std::uint64_t number) {
 SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings settings)
     : catalogue_(catalogue),
       settings_(std::move(settings)),
-      environment_{catalogue_, settings_.limits},
+      environment_{catalogue_, settings_.limits, settings_.instructions},
       pool_(thread_count(settings_.threads)),
       creations_(boost::asio::make_strand(pool_)) {}
 
@@ -70,7 +70,7 @@ std::optional<RpcError> SessionDirectory::refuse_session_locked() const {
 
 std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene) {
   if (auto error = refuse_session()) return *std::move(error);
-  auto simulation = make_simulation(scene, settings_.limits);  // without the lock
+  auto simulation = make_simulation(scene, environment_);  // without the lock
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
 
   const std::lock_guard lock(mutex_);

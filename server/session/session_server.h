@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/support/instruction_set.h"
 #include "core/support/result.h"
 #include "protocol/scene_json.h"
 #include "server/limits.h"
@@ -17,7 +18,8 @@ using SessionId = std::string;
 
 struct ServerSettings {
   ServerLimits limits;
-  std::string version;      ///< told by server.info
+  std::string version;  ///< told by server.info
+  InstructionSet instructions = best_instruction_set();
   std::size_t threads = 0;  ///< that step the sessions; 0: as many as the machine has cores
 };
 

@@ -46,6 +46,7 @@ SpeedRow describe_run(const Simulation& simulation, std::size_t threads) {
   row.particles = simulation.particle_count();
   row.springs = simulation.spring_count();
   row.threads = threads;
+  row.instructions = simulation.instruction_set();
   return row;
 }
 

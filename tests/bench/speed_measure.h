@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
+#include "core/support/instruction_set.h"
 #include "core/support/result.h"
 
 namespace vat::bench {
@@ -21,6 +22,7 @@ struct SpeedRow {
   std::size_t particles = 0;
   std::size_t springs = 0;
   std::size_t threads = 0;
+  InstructionSet instructions = InstructionSet::baseline;
   std::uint64_t steps = 0;  ///< of one repetition
   Real simulated = 0;       ///< [s] of one repetition
   Real median_ms_per_step = 0;

@@ -5,16 +5,11 @@
 #include <sstream>
 
 #include "server/output/text.h"
+#include "tests/bench/report/table.h"
 
 namespace vat::bench {
 
 namespace {
-
-std::string hash_text(std::uint64_t hash) {
-  std::ostringstream text;
-  text << std::hex << std::setfill('0') << std::setw(16) << hash;
-  return text.str();
-}
 
 std::string rounded(Real value, int digits) {
   std::ostringstream text;
@@ -23,7 +18,7 @@ std::string rounded(Real value, int digits) {
 }
 
 constexpr std::size_t kColumnCount = 11;
-constexpr std::array<int, kColumnCount> kWidths = {24, 18, 10, 8, 8, 7, 10, 10, 16, 10, 18};
+constexpr std::array<int, kColumnCount> kWidths = {24, 18, 10, 8, 8, 7, 10, 10, 16, 10, 27};
 
 void print_columns(std::ostream& out, const std::array<std::string, kColumnCount>& texts) {
   for (std::size_t i = 0; i < kColumnCount; ++i) {
@@ -49,7 +44,7 @@ void print_speed_row(std::ostream& out, const SpeedRow& row) {
 
 std::string speed_csv_header() {
   return "scene,integrator,particles,springs,threads,steps,ms_per_step_median,ms_per_step_min,"
-         "particle_steps_per_second,real_time_factor,state_hash\n";
+         "particle_steps_per_second,real_time_factor,state_hash,instruction_set\n";
 }
 
 std::string speed_csv_row(const SpeedRow& row) {
@@ -65,7 +60,9 @@ std::string speed_csv_row(const SpeedRow& row) {
     text += ',';
     append_number(text, value);
   }
-  return text + ',' + hash_text(row.state_hash) + '\n';
+  text += ',';
+  append_hash(text, row.state_hash);
+  return text + ',' + to_string(row.instructions) + '\n';
 }
 
 }  // namespace vat::bench

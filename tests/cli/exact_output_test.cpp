@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
 
 #include "core/simulation.h"
 #include "protocol/scene_json.h"
+#include "server/output/text.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
@@ -208,12 +208,33 @@ TEST(ExactOutput, DiagnosticsOfAnIncompressibleLiquid) {
 TEST(ExactOutput, Hash) {
   Simulation simulation = reference();
   simulation.advance(120);
-  char expected[32];
-  std::snprintf(expected, sizeof expected, "hash %016llx\n",
-                static_cast<unsigned long long>(simulation.state_hash()));
+  std::string expected = "hash ";
+  append_hash(expected, simulation.state_hash());
+  expected += std::string(" ") + to_string(simulation.instruction_set()) + '\n';
   const ProgramResult result =
       run_vat({"simulate", test_scene("mixed"), "--until", "0.12", "--hash"});
   EXPECT_EQ(result.out, expected);
+}
+
+TEST(ExactOutput, HashAndProfileNameTheInstructionSet) {
+  for (const char* name : {"baseline", "avx2", "avx512"}) {
+    const InstructionSet set = parse_instruction_set(name).value();
+    const ProgramResult result = run_vat(
+        {"simulate", test_scene("mixed"), "--until", "0.02", "--hash", "--profile", "--isa", name});
+    if (check_available(set)) {
+      Simulation simulation =
+          Simulation::create(read_scene_file(test_scene("mixed")).value(), nullptr, set).value();
+      simulation.advance(20);
+      std::string hash = "hash ";
+      append_hash(hash, simulation.state_hash());
+      EXPECT_THAT(result.out, testing::HasSubstr(hash + ' ' + name + '\n'));
+      EXPECT_THAT(result.out, testing::HasSubstr(std::string("instruction set: ") + name + '\n'));
+      EXPECT_THAT(result.err, testing::HasSubstr(std::string("instruction set ") + name));
+    } else {
+      EXPECT_EQ(result.exit_code, 2);
+      EXPECT_THAT(result.err, testing::HasSubstr(std::string("this machine has no ") + name));
+    }
+  }
 }
 
 }  // namespace

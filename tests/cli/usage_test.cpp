@@ -55,6 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--threads", "0"}), "--threads"},
                     WrongUse{with_scene({"--threads", "1.5"}), "--threads"},
                     WrongUse{with_scene({"--threads", "-1"}), "--threads"},
+                    WrongUse{with_scene({"--isa", "avx"}), "baseline, avx2, avx512"},
+                    WrongUse{{"serve", "--isa", "sse9"}, "baseline, avx2, avx512"},
                     WrongUse{with_scene({"--integrator", "magic"}), "--integrator"},
                     WrongUse{with_scene({"--integrator", "7"}), "--integrator"},
                     WrongUse{with_scene({"--control", "loose"}), "--control"},

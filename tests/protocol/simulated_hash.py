@@ -11,11 +11,11 @@ def main():
     script = Path(__file__).with_suffix(".jsonl")
     simulate = [program, "simulate", f"{scenes}/{scene}.json", "--until", "2", "--hash"]
     output = subprocess.run(simulate, check=True, capture_output=True, text=True).stdout
-    found = re.search(r"\bhash ([0-9a-f]{16})\b", output)
+    found = re.search(r"\bhash ([0-9a-f]{16}) (\w+)\b", output)
     if not found:
         sys.exit(f"no hash from {' '.join(simulate)}: {output!r}")
     play = [runner, "--program", program, "--scenes", scenes, "--scene", scene,
-            "--set", "hash", found[1], script]
+            "--set", "hash", found[1], "--set", "instruction_set", found[2], script]
     return subprocess.run(play).returncode
 
 

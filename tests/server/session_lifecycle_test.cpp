@@ -83,6 +83,22 @@ TEST_F(SessionLifecycle, EveryReplyNamesTheTick) {
   EXPECT_EQ(guest->result("session.close", {{"session", "s1"}}).at("tick"), 5);
 }
 
+TEST_F(SessionLifecycle, EveryHashNamesTheInstructionSetOfTheServer) {
+  ServerSettings settings;
+  settings.threads = 1;
+  settings.instructions = InstructionSet::baseline;
+  SessionServer plain(catalogue, settings);
+  ASSERT_TRUE(plain.create_session("plain", to_scene(mixed_scene_text())));
+  TestClient guest(plain, 1);
+  EXPECT_EQ(guest.result("server.info").at("instruction_set"), "baseline");
+  guest.result("session.join");
+  EXPECT_EQ(guest.result("session.hash").at("instruction_set"), "baseline");
+  guest.result("scene.load", {{"scene", "mixed"}});
+  EXPECT_EQ(guest.result("session.hash").at("instruction_set"), "baseline");
+  EXPECT_EQ(client->result("session.hash").at("instruction_set"),
+            to_string(best_instruction_set()));
+}
+
 TEST_F(SessionLifecycle, WhoClosesASessionIsAnsweredAfterItsEarlierCommands) {
   const int step = client->send("control.step", {{"ticks", 1000}});
   const int query = client->send("session.hash");

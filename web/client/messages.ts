@@ -4,6 +4,9 @@ export type Vector = [number, number, number];
 
 export const kSubprotocol = 'vat.v1';
 
+/** Hashes can be compared where it is the same. */
+export type InstructionSetName = 'baseline' | 'avx2' | 'avx512';
+
 export type BodyKindName = 'liquid' | 'deformable' | 'rigid';
 
 /** A scene of the catalogue by its name, or a scene object as in a scene file. */
@@ -99,6 +102,7 @@ export interface ServerInfo {
   name: string;
   version: string;
   protocol: string;
+  instruction_set: InstructionSetName;
   /** Server's clock [s since 1970]. */
   time: number;
   limits: Record<string, number>;
@@ -153,7 +157,7 @@ export interface Methods {
     { bodies?: (string | number)[] },
     InEffect & { time: number; bodies: BodyState[] }
   >;
-  'session.hash': Method<Nothing, InEffect & { hash: string; time: number }>;
+  'session.hash': Method<Nothing, InEffect & { hash: string; instruction_set: InstructionSetName; time: number }>;
 }
 export type MethodName = keyof Methods;
 export type Params<M extends MethodName> = Methods[M]['params'];

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/support/check.h"
+#include "core/support/instruction_set.h"
 #include "server/output/output_file.h"
 #include "server/output/text.h"
 
@@ -49,9 +50,9 @@ std::string short_text(Real value) {
 }
 
 std::string hash_text(std::uint64_t hash) {
-  char buffer[17];
-  std::snprintf(buffer, sizeof buffer, "%016llx", static_cast<unsigned long long>(hash));
-  return buffer;
+  std::string text;
+  append_hash(text, hash);
+  return text + ' ' + to_string(best_instruction_set());
 }
 
 std::string to_markdown(const Table& table) {

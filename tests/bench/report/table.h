@@ -27,7 +27,7 @@ std::string to_csv(const Table& table);
 /// An array of objects with the columns as keys; null for absent values.
 std::string to_json(const Table& table);
 
-/// The state hash as the other commands print it.
+/// The state hash and the instruction set: the machine's best, as of all runs here.
 std::string hash_text(std::uint64_t hash);
 /// A real number with six digits, "-" where it is not finite.
 std::string short_text(Real value);

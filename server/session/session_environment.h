@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/support/instruction_set.h"
+#include "protocol/scene_json.h"
+#include "server/limits.h"
+
+namespace vat {
+
+/// What all sessions share.
+struct SessionEnvironment {
+  const Catalogue& catalogue;
+  const ServerLimits& limits;
+  InstructionSet instructions;
+};
+
+}  // namespace vat
