@@ -11,7 +11,11 @@ constexpr std::size_t kMaxThreads = 256;
 
 }  // namespace
 
-void add_options(CLI::App& command, Options& options) {
+CLI::Validator thread_count_range() {
+  return CLI::Range(std::size_t{1}, kMaxThreads);
+}
+
+void add_case_options(CLI::App& command, Options& options) {
   options.output = VAT_SOURCE_DIR "/build/bench/" + command.get_name();
   command.add_option("--output", options.output, "Folder for the results")->capture_default_str();
   command.add_flag("--quick", options.quick, "Fewer and shorter runs");
@@ -19,8 +23,12 @@ void add_options(CLI::App& command, Options& options) {
       ->take_all()
       ->expected(1);
   command.add_flag("--list", options.list, "Print the names of the cases, and stop");
+}
+
+void add_options(CLI::App& command, Options& options) {
+  add_case_options(command, options);
   command.add_option("--threads", options.threads, "Threads of each simulation")
-      ->check(CLI::Range(std::size_t{1}, kMaxThreads))
+      ->check(thread_count_range())
       ->capture_default_str();
 }
 

@@ -18,9 +18,13 @@ struct Options {
   std::size_t threads = 1;         ///< of each simulation
 };
 
-/// Adds --output, --quick, --case, --list and --threads; the results go to build/bench/NAME by
-/// default, NAME being the command's.
+/// Adds --output, --quick, --case and --list; the results go to build/bench/NAME by default, NAME
+/// being the command's.
+void add_case_options(CLI::App& command, Options& options);
+/// The same and --threads.
 void add_options(CLI::App& command, Options& options);
+/// For options that are a number of threads.
+CLI::Validator thread_count_range();
 
 /// Positions in `known` of the names that `wanted` lists, all if it is empty. An unknown name is an
 /// error that lists the known ones.

@@ -1,31 +1,34 @@
 #include "tests/bench/speed.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "core/support/instruction_set.h"
 #include "server/cli/command.h"
 #include "server/cli/option_checks.h"
-#include "server/cli/scene_argument.h"
-#include "server/output/output_file.h"
-#include "tests/bench/speed_measure.h"
-#include "tests/bench/speed_report.h"
+#include "tests/bench/options.h"
+#include "tests/bench/report/table.h"
+#include "tests/bench/speed/cases.h"
+#include "tests/bench/speed/tables.h"
 
 namespace vat::bench {
 
 namespace {
 
-constexpr SpeedSettings kQuick{.warm_up = 0.2, .measured = 0.2, .repetitions = 1};
-
-struct Options {
+struct SpeedOptions {
+  Options common;
+  std::vector<std::size_t> threads;
+  InstructionSet instructions = best_instruction_set();
+  int repetitions = 0;  ///< 0: as many as the case has
   std::vector<std::string> scenes;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
-  std::string output;
-  bool quick = false;
 };
 
 /// 1, 2 and 4 threads, as far as the machine has them.
@@ -37,82 +40,106 @@ std::vector<std::size_t> thread_counts() {
   return counts;
 }
 
-/// Adds a row for each number of threads; fails where their states differ.
-Status time_scene(const Scene& scene, const SpeedSettings& settings, std::vector<SpeedRow>& rows) {
-  std::optional<std::uint64_t> expected_hash;
-  for (const std::size_t threads : thread_counts()) {
-    const Result<SpeedRow> row = measure(scene, threads, settings);
-    if (!row) return row.errors();
-    print_speed_row(std::cout, row.value());
-    rows.push_back(row.value());
-    if (!expected_hash) expected_hash = row.value().state_hash;
-    if (row.value().state_hash != *expected_hash) {
-      return Error{
-          "not_deterministic", "",
-          "the state with " + std::to_string(threads) + " threads is not the state with 1 thread"};
-    }
-  }
-  return {};
+/// A tenth of the time, and no repetition.
+SpeedSettings quick(SpeedSettings settings) {
+  settings.warm_up *= 0.1;
+  settings.measured *= 0.1;
+  settings.repetitions = 1;
+  return settings;
 }
 
-/// Times the scenes in order. The path of every error begins with the scene's name.
-Result<std::vector<SpeedRow>> time_scenes(const std::vector<std::string>& names,
-                                          const Options& options) {
-  std::vector<SpeedRow> rows;
+/// The cases to run: the scenes that were named, or those of the bench.
+Result<std::vector<SpeedCase>> choose_cases(const SpeedOptions& options,
+                                            const std::vector<SpeedCase>& known) {
+  std::vector<SpeedCase> chosen;
+  for (const std::string& scene : options.scenes) {
+    chosen.push_back(case_of_scene(scene, options.scenes_folder));
+  }
+  if (!options.scenes.empty() && options.common.cases.empty()) return chosen;
+  std::vector<std::string> names;
+  for (const SpeedCase& one : known) names.push_back(one.name);
+  const Result<std::vector<std::size_t>> indices = choose(options.common.cases, names);
+  if (!indices) return indices.errors();
+  for (const std::size_t index : indices.value()) {
+    const bool skipped =
+        options.common.quick && options.common.cases.empty() && known[index].is_long;
+    if (!skipped) chosen.push_back(known[index]);
+  }
+  return chosen;
+}
+
+Result<std::vector<SpeedRow>> time_case(const SpeedCase& one, const SpeedOptions& options) {
+  const Result<Scene> scene = one.make();
+  if (!scene) return scene.errors();
+  SpeedSettings settings = options.common.quick ? quick(one.settings) : one.settings;
+  if (options.repetitions > 0) settings.repetitions = options.repetitions;
+  return measure(one.name, scene.value(), options.threads, options.instructions, settings);
+}
+
+/// Times the cases in order. The path of every error begins with the case's name.
+Result<std::vector<SpeedRow>> time_cases(const std::vector<SpeedCase>& cases,
+                                         const SpeedOptions& options) {
+  std::vector<SpeedRow> all;
   print_speed_header(std::cout);
-  for (const std::string& name : names) {
-    const Result<Scene> scene = load_scene(name, options.scenes_folder);
-    const Status done =
-        scene ? time_scene(scene.value(), options.quick ? kQuick : SpeedSettings{}, rows)
-              : Status(scene.errors());
-    if (done) continue;
-    Errors errors = done.errors();
-    for (Error& error : errors) {
-      if (error.path.empty() || error.path.front() == '/') error.path = name + error.path;
+  for (const SpeedCase& one : cases) {
+    const Result<std::vector<SpeedRow>> rows = time_case(one, options);
+    if (!rows) {
+      Errors errors = rows.errors();
+      for (Error& error : errors) {
+        if (error.path.empty() || error.path.front() == '/') error.path = one.name + error.path;
+      }
+      return errors;
     }
-    return errors;
+    for (const SpeedRow& row : rows.value()) {
+      print_speed_row(std::cout, row);
+      all.push_back(row);
+    }
   }
-  return rows;
+  return all;
 }
 
-Status write_csv(OutputFile& file, const std::vector<SpeedRow>& rows) {
-  std::string text = speed_csv_header();
-  for (const SpeedRow& row : rows) text += speed_csv_row(row);
-  if (Status written = file.append(text); !written) return written;
-  return file.commit();
+Status write_results(const std::vector<SpeedRow>& rows, const std::string& folder) {
+  const Status written = write_table(speed_table(rows, this_machine()), folder, "speed", "# Speed");
+  if (!written) return written;
+  return write_table(stage_table(rows), folder, "stages", "# Time by stage");
 }
 
-int speed(const Options& options) {
-  std::vector<std::string> names = options.scenes;
-  if (names.empty()) {
-    Result<std::vector<std::string>> all = catalogue_names(options.scenes_folder);
-    if (!all) return fail(options.scenes_folder, all.errors());
-    names = std::move(all).value();
+int speed(SpeedOptions options) {
+  const std::vector<SpeedCase> known = all_speed_cases(options.scenes_folder);
+  if (options.common.list) {
+    for (const SpeedCase& one : known) std::cout << one.name << '\n';
+    return kExitOk;
   }
-  std::optional<OutputFile> csv;  // created first: a wrong name should not cost minutes
-  if (!options.output.empty()) {
-    Result<OutputFile> file = OutputFile::create(options.output);
-    if (!file) return fail(options.output, file.errors());
-    csv = std::move(file).value();
-  }
-  const Result<std::vector<SpeedRow>> rows = time_scenes(names, options);
+  if (options.threads.empty()) options.threads = thread_counts();
+  const Result<std::vector<SpeedCase>> cases = choose_cases(options, known);
+  if (!cases) return fail("speed", cases.errors());
+  const Result<std::vector<SpeedRow>> rows = time_cases(cases.value(), options);
   if (!rows) return fail("speed", rows.errors());
-  if (!csv) return kExitOk;
-  const Status written = write_csv(*csv, rows.value());
-  return written ? kExitOk : fail(options.output, written.errors());
+  const Status written = write_results(rows.value(), options.common.output);
+  if (!written) return fail(options.common.output, written.errors());
+  std::cout << "written to " << options.common.output << '\n';
+  return kExitOk;
 }
 
 }  // namespace
 
 void add_speed_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "speed", "Time scenes with 1, 2 and 4 threads, from a typical state, median of 5 runs");
-  const auto options = std::make_shared<Options>();
-  command->add_option("scenes", options->scenes, "Scenes; default: the whole catalogue");
+      "speed", "Time of a step, with several numbers of threads, from a typical state");
+  const auto options = std::make_shared<SpeedOptions>();
+  add_case_options(*command, options->common);
+  command
+      ->add_option("--threads", options->threads,
+                   "Number of threads; may be given again. Default: 1, 2 and 4, as far as the "
+                   "machine has them")
+      ->check(thread_count_range())
+      ->take_all()
+      ->expected(1);
+  add_isa_option(*command, options->instructions);
+  command->add_option("--repetitions", options->repetitions, "Repetitions of each measurement")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("scenes", options->scenes, "Scenes to time in place of the cases");
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
-  command->add_flag("--quick", options->quick, "One short run of each");
-  command->add_option("--output", options->output, "File for the results: .csv")
-      ->check(csv_file_name());
   command->footer(
       "Exit codes: 0 fine, 1 invalid scene, failed run or states that differ between "
       "thread counts, 2 wrong usage.");

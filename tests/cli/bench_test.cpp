@@ -10,25 +10,54 @@ namespace {
 
 TEST(BenchSpeed, RowsAreConsistent) {
   const TemporaryFolder folder;
-  const std::string file = folder.file("bench.csv");
-  const ProgramResult result =
-      run_bench({"speed", "--quick", "--output", file, test_scene("pair"), test_scene("mixed")});
+  const ProgramResult result = run_bench(
+      {"speed", "--quick", "--repetitions", "2", "--threads", "1", "--threads", "2", "--isa",
+       "baseline", "--output", folder.file("results"), test_scene("pair"), test_scene("mixed")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv(file);
-  ASSERT_GE(table.rows.size(), 2u);
-  EXPECT_EQ(lines_of(result.out).size(), table.rows.size() + 1);
-  EXPECT_EQ(table.text(0, "scene"), "pair");
-  EXPECT_EQ(table.text(table.rows.size() - 1, "scene"), "mixed");
+  const Table table = read_csv(folder.file("results/speed.csv"));
+  ASSERT_EQ(table.rows.size(), 4u);
+  EXPECT_EQ(lines_of(result.out).size(), table.rows.size() + 2);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    const double ms = table.number(row, "ms_per_step_median");
-    EXPECT_EQ(table.number(row, "steps"), 200);  // 0.2 s in steps of 1 ms
-    EXPECT_GE(ms, table.number(row, "ms_per_step_min"));
-    EXPECT_NEAR(table.number(row, "real_time_factor") * ms, 1, 1e-9);
-    EXPECT_NEAR(table.number(row, "particle_steps_per_second") * ms,
+    EXPECT_EQ(table.text(row, "case"), test_scene(row < 2 ? "pair" : "mixed"));
+    EXPECT_EQ(table.number(row, "threads"), row % 2 == 0 ? 1 : 2);
+    EXPECT_EQ(table.text(row, "instruction set"), "baseline");
+    EXPECT_EQ(table.number(row, "repetitions"), 2);
+    EXPECT_EQ(table.number(row, "steps"), 100);  // 0.1 s in steps of 1 ms
+    const double ms = table.number(row, "ms per step");
+    EXPECT_GE(ms, table.number(row, "least ms per step"));
+    EXPECT_NEAR(table.number(row, "real-time factor") * ms, 1, 1e-9);
+    EXPECT_NEAR(table.number(row, "wall s per simulated s"), ms, 1e-9 * ms);
+    EXPECT_NEAR(table.number(row, "particle steps per s") * ms,
                 1e3 * table.number(row, "particles"), 1e-6);
-    if (row > 0 && table.text(row, "scene") == table.text(row - 1, "scene")) {
-      EXPECT_EQ(table.text(row, "state_hash"), table.text(row - 1, "state_hash"));
-    }
+    EXPECT_EQ(table.text(row, "state hash"), table.text(row / 2 * 2, "state hash"));
+  }
+}
+
+TEST(BenchSpeed, StagesAndTheRestAreTheWholeStep) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"speed", "--quick", "--threads", "1", "--output", folder.file("results"), "--case",
+                 "dam-break-1k-incompressible"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv(folder.file("results/stages.csv"));
+  double share = 0;
+  std::vector<std::string> names;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_GT(table.number(row, "share"), 0);
+    share += table.number(row, "share");
+    names.push_back(table.text(row, "stage"));
+  }
+  EXPECT_NEAR(share, 1, 1e-9);
+  EXPECT_THAT(names, testing::IsSupersetOf({"sort_liquid", "project_velocities", "rest"}));
+}
+
+TEST(BenchSpeed, ListedCasesAreThoseThatAnErrorNames) {
+  const ProgramResult list = run_bench({"speed", "--list"});
+  EXPECT_EQ(list.exit_code, 0);
+  const ProgramResult unknown = run_bench({"speed", "--case", "dam-break"});
+  EXPECT_EQ(unknown.exit_code, 1);
+  for (const std::string& name : lines_of(list.out)) {
+    EXPECT_THAT(unknown.err, testing::HasSubstr(' ' + name));
   }
 }
 
@@ -48,7 +77,9 @@ TEST(BenchUsage, WrongWordsAreNamed) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{}, "subcommand"},
       {{"conquer"}, "conquer"},
-      {{"speed", "--output", "bench.txt"}, "must end in .csv"},
+      {{"speed", "--threads", "0"}, "--threads"},
+      {{"speed", "--isa", "sse9"}, "baseline, avx2, avx512"},
+      {{"speed", "--repetitions", "0"}, "--repetitions"},
       {{"speed", "--fast"}, "--fast"},
       {{"validate", "--threads", "0"}, "--threads"},
       {{"validate", "--case"}, "--case"},

@@ -1,0 +1,87 @@
+#include "tests/bench/speed/cases.h"
+
+#include <cstddef>
+
+#include "server/cli/scene_argument.h"
+#include "tests/bench/speed/scenes.h"
+
+namespace vat::bench {
+
+namespace {
+
+struct Size {
+  const char* name;
+  int lattice;  ///< of the generator
+  bool is_long;
+};
+
+void add_dam_breaks(std::vector<SpeedCase>& cases) {
+  constexpr Size kSizes[] = {
+      {"1k", 8, false}, {"10k", 17, false}, {"30k", 25, true}, {"100k", 37, true}};
+  for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
+    for (const Size& size : kSizes) {
+      cases.push_back({"dam-break-" + std::string(size.name) + '-' + to_string(solver),
+                       [=] { return dam_break(size.lattice, solver); },
+                       {.warm_up = 0.3, .measured = 0.1},
+                       size.is_long});
+    }
+  }
+}
+
+void add_peer_dam_breaks(std::vector<SpeedCase>& cases) {
+  constexpr Size kSizes[] = {{"10k", 22, false}, {"30k", 31, true}, {"97k", 46, true}};
+  for (const PressureSolver solver : {PressureSolver::incompressible, PressureSolver::tait}) {
+    for (const Size& size : kSizes) {
+      cases.push_back({"peer-dam-break-" + std::string(size.name) + '-' + to_string(solver),
+                       [=] { return peer_dam_break(size.lattice, solver); },
+                       {.warm_up = 0, .measured = 1, .repetitions = 3},
+                       size.is_long});
+    }
+  }
+}
+
+void add_rigid_piles(std::vector<SpeedCase>& cases) {
+  for (const InterfaceLaw law : {InterfaceLaw::penalty, InterfaceLaw::projection}) {
+    cases.push_back({"rigid-pile-200-" + std::string(to_string(law)),
+                     [=] { return rigid_pile(law); },
+                     {.warm_up = 0.6, .measured = 0.4}});
+  }
+  cases.push_back({"rigid-rest-200",
+                   [] { return rigid_pile(InterfaceLaw::projection); },
+                   {.warm_up = 3, .measured = 0.1},
+                   true});
+}
+
+/// A million particles: they must fit, and step.
+Result<Scene> million() {
+  Scene scene = peer_dam_break(100, PressureSolver::tait);
+  scene.numerics.tick = scene.numerics.step;
+  return scene;
+}
+
+}  // namespace
+
+SpeedCase case_of_scene(const std::string& argument, const std::string& scenes_folder) {
+  return {argument, [=] { return load_scene(argument, scenes_folder); }, {}};
+}
+
+std::vector<SpeedCase> all_speed_cases(const std::string& scenes_folder) {
+  std::vector<SpeedCase> cases;
+  add_dam_breaks(cases);
+  add_peer_dam_breaks(cases);
+  cases.push_back(case_of_scene("sliding-vat-solids", scenes_folder));
+  cases.push_back(case_of_scene("sliding-vat-liquid", scenes_folder));
+  add_rigid_piles(cases);
+  cases.push_back({"deformable-50", deformable_pile, {.warm_up = 0.6, .measured = 0.4}});
+  for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
+    cases.push_back({std::string("pool-10k-") + to_string(solver),
+                     [=] { return pool(solver); },
+                     {.warm_up = 3, .measured = 0.1},
+                     true});
+  }
+  cases.push_back(
+      {"million-tait", million, {.warm_up = 0, .measured = 0.002, .repetitions = 2}, true});
+  return cases;
+}
+
+}  // namespace vat::bench

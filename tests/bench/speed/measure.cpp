@@ -1,0 +1,248 @@
+#include "tests/bench/speed/measure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/simulation.h"
+#include "server/cli/simulate_run.h"
+#include "tests/bench/speed/machine.h"
+#include "tests/bench/speed/neighbours.h"
+#include "tests/bench/speed/switch_runner.h"
+
+namespace vat::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kMostSamples = 256;  // of diagnostics, each as dear as a step
+
+Real seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<Real>(Clock::now() - begin).count();
+}
+
+/// How many nominal steps, in whole ticks, cover the interval.
+std::uint64_t steps_of(const Simulation& simulation, Real interval) {
+  const std::uint32_t steps_per_tick = simulation.steps_per_tick();
+  const Real tick = simulation.step_size() * steps_per_tick;
+  if (interval <= 0) return 0;
+  return static_cast<std::uint64_t>(std::max(1L, std::lround(interval / tick))) * steps_per_tick;
+}
+
+/// What `steps` nominal steps took, tick by tick like a server.
+Result<AdvanceReport> advance_by(Simulation& simulation, std::uint64_t steps) {
+  AdvanceReport total;
+  for (std::uint64_t step = 0; step < steps; step += simulation.steps_per_tick()) {
+    const AdvanceReport report = simulation.advance(simulation.steps_per_tick());
+    if (report.failed) return describe(report.events.back(), simulation);
+    total.steps += report.steps;
+    total.undone_steps += report.undone_steps;
+  }
+  return total;
+}
+
+/// Running means over samples of a flow.
+class FlowSamples {
+ public:
+  void add(const Diagnostics& now) {
+    ++count_;
+    sums_.density_error += now.mean_density_error;
+    sums_.greatest_density_error += now.max_density_error;
+    if (!now.volume) return;
+    sums_.velocity_iterations += now.volume->velocities.iterations;
+    sums_.place_iterations += now.volume->places.iterations;
+  }
+
+  FlowFigures means(const Scene& scene, bool has_liquid) const {
+    constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
+    const bool is_solved = scene.pressure_solver == PressureSolver::incompressible;
+    const auto mean = [this](Real sum, bool present) {
+      return present ? sum / static_cast<Real>(count_) : kAbsent;
+    };
+    return {.neighbours = kAbsent,
+            .density_error = mean(sums_.density_error, has_liquid),
+            .greatest_density_error = mean(sums_.greatest_density_error, has_liquid),
+            .velocity_iterations = mean(sums_.velocity_iterations, has_liquid && is_solved),
+            .place_iterations = mean(sums_.place_iterations, has_liquid && is_solved)};
+  }
+
+ private:
+  FlowFigures sums_;
+  std::uint64_t count_ = 0;
+};
+
+/// A repetition that is not timed, looked at from within.
+Result<FlowFigures> sample_flow(Simulation& simulation, std::uint64_t steps, bool has_liquid) {
+  const Real neighbours_before = mean_neighbours(simulation);
+  const std::uint64_t stride = (steps + kMostSamples - 1) / kMostSamples;
+  FlowSamples samples;
+  for (std::uint64_t done = 0; done < steps;) {
+    const std::uint64_t part = std::min(stride, steps - done);
+    const AdvanceReport report = simulation.advance(static_cast<std::uint32_t>(part));
+    if (report.failed) return describe(report.events.back(), simulation);
+    samples.add(simulation.diagnostics());
+    done += part;
+  }
+  FlowFigures figures = samples.means(simulation.scene(), has_liquid);
+  figures.neighbours = 0.5 * (neighbours_before + mean_neighbours(simulation));
+  return figures;
+}
+
+SpeedRow describe_scene(const std::string& name, const Simulation& simulation) {
+  SpeedRow row;
+  row.name = name;
+  row.integrator = to_string(simulation.scene().numerics.integrator);
+  row.control = to_string(simulation.scene().numerics.control);
+  row.particles = simulation.particle_count();
+  row.springs = simulation.spring_count();
+  row.instructions = simulation.instruction_set();
+  for (const BodyView& body : simulation.bodies()) {
+    if (body.kind == BodyKind::liquid) row.liquid_particles += body.positions.size();
+  }
+  if (row.liquid_particles > 0) row.solver = to_string(simulation.scene().pressure_solver);
+  return row;
+}
+
+/// One scene under measurement: a row for each number of threads.
+class Measurement {
+ public:
+  Measurement(Simulation& simulation, SwitchRunner& runner, std::vector<SpeedRow>& rows,
+              std::uint64_t steps)
+      : simulation_(simulation),
+        runner_(runner),
+        rows_(rows),
+        steps_(steps),
+        start_(simulation.snapshot()) {}
+
+  /// Fills all of each row but what belongs to the scene.
+  Status run(const SpeedSettings& settings) {
+    const Clock::time_point begin = Clock::now();
+    for (int i = 0; i < settings.repetitions; ++i) {
+      if (i > 0 && seconds_since(begin) > settings.longest_time) break;
+      for (std::size_t n = 0; n < rows_.size(); ++n) {
+        runner_.choose(n);
+        if (Status done = time_repetition(rows_[n]); !done) return done;
+      }
+    }
+    for (SpeedRow& row : rows_) std::ranges::sort(row.seconds);
+    return look_within();
+  }
+
+ private:
+  Status time_repetition(SpeedRow& row) {
+    simulation_.restore(start_);
+    const Real begin_time = simulation_.time();
+    StageClock stages;
+    simulation_.set_observer(&stages);
+    const Clock::time_point begin = Clock::now();
+    const Result<AdvanceReport> report = advance_by(simulation_, steps_);
+    const Real seconds = seconds_since(begin);
+    simulation_.set_observer(nullptr);
+    if (!report) return report.errors();
+    if (row.seconds.empty() || seconds < std::ranges::min(row.seconds)) {
+      row.stages = stages.stages();
+    }
+    row.seconds.push_back(seconds);
+    row.steps = report.value().steps;
+    row.undone_steps = report.value().undone_steps;
+    row.simulated = simulation_.time() - begin_time;
+    row.state_hash = simulation_.state_hash();
+    return check_hash("with " + std::to_string(row.threads) + " threads");
+  }
+
+  Status look_within() {
+    simulation_.restore(start_);
+    const Result<FlowFigures> flow =
+        sample_flow(simulation_, steps_, rows_.front().liquid_particles > 0);
+    if (!flow) return flow.errors();
+    for (SpeedRow& row : rows_) row.flow = flow.value();
+    return check_hash("looked at step by step");
+  }
+
+  /// All repetitions end in one state.
+  Status check_hash(const std::string& which) {
+    const std::uint64_t hash = simulation_.state_hash();
+    if (!hash_) hash_ = hash;
+    if (hash == *hash_) return {};
+    return Error{"not_deterministic", "",
+                 "a run " + which + " ends in another state than the first, with " +
+                     std::to_string(rows_.front().threads) + " threads"};
+  }
+
+  Simulation& simulation_;
+  SwitchRunner& runner_;
+  std::vector<SpeedRow>& rows_;
+  std::uint64_t steps_;
+  Snapshot start_;
+  std::optional<std::uint64_t> hash_;
+};
+
+Real median_of_sorted(const std::vector<Real>& values) {
+  const std::size_t middle = values.size() / 2;
+  if (values.size() % 2 == 1) return values[middle];
+  return 0.5 * (values[middle - 1] + values[middle]);
+}
+
+}  // namespace
+
+Real SpeedRow::median_seconds() const {
+  return median_of_sorted(seconds);
+}
+
+Real SpeedRow::median_ms_per_step() const {
+  return 1e3 * median_seconds() / static_cast<Real>(steps);
+}
+
+Real SpeedRow::least_ms_per_step() const {
+  return 1e3 * seconds.front() / static_cast<Real>(steps);
+}
+
+Real SpeedRow::particle_steps_per_second() const {
+  return static_cast<Real>(particles) * static_cast<Real>(steps) / median_seconds();
+}
+
+Real SpeedRow::wall_per_simulated() const {
+  return median_seconds() / simulated;
+}
+
+Real SpeedRow::real_time_factor() const {
+  return simulated / median_seconds();
+}
+
+Result<std::vector<SpeedRow>> measure(const std::string& name, const Scene& scene,
+                                      const std::vector<std::size_t>& thread_counts,
+                                      InstructionSet instructions, const SpeedSettings& settings) {
+  SwitchRunner runner(thread_counts);
+  const std::size_t heap_before = heap_in_use();
+  const Clock::time_point begin = Clock::now();
+  Result<Simulation> created = Simulation::create(scene, &runner, instructions);
+  if (!created) return created.errors();
+  const Real creation = seconds_since(begin);
+  Simulation& simulation = created.value();
+  const Result<AdvanceReport> warmed_up =
+      advance_by(simulation, steps_of(simulation, settings.warm_up));
+  if (!warmed_up) return warmed_up.errors();
+
+  SpeedRow row = describe_scene(name, simulation);
+  row.creation = creation;
+  std::vector<SpeedRow> rows(thread_counts.size(), row);
+  for (std::size_t n = 0; n < rows.size(); ++n) rows[n].threads = thread_counts[n];
+  {
+    Measurement measurement(simulation, runner, rows, steps_of(simulation, settings.measured));
+    if (Status done = measurement.run(settings); !done) return done.errors();
+  }
+  const std::size_t heap_after = heap_in_use();
+  for (SpeedRow& each : rows) {
+    each.bytes_per_particle =
+        heap_after > heap_before
+            ? static_cast<Real>(heap_after - heap_before) / static_cast<Real>(row.particles)
+            : std::numeric_limits<Real>::quiet_NaN();
+  }
+  return rows;
+}
+
+}  // namespace vat::bench

@@ -1,0 +1,86 @@
+#include "tests/bench/speed/neighbours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace vat::bench {
+
+namespace {
+
+constexpr std::int64_t kCellsPerAxis = 1 << 20;  // of any lattice that a scene may span
+
+/// Points sorted by the cubic cell they are in: apart from the core's own search, which this
+/// counts for.
+class Cells {
+ public:
+  Cells(std::vector<Vec3> points, Real size) : points_(std::move(points)), size_(size) {
+    std::ranges::sort(points_, {}, [this](const Vec3& p) { return key(cell(p)); });
+    for (const Vec3& p : points_) keys_.push_back(key(cell(p)));
+  }
+
+  std::size_t count_near(const Vec3& p) const {
+    std::size_t count = 0;
+    const Cell middle = cell(p);
+    for (std::int64_t z = -1; z <= 1; ++z) {
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        const std::int64_t row = key({middle.x, middle.y + y, middle.z + z});
+        const auto begin = std::ranges::lower_bound(keys_, row - 1);
+        const auto end = std::upper_bound(begin, keys_.end(), row + 1);
+        for (auto at = begin; at != end; ++at) {
+          const Vec3& q = points_[static_cast<std::size_t>(at - keys_.begin())];
+          count += (p - q).squaredNorm() < size_ * size_ ? 1u : 0u;
+        }
+      }
+    }
+    return count;
+  }
+
+ private:
+  struct Cell {
+    std::int64_t x, y, z;
+  };
+  Cell cell(const Vec3& p) const {
+    const auto at = [this](Real x) { return static_cast<std::int64_t>(std::floor(x / size_)); };
+    return {at(p.x()), at(p.y()), at(p.z())};
+  }
+  static std::int64_t key(const Cell& c) {
+    return (c.z * kCellsPerAxis + c.y) * kCellsPerAxis + c.x;
+  }
+
+  std::vector<Vec3> points_;
+  Real size_;
+  std::vector<std::int64_t> keys_;
+};
+
+Real support_radius_of(const Scene& scene, std::string_view material) {
+  const auto found = std::ranges::find(scene.materials, material, &Material::name);
+  return found->liquid->support_radius;
+}
+
+}  // namespace
+
+Real mean_neighbours(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  if (scene.periodic) return std::numeric_limits<Real>::quiet_NaN();
+  std::vector<Vec3> points;
+  for (const BodyView& body : simulation.bodies()) {
+    if (body.kind != BodyKind::liquid && scene.pressure_solver == PressureSolver::gas) continue;
+    points.insert(points.end(), body.positions.begin(), body.positions.end());
+  }
+  std::size_t particles = 0;
+  std::size_t neighbours = 0;
+  for (const BodyView& body : simulation.bodies()) {
+    if (body.kind != BodyKind::liquid || body.positions.empty()) continue;
+    const Cells cells(points, support_radius_of(scene, body.material));
+    for (const Vec3& p : body.positions) neighbours += cells.count_near(p) - 1;
+    particles += body.positions.size();
+  }
+  if (particles == 0) return std::numeric_limits<Real>::quiet_NaN();
+  return static_cast<Real>(neighbours) / static_cast<Real>(particles);
+}
+
+}  // namespace vat::bench

@@ -1,0 +1,166 @@
+#include "tests/bench/speed/scenes.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+namespace vat::bench {
+
+namespace {
+
+/// The share of h / c that steps of a weakly compressible liquid take: 0.77 is stable.
+constexpr Real kSoundShare = 0.75;
+constexpr Real kTick = 0.02;          // [s]
+constexpr Real kLongestStep = 0.005;  // [s] where speeds alone limit steps
+
+BodyDescription box_of(std::string name, BodyKind kind, std::string material, Real spacing,
+                       const Vec3& center, const Vec3& size) {
+  BodyDescription body;
+  body.name = std::move(name);
+  body.kind = kind;
+  body.material = std::move(material);
+  body.spacing = spacing;
+  body.shape = BoxShape{Vec3::Zero(), size};
+  body.position = center;
+  return body;
+}
+
+Material water(const LiquidConstants& constants) {
+  Material material;
+  material.name = "water";
+  material.liquid = constants;
+  return material;
+}
+
+/// Steps that sound allows, or such as the flow asks for.
+void choose_steps(Scene& scene, const LiquidConstants& liquid) {
+  scene.numerics.tick = kTick;
+  if (scene.pressure_solver == PressureSolver::incompressible) {
+    scene.numerics.integrator = IntegratorId::symplectic_euler;
+    scene.numerics.control = StepControl::adaptive;
+    scene.numerics.step = kLongestStep;
+    return;
+  }
+  const Real stable = kSoundShare * liquid.support_radius / std::sqrt(liquid.stiffness);
+  scene.numerics.step = kTick / std::ceil(kTick / stable);
+}
+
+Vat closed_vat(const Vec3& min, const Vec3& max) {
+  Vat vat;
+  vat.min = min;
+  vat.max = max;
+  vat.lid = true;
+  return vat;
+}
+
+/// The same pseudo-random turn for the same `n`: bodies that all stand straight stay so.
+Quat turn_of(std::uint32_t n) {
+  const auto part = [n](std::uint32_t factor) {
+    return static_cast<Real>(n * factor % 1009) / 1009 - 0.5;
+  };
+  return Quat(0.6, part(367), part(521), part(613)).normalized();
+}
+
+/// Bodies in layers of 5 x 5, 0.2 m apart, the lowest at `height` [m].
+Vec3 place_of(std::uint32_t n, Real height) {
+  const std::uint32_t row = n / 5;
+  const std::uint32_t layer = n / 25;
+  return Vec3(0.2, 0.2, height) + 0.2 * Vec3(n % 5, row % 5, layer);
+}
+
+}  // namespace
+
+Scene dam_break(int layers, PressureSolver solver) {
+  const Real spacing = 0.4 / layers;
+  const LiquidConstants liquid{.stiffness = 400,
+                               .viscosity = 0.1,
+                               .support_radius = 2 * spacing,
+                               .artificial_viscosity = 0.1};
+  Scene scene;
+  scene.pressure_solver = solver;
+  scene.materials = {water(liquid)};
+  scene.vat = closed_vat({0, 0, 0}, {1.6, 0.4, 1.0});
+  scene.bodies = {
+      box_of("column", BodyKind::liquid, "water", spacing, {0.2, 0.2, 0.4}, {0.4, 0.4, 0.8})};
+  choose_steps(scene, liquid);
+  return scene;
+}
+
+Scene peer_dam_break(int edge, PressureSolver solver) {
+  const Real spacing = 1.0 / edge;
+  const LiquidConstants liquid{.stiffness = 350, .viscosity = 10, .support_radius = 2 * spacing};
+  Scene scene;
+  scene.pressure_solver = solver;
+  scene.materials = {water(liquid)};
+  scene.incompressible.divergence_tolerance = 1e-4;  // the peer has 1e-3
+  scene.vat = closed_vat({-2, -0.75, 0}, {2, 0.75, 3});
+  scene.bodies = {box_of("block", BodyKind::liquid, "water", spacing, {-1.5, 0, 0.5}, {1, 1, 1})};
+  choose_steps(scene, liquid);
+  return scene;
+}
+
+Scene pool(PressureSolver solver) {
+  constexpr Real kSpacing = 0.04;
+  const LiquidConstants liquid{.stiffness = 400,
+                               .viscosity = 1,
+                               .support_radius = 2 * kSpacing,
+                               .artificial_viscosity = 0.1};
+  Scene scene;
+  scene.pressure_solver = solver;
+  scene.materials = {water(liquid)};
+  scene.vat = closed_vat({0, 0, 0}, {1, 1, 1});
+  scene.settling = Settling{.drag = 30, .until = 0.5};
+  scene.bodies = {
+      box_of("pool", BodyKind::liquid, "water", kSpacing, {0.5, 0.5, 0.32}, {1, 1, 0.64})};
+  choose_steps(scene, liquid);
+  return scene;
+}
+
+Scene rigid_pile(InterfaceLaw law) {
+  constexpr Real kSpacing = 0.04;
+  Scene scene;
+  scene.materials.emplace_back().name = "wood";
+  scene.materials.back().density = 600;
+  if (law == InterfaceLaw::projection) {
+    scene.default_interface = {.friction = 0.4, .law = law};
+    scene.numerics.step = kLongestStep;
+  } else {
+    scene.default_interface = {.stiffness = 8000, .damping = 20, .friction = 0.4};
+  }
+  scene.vat = closed_vat({0, 0, 0}, {1.2, 1.2, 3});
+  scene.numerics.tick = kTick;
+  for (std::uint32_t n = 0; n < 200; ++n) {
+    const Vec3 center = place_of(n, 0.15);
+    BodyDescription body = box_of("body " + std::to_string(n + 1), BodyKind::rigid, "wood",
+                                  kSpacing, center, {0.12, 0.12, 0.12});
+    if (n % 2 == 1) body.shape = SphereShape{Vec3::Zero(), 0.07};
+    body.orientation = turn_of(n);
+    scene.bodies.push_back(std::move(body));
+  }
+  return scene;
+}
+
+Scene deformable_pile() {
+  constexpr Real kSpacing = 0.04;
+  Scene scene;
+  Material& jelly = scene.materials.emplace_back();
+  jelly.name = "jelly";
+  jelly.density = 500;
+  jelly.springs =
+      LatticeSprings{SpringConstants{1500, 2}, SpringConstants{750, 1}, SpringConstants{300, 0.5}};
+  jelly.self_contact = SpringConstants{2000, 2};
+  scene.default_interface = {.stiffness = 5000, .damping = 5, .friction = 0.2};
+  scene.vat = closed_vat({0, 0, 0}, {1.2, 1.2, 2});
+  scene.numerics.tick = kTick;
+  for (std::uint32_t n = 0; n < 50; ++n) {
+    const Vec3 center = place_of(n, 0.2);
+    BodyDescription body = box_of("block " + std::to_string(n + 1), BodyKind::deformable, "jelly",
+                                  kSpacing, center, {0.16, 0.16, 0.16});
+    body.orientation = turn_of(n);
+    scene.bodies.push_back(std::move(body));
+  }
+  return scene;
+}
+
+}  // namespace vat::bench
