@@ -4,6 +4,7 @@
 
 #include "server/cli/command.h"
 #include "tests/bench/accuracy.h"
+#include "tests/bench/compare.h"
 #include "tests/bench/document.h"
 #include "tests/bench/speed.h"
 #include "tests/bench/stability.h"
@@ -20,6 +21,7 @@ int run(int argc, char** argv) {
   });
   int exit_code = vat::kExitOk;
   vat::bench::add_speed_command(app, exit_code);
+  vat::bench::add_compare_command(app, exit_code);
   vat::bench::add_validate_command(app, exit_code);
   vat::bench::add_accuracy_command(app, exit_code);
   vat::bench::add_stability_command(app, exit_code);

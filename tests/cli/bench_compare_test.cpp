@@ -1,0 +1,135 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "tests/bench/speed/comparison.h"
+#include "tests/cli/program.h"
+
+namespace vat::bench {
+namespace {
+
+using test::ProgramResult;
+using test::run_bench;
+using test::TemporaryFolder;
+
+TimedRow row(const std::string& name, Real wall, Real least_share = 0.9) {
+  TimedRow row;
+  row.name = name;
+  row.threads = "1";
+  row.instruction_set = "avx2";
+  row.wall_per_simulated = wall;
+  row.ms_per_step = 4 * wall;
+  row.least_ms_per_step = least_share * row.ms_per_step;
+  row.steps = "10";
+  row.state_hash = "00";
+  return row;
+}
+
+TEST(BenchCompare, CsvIsReadAsItIsWritten) {
+  const Table table{{"a", "b, c"}, {{"say \"no\"", 0.5}, {"two\nlines", std::uint64_t{7}}}};
+  const Result<CsvFile> file = parse_csv(to_csv(table));
+  ASSERT_TRUE(file);
+  EXPECT_THAT(file.value().columns, testing::ElementsAre("a", "b, c"));
+  EXPECT_THAT(file.value().rows, testing::ElementsAre(testing::ElementsAre("say \"no\"", "0.5"),
+                                                      testing::ElementsAre("two\nlines", "7")));
+  EXPECT_THAT(parse_csv("a,b\r\n,x\r\n").value().rows,
+              testing::ElementsAre(testing::ElementsAre("", "x")));
+}
+
+TEST(BenchCompare, MalformedCsvIsRefused) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"", "is empty"},
+      {"a,b\n1\n", "row 2: has 1 cells and the header 2"},
+      {"a\n\"open\n", "row 2: a quote is not closed"},
+      {"a\n\"x\"y\n", "row 2: text follows a closing quote"},
+  };
+  for (const auto& [text, message] : wrong) {
+    const Result<CsvFile> file = parse_csv(text);
+    ASSERT_FALSE(file) << text;
+    EXPECT_EQ(file.errors().front().message, message);
+  }
+}
+
+// Beyond the tolerance, and by the least times too: a busy machine makes medians worse.
+TEST(BenchCompare, SlowerIsWhatMedianAndLeastSay) {
+  const std::vector<TimedRow> before = {row("a", 1), row("b", 1), row("c", 1), row("d", 1)};
+  const std::vector<TimedRow> after = {row("a", 1.2), row("b", 1.2, 0.9 / 1.2), row("c", 1.09),
+                                       row("d", 0.8)};
+  const Comparison compared = compare_rows(before, after, 0.1).value();
+  ASSERT_EQ(compared.pairs.size(), 4u);
+  EXPECT_TRUE(compared.pairs[0].slower);
+  EXPECT_NEAR(compared.pairs[0].least_ratio, 1.2, 1e-12);
+  EXPECT_FALSE(compared.pairs[1].slower);
+  EXPECT_NEAR(compared.pairs[1].least_ratio, 1, 1e-12);
+  EXPECT_FALSE(compared.pairs[2].slower);
+  EXPECT_TRUE(compared.pairs[3].faster);
+  EXPECT_EQ(compared.slower_count(), 1u);
+  EXPECT_NEAR(compared.mean_ratio(), std::pow(1.2 * 1.2 * 1.09 * 0.8, 0.25), 1e-12);
+}
+
+TEST(BenchCompare, RowsAreMatchedByCaseThreadsAndInstructionSet) {
+  TimedRow two = row("a", 3);
+  two.threads = "2";
+  TimedRow baseline = row("a", 5);
+  baseline.instruction_set = "baseline";
+  TimedRow changed = row("a", 1);
+  changed.steps = "12";
+  changed.state_hash = "01";
+  const Comparison compared = compare_rows({row("a", 1), two}, {baseline, changed}, 0.1).value();
+  ASSERT_EQ(compared.pairs.size(), 1u);
+  EXPECT_EQ(compared.pairs[0].ratio, 1);
+  ASSERT_EQ(compared.only_before.size(), 1u);
+  EXPECT_EQ(compared.only_before[0].title(), "a, 2 threads, avx2");
+  ASSERT_EQ(compared.only_after.size(), 1u);
+  EXPECT_EQ(compared.only_after[0].title(), "a, 1 thread, baseline");
+  EXPECT_EQ(to_csv(comparison_table(compared)),
+            "case,threads,instruction set,before [s/s],after [s/s],after / before,by least,steps,"
+            "state,verdict\na,1,avx2,1,1,1,1,10 to 12,changed,\n");
+  EXPECT_FALSE(compare_rows({two}, {baseline}, 0.1));
+}
+
+// A result of the bench, and the same made slower by hand.
+TEST(BenchCompare, ExitCodeTellsWhatGotSlower) {
+  const TemporaryFolder folder;
+  const ProgramResult measured = run_bench({"speed", "--quick", "--threads", "1", "--output",
+                                            folder.file("a"), "--case", "dam-break-1k-tait"});
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  const std::string before = folder.file("a/speed.csv");
+  CsvFile file = read_csv_file(before).value();
+  Table slower{file.columns, {}};
+  for (std::size_t i = 0; i < file.columns.size(); ++i) {
+    std::string& cell = file.rows[0][i];
+    const bool is_time = file.columns[i] == "wall s per simulated s";
+    slower.rows.resize(1);
+    slower.rows[0].push_back(is_time ? std::to_string(1.2 * std::stod(cell)) : cell);
+  }
+  const std::string after = folder.file("b.csv");
+  ASSERT_TRUE(write_text(after, to_csv(slower)));
+  EXPECT_EQ(run_bench({"compare", before, before}).exit_code, 0);
+  const ProgramResult result = run_bench({"compare", before, after});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, testing::HasSubstr("1 of 1 rows are slower by more than 10 %"));
+  EXPECT_THAT(result.out, testing::HasSubstr("| SLOWER |"));
+  EXPECT_EQ(run_bench({"compare", before, after, "--tolerance", "25"}).exit_code, 0);
+  EXPECT_EQ(run_bench({"compare", after, before}).exit_code, 0);
+}
+
+TEST(BenchCompare, OtherFilesAreNamed) {
+  const TemporaryFolder folder;
+  const std::string other = folder.file("other.csv");
+  ASSERT_TRUE(write_text(other, "case,threads\na,1\n"));
+  const ProgramResult wrong = run_bench({"compare", other, other});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, testing::HasSubstr(other + ": has no column 'instruction set'"));
+  for (const std::string& absent : {folder.file("none.csv"), folder.file(".")}) {
+    const ProgramResult result = run_bench({"compare", absent, other});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, testing::HasSubstr(absent + ": cannot be read"));
+  }
+}
+
+}  // namespace
+}  // namespace vat::bench
