@@ -6,6 +6,7 @@
 #include "tests/bench/accuracy.h"
 #include "tests/bench/compare.h"
 #include "tests/bench/document.h"
+#include "tests/bench/instructions.h"
 #include "tests/bench/speed.h"
 #include "tests/bench/stability.h"
 #include "tests/bench/validate.h"
@@ -22,6 +23,7 @@ int run(int argc, char** argv) {
   int exit_code = vat::kExitOk;
   vat::bench::add_speed_command(app, exit_code);
   vat::bench::add_compare_command(app, exit_code);
+  vat::bench::add_instructions_command(app, exit_code);
   vat::bench::add_validate_command(app, exit_code);
   vat::bench::add_accuracy_command(app, exit_code);
   vat::bench::add_stability_command(app, exit_code);

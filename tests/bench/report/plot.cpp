@@ -1,15 +1,9 @@
 #include "tests/bench/report/plot.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <string>
+#include <system_error>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
-
+#include "tests/bench/report/run_program.h"
 #include "tests/bench/report/table.h"
 
 namespace vat::bench {
@@ -17,32 +11,9 @@ namespace vat::bench {
 namespace {
 
 /// Runs `gnuplot ARGUMENT` in a folder, with its messages in `log`.
-Status run_gnuplot(std::string argument, const std::filesystem::path& folder,
+Status run_gnuplot(const std::string& argument, const std::filesystem::path& folder,
                    const std::string& log) {
-  std::string program = "gnuplot";
-  char* argv[] = {program.data(), argument.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t pid = -1;
-  const int failed = posix_spawnp(&pid, argv[0], &actions, nullptr, argv, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) {
-    return Error{"gnuplot", "gnuplot",
-                 std::string("cannot be started (") + std::strerror(failed) +
-                     "); ./vat packages bench installs it"};
-  }
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0) {
-    if (errno != EINTR) return Error{"gnuplot", "gnuplot", std::strerror(errno)};
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  std::ostringstream message;
-  message << std::ifstream(folder / log).rdbuf();
-  return Error{"gnuplot", argument, "gnuplot failed: " + message.str()};
+  return run_program({"gnuplot", argument}, folder, log, "./vat packages bench installs it");
 }
 
 Status draw(const std::string& data, const std::string& script, const std::filesystem::path& folder,

@@ -43,11 +43,11 @@ void add_peer_dam_breaks(std::vector<SpeedCase>& cases) {
 void add_rigid_piles(std::vector<SpeedCase>& cases) {
   for (const InterfaceLaw law : {InterfaceLaw::penalty, InterfaceLaw::projection}) {
     cases.push_back({"rigid-pile-200-" + std::string(to_string(law)),
-                     [=] { return rigid_pile(law); },
+                     [=] { return rigid_pile(200, law); },
                      {.warm_up = 0.6, .measured = 0.4}});
   }
   cases.push_back({"rigid-rest-200",
-                   [] { return rigid_pile(InterfaceLaw::projection); },
+                   [] { return rigid_pile(200, InterfaceLaw::projection); },
                    {.warm_up = 3, .measured = 0.1},
                    true});
 }
@@ -72,7 +72,8 @@ std::vector<SpeedCase> all_speed_cases(const std::string& scenes_folder) {
   cases.push_back(case_of_scene("sliding-vat-solids", scenes_folder));
   cases.push_back(case_of_scene("sliding-vat-liquid", scenes_folder));
   add_rigid_piles(cases);
-  cases.push_back({"deformable-50", deformable_pile, {.warm_up = 0.6, .measured = 0.4}});
+  cases.push_back(
+      {"deformable-50", [] { return deformable_pile(50); }, {.warm_up = 0.6, .measured = 0.4}});
   for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
     cases.push_back({std::string("pool-10k-") + to_string(solver),
                      [=] { return pool(solver); },

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/scene/scene.h"
 
 /// Scenes of the speed bench, by their size. Every one is the same on all machines.
@@ -17,11 +19,11 @@ Scene peer_dam_break(int edge, PressureSolver solver);
 /// About 10 000 particles of water that fill a vat of 1 x 1 m to 0.64 m and come to rest.
 Scene pool(PressureSolver solver);
 
-/// 200 rigid blocks and balls that fall into a heap: pushed apart by penalties, which let them
-/// creep, or by projection, which lets them rest.
-Scene rigid_pile(InterfaceLaw law);
+/// Rigid blocks and balls that fall into a heap: pushed apart by penalties, which let them creep,
+/// or by projection, which lets them rest.
+Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law);
 
-/// 50 blocks of jelly that fall on one another.
-Scene deformable_pile();
+/// Blocks of jelly that fall on one another.
+Scene deformable_pile(std::uint32_t bodies);
 
 }  // namespace vat::bench

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace vat::bench {
+
+/// Adds `vat bench instructions`; it runs during the parse and leaves its result in `exit_code`.
+void add_instructions_command(CLI::App& app, int& exit_code);
+
+}  // namespace vat::bench
