@@ -14,9 +14,14 @@
 #include "server/cli/command.h"
 #include "server/cli/option_checks.h"
 #include "tests/bench/options.h"
+#include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/cases.h"
+#include "tests/bench/speed/peers.h"
+#include "tests/bench/speed/plots.h"
+#include "tests/bench/speed/skips.h"
 #include "tests/bench/speed/tables.h"
+#include "tests/bench/speed/targets.h"
 
 namespace vat::bench {
 
@@ -24,8 +29,7 @@ namespace {
 
 struct SpeedOptions {
   Options common;
-  std::vector<std::size_t> threads;
-  InstructionSet instructions = best_instruction_set();
+  SpeedSetup setup{{}, best_instruction_set()};
   int repetitions = 0;  ///< 0: as many as the case has
   std::vector<std::string> scenes;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
@@ -48,76 +52,144 @@ SpeedSettings quick(SpeedSettings settings) {
   return settings;
 }
 
-/// The cases to run: the scenes that were named, or those of the bench.
-Result<std::vector<SpeedCase>> choose_cases(const SpeedOptions& options,
-                                            const std::vector<SpeedCase>& known) {
-  std::vector<SpeedCase> chosen;
-  for (const std::string& scene : options.scenes) {
-    chosen.push_back(case_of_scene(scene, options.scenes_folder));
-  }
-  if (!options.scenes.empty() && options.common.cases.empty()) return chosen;
+std::vector<std::string> all_names(const std::vector<SpeedCase>& known) {
   std::vector<std::string> names;
   for (const SpeedCase& one : known) names.push_back(one.name);
-  const Result<std::vector<std::size_t>> indices = choose(options.common.cases, names);
+  for (const std::string& name : skip_names()) names.push_back(name);
+  return names;
+}
+
+/// What is to be measured.
+struct Choice {
+  std::vector<SpeedCase> cases;
+  std::vector<std::size_t> skips;  ///< see make_skip_pair()
+};
+
+/// The scenes that were named, or cases of the bench, or both.
+Result<Choice> choose_cases(const SpeedOptions& options, const std::vector<SpeedCase>& known) {
+  Choice choice;
+  for (const std::string& scene : options.scenes) {
+    choice.cases.push_back(case_of_scene(scene, options.scenes_folder));
+  }
+  const bool is_named = !options.common.cases.empty();
+  if (!options.scenes.empty() && !is_named) return choice;
+  const Result<std::vector<std::size_t>> indices = choose(options.common.cases, all_names(known));
   if (!indices) return indices.errors();
   for (const std::size_t index : indices.value()) {
-    const bool skipped =
-        options.common.quick && options.common.cases.empty() && known[index].is_long;
-    if (!skipped) chosen.push_back(known[index]);
+    if (index >= known.size()) {
+      choice.skips.push_back(index - known.size());
+    } else if (!known[index].is_long || !options.common.quick || is_named) {
+      choice.cases.push_back(known[index]);
+    }
   }
-  return chosen;
+  return choice;
+}
+
+SpeedSettings settings_for(SpeedSettings settings, const SpeedOptions& options) {
+  if (options.common.quick) settings = quick(settings);
+  if (options.repetitions > 0) settings.repetitions = options.repetitions;
+  return settings;
 }
 
 Result<std::vector<SpeedRow>> time_case(const SpeedCase& one, const SpeedOptions& options) {
   const Result<Scene> scene = one.make();
   if (!scene) return scene.errors();
-  SpeedSettings settings = options.common.quick ? quick(one.settings) : one.settings;
-  if (options.repetitions > 0) settings.repetitions = options.repetitions;
-  return measure(one.name, scene.value(), options.threads, options.instructions, settings);
+  return measure(one.name, scene.value(), options.setup, settings_for(one.settings, options));
 }
 
-/// Times the cases in order. The path of every error begins with the case's name.
-Result<std::vector<SpeedRow>> time_cases(const std::vector<SpeedCase>& cases,
-                                         const SpeedOptions& options) {
-  std::vector<SpeedRow> all;
-  print_speed_header(std::cout);
-  for (const SpeedCase& one : cases) {
-    const Result<std::vector<SpeedRow>> rows = time_case(one, options);
-    if (!rows) {
-      Errors errors = rows.errors();
-      for (Error& error : errors) {
-        if (error.path.empty() || error.path.front() == '/') error.path = one.name + error.path;
-      }
-      return errors;
-    }
-    for (const SpeedRow& row : rows.value()) {
+/// All that was measured.
+struct SpeedResults {
+  std::vector<SpeedRow> rows;
+  std::vector<SkipResult> skips;
+
+  void add(const std::vector<SpeedRow>& some) {
+    for (const SpeedRow& row : some) {
       print_speed_row(std::cout, row);
-      all.push_back(row);
+      rows.push_back(row);
     }
   }
-  return all;
+};
+
+/// The path of every error begins with the case's name.
+Errors name_errors(Errors errors, const std::string& name) {
+  for (Error& error : errors) {
+    if (error.path.empty() || error.path.front() == '/') error.path = name + error.path;
+  }
+  return errors;
 }
 
-Status write_results(const std::vector<SpeedRow>& rows, const std::string& folder) {
-  const Status written = write_table(speed_table(rows, this_machine()), folder, "speed", "# Speed");
+/// Times all in order.
+Result<SpeedResults> time_all(const Choice& choice, const SpeedOptions& options) {
+  SpeedResults results;
+  print_speed_header(std::cout);
+  for (const SpeedCase& one : choice.cases) {
+    const Result<std::vector<SpeedRow>> rows = time_case(one, options);
+    if (!rows) return name_errors(rows.errors(), one.name);
+    results.add(rows.value());
+  }
+  for (const std::size_t index : choice.skips) {
+    SkipPair pair = make_skip_pair(index);
+    pair.settings = settings_for(pair.settings, options);
+    const std::string name = pair.name;
+    Result<SkipResult> skip = measure_skip(std::move(pair), options.setup);
+    if (!skip) return name_errors(skip.errors(), name);
+    results.add(skip.value().with);
+    results.add(skip.value().without);
+    results.skips.push_back(std::move(skip).value());
+  }
+  return results;
+}
+
+/// Whether there are sizes to be compared.
+bool has_pictures(const Choice& choice) {
+  return std::ranges::count_if(choice.cases, [](const SpeedCase& one) {
+           return one.name.starts_with("dam-break-");
+         }) > 1;
+}
+
+/// Writes a table, and prints it where it has rows.
+Status write_part(const Table& table, const std::string& folder, const std::string& name,
+                  const std::string& heading) {
+  if (!table.rows.empty()) std::cout << '\n' << to_markdown(table);
+  return write_table(table, folder, name, heading);
+}
+
+Status write_results(const SpeedResults& results, const std::string& folder) {
+  const auto& [rows, skips] = results;
+  Status written = write_table(speed_table(rows, this_machine()), folder, "speed", "# Speed");
+  if (written) written = write_table(stage_table(rows), folder, "stages", "# Time by stage");
+  if (written) written = write_part(peer_table(rows), folder, "peers", "# Beside the peer");
+  if (written) written = write_part(skip_table(skips), folder, "skips", "# Work left out");
   if (!written) return written;
-  return write_table(stage_table(rows), folder, "stages", "# Time by stage");
+  return write_part(target_table(targets_of(rows, skips)), folder, "targets", "# Targets");
+}
+
+Status draw_results(const std::vector<SpeedRow>& rows, const SpeedOptions& options) {
+  const std::string& folder = options.common.output;
+  const Status drawn = write_plot(size_plot(rows), folder, "time-per-particle");
+  if (!drawn || options.setup.threads.size() < 2) return drawn;
+  return write_plot(thread_plot(rows), folder, "speed-up");
 }
 
 int speed(SpeedOptions options) {
   const std::vector<SpeedCase> known = all_speed_cases(options.scenes_folder);
   if (options.common.list) {
-    for (const SpeedCase& one : known) std::cout << one.name << '\n';
+    print_names(all_names(known));
     return kExitOk;
   }
-  if (options.threads.empty()) options.threads = thread_counts();
-  const Result<std::vector<SpeedCase>> cases = choose_cases(options, known);
-  if (!cases) return fail("speed", cases.errors());
-  const Result<std::vector<SpeedRow>> rows = time_cases(cases.value(), options);
-  if (!rows) return fail("speed", rows.errors());
-  const Status written = write_results(rows.value(), options.common.output);
+  if (options.setup.threads.empty()) options.setup.threads = thread_counts();
+  const Result<Choice> choice = choose_cases(options, known);
+  if (!choice) return fail("speed", choice.errors());
+  const bool is_drawn = has_pictures(choice.value());
+  if (is_drawn) {
+    if (const Status found = find_gnuplot(); !found) return fail("speed", found.errors());
+  }
+  const Result<SpeedResults> results = time_all(choice.value(), options);
+  if (!results) return fail("speed", results.errors());
+  Status written = write_results(results.value(), options.common.output);
+  if (written && is_drawn) written = draw_results(results.value().rows, options);
   if (!written) return fail(options.common.output, written.errors());
-  std::cout << "written to " << options.common.output << '\n';
+  std::cout << "\nwritten to " << options.common.output << '\n';
   return kExitOk;
 }
 
@@ -129,13 +201,13 @@ void add_speed_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<SpeedOptions>();
   add_case_options(*command, options->common);
   command
-      ->add_option("--threads", options->threads,
+      ->add_option("--threads", options->setup.threads,
                    "Number of threads; may be given again. Default: 1, 2 and 4, as far as the "
                    "machine has them")
       ->check(thread_count_range())
       ->take_all()
       ->expected(1);
-  add_isa_option(*command, options->instructions);
+  add_isa_option(*command, options->setup.instructions);
   command->add_option("--repetitions", options->repetitions, "Repetitions of each measurement")
       ->check(CLI::Range(1, 1000));
   command->add_option("scenes", options->scenes, "Scenes to time in place of the cases");

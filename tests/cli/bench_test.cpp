@@ -16,7 +16,7 @@ TEST(BenchSpeed, RowsAreConsistent) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Table table = read_csv(folder.file("results/speed.csv"));
   ASSERT_EQ(table.rows.size(), 4u);
-  EXPECT_EQ(lines_of(result.out).size(), table.rows.size() + 2);
+  EXPECT_EQ(lines_of(result.out).size(), table.rows.size() + 3);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     EXPECT_EQ(table.text(row, "case"), test_scene(row < 2 ? "pair" : "mixed"));
     EXPECT_EQ(table.number(row, "threads"), row % 2 == 0 ? 1 : 2);

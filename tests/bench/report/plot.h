@@ -27,6 +27,7 @@ struct LogPlot {
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
+  std::string number_format = "%.0e";  ///< of both axes, as gnuplot has it
 };
 
 /// A number for each pair of two lists of names, as coloured fields.

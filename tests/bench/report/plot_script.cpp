@@ -96,7 +96,9 @@ std::string plot_data(const LogPlot& plot) {
 std::string plot_script(const LogPlot& plot, const std::string& name) {
   std::string text = preamble(name, plot.title, plot.x_label, plot.y_label) +
                      "set logscale xy\n"
-                     "set format xy '%.0e'\n"
+                     "set format xy " +
+                     quoted(plot.number_format) +
+                     "\n"
                      "set grid\n"
                      "set key outside right\n"
                      "plot";

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -107,32 +108,84 @@ SpeedRow describe_scene(const std::string& name, const Simulation& simulation) {
   return row;
 }
 
-/// One scene under measurement: a row for each number of threads.
-class Measurement {
- public:
-  Measurement(Simulation& simulation, SwitchRunner& runner, std::vector<SpeedRow>& rows,
-              std::uint64_t steps)
-      : simulation_(simulation),
-        runner_(runner),
-        rows_(rows),
-        steps_(steps),
-        start_(simulation.snapshot()) {}
+Real median_of_sorted(const std::vector<Real>& values) {
+  const std::size_t middle = values.size() / 2;
+  if (values.size() % 2 == 1) return values[middle];
+  return 0.5 * (values[middle - 1] + values[middle]);
+}
 
-  /// Fills all of each row but what belongs to the scene.
-  Status run(const SpeedSettings& settings) {
+/// Repeats until there are enough, or the time is up.
+template <class Repeat>
+Status repeat_within(const SpeedSettings& settings, Repeat&& repeat) {
+  const Clock::time_point begin = Clock::now();
+  for (int i = 0; i < settings.repetitions; ++i) {
+    if (i > 0 && seconds_since(begin) > settings.longest_time) break;
+    if (Status done = repeat(); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+/// A scene under measurement: a row for each number of threads.
+class TimedScene {
+ public:
+  static Result<std::unique_ptr<TimedScene>> start(const std::string& name, const Scene& scene,
+                                                   const SpeedSetup& setup,
+                                                   const SpeedSettings& settings) {
+    auto runner = std::make_unique<SwitchRunner>(setup.threads);
     const Clock::time_point begin = Clock::now();
-    for (int i = 0; i < settings.repetitions; ++i) {
-      if (i > 0 && seconds_since(begin) > settings.longest_time) break;
-      for (std::size_t n = 0; n < rows_.size(); ++n) {
-        runner_.choose(n);
-        if (Status done = time_repetition(rows_[n]); !done) return done;
-      }
+    Result<Simulation> created = Simulation::create(scene, runner.get(), setup.instructions);
+    if (!created) return created.errors();
+    const Real creation = seconds_since(begin);
+    Simulation& simulation = created.value();
+    const Result<AdvanceReport> warmed_up =
+        advance_by(simulation, steps_of(simulation, settings.warm_up));
+    if (!warmed_up) return warmed_up.errors();
+    SpeedRow row = describe_scene(name, simulation);
+    row.creation = creation;
+    return std::unique_ptr<TimedScene>(new TimedScene(std::move(runner), std::move(simulation), row,
+                                                      setup.threads, settings.measured));
+  }
+
+  /// Times it once with each number of threads.
+  Status repeat() {
+    for (std::size_t n = 0; n < rows_.size(); ++n) {
+      runner_->choose(n);
+      if (Status done = time_repetition(rows_[n]); !done) return done;
     }
-    for (SpeedRow& row : rows_) std::ranges::sort(row.seconds);
-    return look_within();
+    return {};
+  }
+
+  std::size_t bytes_of_snapshot() const { return bytes_of_snapshot_; }
+
+  /// Looks at the steps from within, and gives the rows.
+  Result<std::vector<SpeedRow>> finish() {
+    simulation_.restore(start_);
+    const Result<FlowFigures> flow =
+        sample_flow(simulation_, steps_, rows_.front().liquid_particles > 0);
+    if (!flow) return flow.errors();
+    if (Status same = check_hash("looked at step by step"); !same) return same.errors();
+    for (SpeedRow& row : rows_) {
+      row.flow = flow.value();
+      std::ranges::sort(row.seconds);
+    }
+    return rows_;
   }
 
  private:
+  TimedScene(std::unique_ptr<SwitchRunner> runner, Simulation simulation, const SpeedRow& row,
+             const std::vector<std::size_t>& threads, Real measured)
+      : runner_(std::move(runner)),
+        simulation_(std::move(simulation)),
+        rows_(threads.size(), row),
+        steps_(steps_of(simulation_, measured)),
+        bytes_of_snapshot_(heap_in_use()),
+        start_(simulation_.snapshot()) {
+    bytes_of_snapshot_ = heap_in_use() - bytes_of_snapshot_;
+    for (std::size_t n = 0; n < rows_.size(); ++n) rows_[n].threads = threads[n];
+  }
+
   Status time_repetition(SpeedRow& row) {
     simulation_.restore(start_);
     const Real begin_time = simulation_.time();
@@ -154,15 +207,6 @@ class Measurement {
     return check_hash("with " + std::to_string(row.threads) + " threads");
   }
 
-  Status look_within() {
-    simulation_.restore(start_);
-    const Result<FlowFigures> flow =
-        sample_flow(simulation_, steps_, rows_.front().liquid_particles > 0);
-    if (!flow) return flow.errors();
-    for (SpeedRow& row : rows_) row.flow = flow.value();
-    return check_hash("looked at step by step");
-  }
-
   /// All repetitions end in one state.
   Status check_hash(const std::string& which) {
     const std::uint64_t hash = simulation_.state_hash();
@@ -173,21 +217,14 @@ class Measurement {
                      std::to_string(rows_.front().threads) + " threads"};
   }
 
-  Simulation& simulation_;
-  SwitchRunner& runner_;
-  std::vector<SpeedRow>& rows_;
+  std::unique_ptr<SwitchRunner> runner_;
+  Simulation simulation_;
+  std::vector<SpeedRow> rows_;
   std::uint64_t steps_;
+  std::size_t bytes_of_snapshot_;
   Snapshot start_;
   std::optional<std::uint64_t> hash_;
 };
-
-Real median_of_sorted(const std::vector<Real>& values) {
-  const std::size_t middle = values.size() / 2;
-  if (values.size() % 2 == 1) return values[middle];
-  return 0.5 * (values[middle - 1] + values[middle]);
-}
-
-}  // namespace
 
 Real SpeedRow::median_seconds() const {
   return median_of_sorted(seconds);
@@ -214,33 +251,45 @@ Real SpeedRow::real_time_factor() const {
 }
 
 Result<std::vector<SpeedRow>> measure(const std::string& name, const Scene& scene,
-                                      const std::vector<std::size_t>& thread_counts,
-                                      InstructionSet instructions, const SpeedSettings& settings) {
-  SwitchRunner runner(thread_counts);
+                                      const SpeedSetup& setup, const SpeedSettings& settings) {
   const std::size_t heap_before = heap_in_use();
-  const Clock::time_point begin = Clock::now();
-  Result<Simulation> created = Simulation::create(scene, &runner, instructions);
-  if (!created) return created.errors();
-  const Real creation = seconds_since(begin);
-  Simulation& simulation = created.value();
-  const Result<AdvanceReport> warmed_up =
-      advance_by(simulation, steps_of(simulation, settings.warm_up));
-  if (!warmed_up) return warmed_up.errors();
-
-  SpeedRow row = describe_scene(name, simulation);
-  row.creation = creation;
-  std::vector<SpeedRow> rows(thread_counts.size(), row);
-  for (std::size_t n = 0; n < rows.size(); ++n) rows[n].threads = thread_counts[n];
-  {
-    Measurement measurement(simulation, runner, rows, steps_of(simulation, settings.measured));
-    if (Status done = measurement.run(settings); !done) return done.errors();
+  const Result<std::unique_ptr<TimedScene>> timed = TimedScene::start(name, scene, setup, settings);
+  if (!timed) return timed.errors();
+  const Status done = repeat_within(settings, [&] { return timed.value()->repeat(); });
+  if (!done) return done.errors();
+  const std::size_t heap = heap_in_use() - timed.value()->bytes_of_snapshot();
+  Result<std::vector<SpeedRow>> rows = timed.value()->finish();
+  if (!rows) return rows;
+  for (SpeedRow& row : rows.value()) {
+    if (heap <= heap_before) continue;
+    row.bytes_per_particle =
+        static_cast<Real>(heap - heap_before) / static_cast<Real>(row.particles);
   }
-  const std::size_t heap_after = heap_in_use();
-  for (SpeedRow& each : rows) {
-    each.bytes_per_particle =
-        heap_after > heap_before
-            ? static_cast<Real>(heap_after - heap_before) / static_cast<Real>(row.particles)
-            : std::numeric_limits<Real>::quiet_NaN();
+  return rows;
+}
+
+Result<std::vector<SpeedRow>> measure_in_turn(const std::vector<NamedScene>& scenes,
+                                              const SpeedSetup& setup,
+                                              const SpeedSettings& settings) {
+  std::vector<std::unique_ptr<TimedScene>> all;
+  for (const NamedScene& one : scenes) {
+    Result<std::unique_ptr<TimedScene>> timed =
+        TimedScene::start(one.name, one.scene, setup, settings);
+    if (!timed) return timed.errors();
+    all.push_back(std::move(timed).value());
+  }
+  const Status done = repeat_within(settings, [&]() -> Status {
+    for (const auto& timed : all) {
+      if (Status repeated = timed->repeat(); !repeated) return repeated;
+    }
+    return {};
+  });
+  if (!done) return done.errors();
+  std::vector<SpeedRow> rows;
+  for (const auto& timed : all) {
+    const Result<std::vector<SpeedRow>> some = timed->finish();
+    if (!some) return some.errors();
+    rows.insert(rows.end(), some.value().begin(), some.value().end());
   }
   return rows;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,9 +45,11 @@ struct SpeedRow {
   std::uint64_t undone_steps = 0;  ///< of them, by the guard
   Real simulated = 0;              ///< [s] of one repetition
   FlowFigures flow;
-  Real bytes_per_particle = 0;   ///< of the heap, after all repetitions; a snapshot is not counted
-  Real creation = 0;             ///< [s] wall time from scene to simulation
-  std::uint64_t state_hash = 0;  ///< after a repetition
+  /// Of the heap, after all repetitions, without the snapshot that they start from; not a number
+  /// where nothing tells.
+  Real bytes_per_particle = std::numeric_limits<Real>::quiet_NaN();
+  Real creation = 0;                      ///< [s] wall time from scene to simulation
+  std::uint64_t state_hash = 0;           ///< after a repetition
   std::vector<StageClock::Stage> stages;  ///< of the fastest repetition
 
   Real median_seconds() const;
@@ -57,10 +60,26 @@ struct SpeedRow {
   Real real_time_factor() const;
 };
 
+/// What a scene is run with.
+struct SpeedSetup {
+  std::vector<std::size_t> threads;  ///< at least one number
+  InstructionSet instructions = InstructionSet::baseline;
+};
+
 /// Times one scene with each number of threads, in turn. Fails where the scene is invalid, a step
 /// fails, or two repetitions end in different states.
 Result<std::vector<SpeedRow>> measure(const std::string& name, const Scene& scene,
-                                      const std::vector<std::size_t>& thread_counts,
-                                      InstructionSet instructions, const SpeedSettings& settings);
+                                      const SpeedSetup& setup, const SpeedSettings& settings);
+
+struct NamedScene {
+  std::string name;
+  Scene scene;
+};
+
+/// The same of several scenes that take turns, so that their ratios belong to one run: all rows of
+/// the first, then those of the next. Their memory is not told apart.
+Result<std::vector<SpeedRow>> measure_in_turn(const std::vector<NamedScene>& scenes,
+                                              const SpeedSetup& setup,
+                                              const SpeedSettings& settings);
 
 }  // namespace vat::bench

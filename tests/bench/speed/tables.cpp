@@ -1,6 +1,8 @@
 #include "tests/bench/speed/tables.h"
 
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <iomanip>
 #include <string>
 
@@ -29,7 +31,7 @@ std::string hash_of(const SpeedRow& row) {
 std::string four_digits(Real value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.4g", value);
-  return buffer;
+  return std::isfinite(value) ? buffer : "-";
 }
 
 /// A column of speed_table().

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/bench/report/table.h"
+#include "tests/bench/speed/measure.h"
+#include "tests/bench/speed/skips.h"
+
+namespace vat::bench {
+
+/// A figure that is aimed at, and what was measured.
+struct Target {
+  std::string what;
+  Real limit = 0;
+  bool is_least = false;  ///< the limit is the least that is good, not the most
+  Real measured = 0;
+
+  bool passed() const { return is_least ? measured >= limit : measured <= limit; }
+};
+
+/// The targets of which these rows tell something.
+std::vector<Target> targets_of(const std::vector<SpeedRow>& rows,
+                               const std::vector<SkipResult>& skips);
+
+Table target_table(const std::vector<Target>& targets);
+
+}  // namespace vat::bench
