@@ -22,7 +22,7 @@ std::string hash_of(const std::string& scene, const std::vector<std::string>& op
   arguments.insert(arguments.end(), options.begin(), options.end());
   const ProgramResult result = run_vat(arguments);
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, MatchesRegex("hash [0-9a-f]{16}\n"));
+  EXPECT_THAT(result.out, MatchesRegex("hash [0-9a-f]{16} [a-z0-9]+\n"));
   return result.out;
 }
 
@@ -152,7 +152,7 @@ TEST(Simulate, PlanAloneDoesNotRun) {
   const ProgramResult both =
       run_vat({"simulate", test_scene("mixed"), "--plan", "--hash", "--until", "0.02"});
   EXPECT_THAT(both.out, testing::StartsWith(plan.out));
-  EXPECT_THAT(lines_of(both.out).back(), MatchesRegex("hash [0-9a-f]{16}"));
+  EXPECT_THAT(lines_of(both.out).back(), MatchesRegex("hash [0-9a-f]{16} [a-z0-9]+"));
 }
 
 TEST(Simulate, ProfileNamesTheStagesOfThePlan) {

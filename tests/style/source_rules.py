@@ -9,7 +9,7 @@ MAX_LINES = 500
 # What each layer may include: prefixes of "quoted" headers and of <angled> ones with a folder or
 # an ending of their own. Headers of the standard library have neither.
 LAYERS = {
-    "core/": (("core/",), ("Eigen/",)),
+    "core/": (("core/",), ("Eigen/", "hwy/")),
     "protocol/": (("core/", "protocol/"), ("nlohmann/", "tiny_obj_loader.h")),
     "server/": (
         ("core/", "protocol/", "server/"),
