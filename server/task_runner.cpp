@@ -4,10 +4,111 @@
 #include <utility>
 
 namespace vat {
+namespace {
 
-ThreadPoolRunner::ThreadPoolRunner(std::size_t thread_count) {
+using std::chrono::microseconds;
+
+// How long a thread looks again before it sleeps: a few times what it takes to wake one. Passes of
+// a step follow one another faster, ticks do not.
+constexpr microseconds kPatience(50);
+// What is left of a run, if its caller did it alone, where a sleeping helper is woken.
+constexpr microseconds kWorthWaking(40);
+constexpr int kLooksPerTime = 16;
+
+thread_local bool is_in_block = false;
+
+void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+/// Looks until `done()`, at most until `end`; true where it was. It does not yield: on a busy
+/// machine that costs a thread the rest of its share, and its caller or its helpers wait for it.
+template <class Done>
+bool look_until(std::chrono::steady_clock::time_point end, const Done& done) {
+  do {
+    for (int i = 0; i < kLooksPerTime; ++i) {
+      if (done()) return true;
+      pause();
+    }
+  } while (std::chrono::steady_clock::now() < end);
+  return done();
+}
+
+}  // namespace
+
+// A job is open from when its caller has filled it in until the caller finds no more blocks.
+// Helpers come in by counting themselves, and read the rest only where it was open then. From its
+// end on none can come in; those at work are waited for, so that none sees the next job's blocks.
+struct ThreadPoolRunner::Job {
+  static constexpr std::uint32_t kClosed = 1U << 31;
+
+  alignas(64) std::atomic<std::size_t> next = 0;  // the first block not yet begun
+  std::atomic<std::size_t> end = 0;
+  const Block* block = nullptr;
+  std::mutex error_mutex;
+  std::exception_ptr error;                                 // the first one thrown
+  alignas(64) std::atomic<std::uint32_t> inside = kClosed;  // helpers, and kClosed
+  std::atomic<bool> is_taken = false;
+
+  std::size_t blocks_left() const {
+    const std::size_t begun = next.load(std::memory_order_relaxed);
+    const std::size_t all = end.load(std::memory_order_relaxed);
+    return begun < all ? all - begun : 0;
+  }
+
+  /// False where it is not open, or no block is left.
+  bool enter() {
+    if (blocks_left() == 0) return false;
+    if ((inside.fetch_add(1, std::memory_order_acq_rel) & kClosed) == 0) return true;
+    leave();
+    return false;
+  }
+  void leave() {
+    if (inside.fetch_sub(1, std::memory_order_acq_rel) == (kClosed | 1)) inside.notify_one();
+  }
+  void open(const Block& task, std::size_t first, std::size_t block_count) {
+    block = &task;
+    end.store(block_count, std::memory_order_relaxed);
+    next.store(first, std::memory_order_relaxed);
+    inside.fetch_and(~kClosed, std::memory_order_acq_rel);
+  }
+  void close() {
+    std::uint32_t now = inside.fetch_or(kClosed, std::memory_order_acq_rel) | kClosed;
+    const auto is_empty = [&] {
+      now = inside.load(std::memory_order_acquire);
+      return now == kClosed;
+    };
+    if (now == kClosed || look_until(Clock::now() + kPatience, is_empty)) return;
+    for (; now != kClosed; now = inside.load(std::memory_order_acquire)) inside.wait(now);
+  }
+
+  /// Does the next block; false where none is left.
+  bool do_block() {
+    // Relaxed: opening and leaving order the data between the caller and the helpers.
+    const std::size_t b = next.fetch_add(1, std::memory_order_relaxed);
+    if (b >= end.load(std::memory_order_relaxed)) return false;
+    is_in_block = true;
+    try {
+      (*block)(b);
+    } catch (...) {
+      next.store(end.load(std::memory_order_relaxed), std::memory_order_relaxed);
+      const std::lock_guard lock(error_mutex);
+      if (!error) error = std::current_exception();
+    }
+    is_in_block = false;
+    return true;
+  }
+};
+
+ThreadPoolRunner::ThreadPoolRunner(std::size_t thread_count)
+    : thread_count_(std::max<std::size_t>(1, thread_count)) {
   try {
-    while (helpers_.size() + 1 < thread_count) helpers_.emplace_back([this] { help(); });
+    while (jobs_.size() < thread_count_) jobs_.push_back(std::make_unique<Job>());
+    while (helpers_.size() + 1 < thread_count_) {
+      helpers_.emplace_back([this, number = helpers_.size()] { help(number); });
+    }
   } catch (...) {
     stop();
     throw;
@@ -19,79 +120,118 @@ ThreadPoolRunner::~ThreadPoolRunner() {
 }
 
 void ThreadPoolRunner::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  wake_.notify_all();
+  stopping_ = true;
+  ++calls_;
+  calls_.notify_all();
   for (std::thread& helper : helpers_) helper.join();
 }
 
 void ThreadPoolRunner::run(std::size_t block_count, const Block& block) {
-  const bool alone = helpers_.empty() || block_count < 2 || running_.exchange(true);
-  if (alone) {
-    for (std::size_t b = 0; b < block_count; ++b) block(b);
+  const std::size_t begun = begin_alone(block_count, block);
+  if (begun == block_count) return;
+  Job* const job = take_job();
+  if (job == nullptr) {
+    for (std::size_t b = begun; b < block_count; ++b) block(b);
     return;
   }
-  open_job(block, block_count);
-  work(block, block_count);
-  const std::exception_ptr error = close_job();
-  running_.store(false);
+  job->open(block, begun, block_count);
+  ++calls_;
+  if (begun > 0) calls_.notify_one();
+  work_as_caller(*job);
+  job->close();
+  const std::exception_ptr error = std::exchange(job->error, nullptr);
+  job->is_taken.store(false, std::memory_order_release);
   if (error) std::rethrow_exception(error);
 }
 
-void ThreadPoolRunner::open_job(const Block& block, std::size_t block_count) {
-  {
-    const std::lock_guard lock(mutex_);
-    block_ = &block;
-    block_count_ = block_count;
-    next_block_.store(0, std::memory_order_relaxed);
-    ++job_;
+// Does the blocks that are better done alone: all where nobody may help, and while all sleep as
+// many as it takes to see that the rest is worth waking someone. The number of them.
+std::size_t ThreadPoolRunner::begin_alone(std::size_t block_count, const Block& block) const {
+  const bool nobody_helps = block_count < 2 || is_in_block || helper_limit() == 0;
+  if (!nobody_helps && sleepers_ + 1 < thread_count_) return 0;
+  const Clock::time_point begin = nobody_helps ? Clock::time_point() : Clock::now();
+  for (std::size_t b = 0; b < block_count; ++b) {
+    block(b);
+    if (nobody_helps) continue;
+    if (is_worth_waking(Clock::now() - begin, b + 1, block_count - b - 1)) return b + 1;
   }
-  // The caller takes a block itself.
-  const std::size_t wanted = std::min(helpers_.size(), block_count - 1);
-  for (std::size_t i = 0; i < wanted; ++i) wake_.notify_one();
+  return block_count;
 }
 
-// From here on no helper can join; those at work are waited for, so that none sees the next job's
-// counters or a block function that is gone.
-std::exception_ptr ThreadPoolRunner::close_job() {
-  std::unique_lock lock(mutex_);
-  block_ = nullptr;
-  idle_.wait(lock, [this] { return busy_count_ == 0; });
-  return std::exchange(error_, nullptr);
-}
-
-void ThreadPoolRunner::work(const Block& block, std::size_t block_count) {
-  try {
-    for (;;) {
-      // Relaxed: the mutex orders the data between the caller and the helpers.
-      const std::size_t b = next_block_.fetch_add(1, std::memory_order_relaxed);
-      if (b >= block_count) return;
-      block(b);
+ThreadPoolRunner::Job* ThreadPoolRunner::take_job() {
+  for (const auto& job : jobs_) {
+    if (!job->is_taken.load(std::memory_order_relaxed) &&
+        !job->is_taken.exchange(true, std::memory_order_acquire)) {
+      return job.get();
     }
-  } catch (...) {
-    next_block_.store(block_count, std::memory_order_relaxed);
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = std::current_exception();
+  }
+  return nullptr;
+}
+
+// Some may sleep while others are awake.
+void ThreadPoolRunner::work_as_caller(Job& job) {
+  bool may_wake = sleepers_ > 0;
+  const Clock::time_point begin = may_wake ? Clock::now() : Clock::time_point();
+  for (std::size_t done = 1; job.do_block(); ++done) {
+    if (may_wake && is_worth_waking(Clock::now() - begin, done, job.blocks_left())) {
+      calls_.notify_one();  // who comes calls the next
+      may_wake = false;
+    }
   }
 }
 
-void ThreadPoolRunner::help() {
-  std::uint64_t last_job = 0;
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    wake_.wait(lock, [&] { return stopping_ || (block_ != nullptr && job_ != last_job); });
-    if (stopping_) return;
-    last_job = job_;
-    const Block& block = *block_;
-    const std::size_t block_count = block_count_;
-    ++busy_count_;
-    lock.unlock();
-    work(block, block_count);
-    lock.lock();
-    if (--busy_count_ == 0) idle_.notify_one();
+bool ThreadPoolRunner::is_worth_waking(Clock::duration elapsed, std::size_t done,
+                                       std::size_t left) const {
+  return elapsed * static_cast<Clock::rep>(left) >= kWorthWaking * static_cast<Clock::rep>(done) &&
+         busy_ < helper_limit();
+}
+
+std::size_t ThreadPoolRunner::helper_limit() const {
+  const std::size_t others = std::max<std::size_t>(1, guests_.load(std::memory_order_relaxed));
+  return others < thread_count_ ? thread_count_ - others : 0;
+}
+
+void ThreadPoolRunner::help(std::size_t number) {
+  pthread_setname_np(pthread_self(), kThreadName);
+  bool has_slept = true;
+  Clock::time_point end_of_patience;
+  while (!stopping_) {
+    const std::uint32_t seen = calls_;
+    if (help_any(number, has_slept)) {
+      has_slept = false;
+      end_of_patience = Clock::now() + kPatience;
+      continue;
+    }
+    // Calls of jobs that it may not help with leave its patience as it is.
+    const auto is_called = [&] { return calls_.load(std::memory_order_relaxed) != seen; };
+    if (look_until(end_of_patience, is_called)) continue;
+    ++sleepers_;
+    calls_.wait(seen);
+    --sleepers_;
+    has_slept = true;
+    end_of_patience = Clock::now() + kPatience;
   }
+}
+
+bool ThreadPoolRunner::help_any(std::size_t number, bool has_slept) {
+  bool has_helped = false;
+  if (++busy_ <= helper_limit()) {
+    // Each begins at a job of its own, so that helpers spread over the callers.
+    for (std::size_t i = 0; i < jobs_.size() && !has_helped; ++i) {
+      has_helped = help_with(*jobs_[(number + i) % jobs_.size()], has_slept);
+    }
+  }
+  --busy_;
+  return has_helped;
+}
+
+bool ThreadPoolRunner::help_with(Job& job, bool has_slept) {
+  if (!job.enter()) return false;
+  if (has_slept && sleepers_ > 0 && job.blocks_left() > 1) calls_.notify_one();
+  while (busy_.load(std::memory_order_relaxed) <= helper_limit() && job.do_block()) {
+  }
+  job.leave();
+  return true;
 }
 
 }  // namespace vat

@@ -148,7 +148,9 @@ void add_options(CLI::App& command, Options& options) {
       ->capture_default_str();
   command.add_option("--scenes", options.scenes_folder, "Folder of the catalogue");
   command.add_option("--web", options.web_folder, "Folder of the built viewer");
-  command.add_option("--threads", options.threads, "Threads that step sessions; 0: one per core")
+  command
+      .add_option("--threads", options.threads,
+                  "Threads that step sessions, and share the steps of the few; 0: one per core")
       ->check(CLI::Range(std::size_t{0}, kMaxThreads))
       ->capture_default_str();
   add_isa_option(command, options.instructions);

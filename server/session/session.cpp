@@ -74,6 +74,7 @@ void Session::schedule(void (Session::*turn)()) {
 
 void Session::run_turn(void (Session::*turn)()) {
   if (closed_) return;
+  const ThreadPoolRunner::Guest guest(core_.environment().runner);
   try {
     (this->*turn)();
     end_turn();

@@ -27,8 +27,9 @@ SessionId to_id(std::uint64_t number) {
 SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings settings)
     : catalogue_(catalogue),
       settings_(std::move(settings)),
-      environment_{catalogue_, settings_.limits, settings_.instructions},
-      pool_(thread_count(settings_.threads)),
+      runner_(thread_count(settings_.threads)),
+      environment_{catalogue_, settings_.limits, settings_.instructions, runner_},
+      pool_(runner_.thread_count()),
       creations_(boost::asio::make_strand(pool_)) {}
 
 SessionDirectory::~SessionDirectory() {
@@ -91,6 +92,7 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
   if (auto error = refuse_session_locked()) return error;
   boost::asio::post(creations_, [this, caller = std::move(caller), name = std::move(name),
                                  scene = std::move(scene)]() mutable {
+    const ThreadPoolRunner::Guest guest(runner_);
     try {
       caller.answer(create_from(scene, std::move(name)));
     } catch (const std::exception& error) {

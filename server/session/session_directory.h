@@ -73,8 +73,11 @@ class SessionDirectory {
 
   const Catalogue& catalogue_;
   const ServerSettings settings_;
+  // Three that outlive the sessions. The runner's threads help with their steps as far as the
+  // pool's have nothing to do.
+  ThreadPoolRunner runner_;
   const SessionEnvironment environment_;
-  boost::asio::thread_pool pool_;  // outlives the sessions
+  boost::asio::thread_pool pool_;
   // Creations come one after the other: they take one thread from the sessions at most.
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations_;
 

@@ -3,6 +3,7 @@
 #include "core/support/instruction_set.h"
 #include "protocol/scene_json.h"
 #include "server/limits.h"
+#include "server/task_runner.h"
 
 namespace vat {
 
@@ -11,6 +12,7 @@ struct SessionEnvironment {
   const Catalogue& catalogue;
   const ServerLimits& limits;
   InstructionSet instructions;
+  ThreadPoolRunner& runner;  ///< for the blocks of all sessions' steps
 };
 
 }  // namespace vat

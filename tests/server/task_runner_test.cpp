@@ -5,6 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -93,20 +95,103 @@ bool meet(std::atomic<int>& arrived) {
 
 TEST(TaskRunner, TheCallerAndASleepingHelperWorkAtOnce) {
   ThreadPoolRunner runner(2);
-  const auto caller = std::this_thread::get_id();
   for (int i = 0; i < 3; ++i) {
     // Long enough for the helper to fall asleep, as a rule: the test holds for one that has not.
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     std::atomic<int> arrived = 0;
     std::atomic<int> met = 0;
-    std::atomic<int> by_caller = 0;
-    runner.run(2, [&](std::size_t) {
-      if (std::this_thread::get_id() == caller) ++by_caller;
-      if (meet(arrived)) ++met;
+    runner.run(3, [&](std::size_t b) {
+      if (b == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));  // worth waking someone
+      } else if (meet(arrived)) {
+        ++met;
+      }
     });
     ASSERT_EQ(met, 2);
-    ASSERT_EQ(by_caller, 1);
   }
+}
+
+// All but the run that the system happens to interrupt.
+TEST(TaskRunner, ShortRunsWakeNobody) {
+  constexpr int kRuns = 100;
+  ThreadPoolRunner runner(4);
+  const auto caller = std::this_thread::get_id();
+  int alone = 0;
+  for (int i = 0; i < kRuns; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::atomic<int> by_others = 0;
+    runner.run(8, [&](std::size_t) {
+      if (std::this_thread::get_id() != caller) ++by_others;
+    });
+    if (by_others == 0) ++alone;
+  }
+  EXPECT_GE(alone, kRuns * 9 / 10);
+}
+
+/// Runs blocks of a millisecond each, so that all helpers come; who did them.
+std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner) {
+  std::mutex mutex;
+  std::set<std::thread::id> ids;
+  runner.run(60, [&](std::size_t) {
+    {
+      const std::lock_guard lock(mutex);
+      ids.insert(std::this_thread::get_id());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  return ids;
+}
+
+TEST(TaskRunner, GuestsTakeThePlacesOfHelpers) {
+  ThreadPoolRunner runner(3);
+  EXPECT_EQ(threads_of_a_long_run(runner).size(), 3U);
+  const ThreadPoolRunner::Guest caller(runner);
+  EXPECT_EQ(threads_of_a_long_run(runner).size(), 3U) << "the first guest is the caller";
+  {
+    const ThreadPoolRunner::Guest second(runner);
+    const ThreadPoolRunner::Guest third(runner);
+    EXPECT_EQ(threads_of_a_long_run(runner), std::set{std::this_thread::get_id()});
+    const ThreadPoolRunner::Guest fourth(runner);
+    EXPECT_EQ(threads_of_a_long_run(runner), std::set{std::this_thread::get_id()});
+  }
+  EXPECT_EQ(threads_of_a_long_run(runner).size(), 3U);
+}
+
+// A helper may be about to begin a block as the guests come, but no more than that one.
+TEST(TaskRunner, HelpersLeaveForGuests) {
+  constexpr std::size_t kThreads = 4;
+  ThreadPoolRunner runner(kThreads);
+  const auto caller = std::this_thread::get_id();
+  std::vector<std::unique_ptr<ThreadPoolRunner::Guest>> guests;
+  std::atomic<bool> guests_are_there = false;
+  std::atomic<std::size_t> helped_before = 0;
+  std::atomic<std::size_t> helped_later = 0;
+  int own_blocks = 0;
+  runner.run(200, [&](std::size_t) {
+    if (std::this_thread::get_id() != caller) {
+      ++(guests_are_there ? helped_later : helped_before);
+    } else if (++own_blocks == 10) {
+      while (guests.size() < kThreads) {
+        guests.push_back(std::make_unique<ThreadPoolRunner::Guest>(runner));
+      }
+      guests_are_there = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  EXPECT_GT(helped_before, 0U);
+  EXPECT_LE(helped_later, kThreads - 1);
+}
+
+TEST(TaskRunner, TwoCallersAreBothHelped) {
+  ThreadPoolRunner runner(4);
+  std::vector<std::set<std::thread::id>> ids(2);
+  {
+    std::vector<std::jthread> callers;
+    for (auto& own : ids) {
+      callers.emplace_back([&runner, &own] { own = threads_of_a_long_run(runner); });
+    }
+  }
+  for (const auto& own : ids) EXPECT_GE(own.size(), 2U);
 }
 
 TEST(TaskRunner, RunWithinABlockIsDoneByThatBlock) {
@@ -160,11 +245,15 @@ TEST(TaskRunner, WaitingThreadsSleep) {
 
   const auto caller = std::this_thread::get_id();
   std::atomic<int> arrived = 0;
-  const auto wait_for_helper = [&](std::size_t) {
+  const auto wait_for_helper = [&](std::size_t b) {
+    if (b == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // worth waking someone
+      return;
+    }
     meet(arrived);
     if (std::this_thread::get_id() != caller) std::this_thread::sleep_for(kWait);
   };
-  EXPECT_LT(processor_load([&] { runner.run(2, wait_for_helper); }), kMaxLoad);
+  EXPECT_LT(processor_load([&] { runner.run(3, wait_for_helper); }), kMaxLoad);
 }
 
 }  // namespace
