@@ -89,6 +89,22 @@ TEST(BenchSpeedFigures, HeapGrowsByWhatIsAllocated) {
   EXPECT_NEAR(static_cast<double>(heap_in_use() - before), 1e7, 1e5);
 }
 
+// At least positions and velocities, and what diagnostics keep beside that; without the snapshot,
+// of which a second simulation of the same size tells the size.
+TEST(BenchSpeedFigures, MemoryIsThatOfTheSimulation) {
+  if (heap_in_use() == 0) GTEST_SKIP() << "this build's allocator does not tell";
+  const Scene scene = dam_break(12, PressureSolver::tait);
+  const SpeedSettings settings{.warm_up = 0, .measured = 0.02, .repetitions = 1};
+  const auto rows = measure("x", scene, {{1}, InstructionSet::baseline}, settings).value();
+  const std::size_t before = heap_in_use();
+  Simulation simulation = Simulation::create(scene, nullptr, InstructionSet::baseline).value();
+  simulation.advance(simulation.steps_per_tick());
+  const auto bytes = static_cast<Real>(heap_in_use() - before) / (2 * 12 * 12 * 12);
+  EXPECT_GT(bytes, 2 * sizeof(Vec3));
+  EXPECT_NEAR(rows[0].bytes_per_particle, bytes, 0.05 * bytes);
+  EXPECT_GE(rows[0].bytes_with_diagnostics, rows[0].bytes_per_particle);
+}
+
 // The scene of all sizes is one scene, and the peer's has the peer's numbers of particles.
 TEST(BenchSpeedScenes, SizesAreThoseOfTheirNames) {
   for (const SpeedCase& one : all_speed_cases(VAT_SOURCE_DIR "/protocol/scenes")) {

@@ -255,15 +255,18 @@ Result<std::vector<SpeedRow>> measure(const std::string& name, const Scene& scen
   const std::size_t heap_before = heap_in_use();
   const Result<std::unique_ptr<TimedScene>> timed = TimedScene::start(name, scene, setup, settings);
   if (!timed) return timed.errors();
+  const auto bytes_of_simulation = [&] {
+    return heap_in_use() - timed.value()->bytes_of_snapshot() - heap_before;
+  };
   const Status done = repeat_within(settings, [&] { return timed.value()->repeat(); });
   if (!done) return done.errors();
-  const std::size_t heap = heap_in_use() - timed.value()->bytes_of_snapshot();
+  const std::size_t bytes = bytes_of_simulation();
   Result<std::vector<SpeedRow>> rows = timed.value()->finish();
-  if (!rows) return rows;
+  if (!rows || heap_before == 0) return rows;
   for (SpeedRow& row : rows.value()) {
-    if (heap <= heap_before) continue;
-    row.bytes_per_particle =
-        static_cast<Real>(heap - heap_before) / static_cast<Real>(row.particles);
+    const auto particles = static_cast<Real>(row.particles);
+    row.bytes_per_particle = static_cast<Real>(bytes) / particles;
+    row.bytes_with_diagnostics = static_cast<Real>(bytes_of_simulation()) / particles;
   }
   return rows;
 }

@@ -48,6 +48,8 @@ struct SpeedRow {
   /// Of the heap, after all repetitions, without the snapshot that they start from; not a number
   /// where nothing tells.
   Real bytes_per_particle = std::numeric_limits<Real>::quiet_NaN();
+  /// The same once diagnostics have been measured, which keep memory of their own.
+  Real bytes_with_diagnostics = std::numeric_limits<Real>::quiet_NaN();
   Real creation = 0;                      ///< [s] wall time from scene to simulation
   std::uint64_t state_hash = 0;           ///< after a repetition
   std::vector<StageClock::Stage> stages;  ///< of the fastest repetition

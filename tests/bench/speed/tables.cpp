@@ -13,7 +13,7 @@ namespace vat::bench {
 namespace {
 
 constexpr std::size_t kColumnCount = 11;
-constexpr std::array<int, kColumnCount> kWidths = {36, 10, 8, 7, 11, 11, 11, 11, 9, 10, 18};
+constexpr std::array<int, kColumnCount> kWidths = {36, 10, 8, 7, 11, 11, 11, 11, 11, 10, 18};
 
 void print_columns(std::ostream& out, const std::array<std::string, kColumnCount>& texts) {
   for (std::size_t i = 0; i < kColumnCount; ++i) {
@@ -70,6 +70,8 @@ constexpr Column kColumns[] = {
      [](const SpeedRow& row) -> Cell { return row.flow.velocity_iterations; }},
     {"place iterations", [](const SpeedRow& row) -> Cell { return row.flow.place_iterations; }},
     {"bytes per particle", [](const SpeedRow& row) -> Cell { return row.bytes_per_particle; }},
+    {"bytes per particle with diagnostics",
+     [](const SpeedRow& row) -> Cell { return row.bytes_with_diagnostics; }},
     {"creation [s]", [](const SpeedRow& row) -> Cell { return row.creation; }},
     {"state hash", [](const SpeedRow& row) -> Cell { return hash_of(row); }},
 };
