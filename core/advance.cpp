@@ -16,6 +16,20 @@ namespace {
 
 constexpr int kMaxHalvings = 3;
 
+/// Tells the observer, if any, that a call has ended, however it did.
+class ObservedCall {
+ public:
+  explicit ObservedCall(StageObserver* observer) : observer_(observer) {}
+  ~ObservedCall() {
+    if (observer_ != nullptr) observer_->stages_end();
+  }
+  ObservedCall(const ObservedCall&) = delete;
+  ObservedCall& operator=(const ObservedCall&) = delete;
+
+ private:
+  StageObserver* observer_;
+};
+
 }  // namespace
 
 void Simulation::Impl::take_unguarded_step(const ForceModel& force_model, Real start, Real dt,
@@ -42,6 +56,7 @@ void Simulation::Impl::undo_step() {
 }
 
 bool Simulation::Impl::hold_inside_vat(Real end, AdvanceReport& report) {
+  enter("hold_inside");
   // Parts of a step need not add up to the bit, but at its end the vat is where a view sees it.
   const Real nominal_end = static_cast<Real>(state.step_count + 1) * step_size();
   const Real least_part = std::ldexp(step_size(), -kMaxStepLevel - kMaxHalvings);
@@ -56,6 +71,7 @@ bool Simulation::Impl::hold_inside_vat(Real end, AdvanceReport& report) {
 }
 
 std::optional<Fault> Simulation::Impl::find_step_fault(Real dt) const {
+  enter("guard");
   if (work.too_many_pairs) {  // of liquids, whose particles come first
     return Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
   }
@@ -89,6 +105,7 @@ std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
 bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real start, Real dt,
                                          AdvanceReport& report) {
   const std::size_t earlier_events = report.events.size();
+  enter("keep_state");
   step_start = state.now;
   for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
     const auto event = take_step_in(1U << halvings, force_model, start, dt, report);
@@ -114,11 +131,13 @@ Real Simulation::Impl::probe_start(const ForceModel& force_model, Real start, Re
   state.forces_current = false;
   probe.begin(state);
   force_model.evaluate(state.now, start, state.forces);
+  enter("choose_step");
   const Forces forces = state.forces;
   if (model->damping.any) state.bound = find_bound(force_model, state.now);
   kick(*model, runner, forces, state.now, dt / 2);
   drift(*model, runner, state.now, dt);
   force_model.evaluate(state.now, start + dt, state.forces);
+  enter("choose_step");
   state.now = step_start;
   state.forces = forces;
   state.forces_current = model->scene.numerics.integrator == IntegratorId::velocity_verlet;
@@ -126,6 +145,7 @@ Real Simulation::Impl::probe_start(const ForceModel& force_model, Real start, Re
 }
 
 Real Simulation::Impl::wanted_step(const ForceModel& force_model, Real start) {
+  enter("choose_step");
   const Numerics& numerics = model->scene.numerics;
   if (numerics.control == StepControl::local) {
     return greatest_base_step(force_model, state, step_bounds);
@@ -181,6 +201,7 @@ void Simulation::Impl::change_bodies_on_time(AdvanceReport& report) {
   const bool may_melt = std::ranges::any_of(
       model->bodies, [&](const ModelBody& body) { return body.melts_at <= state.step_count; });
   if (!may_flow && !may_melt) return;
+  enter("change_bodies");
   std::vector<std::uint64_t> grabs;
   for (const Grab& grab : controls.grabs) grabs.push_back(grab.id);
   if (may_melt) melt_on_time(report);
@@ -206,7 +227,10 @@ bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& re
     change_bodies_on_time(report);
     if (!take_nominal_step(report)) return false;
     ++state.step_count;
-    if (model->periodic.any()) wrap_liquid(*model, runner, state.now);
+    if (model->periodic.any()) {
+      enter("wrap");
+      wrap_liquid(*model, runner, state.now);
+    }
     for (const AppliedForce& applied : controls.applied_forces) {
       // The forces that velocity Verlet keeps for the next step still have this one in them.
       if (applied.end_step == state.step_count) state.forces_current = false;
@@ -237,6 +261,8 @@ void Simulation::Impl::undo_call() noexcept {
 AdvanceReport Simulation::advance(std::uint32_t steps) {
   Impl& impl = *impl_;
   AdvanceReport report;
+  const ObservedCall call(impl.observer);
+  impl.enter("keep_state");
   impl.begin_call();
   try {
     report.failed = !impl.take_guarded_steps(steps, report);
@@ -252,6 +278,7 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   std::erase_if(impl.controls.applied_forces, [&](const AppliedForce& applied) {
     return applied.end_step <= impl.state.step_count;
   });
+  if (!impl.model->rigid_bodies.empty()) impl.enter("pose_rigid_bodies");
   impl.pose_rigid_particles();
   return report;
 }

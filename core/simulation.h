@@ -96,14 +96,15 @@ struct AdvanceReport {
   void count_steps(std::uint64_t count, Real least, Real greatest);
 };
 
-/// Told when each stage of the plan begins and ends, and each of implicit_springs,
-/// implicit_dashpots, project_velocities, correct_density, project_contacts and solve_damping; no
-/// clock.
+/// Told what advance() is at: each stage of the plan, and all that is done besides, by names of the
+/// same kind. No clock.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;
+  /// What was at work before, if anything, has ended. The name is a literal: it lives on.
   virtual void stage_begins(std::string_view stage) = 0;
-  virtual void stage_ends(std::string_view stage) = 0;
+  /// Nothing is at work any more: advance() returns, or throws.
+  virtual void stages_end() = 0;
 };
 
 class Snapshot;

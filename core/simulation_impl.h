@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/integrators/integrator.h"
@@ -77,6 +78,10 @@ struct Simulation::Impl : Snapshot::Content {
   /// Rigid particles to their poses, for views.
   void pose_rigid_particles();
 
+  /// Tells the observer that `stage` begins.
+  void enter(std::string_view stage) const {
+    if (observer != nullptr) observer->stage_begins(stage);
+  }
   void begin_call();
   void undo_call() noexcept;
   /// What the scene has to happen as the next nominal step begins.

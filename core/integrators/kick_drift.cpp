@@ -48,25 +48,47 @@ void kick(const Model& model, TaskRunner* runner, const Forces& forces,
 
 namespace {
 
+void kick_by(const ForceModel& f, State& state, Real dt) {
+  f.enter("kick");
+  kick(f.model, f.runner, state.forces, state.now, dt);
+}
+
+void limit_springs(const ForceModel& f, State& state, Real dt) {
+  if (f.model.limited_springs.empty()) return;
+  f.enter("limit_elongation");
+  limit_elongation(f.model, f.runner, state.now, dt);
+}
+
+void let_springs_change(const ForceModel& f, State& state, Real dt) {
+  if (state.now.springs.empty()) return;
+  f.enter("change_springs");
+  change_springs(f.model, f.runner, state.now, dt);
+}
+
+/// Of the forces at the end of a step that are damped.
+void keep_bound(const ForceModel& f, State& state) {
+  f.enter("bound_damping");
+  state.bound = find_bound(f, state.now);
+}
+
 /// A drift that contacts by projection take part in, where there are any.
 void drift_to_contact(const ForceModel& f, State& state, Real time, Real dt,
                       IntegratorScratch& scratch) {
   if (!f.model.has_projection) {
+    f.enter("drift");
     drift(f.model, f.runner, state.now, dt);
     return;
   }
-  if (f.observer != nullptr) f.observer->stage_begins("project_contacts");
+  f.enter("project_contacts");
   scratch.projection.drift(f, state.now, time, dt);
-  if (f.observer != nullptr) f.observer->stage_ends("project_contacts");
 }
 
 /// What contacts by projection do once the velocities at the end of the step are known.
 void finish_contacts(const ForceModel& f, State& state, Real time, Real dt,
                      IntegratorScratch& scratch) {
   if (!f.model.has_projection) return;
-  if (f.observer != nullptr) f.observer->stage_begins("project_contacts");
+  f.enter("project_contacts");
   scratch.projection.finish(f, state.now, time, dt);
-  if (f.observer != nullptr) f.observer->stage_ends("project_contacts");
 }
 
 /// The forces of a step of symplectic Euler: in scenes of incompressible liquids, those that damp
@@ -78,29 +100,26 @@ void evaluate_for_kick(const ForceModel& f, State& state, Real time, Real dt,
   f.evaluate(state.now, time, state.forces);
   f.work.keep_dampers = false;
   if (!must_solve) return;
-  if (f.observer != nullptr) f.observer->stage_begins("solve_damping");
+  f.enter("solve_damping");
   solve_damping(f, state.now, state.now, time, dt, true, state.forces, scratch.damping);
-  if (f.observer != nullptr) f.observer->stage_ends("solve_damping");
 }
 
 void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Real dt,
                                 IntegratorScratch& scratch) {
   evaluate_for_kick(f, state, time, dt, scratch);
-  kick(f.model, f.runner, state.forces, state.now, dt);
-  limit_elongation(f.model, f.runner, state.now, dt);
+  kick_by(f, state, dt);
+  limit_springs(f, state, dt);
   if (f.model.is_incompressible) {
-    if (f.observer != nullptr) f.observer->stage_begins("project_velocities");
+    f.enter("project_velocities");
     state.volume.velocities = project_velocities(f, state.now, time, dt, scratch.volume);
-    if (f.observer != nullptr) f.observer->stage_ends("project_velocities");
   }
   drift_to_contact(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
   if (f.model.is_incompressible) {
-    if (f.observer != nullptr) f.observer->stage_begins("correct_density");
+    f.enter("correct_density");
     state.volume.places = correct_density(f, state.now, time + dt, scratch.volume);
-    if (f.observer != nullptr) f.observer->stage_ends("correct_density");
   }
-  change_springs(f.model, f.runner, state.now, dt);
+  let_springs_change(f, state, dt);
   finish_contacts(f, state, time, dt, scratch);
 }
 
@@ -120,9 +139,11 @@ void restore_velocities(const Model& model, const Configuration& kept, Configura
 /// The forces that close a step, at the velocities that the forces at its start predict.
 void evaluate_at_prediction(const ForceModel& f, State& state, Real time, Real dt,
                             IntegratorScratch& scratch) {
+  f.enter("predict_velocities");
   keep_velocities(state.now, scratch.start);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
   f.evaluate(state.now, time, state.forces);
+  f.enter("predict_velocities");
   restore_velocities(f.model, scratch.start, state.now);
 }
 
@@ -130,6 +151,7 @@ void evaluate_at_prediction(const ForceModel& f, State& state, Real time, Real d
 /// no solving are predicted.
 void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
                          IntegratorScratch& scratch) {
+  f.enter("predict_velocities");
   const bool viscosity = must_solve_viscosity(f.model, dt);
   keep_velocities(state.now, scratch.start);
   if (!viscosity) {
@@ -140,10 +162,9 @@ void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
   f.work.keep_dampers = true;
   f.evaluate(state.now, time, state.forces);
   f.work.keep_dampers = false;
-  if (f.observer != nullptr) f.observer->stage_begins("solve_damping");
+  f.enter("solve_damping");
   solve_damping(f, scratch.start, state.now, time, dt / 2, viscosity, state.forces,
                 scratch.damping);
-  if (f.observer != nullptr) f.observer->stage_ends("solve_damping");
   restore_velocities(f.model, scratch.start, state.now);
 }
 
@@ -159,20 +180,19 @@ void drift_with_springs(const ForceModel& f, State& state, Real time, Real dt,
     return;
   }
   // Impulses of contacts by projection come before the springs, which stretch by none of them.
+  f.enter("implicit_springs");
   keep_implicit_places(f.model, state.now, scratch.implicit_springs);
   drift_to_contact(f, state, time, dt, scratch);
-  if (f.observer != nullptr) f.observer->stage_begins("implicit_springs");
+  f.enter("implicit_springs");
   drift_implicit_springs(f, state.now, dt, scratch.implicit_springs);
-  if (f.observer != nullptr) f.observer->stage_ends("implicit_springs");
 }
 
 /// Implicit springs' dashpots, before the first kick and after the last.
 void damp_with_springs(const ForceModel& f, Configuration& now, Real dt,
                        IntegratorScratch& scratch) {
   if (!has_implicit_springs(f.model)) return;
-  if (f.observer != nullptr) f.observer->stage_begins("implicit_dashpots");
+  f.enter("implicit_dashpots");
   damp_implicit_springs(f, now, dt, scratch.implicit_springs);
-  if (f.observer != nullptr) f.observer->stage_ends("implicit_dashpots");
 }
 
 // Kick, drift, kick: the closing kick's forces open the next step, so a step costs one evaluation.
@@ -183,14 +203,14 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   const bool is_damped = f.model.damping.any;
   if (!state.forces_current) {
     f.evaluate(state.now, time, state.forces);
-    if (is_damped) state.bound = find_bound(f, state.now);
+    if (is_damped) keep_bound(f, state);
   }
   damp_with_springs(f, state.now, dt / 2, scratch);
-  kick(f.model, f.runner, state.forces, state.now, dt / 2);
-  limit_elongation(f.model, f.runner, state.now, dt);
+  kick_by(f, state, dt / 2);
+  limit_springs(f, state, dt);
   drift_with_springs(f, state, time, dt, scratch);
   move_with_transport(f.model, f.runner, state.forces, state.now, dt);
-  change_springs(f.model, f.runner, state.now, dt);
+  let_springs_change(f, state, dt);
   if (is_damped && must_solve_damping(state.bound, dt)) {
     evaluate_with_solve(f, state, time + dt, dt, scratch);
   } else if (is_damped || !f.controls.grabs.empty()) {
@@ -198,8 +218,8 @@ void take_velocity_verlet_step(const ForceModel& f, State& state, Real time, Rea
   } else {
     f.evaluate(state.now, time + dt, state.forces);
   }
-  if (is_damped) state.bound = find_bound(f, state.now);
-  kick(f.model, f.runner, state.forces, state.now, dt / 2);
+  if (is_damped) keep_bound(f, state);
+  kick_by(f, state, dt / 2);
   finish_contacts(f, state, time, dt, scratch);
   damp_with_springs(f, state.now, dt / 2, scratch);
   state.forces_current = true;

@@ -100,15 +100,19 @@ void finish(const ForceModel& f, const Configuration& start, const Configuration
 void take_runge_kutta_step(IntegratorId id, const ForceModel& f, State& state, Real time, Real dt,
                            IntegratorScratch& scratch) {
   const std::span<const RungeKuttaStage> stages = stages_of(id);
+  f.enter("combine");
   scratch.start = state.now;
   clear(scratch.increment, f.model);
   for (std::size_t s = 0; s < stages.size(); ++s) {
     f.evaluate(state.now, time + stages[s].reach * dt, state.forces);
+    f.enter("combine");
     const Real next_reach = s + 1 < stages.size() ? stages[s + 1].reach : 0;
     accumulate(f, state.forces, scratch.start, stages[s].weight, next_reach * dt, state.now,
                scratch.increment);
   }
   finish(f, scratch.start, scratch.increment, dt, state.now);
+  if (state.now.springs.empty()) return;
+  f.enter("change_springs");
   change_springs(f.model, f.runner, state.now, dt);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "core/simulation.h"
 #include "core/step/step_control_probe.h"
@@ -19,6 +20,10 @@ struct ForceModel {
   AdvanceReport* report = nullptr;  ///< counts evaluations, if any
   MotionProbe* probe = nullptr;     ///< sees them, if any
 
+  /// Tells the observer that `stage` begins.
+  void enter(std::string_view stage) const {
+    if (observer != nullptr) observer->stage_begins(stage);
+  }
   /// Forces at `configuration` and `time`; also moves rigid particles to their poses.
   void evaluate(Configuration& configuration, Real time, Forces& forces) const;
 };

@@ -105,12 +105,14 @@ Real skin_for(const Model& model, const Configuration& at, Real dt) {
 
 void LocalStepper::set_levels(const Moment& now, State& state, Real dt, const StepBounds& bounds,
                               const GuardBounds& guard) {
+  now.force_model.enter("choose_levels");
   find_present_steps(now.force_model, state, now.time, dt, bounds, guard, present_);
   choose_local_levels(now.model(), present_, dt, state.levels);
   state.levels.skin = skin_for(now.model(), now.at(), dt);
 }
 
 void LocalStepper::build_pairs(const Moment& now) {
+  now.force_model.enter("build_pairs");
   if (now.model().contact_reach > 0) {
     StepContext context = now.context(due_);
     if (now.model().liquid_count > 0) sort_liquid(context);
@@ -124,7 +126,9 @@ const std::vector<Vec3>& LocalStepper::evaluate_liquid(const Moment& now) {
   std::fill_n(liquid_.particle.begin(), now.model().liquid_count, Vec3::Zero());
   StepContext context = now.context(liquid_);
   for (const Stage& stage : now.model().plan.stages) {
-    if (is_of_liquids(stage)) stage.run(context);
+    if (!is_of_liquids(stage)) continue;
+    now.force_model.enter(stage.name);
+    stage.run(context);
   }
   return liquid_.particle;
 }
@@ -132,6 +136,7 @@ const std::vector<Vec3>& LocalStepper::evaluate_liquid(const Moment& now) {
 void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing,
                                    const LocalLevels& opening, Forces& closing_forces,
                                    Forces& opening_forces) {
+  now.force_model.enter("connections");
   const Model& model = now.model();
   const VatMotion vat = now.vat();
   const std::span<const Index> order = pairs_.due(0);
@@ -162,6 +167,7 @@ void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
                                 const LocalLevels& opening, Forces& closing_forces,
                                 Forces& opening_forces) {
   const Model& model = now.model();
+  now.force_model.enter("external_forces");
   StepContext context = now.context(opening_forces);
   set_external_forces(context);
   closing_forces.particle = opening_forces.particle;
@@ -174,6 +180,7 @@ void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
     }
   }
   sum_connections(now, closing, opening, closing_forces, opening_forces);
+  if (!model.rigid_bodies.empty()) now.force_model.enter("gather_rigid_forces");
   for (Forces* forces : {&closing_forces, &opening_forces}) {
     StepContext gathered = now.context(*forces);
     gather_rigid_forces(gathered);
@@ -207,6 +214,7 @@ void LocalStepper::kick_rigid(const Moment& now, Real dt) {
 /// The kick between two sub-steps: that of every connection of level `due` or finer, as long as its
 /// own step. All forces are summed before any velocity changes.
 void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
+  now.force_model.enter("connections");
   const Model& model = now.model();
   const LocalLevels& levels = now.state.levels;
   const VatMotion vat = now.vat();
@@ -228,6 +236,7 @@ void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
     now.force_model.report->particle_evaluations += order.size();
   }
   if (model.liquid_count > 0 && levels.liquid >= due) kick_liquid(now, dt);
+  now.force_model.enter("kick");
   for (const Index i : order) {
     if (i < model.free_count) {
       now.state.now.velocity[i] += (dt * model.inverse_mass[i]) * due_.particle[i];
@@ -267,18 +276,21 @@ void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real 
   }
   finest_ = pairs_.finest();
   coarsest_ = pairs_.coarsest();
+  f.enter("kick");
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
 
   const std::uint32_t parts = 1U << finest_;
   const Real part = dt / parts;
   StepContext context = start.context(due_);
   for (std::uint32_t n = 1; n < parts; ++n) {
+    f.enter("drift");
     drift(f.model, f.runner, state.now, part);
     pose_rigid_bodies(context);
     const Moment now{f, state, time + n * part};
     if (pairs_.is_stale(f, state.now)) build_pairs(now);
     kick_due(now, finest_ - std::countr_zero(n), dt);
   }
+  f.enter("drift");
   drift(f.model, f.runner, state.now, part);
   pose_rigid_bodies(context);
 
@@ -287,6 +299,7 @@ void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real 
   set_levels(end, state, dt, bounds, guard);
   build_pairs(end);
   evaluate_all(end, closing_levels_, state.levels, closing_, state.forces);
+  f.enter("kick");
   kick(f.model, f.runner, closing_, state.now, dt / 2);
   state.forces_current = true;
 }

@@ -178,9 +178,8 @@ void print_summary(const Simulation& simulation, const RunTotals& totals) {
   std::cerr << '\n';
 }
 
-void print_profile(const StageProfile& profile, const Simulation& simulation,
-                   const RunTotals& totals) {
-  profile.print(std::cout, totals.stepping);
+void print_speed(const StageClock& profile, const Simulation& simulation, const RunTotals& totals) {
+  print_profile(profile, totals.stepping, std::cout);
   const double ms = totals.stepping.count() * 1e3;
   std::cout << std::fixed << std::setprecision(4)
             << "ms per step: " << (totals.steps > 0 ? ms / static_cast<double>(totals.steps) : 0)
@@ -230,7 +229,7 @@ int simulate(const Options& options) {
   if (options.only_plan()) return kExitOk;
   print_warnings(options.scene, scene.value());  // of the step and integrator in use
 
-  StageProfile profile;
+  StageClock profile;
   if (options.profile) simulation.set_observer(&profile);
   RunTotals totals;
   const InterruptWatch interrupt;
@@ -239,7 +238,7 @@ int simulate(const Options& options) {
     const int failed = fail(options.scene, done.errors());
     return interrupt.signal() != 0 ? kExitSignal + interrupt.signal() : failed;
   }
-  if (options.profile) print_profile(profile, simulation, totals);
+  if (options.profile) print_speed(profile, simulation, totals);
   if (options.hash) print_hash(simulation);
   print_summary(simulation, totals);
   return kExitOk;

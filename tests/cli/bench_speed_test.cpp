@@ -1,11 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "tests/bench/speed/cases.h"
@@ -61,25 +59,6 @@ TEST(BenchSpeedFigures, NeighboursOfALattice) {
   EXPECT_DOUBLE_EQ(mean_neighbours(simulation), (6 * 16 * 3 + 12 * 4 * 9 + 8 * 27) / 64.0);
   EXPECT_TRUE(std::isnan(
       mean_neighbours(Simulation::create(rigid_pile(1, InterfaceLaw::penalty)).value())));
-}
-
-TEST(BenchSpeedFigures, TimeOfAStageWithinAnotherIsItsOwn) {
-  using namespace std::chrono_literals;
-  const auto begin = std::chrono::steady_clock::now();
-  StageClock clock;
-  clock.stage_begins("outer");
-  clock.stage_begins("inner");
-  std::this_thread::sleep_for(20ms);
-  clock.stage_ends("inner");
-  clock.stage_ends("outer");
-  clock.stage_begins("inner");
-  std::this_thread::sleep_for(20ms);
-  clock.stage_ends("inner");
-  const std::chrono::duration<Real> whole = std::chrono::steady_clock::now() - begin;
-  ASSERT_EQ(clock.stages().size(), 2u);
-  EXPECT_EQ(clock.stages()[0].name, "outer");
-  EXPECT_GE(clock.stages()[1].seconds, 0.04);
-  EXPECT_LE(clock.stages()[0].seconds + clock.stages()[1].seconds, whole.count());
 }
 
 TEST(BenchSpeedFigures, HeapGrowsByWhatIsAllocated) {

@@ -152,8 +152,8 @@ TEST(StepPlan, OfASimulationFollowsItsBodies) {
 }
 
 struct RecordingObserver : StageObserver {
-  void stage_begins(std::string_view stage) override { record.push_back("+" + std::string(stage)); }
-  void stage_ends(std::string_view stage) override { record.push_back("-" + std::string(stage)); }
+  void stage_begins(std::string_view stage) override { record.emplace_back(stage); }
+  void stages_end() override { record.emplace_back("."); }
   std::vector<std::string> record;
 };
 
@@ -163,13 +163,30 @@ TEST(StepPlan, TellsTheObserverOfEachStage) {
   Simulation simulation = test::make_simulation(scene);
   RecordingObserver observer;
   simulation.set_observer(&observer);
-  simulation.advance(1);
+  simulation.advance(2);
   EXPECT_THAT(observer.record,
-              ElementsAre("+external_forces", "-external_forces", "+springs", "-springs"));
+              ElementsAre("keep_state", "keep_state", "external_forces", "springs", "kick", "drift",
+                          "guard", "hold_inside", "keep_state", "external_forces", "springs",
+                          "kick", "drift", "guard", "hold_inside", "."));
   observer.record.clear();
   simulation.set_observer(nullptr);
   simulation.advance(1);
   EXPECT_THAT(observer.record, IsEmpty());
+}
+
+TEST(StepPlan, TellsTheObserverOfStagesUnderLocalControl) {
+  Scene scene = scene_of({make_spring_body()});
+  scene.numerics.integrator = IntegratorId::velocity_verlet;
+  scene.numerics.control = StepControl::local;
+  Simulation simulation = test::make_simulation(scene);
+  RecordingObserver observer;
+  simulation.set_observer(&observer);
+  simulation.advance(1);
+  for (const char* stage : {"choose_step", "choose_levels", "build_pairs", "external_forces",
+                            "connections", "kick", "drift", "guard"}) {
+    EXPECT_THAT(observer.record, testing::Contains(stage));
+  }
+  EXPECT_EQ(observer.record.back(), ".");
 }
 
 void do_nothing(StepContext&) {}

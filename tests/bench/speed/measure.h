@@ -9,7 +9,7 @@
 #include "core/scene/scene.h"
 #include "core/support/instruction_set.h"
 #include "core/support/result.h"
-#include "tests/bench/speed/stage_clock.h"
+#include "server/stage_clock.h"
 
 namespace vat::bench {
 

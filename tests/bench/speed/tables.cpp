@@ -100,8 +100,8 @@ Table stage_table(const std::vector<SpeedRow>& rows) {
                             stage, 1e3 * seconds / static_cast<Real>(row.steps), seconds / whole});
     };
     for (const StageClock::Stage& stage : row.stages) {
-      add(stage.name, stage.seconds);
-      rest -= stage.seconds;
+      add(std::string(stage.name), stage.seconds());
+      rest -= stage.seconds();
     }
     add("rest", rest);
   }

@@ -1,0 +1,33 @@
+#include "server/stage_clock.h"
+
+#include <algorithm>
+
+namespace vat {
+
+void StageClock::stage_begins(std::string_view stage) {
+  charge_running();
+  running_ = find(stage);
+  ++stages_[running_].calls;
+}
+
+void StageClock::stages_end() {
+  charge_running();
+  running_ = kNone;
+}
+
+void StageClock::charge_running() {
+  const Clock::time_point now = Clock::now();
+  if (running_ != kNone) stages_[running_].time += now - since_;
+  since_ = now;
+}
+
+// A name is mostly the same literal as before; only where it is not are the letters compared.
+std::size_t StageClock::find(std::string_view name) {
+  const auto is_same_literal = [name](const Stage& s) { return s.name.data() == name.data(); };
+  auto found = std::ranges::find_if(stages_, is_same_literal);
+  if (found == stages_.end()) found = std::ranges::find(stages_, name, &Stage::name);
+  if (found == stages_.end()) found = stages_.insert(found, {.name = name});
+  return static_cast<std::size_t>(found - stages_.begin());
+}
+
+}  // namespace vat

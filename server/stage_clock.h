@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/simulation.h"
+
+namespace vat {
+
+/// Adds up the wall time of what a simulation's steps are at. One reading of the clock a stage, so
+/// that it can always be on.
+class StageClock final : public StageObserver {
+ public:
+  using Clock = std::chrono::steady_clock;
+  struct Stage {
+    std::string_view name;
+    std::uint64_t calls = 0;
+    Clock::duration time{};
+
+    double seconds() const { return std::chrono::duration<double>(time).count(); }
+  };
+
+  void stage_begins(std::string_view stage) override;
+  void stages_end() override;
+
+  /// In the order in which they first began.
+  const std::vector<Stage>& stages() const { return stages_; }
+
+ private:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  void charge_running();
+  std::size_t find(std::string_view name);
+
+  std::vector<Stage> stages_;    // some twenty
+  std::size_t running_ = kNone;  // index into stages_
+  Clock::time_point since_;      // when it began
+};
+
+}  // namespace vat
