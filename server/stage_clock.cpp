@@ -15,6 +15,10 @@ void StageClock::stages_end() {
   running_ = kNone;
 }
 
+void StageClock::clear() {
+  for (Stage& stage : stages_) stage = {.name = stage.name};
+}
+
 void StageClock::charge_running() {
   const Clock::time_point now = Clock::now();
   if (running_ != kNone) stages_[running_].time += now - since_;

@@ -28,6 +28,8 @@ class StageClock final : public StageObserver {
 
   /// In the order in which they first began.
   const std::vector<Stage>& stages() const { return stages_; }
+  /// Back to zero; stages keep their names and places.
+  void clear();
 
  private:
   static constexpr std::size_t kNone = ~std::size_t{0};

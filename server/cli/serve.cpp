@@ -107,8 +107,9 @@ int serve(const Options& options, const Catalogue& catalogue, const Scene& scene
   const Result<SessionId> session = sessions.create_session(scene.name, scene);
   if (!session) return fail(options.scene, session.errors());
 
-  const auto transport = make_websocket_transport(transport_settings(options, settings.limits),
-                                                  sessions, make_http_site(std::move(viewer)));
+  const auto transport = make_websocket_transport(
+      transport_settings(options, settings.limits), sessions,
+      make_http_site(std::move(viewer), [&] { return sessions.metrics(); }));
   const std::uint16_t port = transport->start();
   warn_of_open_host(options.host);
   std::cout << "vat is at " << viewer_url(options.host, port) << " (Ctrl-C stops it)" << std::endl;

@@ -12,6 +12,7 @@ namespace vat {
 namespace {
 
 constexpr const char* kPlainText = "text/plain; charset=utf-8";
+constexpr const char* kPrometheusText = "text/plain; version=0.0.4; charset=utf-8";
 
 /// Vite puts a hash of the content into the names of these.
 constexpr std::string_view kHashedFolder = "/assets/";
@@ -50,7 +51,8 @@ HttpResponse viewer_file(const StaticFiles& viewer, const std::string& path) {
   return text(404, "Not found.\n");
 }
 
-HttpResponse answer(const StaticFiles& viewer, std::string_view method, std::string_view target) {
+HttpResponse answer(const StaticFiles& viewer, const MetricsSource& metrics,
+                    std::string_view method, std::string_view target) {
   if (method != "GET" && method != "HEAD") {
     HttpResponse response = text(405, "Only GET and HEAD are served here.\n");
     response.headers.emplace_back("Allow", "GET, HEAD");
@@ -59,6 +61,7 @@ HttpResponse answer(const StaticFiles& viewer, std::string_view method, std::str
   const std::optional<std::string> path = request_path(target);
   if (!path) return text(400, "The path is malformed.\n");
   if (*path == "/healthz") return {200, "application/json", "{\"status\":\"ok\"}\n", {}};
+  if (*path == "/metrics") return {200, kPrometheusText, metrics(), {}};
   return viewer_file(viewer, *path);
 }
 
@@ -73,10 +76,10 @@ void add_common_headers(HttpResponse& response) {
 
 }  // namespace
 
-HttpHandler make_http_site(StaticFiles viewer) {
-  return [files = std::make_shared<const StaticFiles>(std::move(viewer))](std::string_view method,
-                                                                          std::string_view target) {
-    HttpResponse response = answer(*files, method, target);
+HttpHandler make_http_site(StaticFiles viewer, MetricsSource metrics) {
+  return [files = std::make_shared<const StaticFiles>(std::move(viewer)),
+          source = std::move(metrics)](std::string_view method, std::string_view target) {
+    HttpResponse response = answer(*files, source, method, target);
     add_common_headers(response);
     return response;
   };

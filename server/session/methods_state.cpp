@@ -1,5 +1,6 @@
-// state.query, session.hash
+// state.query, session.hash, session.stats
 
+#include <chrono>
 #include <limits>
 #include <string>
 #include <variant>
@@ -71,9 +72,38 @@ SessionAction read_hash(ObjectReader&, Errors&) {
   };
 }
 
+double to_seconds(TickProfile::Clock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+Json describe_stages(const std::vector<StageClock::Stage>& stages) {
+  Json list = Json::array();
+  for (const StageClock::Stage& stage : stages) {
+    list.push_back({{"stage", stage.name}, {"calls", stage.calls}, {"seconds", stage.seconds()}});
+  }
+  return list;
+}
+
+SessionAction read_stats(ObjectReader&, Errors&) {
+  return [](SessionCore& core, Member&) -> ActionResult {
+    const Simulation& simulation = core.run().simulation();
+    const TickProfile::Totals& totals = core.run().profile().totals();
+    return Json{{"instruction_set", to_string(simulation.instruction_set())},
+                {"threads", core.environment().runner.thread_count()},
+                {"particles", simulation.particle_count()},
+                {"ticks", totals.ticks},
+                {"substeps", totals.substeps},
+                {"undone_substeps", totals.undone_substeps},
+                {"seconds", to_seconds(totals.time)},
+                {"longest_tick", to_seconds(totals.longest_tick)},
+                {"stages", describe_stages(totals.stages)}};
+  };
+}
+
 constexpr Method kMethods[] = {
     {"state.query", read_query},
     {"session.hash", read_hash},
+    {"session.stats", read_stats},
 };
 
 }  // namespace

@@ -28,7 +28,7 @@ SessionCore::SessionCore(std::string id, std::string name, Simulation simulation
     : id_(std::move(id)),
       name_(std::move(name)),
       environment_(environment),
-      run_(std::move(simulation)),
+      run_(std::move(simulation), environment.metrics),
       domain_(run_.simulation().scene().vat) {}
 
 void SessionCore::set_playing(bool playing) {
@@ -152,6 +152,7 @@ void SessionCore::send_frames(bool new_tick) {
     SharedFrame& frame = encoded[grid.quantum];
     if (frame == nullptr) {
       frame = std::make_shared<const std::vector<std::uint8_t>>(encode_key_frame(state, grid));
+      environment_.metrics.add_encoded_frame();
     }
     member->outbox->offer_frame(member->membership, frame);
     member->awaits_frame = false;

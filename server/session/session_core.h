@@ -27,7 +27,7 @@ struct SessionSummary {
 };
 
 /// All that a session is but its threads: what is simulated, who takes part, and what they are
-/// told. Used by one thread at a time; has no clock of its own.
+/// told. Used by one thread at a time; its clock is given, but for the profile's.
 ///
 /// Commands change it and note what has to be told; announce() then tells all members, so that many
 /// commands at once make one description, one status and one frame.

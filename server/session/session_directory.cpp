@@ -28,7 +28,7 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
     : catalogue_(catalogue),
       settings_(std::move(settings)),
       runner_(thread_count(settings_.threads)),
-      environment_{catalogue_, settings_.limits, settings_.instructions, runner_},
+      environment_{catalogue_, settings_.limits, settings_.instructions, runner_, metrics_},
       pool_(runner_.thread_count()),
       creations_(boost::asio::make_strand(pool_)) {}
 
@@ -170,6 +170,24 @@ std::optional<std::uint64_t> SessionDirectory::tick_of(const Caller& caller) con
   const auto client = clients_.find(caller.client()->id());
   if (client == clients_.end() || client->second.session == 0) return {};
   return sessions_.at(client->second.session)->summary().tick;
+}
+
+std::string SessionDirectory::metrics() const {
+  ServerMetrics::Present present;
+  present.version = settings_.version;
+  present.instructions = settings_.instructions;
+  present.threads = runner_.thread_count();
+  {
+    const std::lock_guard lock(mutex_);
+    present.connections = clients_.size();
+    for (const auto& [number, session] : sessions_) {
+      const SessionSummary summary = session->summary();
+      ++(summary.playing ? present.playing_sessions : present.paused_sessions);
+      present.clients += client_count(number);
+      present.particles += summary.particles;
+    }
+  }
+  return metrics_.to_text(present);
 }
 
 void SessionDirectory::stop() {

@@ -49,6 +49,9 @@ class SessionDirectory {
   /// The tick of the session that the caller is in, as of its last answer or turn; none outside.
   std::optional<std::uint64_t> tick_of(const Caller& caller) const;
 
+  /// What Prometheus is told.
+  std::string metrics() const;
+
   void stop();
 
  private:
@@ -73,9 +76,10 @@ class SessionDirectory {
 
   const Catalogue& catalogue_;
   const ServerSettings settings_;
-  // Three that outlive the sessions. The runner's threads help with their steps as far as the
+  // Four that outlive the sessions. The runner's threads help with their steps as far as the
   // pool's have nothing to do.
   ThreadPoolRunner runner_;
+  ServerMetrics metrics_;
   const SessionEnvironment environment_;
   boost::asio::thread_pool pool_;
   // Creations come one after the other: they take one thread from the sessions at most.

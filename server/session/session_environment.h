@@ -3,6 +3,7 @@
 #include "core/support/instruction_set.h"
 #include "protocol/scene_json.h"
 #include "server/limits.h"
+#include "server/server_metrics.h"
 #include "server/task_runner.h"
 
 namespace vat {
@@ -13,6 +14,7 @@ struct SessionEnvironment {
   const ServerLimits& limits;
   InstructionSet instructions;
   ThreadPoolRunner& runner;  ///< for the blocks of all sessions' steps
+  ServerMetrics& metrics;
 };
 
 }  // namespace vat

@@ -4,12 +4,13 @@
 
 namespace vat {
 
-SessionRun::SessionRun(Simulation simulation)
-    : simulation_(std::move(simulation)), as_loaded_(simulation_.snapshot()) {}
+SessionRun::SessionRun(Simulation simulation, ServerMetrics& metrics)
+    : metrics_(metrics), simulation_(std::move(simulation)), as_loaded_(simulation_.snapshot()) {}
 
 void SessionRun::load(Simulation simulation) {
   simulation_ = std::move(simulation);
   as_loaded_ = simulation_.snapshot();
+  profile_ = {};
   tick_ = 0;
   ++epoch_;
 }
@@ -21,7 +22,10 @@ void SessionRun::reset() {
 }
 
 AdvanceReport SessionRun::advance() {
+  simulation_.set_observer(profile_.next_observer());
+  const auto begin = TickProfile::Clock::now();
   AdvanceReport report = simulation_.advance(simulation_.steps_per_tick());
+  profile_.tick_done(TickProfile::Clock::now() - begin, report, metrics_);
   if (!report.failed) ++tick_;
   return report;
 }

@@ -3,15 +3,17 @@
 #include <cstdint>
 
 #include "core/simulation.h"
+#include "server/server_metrics.h"
+#include "server/session/tick_profile.h"
 
 namespace vat {
 
 /// A session's simulation, counted in ticks, and the scene as it was loaded.
 class SessionRun {
  public:
-  explicit SessionRun(Simulation simulation);
+  SessionRun(Simulation simulation, ServerMetrics& metrics);
 
-  /// Replaces the simulation; the ticks begin at 0 and a new epoch.
+  /// Replaces the simulation; the ticks begin at 0, and a new epoch and profile.
   void load(Simulation simulation);
   /// Back to the scene as loaded, at tick 0 of a new epoch.
   void reset();
@@ -22,13 +24,17 @@ class SessionRun {
 
   Simulation& simulation() { return simulation_; }
   const Simulation& simulation() const { return simulation_; }
+  /// Of the ticks since the scene was loaded.
+  const TickProfile& profile() const { return profile_; }
   std::uint64_t tick() const { return tick_; }  ///< that were run since the start
   std::uint32_t epoch() const { return epoch_; }
   double tick_seconds() const { return simulation_.scene().numerics.tick; }
 
  private:
+  ServerMetrics& metrics_;
   Simulation simulation_;
   Snapshot as_loaded_;
+  TickProfile profile_;
   std::uint64_t tick_ = 0;
   std::uint32_t epoch_ = 1;
 };

@@ -103,6 +103,10 @@ Result<SessionId> SessionServer::create_session(std::string name, const Scene& s
   return std::get<SessionId>(std::move(created));
 }
 
+std::string SessionServer::metrics() const {
+  return impl_->directory().metrics();
+}
+
 void SessionServer::stop() {
   impl_->directory().stop();
 }

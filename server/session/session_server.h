@@ -39,6 +39,9 @@ class SessionServer final : public ConnectionHandler {
   /// Starts a session, playing. Fails with the scene's errors, or with the code limit_reached.
   Result<SessionId> create_session(std::string name, const Scene& scene);
 
+  /// What the server has counted and has now, in Prometheus' text format.
+  std::string metrics() const;
+
   /// Ends all sessions, tells their clients by session.closed, and joins the threads; a tick that
   /// runs is ended first. Nothing that comes in later has an effect.
   void stop();

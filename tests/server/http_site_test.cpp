@@ -16,7 +16,7 @@ class HttpSiteTest : public TransportTest {
   void serve() {
     Result<StaticFiles> files = StaticFiles::read(folder.path() / "dist");
     ASSERT_TRUE(files.ok());
-    http_handler = make_http_site(std::move(files).value());
+    http_handler = make_http_site(std::move(files).value(), [] { return "vat_threads 4\n"; });
     start();
   }
   void serve_viewer() {
@@ -87,7 +87,7 @@ TEST_F(HttpSiteTest, NoPathLeadsOutOfTheFolder) {
 
 TEST_F(HttpSiteTest, EveryAnswerHasTheSecurityHeaders) {
   serve_viewer();
-  for (const char* target : {"/", "/missing", "/healthz", "/%zz"}) {
+  for (const char* target : {"/", "/missing", "/healthz", "/metrics", "/%zz"}) {
     const HttpReply reply = http(port, "GET", target);
     EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff") << target;
     EXPECT_EQ(reply.header("Referrer-Policy"), "no-referrer") << target;
@@ -107,6 +107,15 @@ TEST_F(HttpSiteTest, Health) {
   EXPECT_EQ(reply.header("Content-Type"), "application/json");
   EXPECT_EQ(reply.header("Cache-Control"), "no-store");
   EXPECT_EQ(reply.body, "{\"status\":\"ok\"}\n");
+}
+
+TEST_F(HttpSiteTest, Metrics) {
+  serve();
+  const HttpReply reply = http(port, "GET", "/metrics");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.header("Content-Type"), "text/plain; version=0.0.4; charset=utf-8");
+  EXPECT_EQ(reply.header("Cache-Control"), "no-store");
+  EXPECT_EQ(reply.body, "vat_threads 4\n");
 }
 
 TEST_F(HttpSiteTest, WithoutAViewerTheRootSaysHowToBuildIt) {

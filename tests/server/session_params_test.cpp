@@ -105,6 +105,7 @@ const std::vector<BadParams>& bad_params() {
       {"state.query", R"({"bodies":[true]})", "/bodies/0", "from 0 to 4294967295"},
       {"state.query", R"({"bodies":["ball",-1]})", "/bodies/1", "from 0 to 4294967295"},
       {"session.hash", R"({"x":1})", "/x", "not a known"},
+      {"session.stats", R"({"x":1})", "/x", "not a known"},
   };
   return kCases;
 }
@@ -197,6 +198,7 @@ TEST_F(BadParameters, MethodsOfASessionNeedOne) {
       {"frames.unsubscribe", nullptr},
       {"state.query", nullptr},
       {"session.hash", nullptr},
+      {"session.stats", nullptr},
   };
   for (const auto& [method, params] : calls) {
     const Json error = outsider->error(method, params);
@@ -219,7 +221,7 @@ TEST_F(GoodParameters, EveryMethodOfTheProtocolIsThere) {
                   "world.set_interface", "world.apply_force", "grab.start",
                   "grab.move",           "grab.end",          "frames.subscribe",
                   "frames.unsubscribe",  "frames.ack",        "state.query",
-                  "session.hash"}));
+                  "session.hash",        "session.stats"}));
   EXPECT_EQ(info.at("name"), "vat");
   EXPECT_EQ(info.at("version"), "1.2.3");
   EXPECT_EQ(info.at("protocol"), "vat.v1");

@@ -109,6 +109,20 @@ export interface ServerInfo {
   methods: string[];
 }
 
+/** Since the scene was loaded; times in seconds. */
+export interface SessionStats {
+  instruction_set: InstructionSetName;
+  threads: number;
+  particles: number;
+  ticks: number;
+  /** Parts of steps and undone ones included. */
+  substeps: number;
+  undone_substeps: number;
+  seconds: number;
+  longest_tick: number;
+  stages: { stage: string; calls: number; seconds: number }[];
+}
+
 /** The tick from which a command is in effect. */
 export interface InEffect {
   tick: number;
@@ -157,7 +171,11 @@ export interface Methods {
     { bodies?: (string | number)[] },
     InEffect & { time: number; bodies: BodyState[] }
   >;
-  'session.hash': Method<Nothing, InEffect & { hash: string; instruction_set: InstructionSetName; time: number }>;
+  'session.stats': Method<Nothing, InEffect & SessionStats>;
+  'session.hash': Method<
+    Nothing,
+    InEffect & { hash: string; instruction_set: InstructionSetName; time: number }
+  >;
 }
 export type MethodName = keyof Methods;
 export type Params<M extends MethodName> = Methods[M]['params'];

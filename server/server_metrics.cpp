@@ -1,0 +1,120 @@
+#include "server/server_metrics.h"
+
+#include <algorithm>
+
+#include "server/output/text.h"
+
+namespace vat {
+namespace {
+
+void append_head(std::string& text, const char* name, const char* type, const char* help) {
+  text += std::string("# HELP ") + name + ' ' + help + "\n# TYPE " + name + ' ' + type + '\n';
+}
+
+/// `labels` without braces; empty for none.
+template <class Number>
+void append_sample(std::string& text, std::string_view name, std::string_view labels,
+                   Number value) {
+  text += name;
+  if (!labels.empty()) (text += '{').append(labels) += '}';
+  text += ' ';
+  append_number(text, value);
+  text += '\n';
+}
+
+std::string label(std::string_view key, std::string_view value) {
+  return std::string(key) + "=\"" + std::string(value) + '"';
+}
+
+void append_gauge(std::string& text, const char* name, const char* help, std::size_t value) {
+  append_head(text, name, "gauge", help);
+  append_sample(text, name, "", value);
+}
+
+void append_counter(std::string& text, const char* name, const char* help, std::uint64_t value) {
+  append_head(text, name, "counter", help);
+  append_sample(text, name, "", value);
+}
+
+void append_present(std::string& text, const ServerMetrics::Present& now) {
+  append_head(text, "vat_build_info", "gauge", "Version, and instruction set of all sessions.");
+  append_sample(
+      text, "vat_build_info",
+      label("version", now.version) + ',' + label("instruction_set", to_string(now.instructions)),
+      1);
+  append_gauge(text, "vat_threads", "Threads that step sessions.", now.threads);
+  append_head(text, "vat_sessions", "gauge", "Sessions, playing or paused.");
+  append_sample(text, "vat_sessions", label("state", "playing"), now.playing_sessions);
+  append_sample(text, "vat_sessions", label("state", "paused"), now.paused_sessions);
+  append_gauge(text, "vat_connections", "Open WebSockets.", now.connections);
+  append_gauge(text, "vat_clients", "Connections that have joined a session.", now.clients);
+  append_gauge(text, "vat_particles", "Particles of all sessions.", now.particles);
+}
+
+}  // namespace
+
+void ServerMetrics::add_tick(const Tick& tick) {
+  const std::lock_guard lock(mutex_);
+  const auto bound =
+      std::ranges::lower_bound(kTickBounds, tick.time.count(), {}, &TickBound::seconds);
+  ++ticks_[static_cast<std::size_t>(bound - kTickBounds.begin())];
+  tick_seconds_ += tick.time.count();
+  substeps_ += tick.substeps;
+  undone_substeps_ += tick.undone_substeps;
+  for (const StageClock::Stage& stage : tick.stages) {
+    StageTotal& total = stages_[stage.name];
+    total.calls += stage.calls;
+    total.seconds += stage.seconds();
+  }
+}
+
+void ServerMetrics::add_encoded_frame() {
+  const std::lock_guard lock(mutex_);
+  ++encoded_frames_;
+}
+
+std::string ServerMetrics::to_text(const Present& present) const {
+  std::string text;
+  append_present(text, present);
+  const std::lock_guard lock(mutex_);
+  append_ticks(text);
+  append_counter(text, "vat_substeps_total",
+                 "Steps taken, parts of steps and undone ones included.", substeps_);
+  append_counter(text, "vat_undone_substeps_total",
+                 "Steps that the guard has undone and repeated in shorter ones.", undone_substeps_);
+  append_stages(text);
+  append_counter(text, "vat_frames_encoded_total",
+                 "Frames encoded, each for all who take it at one accuracy.", encoded_frames_);
+  return text;
+}
+
+void ServerMetrics::append_ticks(std::string& text) const {
+  constexpr const char* kName = "vat_tick_duration_seconds";
+  const std::string bucket = std::string(kName) + "_bucket";
+  append_head(text, kName, "histogram", "Wall time of the steps of a tick.");
+  std::uint64_t count = 0;
+  for (std::size_t b = 0; b < kTickBounds.size(); ++b) {
+    count += ticks_[b];
+    append_sample(text, bucket, label("le", kTickBounds[b].text), count);
+  }
+  count += ticks_.back();
+  append_sample(text, bucket, label("le", "+Inf"), count);
+  append_sample(text, std::string(kName) + "_sum", "", tick_seconds_);
+  append_sample(text, std::string(kName) + "_count", "", count);
+}
+
+void ServerMetrics::append_stages(std::string& text) const {
+  append_head(text, "vat_stage_seconds_total", "counter",
+              "Wall time of each stage of steps; where ticks are short, measured in some of them.");
+  for (const auto& [stage, total] : stages_) {
+    append_sample(text, "vat_stage_seconds_total", label("stage", stage), total.seconds);
+  }
+  append_head(
+      text, "vat_stage_calls_total", "counter",
+      "How often each stage of steps began; where ticks are short, counted in some of them.");
+  for (const auto& [stage, total] : stages_) {
+    append_sample(text, "vat_stage_calls_total", label("stage", stage), total.calls);
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/support/instruction_set.h"
+#include "server/stage_clock.h"
+
+namespace vat {
+
+/// What the server has counted since its start, for Prometheus. Safe to use from any thread.
+class ServerMetrics {
+ public:
+  struct Tick {
+    std::chrono::duration<double> time{};
+    std::uint64_t substeps = 0;  ///< parts of steps and undone ones included
+    std::uint64_t undone_substeps = 0;
+    std::span<const StageClock::Stage> stages;
+  };
+  void add_tick(const Tick& tick);
+  void add_encoded_frame();
+
+  /// What is so now.
+  struct Present {
+    std::string version;
+    InstructionSet instructions = InstructionSet::baseline;
+    std::size_t threads = 0;
+    std::size_t playing_sessions = 0;
+    std::size_t paused_sessions = 0;
+    std::size_t connections = 0;
+    std::size_t clients = 0;    ///< connections that have joined a session
+    std::size_t particles = 0;  ///< of all sessions
+  };
+  /// All of it in the text format, version 0.0.4.
+  std::string to_text(const Present& present) const;
+
+ private:
+  struct TickBound {
+    double seconds;
+    const char* text;
+  };
+  static constexpr std::array kTickBounds = {
+      TickBound{0.0005, "0.0005"}, TickBound{0.001, "0.001"}, TickBound{0.002, "0.002"},
+      TickBound{0.005, "0.005"},   TickBound{0.01, "0.01"},   TickBound{0.02, "0.02"},
+      TickBound{0.05, "0.05"},     TickBound{0.1, "0.1"},     TickBound{0.2, "0.2"},
+      TickBound{0.5, "0.5"},       TickBound{1, "1"},         TickBound{2, "2"}};
+  struct StageTotal {
+    std::uint64_t calls = 0;
+    double seconds = 0;
+  };
+  void append_ticks(std::string& text) const;
+  void append_stages(std::string& text) const;
+
+  mutable std::mutex mutex_;
+  std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound, those above all last
+  double tick_seconds_ = 0;
+  std::uint64_t substeps_ = 0;
+  std::uint64_t undone_substeps_ = 0;
+  std::uint64_t encoded_frames_ = 0;
+  std::map<std::string_view, StageTotal> stages_;  // as many as there are names in the program
+};
+
+}  // namespace vat

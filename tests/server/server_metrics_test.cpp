@@ -1,0 +1,77 @@
+#include "server/server_metrics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace vat {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+ServerMetrics::Present make_present() {
+  ServerMetrics::Present present;
+  present.version = "1.2.3";
+  present.instructions = InstructionSet::avx2;
+  present.threads = 4;
+  present.playing_sessions = 2;
+  present.paused_sessions = 1;
+  present.connections = 7;
+  present.clients = 5;
+  present.particles = 1200;
+  return present;
+}
+
+TEST(ServerMetrics, WhatIsSoNow) {
+  const std::string text = ServerMetrics().to_text(make_present());
+  EXPECT_THAT(text, testing::StartsWith(
+                        "# HELP vat_build_info Version, and instruction set of all sessions.\n"
+                        "# TYPE vat_build_info gauge\n"
+                        "vat_build_info{version=\"1.2.3\",instruction_set=\"avx2\"} 1\n"));
+  for (const char* sample : {"\nvat_threads 4\n", "\nvat_sessions{state=\"playing\"} 2\n",
+                             "\nvat_sessions{state=\"paused\"} 1\n", "\nvat_connections 7\n",
+                             "\nvat_clients 5\n", "\nvat_particles 1200\n"}) {
+    EXPECT_THAT(text, HasSubstr(sample));
+  }
+}
+
+// A bucket counts what is at most its bound, so each holds those before it.
+TEST(ServerMetrics, TicksAreCountedByTheirBounds) {
+  ServerMetrics metrics;
+  for (const auto time : {0.5ms, 0.6ms, 3.0ms, 5000.0ms}) {
+    metrics.add_tick({time, 10, 2, {}});
+  }
+  EXPECT_THAT(metrics.to_text({}), HasSubstr("# TYPE vat_tick_duration_seconds histogram\n"
+                                             "vat_tick_duration_seconds_bucket{le=\"0.0005\"} 1\n"
+                                             "vat_tick_duration_seconds_bucket{le=\"0.001\"} 2\n"
+                                             "vat_tick_duration_seconds_bucket{le=\"0.002\"} 2\n"
+                                             "vat_tick_duration_seconds_bucket{le=\"0.005\"} 3\n"));
+  EXPECT_THAT(metrics.to_text({}), HasSubstr("vat_tick_duration_seconds_bucket{le=\"2\"} 3\n"
+                                             "vat_tick_duration_seconds_bucket{le=\"+Inf\"} 4\n"
+                                             "vat_tick_duration_seconds_sum 5.0041\n"
+                                             "vat_tick_duration_seconds_count 4\n"));
+  EXPECT_THAT(metrics.to_text({}), HasSubstr("\nvat_substeps_total 40\n"));
+  EXPECT_THAT(metrics.to_text({}), HasSubstr("\nvat_undone_substeps_total 8\n"));
+}
+
+TEST(ServerMetrics, StagesOfOneNameAreOne) {
+  ServerMetrics metrics;
+  const std::vector<StageClock::Stage> first = {{"walls", 3, 250ms}, {"kick", 6, 125ms}};
+  const std::vector<StageClock::Stage> second = {{"kick", 1, 125ms}};
+  metrics.add_tick({1ms, 3, 0, first});
+  metrics.add_tick({1ms, 1, 0, second});
+  metrics.add_encoded_frame();
+  const std::string text = metrics.to_text({});
+  EXPECT_THAT(text, HasSubstr("# TYPE vat_stage_seconds_total counter\n"
+                              "vat_stage_seconds_total{stage=\"kick\"} 0.25\n"
+                              "vat_stage_seconds_total{stage=\"walls\"} 0.25\n"));
+  EXPECT_THAT(text, HasSubstr("# TYPE vat_stage_calls_total counter\n"
+                              "vat_stage_calls_total{stage=\"kick\"} 7\n"
+                              "vat_stage_calls_total{stage=\"walls\"} 3\n"));
+  EXPECT_THAT(text, HasSubstr("\nvat_frames_encoded_total 1\n"));
+}
+
+}  // namespace
+}  // namespace vat
