@@ -42,6 +42,11 @@ constexpr std::size_t max_pairs(std::size_t particles) {
   const std::size_t by_particle = 256 * particles;
   return by_particle > 16'000'000 ? by_particle : 16'000'000;
 }
+/// Of coupled liquids: particles times what is near their cell, of which a quarter or more is
+/// within their support.
+constexpr std::size_t max_pair_work(std::size_t particles) {
+  return 4 * max_pairs(particles);
+}
 /// The same for a scene at its start, and of contacts: it must have room to be compressed.
 constexpr std::size_t max_start_pairs(std::size_t particles) {
   return max_pairs(particles) / 2;

@@ -156,6 +156,7 @@ void read_liquid_model(ObjectReader& reader, Scene& scene) {
   scene.printed_pressure_force =
       reader.boolean("printed_pressure_force", scene.printed_pressure_force);
   read_enum(reader, "kernel", {"wendland_c2", "cubic_spline"}, scene.kernel);
+  read_enum(reader, "pair_precision", {"single", "double"}, scene.pair_precision);
   read_enum(reader, "surface_tension_model", {"curvature", "cohesion"}, scene.surface_model);
 }
 

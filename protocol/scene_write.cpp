@@ -248,6 +248,7 @@ Json write_scene(const Scene& scene) {
                {"pressure_solver", to_string(scene.pressure_solver)},
                {"printed_pressure_force", scene.printed_pressure_force},
                {"kernel", to_string(scene.kernel)},
+               {"pair_precision", to_string(scene.pair_precision)},
                {"surface_tension_model", to_string(scene.surface_model)},
                {"incompressible", to_json(scene.incompressible)},
                {"forces", to_json(scene.forces)},

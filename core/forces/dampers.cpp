@@ -2,6 +2,7 @@
 
 #include "core/forces/contact_rules.h"
 #include "core/forces/liquid_pairs.h"
+#include "core/forces/neighbour_lists.h"
 #include "core/forces/no_slip.h"
 #include "core/forces/restitution.h"
 #include "core/forces/walls.h"
@@ -115,6 +116,7 @@ Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
 }  // namespace
 
 void DampingMatrix::collect_viscosity(const ForceModel& f) {
+  if (f.model.is_coupled) list_neighbours(f.model, f.work, f.runner);
   viscosities_.resize(block_count(f.model.liquid_count));
   for_blocks(f.runner, f.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = f.work.liquid_pairs[begin / kBlockSize];

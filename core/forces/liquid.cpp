@@ -5,6 +5,7 @@
 
 #include "core/forces/liquid_pairs.h"
 #include "core/forces/pair_direction.h"
+#include "core/forces/weakly_compressible_pairs.h"
 
 namespace vat {
 namespace {
@@ -23,8 +24,8 @@ Real greatest_support(const Model& model) {
 
 void sort_liquid(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
-  c.work.liquid.build(points.first(c.model.liquid_count), greatest_support(c.model),
-                      c.model.periodic);
+  const Real cell_size = c.model.is_coupled ? pair_cell_size(c.model) : greatest_support(c.model);
+  c.work.liquid.update(points.first(c.model.liquid_count), cell_size, c.model.periodic, c.runner);
 }
 
 namespace {
@@ -52,9 +53,12 @@ Real sum_density(const Model& model, const CellSortedPoints& points, Index self,
 
 template <bool periodic>
 void compute_density(StepContext& c) {
-  find_pairs<periodic>(c, [&](Index slot, std::span<const Index> neighbours) {
-    return sum_density<periodic>(c.model, c.work.liquid, slot, neighbours);
-  });
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  find_pairs<periodic>(c.model, c.work, c.runner,
+                       [&](Index slot, std::span<const Index> neighbours) {
+                         c.work.density[order[slot]] =
+                             sum_density<periodic>(c.model, c.work.liquid, slot, neighbours);
+                       });
 }
 
 }  // namespace

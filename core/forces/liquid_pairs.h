@@ -75,50 +75,48 @@ inline std::size_t keep_material(const Model& model, std::span<const Index> orde
   return static_cast<std::size_t>(kept - begin);
 }
 
-/// Fills one block's pairs and densities. Once the blocks together have found more than `most`, the
-/// rest get no neighbours.
-template <bool periodic, class Density>
-void fill_block(StepContext& c, std::size_t begin, std::size_t end,
-                std::atomic<std::size_t>& pair_count, std::size_t most, Density&& density) {
-  const CellSortedPoints& points = c.work.liquid;
+/// Fills one block's pairs, and calls visit(slot, slots of neighbours) for each. Once the blocks
+/// together have found more than `most`, the rest get no neighbours.
+template <bool periodic, class Visit>
+void fill_block(const Model& model, Workspace& work, std::size_t begin, std::size_t end,
+                std::atomic<std::size_t>& pair_count, std::size_t most, Visit&& visit) {
+  const CellSortedPoints& points = work.liquid;
   const std::span<const Index> order = points.grid.order();
-  PairBlock& pairs = c.work.liquid_pairs[begin / kBlockSize];
+  PairBlock& pairs = work.liquid_pairs[begin / kBlockSize];
   std::size_t count = 0;
   for (std::size_t s = begin; s < end; ++s) {
     const auto self = static_cast<Index>(s);
     const std::size_t first = count;
     pairs.begin[s - begin] = static_cast<Index>(first);
     if (pair_count.load(std::memory_order_relaxed) <= most) {
-      const Real support = liquid_of(c.model, order[self]).support_radius;
-      count =
-          find_neighbours<periodic>(c.model.periodic, points, self, support, pairs.slots, count);
-      if (c.model.liquids_touch) {
-        count = keep_material(c.model, order, self, pairs.slots, first, count);
+      const Real support = liquid_of(model, order[self]).support_radius;
+      count = find_neighbours<periodic>(model.periodic, points, self, support, pairs.slots, count);
+      if (model.liquids_touch) {
+        count = keep_material(model, order, self, pairs.slots, first, count);
       }
       pair_count.fetch_add(count - first, std::memory_order_relaxed);
     }
-    c.work.density[order[self]] =
-        density(self, std::span<const Index>(pairs.slots).subspan(first, count - first));
+    visit(self, std::span<const Index>(pairs.slots).subspan(first, count - first));
   }
   pairs.begin[end - begin] = static_cast<Index>(count);
 }
 
-/// Fills liquid_pairs, and the density of each particle with density(slot, slots of neighbours).
-/// Where a collapsed liquid has more than max_pairs() of them, says so in the workspace and leaves
-/// a density that is not a number, so that the step fails.
-template <bool periodic, class Density>
-void find_pairs(StepContext& c, Density&& density) {
-  const std::size_t slots = c.work.liquid.grid.order().size();
-  c.work.density.resize(c.model.liquid_count);
-  c.work.liquid_pairs.resize((slots + kBlockSize - 1) / kBlockSize);
-  const std::size_t most = max_pairs(c.model.liquid_count);
+/// Fills liquid_pairs, and calls visit(slot, slots of neighbours) for each slot. Where a collapsed
+/// liquid has more than max_pairs() of them, says so in the workspace and leaves a density that is
+/// not a number, so that the step fails.
+template <bool periodic, class Visit>
+void find_pairs(const Model& model, Workspace& work, TaskRunner* runner, Visit&& visit) {
+  const std::size_t slots = work.liquid.grid.order().size();
+  work.density.resize(model.liquid_count);
+  work.liquid_pairs.resize(block_count(slots));
+  const std::size_t most = max_pairs(model.liquid_count);
   std::atomic<std::size_t> pair_count = 0;
-  for_blocks(c.runner, slots, [&](std::size_t begin, std::size_t end) {
-    fill_block<periodic>(c, begin, end, pair_count, most, density);
+  for_blocks(runner, slots, [&](std::size_t begin, std::size_t end) {
+    fill_block<periodic>(model, work, begin, end, pair_count, most, visit);
   });
-  c.work.too_many_pairs = pair_count > most;
+  work.too_many_pairs = pair_count > most;
   // One particle is enough for the guard to see; which blocks were cut off depends on threads.
-  if (c.work.too_many_pairs) c.work.density[0] = std::numeric_limits<Real>::quiet_NaN();
+  if (work.too_many_pairs) work.density[0] = std::numeric_limits<Real>::quiet_NaN();
 }
 
 }  // namespace vat

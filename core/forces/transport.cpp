@@ -78,13 +78,14 @@ void add_transport_forces(StepContext& c) {
   const std::vector<Vec3>& transport = c.forces.transport;
   for_each_slot(c, [&](Index s) {
     const LiquidRecord& own = c.work.liquid_records[s];
+    const Vec3& velocity = c.configuration.velocity[order[s]];
     const Vec3& w = transport[order[s]];
     Vec3 sum = Vec3::Zero();
     for_each_near(
         c, motion, s, [&](Real volume, const Vec3& gradient, Index slot, const Mirror* mirror) {
-          Vec3 flow = w.dot(gradient) * own.velocity;
+          Vec3 flow = w.dot(gradient) * velocity;
           if (slot != kNoParticle) {
-            const Vec3& u_j = c.work.liquid_records[slot].velocity;
+            const Vec3& u_j = c.configuration.velocity[order[slot]];
             const Vec3& w_j = transport[order[slot]];
             flow += mirror == nullptr ? Vec3(w_j.dot(gradient) * u_j)
                                       : Vec3(mirror->turn(w_j).dot(gradient) * mirror->turn(u_j));

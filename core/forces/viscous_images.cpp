@@ -1,7 +1,7 @@
 #include "core/forces/viscous_images.h"
 
+#include "core/forces/coupled_pairs.h"
 #include "core/forces/liquid_pairs.h"
-#include "core/forces/weakly_compressible_pairs.h"
 #include "core/step/force_model.h"
 
 namespace vat {
@@ -59,21 +59,47 @@ void for_each_viscous_image(const Model& model, const Workspace& work, const Vat
 
 }  // namespace
 
+// Of an image the pressure's place has whether it takes part anyway, of a particle whether all do.
 void add_viscous_image_forces(StepContext& c) {
+  Workspace& work = c.work;
+  const Model& model = c.model;
   const VatMotion motion = motion_of(c);
-  const std::span<const Index> order = c.work.liquid.grid.order();
+  const std::span<const Index> order = work.liquid.grid.order();
   const std::vector<Vec3>& velocities = c.configuration.velocity;
-  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const Index i = order[s];
-      Vec3 sum = Vec3::Zero();
-      for_each_viscous_image(c.model, c.work, motion, static_cast<Index>(s),
-                             [&](Index j, const MirroredVelocity& mirrored, const Vec3& strength) {
-                               const Vec3 image =
-                                   mirrored.factor.cwiseProduct(velocities[j]) + mirrored.shift;
-                               sum -= strength.cwiseProduct(velocities[i] - image);
-                             });
-      c.forces.particle[i] += sum;
+  const auto is_thick_at = [&](Index i) -> Real {
+    return is_thick(liquid_of(model, i), model.scene.dimensions);
+  };
+  work.sources.set_motions(
+      c.runner,
+      [&](std::size_t s) { return vat::motion_of(is_thick_at(order[s]), velocities[order[s]]); },
+      [](std::size_t) { return PairMotion{}; },
+      [&](const PairImage& image, const PairMotion& source) {
+        const bool is_mirrored = image.axes != std::array<bool, 3>{};
+        if (image.source >= order.size() || !is_mirrored) return PairMotion{};
+        const PairPlace& p = work.sources.places[image.source];
+        const Mirror mirror = image.mirror();
+        const MirroredVelocity mirrored =
+            mirrored_velocity(*model.scene.vat, motion, mirror, {p.x, p.y, p.z});
+        const Vec3 velocity(source.vx, source.vy, source.vz);
+        return vat::motion_of(mirrored.is_dragged ? 1 : source.pressure,
+                              mirrored.factor.cwiseProduct(velocity) + mirrored.shift);
+      });
+  if (has_several_liquids(model)) set_image_viscosities(c);
+  PairInputs inputs = force_inputs(c);
+  inputs.first_mirrored = work.sources.first_mirrored_liquid();
+  work.pair_sums.resize(std::max(work.pair_sums.size(), 3 * order.size()));
+  const PairSums& table = pair_sums_of(c);
+  const auto factor =
+      by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
+  work.liquid_clusters.for_each_chunk(c.runner, inputs, [&](const PairInputs& in, auto clusters) {
+    for (const TargetCluster& cluster : clusters) {
+      if (!cluster.has_mirrored) continue;
+      table.drag(in, {&cluster, 1}, work.pair_sums.data());
+      for (Index s = cluster.begin; s < cluster.end; ++s) {
+        const Index i = order[s];
+        c.forces.particle[i] += model.rest_volume[i] * factor[model.material[i]] *
+                                Eigen::Map<const Vec3>(&work.pair_sums[3 * std::size_t{s}]);
+      }
     }
   });
 }

@@ -20,10 +20,16 @@ struct StepContext;
 /// (core/forces/viscous_images.h). Solid particles take part with their volumes, at rest density,
 /// and with a pressure of their surroundings.
 
-/// Which solid particles are near which liquid ones, both ways.
-void find_liquid_solids(StepContext& context);
+/// Into cells.
+void sort_solids_in_liquid(StepContext& context);
 
-/// s_i rho_0, as density; keeps the neighbours found.
+/// Which liquid, solids and images may be near which liquid particles, and which liquid and images
+/// of it near which solids. Of a collapsed liquid, where that is more than max_pair_work(), says so
+/// in the workspace.
+void find_pair_clusters(StepContext& context);
+
+/// s_i rho_0, as density; one that is not a number where there were too many pairs, so that the
+/// step fails.
 void compute_tait_density(StepContext& context);
 
 /// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 on and in rho from 2 rho_0

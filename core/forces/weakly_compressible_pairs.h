@@ -88,6 +88,13 @@ inline Real support_of(const Model& model) {
   return model.liquids[model.material[0]]->support_radius;
 }
 
+/// Of the cells of coupled liquids and of solids in them: at rest they hold some eight particles,
+/// or nine in the plane [m].
+inline Real pair_cell_size(const Model& model) {
+  const Real in_spacings = model.scene.dimensions == 3 ? 2 : 3;
+  return in_spacings * model.liquids[model.material[0]]->spacing;
+}
+
 inline VatMotion motion_of(const StepContext& c) {
   return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
 }

@@ -26,34 +26,6 @@ Real Complementarity::sum(TaskRunner* runner, F&& f) {
   return total;
 }
 
-void Complementarity::find_gradient(TaskRunner* runner, SolveReport& report) {
-  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
-    Sums sums;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Real e = x[i] > 0 ? excess[i] : std::max(Real{0}, excess[i]);
-      const Real residual = std::abs(e) / scale[i];
-      sums.residual += residual;
-      sums.greatest = std::max(sums.greatest, residual);
-      sums.mixed += e * gradient_[i];
-      gradient_[i] = e / diagonal[i];
-      sums.square += e * gradient_[i];
-    }
-    sums_[begin / kBlockSize] = sums;
-  });
-  Sums total;
-  for (const Sums& part : sums_) {
-    total.residual += part.residual;
-    total.greatest = std::max(total.greatest, part.greatest);
-    total.square += part.square;
-    total.mixed += part.mixed;
-  }
-  report.mean = x.empty() ? 0 : total.residual / static_cast<Real>(x.size());
-  report.greatest = total.greatest;
-  last_square_ = square_;
-  square_ = total.square;
-  mixed_ = total.mixed;
-}
-
 bool Complementarity::find_way_to_bounds(TaskRunner* runner) {
   const Real below = sum(runner, [&](std::size_t i) {
     direction_[i] = x[i] < 0 ? -x[i] : 0;
@@ -84,13 +56,36 @@ Real Complementarity::length_of_step(TaskRunner* runner, Real slope) {
   return curvature > 0 ? slope / curvature : 0;
 }
 
-void Complementarity::take_step(Real length, TaskRunner* runner) {
+void Complementarity::take_step(Real length, TaskRunner* runner, SolveReport& report) {
   for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    Sums sums;
     for (std::size_t i = begin; i < end; ++i) {
-      x[i] += length * direction_[i];
-      excess[i] -= length * product_[i];
+      if (length > 0) {
+        x[i] += length * direction_[i];
+        excess[i] -= length * product_[i];
+      }
+      const Real e = x[i] > 0 ? excess[i] : std::max(Real{0}, excess[i]);
+      const Real residual = std::abs(e) / scale[i];
+      sums.residual += residual;
+      sums.greatest = std::max(sums.greatest, residual);
+      sums.mixed += e * gradient_[i];
+      gradient_[i] = e / diagonal[i];
+      sums.square += e * gradient_[i];
     }
+    sums_[begin / kBlockSize] = sums;
   });
+  Sums total;
+  for (const Sums& part : sums_) {
+    total.residual += part.residual;
+    total.greatest = std::max(total.greatest, part.greatest);
+    total.square += part.square;
+    total.mixed += part.mixed;
+  }
+  report.mean = x.empty() ? 0 : total.residual / static_cast<Real>(x.size());
+  report.greatest = total.greatest;
+  last_square_ = square_;
+  square_ = total.square;
+  mixed_ = total.mixed;
 }
 
 }  // namespace vat

@@ -40,8 +40,8 @@ class Complementarity {
   SolveReport solve(const SolveLimits& limits, TaskRunner* runner, Multiply&& multiply) {
     SolveReport report;
     bool is_new = true;
+    find_gradient(runner, report);
     for (;;) {
-      find_gradient(runner, report);
       // A NaN ends it, and is the guard's to see.
       const bool is_open = !std::isnan(report.mean) &&
                            (report.mean > limits.mean || report.greatest > limits.greatest);
@@ -51,7 +51,7 @@ class Complementarity {
       const Real slope = is_clamped ? 0 : choose_direction(is_new, runner);
       multiply(direction_, product_);
       ++report.iterations;
-      take_step(is_clamped ? 1 : length_of_step(runner, slope), runner);
+      take_step(is_clamped ? 1 : length_of_step(runner, slope), runner, report);
       is_new = is_clamped;
     }
   }
@@ -65,7 +65,7 @@ class Complementarity {
     Real mixed = 0;   ///< the same with that before
   };
 
-  void find_gradient(TaskRunner* runner, SolveReport& report);
+  void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
   /// Makes the direction that from each x below 0 to 0; false where there is none.
   bool find_way_to_bounds(TaskRunner* runner);
   /// d = g + beta d, or g where that does not lead down; the slope d.e.
@@ -73,7 +73,8 @@ class Complementarity {
   Real follow(Real share, TaskRunner* runner);
   /// To the least x.A x / 2 - e(0).x along the direction.
   Real length_of_step(TaskRunner* runner, Real slope);
-  void take_step(Real length, TaskRunner* runner);
+  /// Goes so far along the direction, and finds gradient and residuals there.
+  void take_step(Real length, TaskRunner* runner, SolveReport& report);
   template <class F>
   Real sum(TaskRunner* runner, F&& f);
 

@@ -3,97 +3,108 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/forces/coupled_pairs.h"
 #include "core/forces/liquid_pairs.h"
-#include "core/forces/mirrors.h"
-#include "core/forces/weakly_compressible_pairs.h"
 #include "core/rigid/rigid_motion.h"
 
 namespace vat {
 namespace {
 
-/// Calls f(gradient) for those of one slot.
-template <class F>
-void for_each_gradient(const std::vector<GradientBlock>& blocks, std::size_t slot, F&& f) {
-  const GradientBlock& block = blocks[slot / kBlockSize];
-  for (Index k = block.begin[slot % kBlockSize]; k < block.begin[slot % kBlockSize + 1]; ++k) {
-    f(block.entries[k]);
-  }
+/// Between a sum along g x and one of V dW/dx.
+Real gradient_factor(const Model& model, const LiquidModel& liquid) {
+  return slope_factor(model, liquid) / liquid.slope_scale;
+}
+
+PairMotion turned(const PairImage& image, const PairMotion& source) {
+  return motion_of(source.pressure, image.turn({source.vx, source.vy, source.vz}));
 }
 
 }  // namespace
 
 PressureResponse::PressureResponse(const ForceModel& force_model, Configuration& at,
-                                   PressurePairs& pairs, ResponseScratch& scratch, bool solids_move)
+                                   ResponseScratch& scratch, bool solids_move)
     : f_(force_model),
       at_(at),
-      pairs_(pairs),
+      context_{f_.model, f_.controls, 0, f_.step, at, scratch.unused, f_.work, f_.runner},
+      sums_(pair_sums_of(context_)),
       scratch_(scratch),
       order_(f_.work.liquid.grid.order()),
       solids_(f_.work.solids_in_liquid.grid.order()),
       has_solids_(has_solids(f_.model)),
       solids_move_(solids_move && has_solids_) {
+  f_.work.pair_sums.resize(
+      std::max(f_.work.pair_sums.size(), kResponseSums * std::max(order_.size(), solids_.size())));
+  scratch_.liquid_motion.resize(order_.size());
   if (!has_solids_) return;
+  weigh_solids();
   scratch_.solid_motion.assign(solids_.size(), Vec3::Zero());
   scratch_.solid_force.resize(solids_.size());
   scratch_.rigid_force.resize(f_.model.rigid_bodies.size());
   scratch_.rigid_torque.resize(f_.model.rigid_bodies.size());
 }
 
+void PressureResponse::weigh_solids() {
+  WeightFactors factors;
+  factors.solid = 2;
+  f_.work.sources.set_weights(context_, factors);
+}
+
 void PressureResponse::accelerate(std::span<const Real> pressure) {
-  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) pairs_.records[s].pressure = pressure[s];
-  });
-  f_.model.periodic.any() ? accelerate_liquid<true>() : accelerate_liquid<false>();
+  f_.work.sources.set_motions(
+      f_.runner,
+      [&](std::size_t s) {
+        return PairMotion{pressure[s], 0, 0, 0};
+      },
+      [](std::size_t) { return PairMotion{}; },
+      [](const PairImage&, const PairMotion& source) { return source; });
+  accelerate_liquid();
   if (solids_move_) push_solids();
 }
 
-template <bool periodic>
 void PressureResponse::accelerate_liquid() {
-  std::vector<LiquidRecord>& records = pairs_.records;
-  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
-    const PairBlock& block = f_.work.liquid_pairs[begin / kBlockSize];
-    const std::vector<Real>& slopes = pairs_.slopes[begin / kBlockSize];
-    for (std::size_t s = begin; s < end; ++s) {
-      const LiquidRecord& own = records[s];
-      Vec3 sum = Vec3::Zero();
-      for (Index k = block.begin[s - begin]; k < block.begin[s - begin + 1]; ++k) {
-        const LiquidRecord& other = records[block.slots[k]];
-        Vec3 x = own.position - other.position;
-        if constexpr (periodic) x = f_.model.periodic.nearest(x);
-        sum += (other.volume * (own.pressure + other.pressure) * slopes[k]) * x;
+  Real* const sums = f_.work.pair_sums.data();
+  const PairInputs inputs = force_inputs(context_);
+  const auto factor = by_material(f_.model, [&](const LiquidModel& liquid) {
+    return slope_factor(f_.model, liquid) / liquid.rest_density;
+  });
+  f_.work.liquid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
+    sums_.pressure(in, chunk, sums);
+    for (const TargetCluster& cluster : chunk) {
+      for (Index s = cluster.begin; s < cluster.end; ++s) {
+        const Index i = order_[s];
+        const Real own = f_.model.inverse_mass[i] > 0 ? factor[f_.model.material[i]] : 0;
+        scratch_.liquid_motion[s] = own * Eigen::Map<const Vec3>(sums + 3 * std::size_t{s});
       }
-      for_each_gradient(pairs_.images, s, [&](const KernelGradient& image) {
-        const LiquidRecord& other = records[image.slot];
-        sum += (other.volume * (own.pressure + other.pressure)) * image.gradient;
-      });
-      if (has_solids_) {
-        for_each_gradient(pairs_.solids, s, [&](const KernelGradient& solid) {
-          sum += (2 * pairs_.solid_volume[solid.slot] * own.pressure) * solid.gradient;
-        });
-      }
-      records[s].velocity = -mobility_of_liquid(order_[s]) * sum;
     }
   });
 }
 
 /// The forces on solid particles and bodies, and the accelerations of all solid particles.
 void PressureResponse::push_solids() {
-  const Model& model = f_.model;
-  for_blocks(f_.runner, solids_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      Vec3 sum = Vec3::Zero();
-      for_each_gradient(pairs_.of_solids, s, [&](const KernelGradient& liquid) {
-        const LiquidRecord& other = pairs_.records[liquid.slot];
-        const Real scale = liquid_of(model, order_[liquid.slot]).slope_scale;
-        sum -= (2 * scale * other.volume * other.pressure) * liquid.gradient;
-      });
-      scratch_.solid_force[solids_[s]] = pairs_.solid_volume[s] * sum;
-    }
-  });
+  set_slope_weights(context_);
+  sum_solid_forces();
+  if (has_several_liquids(f_.model)) weigh_solids();
   sum_rigid_forces();
   for_blocks(f_.runner, solids_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      scratch_.solid_motion[s] = solid_acceleration(model.liquid_count + solids_[s]);
+      scratch_.solid_motion[s] = solid_acceleration(f_.model.liquid_count + solids_[s]);
+    }
+  });
+}
+
+void PressureResponse::sum_solid_forces() {
+  const Model& model = f_.model;
+  Real* const sums = f_.work.pair_sums.data();
+  const Real factor = 2 * slope_factor(model, *model.liquids[model.material[0]]);
+  const PairInputs inputs = solid_force_inputs(context_);
+  f_.work.solid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
+    sums_.pressure(in, chunk, sums);
+    for (const TargetCluster& cluster : chunk) {
+      for (Index n = cluster.begin; n < cluster.end; ++n) {
+        const std::size_t s = n - in.first_target;
+        const Real volume = model.rest_volume[model.liquid_count + solids_[s]];
+        scratch_.solid_force[solids_[s]] = factor * volume * Eigen::Map<const Vec3>(sums + 3 * s);
+      }
     }
   });
 }
@@ -133,7 +144,7 @@ Vec3 PressureResponse::solid_acceleration(Index particle) const {
 void PressureResponse::see_velocities(const Vec3& wall_velocity) {
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      pairs_.records[s].velocity = at_.velocity[order_[s]] - wall_velocity;
+      scratch_.liquid_motion[s] = at_.velocity[order_[s]] - wall_velocity;
     }
   });
   if (!has_solids_) return;
@@ -142,50 +153,37 @@ void PressureResponse::see_velocities(const Vec3& wall_velocity) {
   }
 }
 
-void PressureResponse::compress(std::span<Real> rate) const {
-  f_.model.periodic.any() ? compress_liquid<true>(rate) : compress_liquid<false>(rate);
+void PressureResponse::compress(std::span<Real> rate) {
+  compress_to(rate, [](std::size_t) { return Real{1}; });
 }
 
-template <bool periodic>
-void PressureResponse::compress_liquid(std::span<Real> rate) const {
-  const std::vector<LiquidRecord>& records = pairs_.records;
-  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
-    const PairBlock& block = f_.work.liquid_pairs[begin / kBlockSize];
-    const std::vector<Real>& slopes = pairs_.slopes[begin / kBlockSize];
-    for (std::size_t s = begin; s < end; ++s) {
-      const LiquidRecord& own = records[s];
-      Real sum = 0;
-      for (Index k = block.begin[s - begin]; k < block.begin[s - begin + 1]; ++k) {
-        const LiquidRecord& other = records[block.slots[k]];
-        Vec3 x = own.position - other.position;
-        if constexpr (periodic) x = f_.model.periodic.nearest(x);
-        sum += other.volume * slopes[k] * x.dot(own.velocity - other.velocity);
+void PressureResponse::compress(std::span<Real> product, std::span<const Real> scale, Real factor) {
+  compress_to(product, [&](std::size_t s) { return factor * scale[s]; });
+}
+
+template <class Scale>
+void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
+  f_.work.sources.set_motions(
+      f_.runner, [&](std::size_t s) { return motion_of(0, scratch_.liquid_motion[s]); },
+      [&](std::size_t s) { return motion_of(0, scratch_.solid_motion[s]); }, turned);
+  const PairInputs inputs = force_inputs(context_);
+  const auto factor = by_material(
+      f_.model, [&](const LiquidModel& liquid) { return gradient_factor(f_.model, liquid); });
+  f_.work.liquid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
+    sums_.compression(in, chunk, rate.data());
+    for (const TargetCluster& cluster : chunk) {
+      for (Index s = cluster.begin; s < cluster.end; ++s) {
+        rate[s] *= factor[f_.model.material[order_[s]]] * scale(s);
       }
-      for_each_gradient(pairs_.images, s, [&](const KernelGradient& image) {
-        const LiquidRecord& other = records[image.slot];
-        sum += other.volume *
-               image.gradient.dot(own.velocity - Mirror{image.mirrored}.turn(other.velocity));
-      });
-      rate[s] = has_solids_ ? sum + 2 * compression_by_solids(s) : sum;
     }
   });
-}
-
-Real PressureResponse::compression_by_solids(std::size_t slot) const {
-  Real sum = 0;
-  for_each_gradient(pairs_.solids, slot, [&](const KernelGradient& solid) {
-    const Vec3 other = Mirror{solid.mirrored}.turn(scratch_.solid_motion[solid.slot]);
-    sum +=
-        pairs_.solid_volume[solid.slot] * solid.gradient.dot(pairs_.records[slot].velocity - other);
-  });
-  return sum;
 }
 
 void PressureResponse::kick(Real dt) {
   const Model& model = f_.model;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      at_.velocity[order_[s]] += dt * pairs_.records[s].velocity;
+      at_.velocity[order_[s]] += dt * scratch_.liquid_motion[s];
     }
   });
   if (!solids_move_) return;
@@ -202,7 +200,7 @@ void PressureResponse::kick(Real dt) {
 void PressureResponse::shift(Real share) {
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      at_.position[order_[s]] += share * pairs_.records[s].velocity;
+      at_.position[order_[s]] += share * scratch_.liquid_motion[s];
     }
   });
 }
@@ -224,48 +222,39 @@ Real PressureResponse::mobility_of(Index particle) const {
                                   model.local_position[particle - model.free_count].squaredNorm();
 }
 
+/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with solids as
+/// mobile as each of them is by itself.
 void PressureResponse::find_diagonal(std::span<Real> diagonal) {
-  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      pairs_.records[s].pressure = mobility_of_liquid(order_[s]);
+  const Model& model = f_.model;
+  f_.work.sources.set_motions(
+      f_.runner,
+      [&](std::size_t s) {
+        return PairMotion{mobility_of_liquid(order_[s]), 0, 0, 0};
+      },
+      [&](std::size_t s) {
+        return PairMotion{0, std::sqrt(mobility_of(model.liquid_count + solids_[s])), 0, 0};
+      },
+      [](const PairImage&, const PairMotion& source) { return source; });
+  Real* const all = f_.work.pair_sums.data();
+  const Real scale = reference_kernel(model).scale();
+  const PairInputs inputs = force_inputs(context_);
+  f_.work.liquid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
+    sums_.response(in, chunk, all);
+    for (const TargetCluster& cluster : chunk) {
+      for (Index s = cluster.begin; s < cluster.end; ++s) {
+        const Index i = order_[s];
+        const LiquidModel& liquid = liquid_of(model, i);
+        const Real factor = gradient_factor(model, liquid);
+        const Real* const sums = all + kResponseSums * std::size_t{s};
+        const Real gradient2 = factor * factor * Eigen::Map<const Vec3>(sums).squaredNorm();
+        const Real squares = factor * factor * scale * sums[3];
+        const Real solids = factor * sums[4];
+        const Real volume = model.rest_volume[i];
+        diagonal[s] = volume * (mobility_of_liquid(i) * gradient2 + volume * squares) +
+                      volume * volume * liquid.slope_scale * solids * solids;
+      }
     }
   });
-  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) diagonal[s] = diagonal_of(s);
-  });
-}
-
-/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with solids as
-/// mobile as each of them is by itself. The records' pressure is G / rho.
-Real PressureResponse::diagonal_of(std::size_t slot) const {
-  const std::vector<LiquidRecord>& records = pairs_.records;
-  const LiquidRecord& own = records[slot];
-  Vec3 sum = Vec3::Zero();
-  Real squares = 0;
-  Real solids = 0;
-  const auto add = [&](const LiquidRecord& other, const Vec3& gradient) {
-    sum += other.volume * gradient;
-    squares += own.volume * other.volume * other.pressure * gradient.squaredNorm();
-  };
-  const PairBlock& block = f_.work.liquid_pairs[slot / kBlockSize];
-  const std::vector<Real>& slopes = pairs_.slopes[slot / kBlockSize];
-  for (Index k = block.begin[slot % kBlockSize]; k < block.begin[slot % kBlockSize + 1]; ++k) {
-    const LiquidRecord& other = records[block.slots[k]];
-    add(other, slopes[k] * nearest_image(f_.model, own.position - other.position));
-  }
-  for_each_gradient(pairs_.images, slot,
-                    [&](const KernelGradient& image) { add(records[image.slot], image.gradient); });
-  if (has_solids_) {
-    for_each_gradient(pairs_.solids, slot, [&](const KernelGradient& solid) {
-      const Real volume = 2 * pairs_.solid_volume[solid.slot];
-      const Real mobility = mobility_of(f_.model.liquid_count + solids_[solid.slot]);
-      sum += volume * solid.gradient;
-      solids += volume * solid.gradient.norm() * std::sqrt(mobility);
-    });
-  }
-  const Real scale = liquid_of(f_.model, order_[slot]).slope_scale;
-  return own.volume * (own.pressure * sum.squaredNorm() + squares) +
-         own.volume * own.volume * scale * solids * solids;
 }
 
 }  // namespace vat

@@ -3,17 +3,18 @@
 #include <span>
 #include <vector>
 
-#include "core/incompressible/pressure_pairs.h"
 #include "core/step/force_model.h"
 
 namespace vat {
 
 /// Scratch of PressureResponse.
 struct ResponseScratch {
-  std::vector<Vec3> solid_motion;  ///< by solid slot: velocity [m/s] or acceleration [m/s^2]
-  std::vector<Vec3> solid_force;   ///< by solid particle [N]
-  std::vector<Vec3> rigid_force;   ///< by rigid body [N]
-  std::vector<Vec3> rigid_torque;  ///< by rigid body, about its centre of mass [N m]
+  std::vector<Vec3> liquid_motion;  ///< by liquid slot: velocity [m/s] or acceleration [m/s^2]
+  std::vector<Vec3> solid_motion;   ///< by solid slot, the same
+  std::vector<Vec3> solid_force;    ///< by solid particle [N]
+  std::vector<Vec3> rigid_force;    ///< by rigid body [N]
+  std::vector<Vec3> rigid_torque;   ///< by rigid body, about its centre of mass [N m]
+  Forces unused;                    ///< a StepContext has some
 };
 
 /// What pressures do to a liquid and to the solids in it, in the places of one step, and what
@@ -28,12 +29,13 @@ struct ResponseScratch {
 /// walls take part as what they are. To particle i a solid particle b has the pressure p_i and the
 /// velocity 2 v_b - v_i, as if it mirrored i: F_i = -2 V_i V_b p_i G grad_i W_ib = -F_b.
 ///
-/// The present motion is kept in the records' velocities and in the scratch.
+/// The present motion is kept in the scratch. Pairs are those of the workspace, whose sources'
+/// weights and motions change.
 class PressureResponse {
  public:
-  /// `at` has the places that `pairs` were built of; the solids move, or are held.
-  PressureResponse(const ForceModel& force_model, Configuration& at, PressurePairs& pairs,
-                   ResponseScratch& scratch, bool solids_move);
+  /// `at` has the places that the workspace's pairs were found in; the solids move, or are held.
+  PressureResponse(const ForceModel& force_model, Configuration& at, ResponseScratch& scratch,
+                   bool solids_move);
 
   /// Sets the motion to the accelerations by `pressure`, by slot.
   void accelerate(std::span<const Real> pressure);
@@ -41,9 +43,9 @@ class PressureResponse {
   void see_velocities(const Vec3& wall_velocity);
 
   /// rate = D of the motion, by slot.
-  void compress(std::span<Real> rate) const;
-  /// The part of D that solids have in it, with their own velocities.
-  Real compression_by_solids(std::size_t slot) const;
+  void compress(std::span<Real> rate);
+  /// product = factor scale D of the motion, by slot.
+  void compress(std::span<Real> product, std::span<const Real> scale, Real factor);
   /// Bounds the diagonal of -V D M^-1 F, by slot.
   void find_diagonal(std::span<Real> diagonal);
 
@@ -53,20 +55,22 @@ class PressureResponse {
   void shift(Real share);
 
  private:
-  template <bool periodic>
+  /// With solids twice, which mirror the liquid.
+  void weigh_solids();
   void accelerate_liquid();
-  template <bool periodic>
-  void compress_liquid(std::span<Real> rate) const;
+  template <class Scale>
+  void compress_to(std::span<Real> rate, Scale&& scale);
   void push_solids();
+  void sum_solid_forces();
   void sum_rigid_forces();
   Vec3 solid_acceleration(Index particle) const;
   Real mobility_of_liquid(Index particle) const;
   Real mobility_of(Index particle) const;
-  Real diagonal_of(std::size_t slot) const;
 
   const ForceModel& f_;
   Configuration& at_;
-  PressurePairs& pairs_;
+  const StepContext context_;
+  const PairSums& sums_;
   ResponseScratch& scratch_;
   const std::span<const Index> order_;
   const std::span<const Index> solids_;

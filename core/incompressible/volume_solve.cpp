@@ -31,14 +31,13 @@ Vec3 wall_velocity(const Model& model, Real time, Real dt) {
 class VolumeSolve {
  public:
   /// The workspace has cells, pairs and densities of the present places.
-  VolumeSolve(const StepContext& c, const ForceModel& f, Real dt, VolumeScratch& scratch)
+  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, VolumeScratch& scratch)
       : f_(f),
-        now_(c.configuration),
+        now_(now),
         dt_(dt),
         s_(scratch),
         problem_(scratch.problem),
         order_(f.work.liquid.grid.order()) {
-    scratch.pairs.build(c);
     set_up();
   }
 
@@ -69,7 +68,7 @@ void VolumeSolve::set_up() {
   problem_.resize(order_.size());
   s_.relative_density.resize(order_.size());
   s_.start.resize(order_.size());
-  PressureResponse(f_, now_, s_.pairs, s_.response, true).find_diagonal(problem_.diagonal);
+  PressureResponse(f_, now_, s_.response, true).find_diagonal(problem_.diagonal);
   each_slot([&](std::size_t s) {
     const Index i = order_[s];
     s_.relative_density[s] = f_.work.density[i] / liquid_of(f_.model, i).rest_density;
@@ -80,7 +79,7 @@ void VolumeSolve::set_up() {
 }
 
 SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
-  PressureResponse response(f_, now_, s_.pairs, s_.response, true);
+  PressureResponse response(f_, now_, s_.response, true);
   response.see_velocities(wall_velocity);
   response.compress(problem_.excess);
   each_slot([&](std::size_t s) {
@@ -108,7 +107,7 @@ void VolumeSolve::apply_impulses(PressureResponse& response) {
 }
 
 int VolumeSolve::shift_places() {
-  PressureResponse response(f_, now_, s_.pairs, s_.response, false);
+  PressureResponse response(f_, now_, s_.response, false);
   each_slot([&](std::size_t s) {
     problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMostExpansion);
     problem_.x[s] = 0;
@@ -126,15 +125,15 @@ SolveReport VolumeSolve::solve(PressureResponse& response, Real mean) {
                            f_.model.scene.incompressible.most_iterations};
   return problem_.solve(limits, f_.runner, [&](std::span<const Real> d, std::span<Real> product) {
     response.accelerate(d);
-    response.compress(product);
-    each_slot([&](std::size_t s) { product[s] *= -dt_ * dt_ * problem_.scale[s]; });
+    response.compress(product, problem_.scale, -dt_ * dt_);
   });
 }
 
 /// Cells, pairs and densities of places that have changed.
 void find_density(StepContext& c) {
   sort_liquid(c);
-  if (has_solids(c.model)) find_liquid_solids(c);
+  if (has_solids(c.model)) sort_solids_in_liquid(c);
+  find_pair_clusters(c);
   compute_tait_density(c);
 }
 
@@ -158,9 +157,7 @@ void recall_pressure(StepContext& c) {
 
 SolveReport project_velocities(const ForceModel& f, Configuration& now, Real time, Real dt,
                                VolumeScratch& scratch) {
-  Forces unused;
-  const StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};
-  return VolumeSolve(c, f, dt, scratch).project_velocities(wall_velocity(f.model, time, dt));
+  return VolumeSolve(f, now, dt, scratch).project_velocities(wall_velocity(f.model, time, dt));
 }
 
 SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
@@ -177,7 +174,7 @@ SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
         report.mean <= tolerance && report.greatest <= kGreatestOverMean * tolerance;
     if (is_solved || round == kMostCorrections || f.work.too_many_pairs) return report;
     constexpr Real kUnit = 1;  // shifts take no time
-    report.iterations += VolumeSolve(c, f, kUnit, scratch).shift_places();
+    report.iterations += VolumeSolve(f, now, kUnit, scratch).shift_places();
   }
 }
 

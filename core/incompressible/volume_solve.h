@@ -8,7 +8,6 @@ namespace vat {
 
 /// Kept between steps, so that a steady one allocates nothing.
 struct VolumeScratch {
-  PressurePairs pairs;
   ResponseScratch response;
   Complementarity problem;
   std::vector<Real> relative_density;  ///< by slot

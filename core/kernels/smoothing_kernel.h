@@ -19,6 +19,12 @@ class SmoothingKernel {
   /// `h`: support radius [m]; `dimensions`: 3 or 2; `scale`: of C.
   SmoothingKernel(KernelId id, Real h, int dimensions, Real scale = 1);
 
+  KernelId id() const { return id_; }
+  /// C, and what slope_over_r() is over g(q): (1 - q)^3 of wendland_c2; 2 - 3q, and (1 - q)^2 / q
+  /// from q = 1/2 on, of cubic_spline.
+  Real scale() const { return scale_; }
+  Real slope_scale() const { return slope_scale_; }
+
   /// r is at most h.
   Real value(Real r) const {
     const Real q = r * inverse_h_;

@@ -8,15 +8,25 @@
 
 namespace vat {
 
-void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size) {
+void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size, TaskRunner* runner) {
   constexpr Real kFar = 1e3 * kMaxLength;  // beyond it the guard ends the step; only stay finite
+  boxes_.resize(block_count(points.size()));
+  for_blocks(runner, points.size(), [&](std::size_t begin, std::size_t end) {
+    Vec3 low = Vec3::Constant(kFar);
+    Vec3 high = Vec3::Constant(-kFar);
+    for (const Vec3& p : points.subspan(begin, end - begin)) {
+      for (int axis = 0; axis < 3; ++axis) {  // a NaN changes neither
+        low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
+        high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
+      }
+    }
+    boxes_[begin / kBlockSize] = {low, high};
+  });
   Vec3 low = Vec3::Constant(kFar);
   Vec3 high = Vec3::Constant(-kFar);
-  for (const Vec3& p : points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (p[axis] < low[axis]) low[axis] = p[axis];
-      if (p[axis] > high[axis]) high[axis] = p[axis];
-    }
+  for (const auto& [block_low, block_high] : boxes_) {
+    low = low.cwiseMin(block_low);
+    high = high.cwiseMax(block_high);
   }
   low = low.cwiseMax(-kFar).cwiseMin(kFar);
   high = high.cwiseMin(kFar).cwiseMax(low);
@@ -35,23 +45,24 @@ void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size) {
   }
 }
 
-void UniformGrid::build(std::span<const Vec3> points, Real cell_size) {
+void UniformGrid::build(std::span<const Vec3> points, Real cell_size, TaskRunner* runner) {
   VAT_CHECK(cell_size > 0);
-  choose_cells(points, cell_size);
+  choose_cells(points, cell_size, runner);
   const std::size_t cell_count = std::size_t{count_[0]} * count_[1] * count_[2];
   cell_begin_.assign(cell_count + 1, 0);
   cell_of_.resize(points.size());
   order_.resize(points.size());
 
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3& p = points[i];
-    const Index x = coordinate(p.x(), 0);
-    const Index y = coordinate(p.y(), 1);
-    const Index z = coordinate(p.z(), 2);
-    const Index cell = (z * count_[1] + y) * count_[0] + x;
-    cell_of_[i] = cell;
-    ++cell_begin_[cell + 1];
-  }
+  for_blocks(runner, points.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& p = points[i];
+      const Index x = coordinate(p.x(), 0);
+      const Index y = coordinate(p.y(), 1);
+      const Index z = coordinate(p.z(), 2);
+      cell_of_[i] = (z * count_[1] + y) * count_[0] + x;
+    }
+  });
+  for (const Index cell : cell_of_) ++cell_begin_[cell + 1];
   for (std::size_t cell = 0; cell < cell_count; ++cell) {
     cell_begin_[cell + 1] += cell_begin_[cell];
   }

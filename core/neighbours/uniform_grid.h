@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/support/check.h"
+#include "core/support/parallel.h"
 #include "core/types.h"
 
 namespace vat {
@@ -16,23 +17,33 @@ namespace vat {
 class UniformGrid {
  public:
   /// `cell_size` > 0 [m]: best the search radius.
-  void build(std::span<const Vec3> points, Real cell_size);
+  void build(std::span<const Vec3> points, Real cell_size, TaskRunner* runner = nullptr);
 
   /// Slot -> index of the point; slots of a cell are contiguous.
   std::span<const Index> order() const { return order_; }
+  /// Cell -> its first slot, and one past the last. A cell without points is empty.
+  std::span<const Index> cell_begin() const { return cell_begin_; }
+  /// The corner of least coordinates of the box around all cells.
+  const Vec3& origin() const { return origin_; }
 
   /// Calls f(begin, end) for runs of slots that together hold, each once, every point closer to
   /// `p` than `radius` (and others).
   template <class F>
   void for_each_run(const Vec3& p, Real radius, F&& f) const {
-    if (order_.empty()) return;
     const Real reach = radius * (1 + 1e-6);  // more than p - radius can be rounded by
+    for_each_run(p.array() - reach, p.array() + reach, f);
+  }
+
+  /// The same of the points of a box, its faces included.
+  template <class F>
+  void for_each_run(const Vec3& lowest, const Vec3& highest, F&& f) const {
+    if (order_.empty()) return;
     std::array<Index, 3> low;
     std::array<Index, 3> high;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      low[axis] = coordinate(p[a] - reach, axis);
-      high[axis] = coordinate(p[a] + reach, axis);
+      low[axis] = coordinate(lowest[a], axis);
+      high[axis] = coordinate(highest[a], axis);
     }
     for (Index z = low[2]; z <= high[2]; ++z) {
       for (Index y = low[1]; y <= high[1]; ++y) {
@@ -53,7 +64,7 @@ class UniformGrid {
     const Index last = count_[axis] - 1;
     return c >= last ? last : static_cast<Index>(c);
   }
-  void choose_cells(std::span<const Vec3> points, Real cell_size);
+  void choose_cells(std::span<const Vec3> points, Real cell_size, TaskRunner* runner);
 
   Vec3 origin_ = Vec3::Zero();
   Real inverse_cell_size_ = 1;
@@ -61,6 +72,7 @@ class UniformGrid {
   std::vector<Index> cell_begin_;  // per cell, and one past the last
   std::vector<Index> cell_of_;     // per point
   std::vector<Index> order_;
+  std::vector<std::array<Vec3, 2>> boxes_;  // around each block of points
 };
 
 }  // namespace vat

@@ -153,6 +153,9 @@ void warn_of_solver(const Scene& scene, std::vector<Warning>& warnings) {
   if (scene.kernel != Scene{}.kernel && is_gas) {
     warn("/kernel", "the pressure solver \"gas\" has kernels of its own", warnings);
   }
+  if (scene.pair_precision != Scene{}.pair_precision && is_gas) {
+    warn("/pair_precision", "the pressure solver \"gas\" has double precision", warnings);
+  }
   for (std::size_t m = 0; is_incompressible && m < scene.materials.size(); ++m) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
     if (!liquid || liquid->stiffness == 0) continue;

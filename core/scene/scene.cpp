@@ -71,6 +71,17 @@ const char* to_string(KernelId id) {
   return "";
 }
 
+const char* to_string(PairPrecision precision) {
+  switch (precision) {
+    case PairPrecision::single_precision:
+      return "single";
+    case PairPrecision::double_precision:
+      return "double";
+  }
+  VAT_CHECK(false && "not a precision");
+  return "";
+}
+
 const char* to_string(SurfaceModel model) {
   switch (model) {
     case SurfaceModel::curvature:

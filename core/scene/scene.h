@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/kernels/kernel_id.h"
+#include "core/pairs/pair_precision.h"
 #include "core/types.h"
 
 /// A scene as plain values: what a user writes. Nothing here is checked; see core/scene/validate.h
@@ -370,6 +371,8 @@ struct Scene {
   /// Of the gas: half of the pressure force, as Boldt and [MCG03] print it, for comparison.
   bool printed_pressure_force = false;
   KernelId kernel = KernelId::wendland_c2;  ///< of liquids; the gas has those of [MCG03]
+  /// Of liquids' sums over pairs; the gas has double precision.
+  PairPrecision pair_precision = PairPrecision::single_precision;
   SurfaceModel surface_model = SurfaceModel::curvature;
   /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
   /// dimensions, and masses, forces and energies are per metre of depth.
@@ -384,6 +387,7 @@ const char* to_string(StepControl control);
 const char* to_string(PressureSolver solver);
 const char* to_string(InterfaceLaw law);
 const char* to_string(KernelId id);
+const char* to_string(PairPrecision precision);
 const char* to_string(SurfaceModel model);
 
 }  // namespace vat

@@ -7,6 +7,7 @@
 #include "core/forces/contacts.h"
 #include "core/forces/external.h"
 #include "core/forces/liquid.h"
+#include "core/forces/neighbour_lists.h"
 #include "core/forces/no_slip.h"
 #include "core/forces/restitution.h"
 #include "core/forces/rigid.h"
@@ -25,10 +26,11 @@ namespace vat {
 namespace {
 
 constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",       "velocity",      "rigid_state",    "force",           "liquid_cells",
-    "liquid_pairs",   "density",       "filled_density", "pressure",        "liquid_solids",
-    "solid_pressure", "transport",     "surface",        "surface_normals", "contact_list",
-    "yielding",       "cell_pressure", "rigid_force",    "kept_pressure"};
+    "position",       "velocity",        "rigid_state",   "force",          "liquid_cells",
+    "solid_cells",    "pair_clusters",   "pair_motion",   "liquid_pairs",   "density",
+    "filled_density", "pressure",        "liquid_solids", "solid_pressure", "transport",
+    "surface",        "surface_normals", "contact_list",  "yielding",       "cell_pressure",
+    "rigid_force",    "kept_pressure"};
 
 std::string join(const std::vector<Column>& columns) {
   std::string text;
@@ -85,14 +87,14 @@ void add_liquid_stages(const Model& model, PlanBuilder& plan) {
 void add_transport_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   if (model.particle_count > model.liquid_count) {
-    plan.add("transport_velocity", {position, liquid_cells, liquid_pairs, liquid_solids},
+    plan.add("transport_velocity", {liquid_cells, solid_cells, liquid_pairs, liquid_solids},
              {transport}, &compute_transport_velocity);
     plan.add("transport_forces",
-             {velocity, liquid_cells, liquid_pairs, liquid_solids, transport, force}, {force},
-             &add_transport_forces);
+             {velocity, liquid_cells, solid_cells, liquid_pairs, liquid_solids, transport, force},
+             {force}, &add_transport_forces);
     return;
   }
-  plan.add("transport_velocity", {position, liquid_cells, liquid_pairs}, {transport},
+  plan.add("transport_velocity", {liquid_cells, liquid_pairs}, {transport},
            &compute_transport_velocity);
   plan.add("transport_forces", {velocity, liquid_cells, liquid_pairs, transport, force}, {force},
            &add_transport_forces);
@@ -103,44 +105,50 @@ void add_coupled_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   plan.add("sort_liquid", {position}, {liquid_cells}, &sort_liquid);
   const bool has_solids = model.particle_count > model.liquid_count;
-  const auto add_pressure = [&] {
-    if (model.is_incompressible) {
-      plan.add("recall_pressure", {kept_pressure}, {pressure}, &recall_pressure);
-    } else {
-      plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
-    }
-  };
-  if (!has_solids) {
-    plan.add("liquid_density", {position, liquid_cells}, {liquid_pairs, density},
-             &compute_tait_density);
-    add_pressure();
-    plan.add("liquid_forces",
-             {position, velocity, liquid_cells, liquid_pairs, density, pressure, force}, {force},
-             &add_tait_forces);
-    return;
+  if (has_solids) {
+    plan.add("sort_solids", {position}, {solid_cells}, &sort_solids_in_liquid);
+    plan.add("find_pairs", {liquid_cells, solid_cells}, {pair_clusters}, &find_pair_clusters);
+  } else {
+    plan.add("find_pairs", {liquid_cells}, {pair_clusters}, &find_pair_clusters);
   }
-  plan.add("find_liquid_solids", {position, liquid_cells}, {liquid_solids}, &find_liquid_solids);
-  plan.add("liquid_density", {position, liquid_cells, liquid_solids}, {liquid_pairs, density},
-           &compute_tait_density);
-  add_pressure();
-  plan.add("solid_pressure", {position, liquid_cells, liquid_solids, pressure}, {solid_pressure},
-           &extrapolate_pressure);
-  plan.add("liquid_forces",
-           {position, velocity, liquid_cells, liquid_pairs, density, pressure, liquid_solids,
-            solid_pressure, force},
-           {force}, &add_tait_forces);
-  plan.add("liquid_forces_on_solids",
-           {velocity, liquid_cells, density, pressure, liquid_solids, solid_pressure, force},
-           {force}, &add_tait_forces_on_solids);
+  plan.add("liquid_density", {liquid_cells, pair_clusters}, {density}, &compute_tait_density);
+  if (model.is_incompressible) {
+    plan.add("recall_pressure", {kept_pressure}, {pressure}, &recall_pressure);
+  } else {
+    plan.add("liquid_pressure", {density}, {pressure}, &compute_tait_pressure);
+  }
+  if (has_solids) {
+    plan.add("solid_pressure", {liquid_cells, solid_cells, pair_clusters, pressure},
+             {solid_pressure, pair_motion}, &extrapolate_pressure);
+    plan.add("liquid_forces",
+             {velocity, liquid_cells, solid_cells, pair_clusters, density, pressure, solid_pressure,
+              force},
+             {pair_motion, force}, &add_tait_forces);
+    plan.add("liquid_forces_on_solids",
+             {liquid_cells, solid_cells, pair_clusters, solid_pressure, pair_motion, force},
+             {force}, &add_tait_forces_on_solids);
+  } else {
+    plan.add("liquid_forces", {velocity, liquid_cells, pair_clusters, density, pressure, force},
+             {pair_motion, force}, &add_tait_forces);
+  }
+  if (model.is_filled || model.has_surface_tension) {
+    if (has_solids) {
+      plan.add("list_neighbours", {liquid_cells, solid_cells}, {liquid_pairs, liquid_solids},
+               static_cast<StageFunction>(&list_neighbours));
+    } else {
+      plan.add("list_neighbours", {liquid_cells}, {liquid_pairs},
+               static_cast<StageFunction>(&list_neighbours));
+    }
+  }
 }
 
 void add_surface_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   if (model.particle_count > model.liquid_count) {
-    plan.add("find_surface", {position, liquid_cells, liquid_pairs, liquid_solids}, {surface},
+    plan.add("find_surface", {liquid_cells, solid_cells, liquid_pairs, liquid_solids}, {surface},
              &find_surface);
   } else {
-    plan.add("find_surface", {position, liquid_cells, liquid_pairs}, {surface}, &find_surface);
+    plan.add("find_surface", {liquid_cells, liquid_pairs}, {surface}, &find_surface);
   }
   plan.add("surface_normals", {liquid_cells, liquid_pairs, surface}, {surface_normals},
            &find_surface_normals);
@@ -152,7 +160,7 @@ void add_cohesion_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   plan.add("cohesion", {position, liquid_cells, force}, {force}, &add_cohesion);
   if (model.particle_count > model.liquid_count) {
-    plan.add("adhesion", {position, liquid_cells, liquid_solids, force}, {force}, &add_adhesion);
+    plan.add("adhesion", {position, liquid_cells, solid_cells, force}, {force}, &add_adhesion);
   }
 }
 
@@ -230,8 +238,8 @@ StepPlan make_step_plan(const Model& model) {
   if (model.is_coupled) {
     add_coupled_stages(model, plan);
     if (has_viscous_images(model)) {
-      plan.add("viscous_images", {velocity, liquid_cells, force}, {force},
-               &add_viscous_image_forces);
+      plan.add("viscous_images", {velocity, liquid_cells, pair_clusters, force},
+               {pair_motion, force}, &add_viscous_image_forces);
     }
     if (model.is_filled) add_transport_stages(model, plan);
   } else if (model.liquid_count > 0) {

@@ -19,6 +19,9 @@ enum class Column : std::uint8_t {
   rigid_state,
   force,
   liquid_cells,
+  solid_cells,
+  pair_clusters,
+  pair_motion,
   liquid_pairs,
   density,
   filled_density,
@@ -34,7 +37,7 @@ enum class Column : std::uint8_t {
   rigid_force,
   kept_pressure,
 };
-inline constexpr std::size_t kColumnCount = 19;
+inline constexpr std::size_t kColumnCount = 22;
 
 /// One pass over whole arrays: never one particle.
 using StageFunction = void (*)(StepContext&);

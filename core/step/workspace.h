@@ -7,6 +7,7 @@
 #include "core/forces/contact_list.h"
 #include "core/neighbours/periodic_box.h"
 #include "core/neighbours/uniform_grid.h"
+#include "core/pairs/pair_sources.h"
 #include "core/state/state.h"
 #include "core/step/controls.h"
 #include "core/support/instruction_set.h"
@@ -22,10 +23,16 @@ struct CellSortedPoints {
   std::vector<Real> y;
   std::vector<Real> z;
   std::vector<Vec3> wrapped;  ///< the points themselves, in their order; periodic worlds only
+  std::uint64_t version = 0;  ///< rises whenever the points are other ones
+  bool is_whole = false;      ///< false while they are sorted, or where that failed
 
   /// `cell_size`: best the search radius [m]. In a periodic world the coordinates are those of the
   /// images in the box.
-  void build(std::span<const Vec3> points, Real cell_size, const PeriodicBox& periodic);
+  void build(std::span<const Vec3> points, Real cell_size, const PeriodicBox& periodic,
+             TaskRunner* runner = nullptr);
+  /// The same, but nothing is done where the points are those of the last time, to the bit.
+  void update(std::span<const Vec3> points, Real cell_size, const PeriodicBox& periodic,
+              TaskRunner* runner);
 };
 
 /// What a pressure or viscosity pair reads of a liquid particle, one cache line.
@@ -116,11 +123,21 @@ struct DamperBlock {
 struct Workspace {
   InstructionSet instructions = InstructionSet::baseline;  ///< of the vectorised loops
   CellSortedPoints liquid;
+  // Of coupled liquids.
+  PairSources sources;
+  PairClusters liquid_clusters;            ///< pairs of liquid and all sources
+  PairClusters solid_clusters;             ///< pairs of solids and liquid with its images
+  std::uint64_t pairs_version = 0;         ///< of the sources that these were found among
+  std::vector<Real> pair_sums;             ///< by target
+  std::vector<PairViscosity> viscosities;  ///< by source, where liquids differ
+  std::vector<Real> target_viscosities;    ///< by target, the same
+  // Of the gas, and of coupled liquids where a stage asks for them.
   std::vector<LiquidRecord> liquid_records;  ///< by slot
   std::vector<PairBlock> liquid_pairs;
   bool too_many_pairs = false;  ///< above max_pairs(): the lists are not whole, a density is a NaN
-  bool too_many_contacts = false;  ///< by projection, above kMaxProjections: none was solved for
-  std::vector<Real> density;       ///< by liquid particle [kg/m^3]
+  bool too_many_contacts = false;     ///< by projection, above kMaxProjections: none was solved for
+  std::vector<Real> density;          ///< by liquid particle [kg/m^3]
+  std::uint64_t density_version = 0;  ///< of the sources that it was summed over
   /// The same with all of the space beyond no-slip walls filled with the liquid at rest density.
   std::vector<Real> filled_density;
   std::vector<Real> filling;           ///< by liquid slot: density over filled density

@@ -20,19 +20,17 @@ class TaskRunner {
 /// every bit of the result, does not depend on the number of threads.
 inline constexpr std::size_t kBlockSize = 256;
 
-/// Number of blocks that hold `count` elements.
-constexpr std::size_t block_count(std::size_t count) {
-  return (count + kBlockSize - 1) / kBlockSize;
+/// Number of blocks of `size` that hold `count` elements.
+constexpr std::size_t block_count(std::size_t count, std::size_t size = kBlockSize) {
+  return (count + size - 1) / size;
 }
 
-/// Calls `body(begin, end)` over [0, count) in blocks; serially where `runner` is null or the range
-/// is a single block. `body` may write only what belongs to its own range.
-template <class Body>
+/// Calls `body(begin, end)` over [0, count) in blocks of `size`; serially where `runner` is null or
+/// the range is a single block. `body` may write only what belongs to its own range.
+template <std::size_t size = kBlockSize, class Body>
 void for_blocks(TaskRunner* runner, std::size_t count, Body&& body) {
-  const std::size_t blocks = block_count(count);
-  const auto block = [&](std::size_t b) {
-    body(b * kBlockSize, std::min(count, (b + 1) * kBlockSize));
-  };
+  const std::size_t blocks = block_count(count, size);
+  const auto block = [&](std::size_t b) { body(b * size, std::min(count, (b + 1) * size)); };
   if (runner == nullptr || runner->thread_count() < 2 || blocks < 2) {
     for (std::size_t b = 0; b < blocks; ++b) block(b);
   } else {

@@ -130,6 +130,7 @@ TEST(Cohesion, HoldsADropUnderABodyThatItWets) {
 TEST(Cohesion, KeepsTheMomentumOfADropAndAStoneThatItHolds) {
   for (const BodyKind kind : {BodyKind::rigid, BodyKind::deformable}) {
     Scene scene = make_wet_scene();
+    scene.pair_precision = PairPrecision::double_precision;
     set_angle(scene, "stone", 50);
     scene.materials[1].springs =
         LatticeSprings{SpringConstants{2000, 1}, SpringConstants{1000, 1}, {}};

@@ -58,6 +58,7 @@ TEST_P(ImplicitSpringsInScenes, MeetLiquidBodiesAndWalls) {
 
 TEST_P(ImplicitSpringsInScenes, ExchangeMomentumWithNothingLost) {
   Scene scene = make_pool(GetParam(), StepControl::fixed);
+  scene.pair_precision = PairPrecision::double_precision;
   scene.vat.reset();
   scene.gravity.setZero();
   for (BodyDescription& body : scene.bodies) body.position.z() = body.name == "pool" ? 0 : -0.05;

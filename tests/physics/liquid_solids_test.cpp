@@ -39,6 +39,7 @@ BodyDescription make_water(Real low) {
 Scene make_tank(Real low) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 5e-4);
   scene.pressure_solver = PressureSolver::tait;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.gravity = {0, 0, -9.81};
   scene.default_interface = {0, 0};
   scene.materials = {make_liquid("water", 1000, {100, 0, 2.5 * kSpacing}), make_material("wood")};

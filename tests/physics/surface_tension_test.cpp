@@ -65,6 +65,7 @@ TEST(SurfaceTension, MakesASquareRound) {
 TEST(SurfaceTension, KeepsADropTogetherAndItsMomentum) {
   constexpr int kLayers = 10;
   Scene scene = make_wet_scene(2, kLayers);
+  scene.pair_precision = PairPrecision::double_precision;
   scene.bodies = {make_drop("drop", SphereShape{Vec3::Zero(), kRadius}, kLayers)};
   const Real speed = capillary_speed();
   scene.bodies[0].velocity = {speed, 0, 0};

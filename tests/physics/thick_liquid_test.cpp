@@ -60,6 +60,7 @@ TEST_P(ThickLiquid, AFixedStoneOnlyTakesItsEnergy) {
 
 TEST_P(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
   Scene scene = make_honey(GetParam(), false);
+  scene.pair_precision = PairPrecision::double_precision;
   Simulation simulation = make_simulation(scene);
   const Totals before = totals_of(simulation.diagnostics());
   const Motion size = motion_of(simulation);

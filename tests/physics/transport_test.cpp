@@ -62,7 +62,8 @@ TEST(Transport, VorticesDecayAsByTheory) {
 }
 
 TEST(Transport, KeepsMomentumAndBits) {
-  const Scene scene = make_vortices(0.1, 1, 0.3);
+  Scene scene = make_vortices(0.1, 1, 0.3);
+  scene.pair_precision = PairPrecision::double_precision;
   Simulation simulation = make_simulation(scene);
   const auto momentum = [&] { return simulation.diagnostics().bodies[0].linear_momentum; };
   const Vec3 before = momentum();
@@ -78,7 +79,8 @@ TEST(Transport, KeepsMomentumAndBits) {
 // One vortex between four walls does what it does among its mirror images. Walls are slippery, so
 // without viscosity.
 TEST(Transport, WallsAreMirrors) {
-  const Scene periodic = make_vortices(0.05, 0, 0);
+  Scene periodic = make_vortices(0.05, 0, 0);
+  periodic.pair_precision = PairPrecision::double_precision;
   Scene walled = periodic;
   walled.periodic.reset();
   walled.vat = Vat{{0.25, -1, 0.25}, {0.75, 1, 0.75}, true, {}};

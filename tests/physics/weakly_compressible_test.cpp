@@ -158,6 +158,7 @@ Scene make_lone_particle(const Vec3& velocity) {
   constexpr Real kSound = 10;
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.7 * 2 * kSpacing / kSound);
   scene.pressure_solver = PressureSolver::tait;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.gravity.setZero();
   scene.materials = {make_liquid("water", 1000, {kSound * kSound, 0, 2 * kSpacing})};
   scene.vat = Vat{{0, 0, 0}, {1, 1, 1}, true, {}};

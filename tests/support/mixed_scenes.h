@@ -39,6 +39,7 @@ inline BodyDescription make_block(std::string name, BodyKind kind, std::string m
 inline Scene make_wet_mixture(IntegratorId integrator, PressureSolver solver) {
   Scene scene = make_two_material_scene(integrator, 1e-3, 5);
   scene.pressure_solver = solver;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.materials[1].density = 700;
   const auto add = [&](const char* name, BodyKind kind, const char* material, const Vec3& center,
                        const Vec3& velocity) {

@@ -81,6 +81,7 @@ Scene make_wet_scene(int dimensions) {
   scene.dimensions = dimensions;
   scene.gravity.setZero();
   scene.pressure_solver = PressureSolver::tait;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.surface_model = SurfaceModel::cohesion;
   LiquidConstants water{100, 0, kSupport};
   water.surface_tension = kSigma;

@@ -17,6 +17,7 @@ Scene make_full_box(int dimensions, Real ratio) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.dimensions = dimensions;
   scene.pressure_solver = PressureSolver::tait;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.materials = {make_liquid("water", 1000, {100, 0, ratio * kSpacing})};
   const int n = 6;
   const int depth = dimensions == 3 ? n : 1;

@@ -164,11 +164,12 @@ class BitWriter {
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
                  bodies, vat, periodic, central_field, settling, emitters, drains, forces,
-                 pressure_solver, incompressible, printed_pressure_force, kernel, surface_model,
-                 dimensions, numerics] = scene;
+                 pressure_solver, incompressible, printed_pressure_force, kernel, pair_precision,
+                 surface_model, dimensions, numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
             vat, periodic, central_field, settling, emitters, drains, forces, pressure_solver,
-            incompressible, printed_pressure_force, kernel, surface_model, dimensions, numerics);
+            incompressible, printed_pressure_force, kernel, pair_precision, surface_model,
+            dimensions, numerics);
   }
 
  private:

@@ -14,6 +14,7 @@ const char* const kFullDocument = R"json({
   "pressure_solver": "gas",
   "printed_pressure_force": true,
   "kernel": "cubic_spline",
+  "pair_precision": "double",
   "surface_tension_model": "cohesion",
   "periodic": {"axes": ["x"], "min": [-2, -1, -2.5], "max": [3, 5, 6]},
   "central_field": {"center": [0.5, -0.125, 0.75], "angular_frequency": 1.25},
@@ -182,6 +183,7 @@ Scene full_scene() {
   scene.pressure_solver = PressureSolver::gas;
   scene.printed_pressure_force = true;
   scene.kernel = KernelId::cubic_spline;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.surface_model = SurfaceModel::cohesion;
   scene.name = "everything";
   scene.title = "Every member";

@@ -51,6 +51,17 @@ void spoil(Column column, Columns& columns) {
     case Column::liquid_cells:
       columns.work.liquid = {};
       return;
+    case Column::solid_cells:
+      columns.work.solids_in_liquid = {};
+      return;
+    case Column::pair_clusters:
+      columns.work.sources.places.clear();
+      columns.work.liquid_clusters = {};
+      columns.work.solid_clusters = {};
+      return;
+    case Column::pair_motion:
+      std::ranges::fill(columns.work.sources.motions, PairMotion{kNan, kNan, kNan, kNan});
+      return;
     case Column::liquid_pairs:
       for (PairBlock& block : columns.work.liquid_pairs) block.begin.fill(0);
       return;
@@ -120,6 +131,17 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(forces.particle);
     case Column::liquid_cells:
       return bytes_of(columns.work.liquid.x);
+    case Column::solid_cells:
+      return bytes_of(columns.work.solids_in_liquid.x);
+    case Column::pair_clusters: {
+      std::vector<Vec3> places;
+      for (const PairPlace& place : columns.work.sources.places) {
+        places.emplace_back(place.x, place.y, place.z);
+      }
+      return bytes_of(places);
+    }
+    case Column::pair_motion:
+      return bytes_of(columns.work.sources.motions);
     case Column::liquid_pairs: {
       std::vector<Index> ends;
       for (const PairBlock& block : columns.work.liquid_pairs) ends.push_back(block.begin[1]);

@@ -23,6 +23,7 @@ Scene make_wet_scene(int dimensions) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.dimensions = dimensions;
   scene.pressure_solver = PressureSolver::tait;
+  scene.pair_precision = PairPrecision::double_precision;
   LiquidConstants water{100, 0, 3 * kSpacing};
   water.surface_tension = kSigma;
   scene.materials = {make_liquid("water", 1000, water)};

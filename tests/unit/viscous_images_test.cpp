@@ -27,6 +27,7 @@ Scene make_wall_scene(int wall, int along) {
   place[axis] = wall % 2 == 0 ? kDistance : 1 - kDistance;
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4);
   scene.pressure_solver = PressureSolver::tait;
+  scene.pair_precision = PairPrecision::double_precision;
   LiquidConstants water{0, kViscosity, kSupport};
   water.artificial_viscosity = 0;
   scene.materials = {make_liquid("water", 1000, water)};

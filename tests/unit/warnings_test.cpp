@@ -210,10 +210,11 @@ TEST(Warnings, OfWhatThePressureSolverDoesNotUse) {
   Scene scene = two_balls(1);
   scene.printed_pressure_force = true;
   scene.kernel = KernelId::cubic_spline;
+  scene.pair_precision = PairPrecision::double_precision;
   scene.pressure_solver = PressureSolver::tait;
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /printed_pressure_force"));
   scene.pressure_solver = PressureSolver::gas;
-  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /kernel"));
+  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /kernel", "no_effect /pair_precision"));
 }
 
 TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {

@@ -1,0 +1,150 @@
+#include "core/forces/coupled_pairs.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/forces/liquid_pairs.h"
+
+namespace vat {
+
+bool has_several_liquids(const Model& model) {
+  const auto liquids = std::span(model.material).first(model.liquid_count);
+  return std::ranges::any_of(liquids, [&](Index material) { return material != liquids[0]; });
+}
+
+bool has_central_viscosity(const Model& model) {
+  return std::ranges::any_of(model.bodies, [&](const ModelBody& body) {
+    return body.kind == BodyKind::liquid && model.liquids[body.material]->central_viscosity > 0;
+  });
+}
+
+PairInputs pair_inputs(const StepContext& c) {
+  PairInputs inputs;
+  inputs.places = c.work.sources.places.data();
+  inputs.inverse_support = 1 / support_of(c.model);
+  inputs.first_mirrored = c.work.sources.first_mirrored();
+  return inputs;
+}
+
+PairInputs force_inputs(const StepContext& c) {
+  PairInputs inputs = pair_inputs(c);
+  inputs.motions = c.work.sources.motions.data();
+  inputs.viscosity =
+      c.model.liquids[c.model.material[0]]->central_viscosity * inputs.inverse_support;
+  if (has_several_liquids(c.model)) {
+    inputs.viscosities = c.work.viscosities.data();
+    inputs.target_viscosities = c.work.target_viscosities.data();
+  }
+  return inputs;
+}
+
+PairInputs solid_force_inputs(const StepContext& c) {
+  PairInputs inputs = force_inputs(c);
+  inputs.first_target = c.work.sources.first_solid();
+  return inputs;
+}
+
+namespace {
+
+constexpr PairViscosity kNone{0, 0, 1};
+
+/// mu / h of liquid.
+Real relative_viscosity(const StepContext& c, Index particle) {
+  return liquid_of(c.model, particle).central_viscosity / support_of(c.model);
+}
+
+/// f(source) of each but the padding.
+template <class F>
+void set_viscosities(const StepContext& c, F&& f) {
+  const std::size_t count = c.work.sources.count();
+  c.work.viscosities.resize(count + 1);
+  c.work.viscosities[count] = kNone;
+  for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) c.work.viscosities[n] = f(static_cast<Index>(n));
+  });
+}
+
+/// Of liquid towards liquid: mu_ij is 2 mu_i mu_j / (mu_i + mu_j), see mean_viscosity().
+PairViscosity mean_of(Real mu) {
+  constexpr Real kLeast =
+      std::numeric_limits<float>::min();  // not 0 over 0 between two without any
+  return {2 * mu, 1, std::max(mu, kLeast)};
+}
+
+void set_target_viscosities(const StepContext& c) {
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  c.work.target_viscosities.resize(order.size());
+  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      c.work.target_viscosities[s] = relative_viscosity(c, order[s]);
+    }
+  });
+}
+
+}  // namespace
+
+void set_liquid_viscosities(const StepContext& c) {
+  constexpr PairViscosity kOfTarget{1, 0, 1};
+  const PairSources& sources = c.work.sources;
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  set_viscosities(c, [&](Index n) {
+    if (n >= sources.first_mirrored()) return kNone;
+    const Index source = sources.source_of(n);
+    return source < sources.first_solid() ? mean_of(relative_viscosity(c, order[source]))
+                                          : kOfTarget;
+  });
+  set_target_viscosities(c);
+}
+
+void set_solid_viscosities(const StepContext& c) {
+  const PairSources& sources = c.work.sources;
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  set_viscosities(c, [&](Index n) {
+    if (n >= sources.first_mirrored()) return kNone;
+    const Index source = sources.source_of(n);
+    if (source >= sources.first_solid()) return kNone;
+    return PairViscosity{relative_viscosity(c, order[source]), 0, 1};
+  });
+  c.work.target_viscosities.assign(c.work.solids_in_liquid.grid.order().size(), 1);
+}
+
+void set_image_viscosities(const StepContext& c) {
+  const PairSources& sources = c.work.sources;
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  set_viscosities(c, [&](Index n) {
+    if (n < sources.first_mirrored_liquid()) return kNone;
+    return mean_of(relative_viscosity(c, order[sources.source_of(n)]));
+  });
+  set_target_viscosities(c);
+}
+
+void set_slope_weights(const StepContext& c) {
+  const Model& model = c.model;
+  if (!has_several_liquids(model)) return;
+  const Real first = slope_factor(model, *model.liquids[model.material[0]]);
+  WeightFactors factors;
+  factors.liquid = by_material(
+      model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid) / first; });
+  c.work.sources.set_weights(c, factors);
+}
+
+ImageMotion::ImageMotion(const StepContext& c)
+    : c_(c), motion_(vat::motion_of(c)), pressure_(c.model, motion_, Vec3::Zero()) {}
+
+PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& source) const {
+  const Vec3 velocity = image.turn({source.vx, source.vy, source.vz});
+  if (image.axes == std::array<bool, 3>{}) return vat::motion_of(source.pressure, velocity);
+  const PairPlace& place = c_.work.sources.places[image.source];
+  const Vec3 position(place.x, place.y, place.z);
+  const Mirror mirror = image.mirror();
+  const Index first =
+      image.source < c_.work.sources.first_solid() ? c_.work.liquid.grid.order()[image.source] : 0;
+  const LiquidModel& liquid = liquid_of(c_.model, first);
+  if (!c_.model.scene.central_field) {
+    return vat::motion_of(pressure_(liquid, source.pressure, position, mirror), velocity);
+  }
+  const ImagePressure pressure(c_.model, motion_, mirror.place(position));
+  return vat::motion_of(pressure(liquid, source.pressure, position, mirror), velocity);
+}
+
+}  // namespace vat

@@ -1,0 +1,234 @@
+#include "core/pairs/pair_sources.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/forces/weakly_compressible_pairs.h"
+#include "core/step/workspace.h"
+
+namespace vat {
+namespace {
+
+Vec3 place_of(const CellSortedPoints& points, std::size_t slot) {
+  return {points.x[slot], points.y[slot], points.z[slot]};
+}
+
+/// Where nothing has an image: further than `reach` inside the vat and the box of a world that
+/// repeats itself.
+class ShowBox {
+ public:
+  ShowBox(const Model& model, const VatMotion& motion, Real reach) {
+    low_.setConstant(-std::numeric_limits<Real>::infinity());
+    high_ = -low_;
+    const Real sure = reach * (1 + 1e-6);
+    for (const int wall : model.walls) {
+      const int axis = wall / 2;
+      const Real offset = motion.offset[axis];
+      const Vat& vat = *model.scene.vat;
+      if (wall % 2 == 0) {
+        low_[axis] = vat.min[axis] + offset + sure;
+      } else {
+        high_[axis] = vat.max[axis] + offset - sure;
+      }
+    }
+    if (!model.scene.periodic) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!model.periodic.repeats(axis)) continue;
+      low_[axis] = model.scene.periodic->min[axis] + sure;
+      high_[axis] = model.scene.periodic->max[axis] - sure;
+    }
+  }
+  bool hides(Real x, Real y, Real z) const {
+    return x > low_.x() && y > low_.y() && z > low_.z() && x < high_.x() && y < high_.y() &&
+           z < high_.z();
+  }
+
+ private:
+  Vec3 low_;
+  Vec3 high_;
+};
+
+/// Calls f(image) for the images in a world that repeats itself of source `n` at `p` within `reach`
+/// of it.
+template <class F>
+void for_each_shifted(const Model& model, Index n, const Vec3& p, Real reach, F&& f) {
+  model.periodic.for_each_image(p, reach, [&](const Vec3& shift) {
+    if (!shift.isZero(0)) f(PairImage{shift, n, {}});
+  });
+}
+
+/// The same of those in walls.
+template <class F>
+void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, const Vec3& p,
+                       Real reach, F&& f) {
+  for_each_mirror(model, motion, p, reach, [&](const Mirror& mirror) {
+    model.periodic.for_each_image(mirror.place(p), reach, [&](const Vec3& shift) {
+      f(PairImage{mirror.twice_plane + shift, n, mirror.axes});
+    });
+  });
+}
+
+}  // namespace
+
+Mirror PairImage::mirror() const {
+  Mirror mirror{axes, offset};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!axes[static_cast<std::size_t>(axis)]) mirror.twice_plane[axis] = 0;
+  }
+  return mirror;
+}
+
+Index PairSources::first_of(Images which) const {
+  Index first = images_begin_;
+  for (int kind = 0; kind < which; ++kind) {
+    first += static_cast<Index>(images_[static_cast<std::size_t>(kind)].all.size());
+  }
+  return first;
+}
+
+void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
+  const bool is_solid = kind == kShiftedSolids || kind == kMirroredSolids;
+  const bool is_mirrored = kind == kMirroredSolids || kind == kMirroredLiquid;
+  const CellSortedPoints& points = is_solid ? c.work.solids_in_liquid : c.work.liquid;
+  const Index first = is_solid ? solids_ : 0;
+  const std::size_t count = points.grid.order().size();
+  const VatMotion motion = motion_of(c);
+  const ShowBox shown(c.model, motion, reach);
+  ImageGroup& group = images_[kind];
+  group.found.resize(block_count(count));
+  for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
+    std::vector<PairImage>& found = group.found[begin / kBlockSize];
+    found.clear();
+    const auto add = [&](const PairImage& image) { found.push_back(image); };
+    for (std::size_t s = begin; s < end; ++s) {
+      if (shown.hides(points.x[s], points.y[s], points.z[s])) continue;
+      const Index n = first + static_cast<Index>(s);
+      const Vec3 p = place_of(points, s);
+      is_mirrored ? for_each_mirrored(c.model, motion, n, p, reach, add)
+                  : for_each_shifted(c.model, n, p, reach, add);
+    }
+  });
+  for (const std::vector<PairImage>& found : group.found) {
+    group.all.insert(group.all.end(), found.begin(), found.end());
+  }
+  group.points.resize(group.all.size());
+  for_blocks(c.runner, group.all.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const PairImage& image = group.all[k];
+      group.points[k] = image.place(place_of(points, image.source - first));
+    }
+  });
+  group.grid.build(group.points, pair_cell_size(c.model), c.runner);
+}
+
+void PairSources::set_places(const StepContext& c) {
+  const auto set = [&](const CellSortedPoints& points, Index first) {
+    for_blocks(c.runner, points.grid.order().size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        places[first + s] = {points.x[s], points.y[s], points.z[s], 0};
+      }
+    });
+  };
+  set(c.work.liquid, 0);
+  if (images_begin_ > solids_) set(c.work.solids_in_liquid, solids_);
+}
+
+void PairSources::set_image_places(Images kind, TaskRunner* runner) {
+  const ImageGroup& group = images_[kind];
+  const std::size_t first = first_of(kind);
+  const std::span<const Index> order = group.grid.order();
+  for_blocks(runner, order.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Vec3& p = group.points[order[s]];
+      images[first - images_begin_ + s] = group.all[order[s]];
+      places[first + s] = {p.x(), p.y(), p.z(), 0};
+    }
+  });
+}
+
+void PairSources::set_weights(const StepContext& c, const WeightFactors& factors) {
+  const Model& model = c.model;
+  const Real scale = model.liquids[model.material[0]]->kernel.scale();
+  const std::span<const Index> order = c.work.liquid.grid.order();
+  const std::span<const Index> solids = c.work.solids_in_liquid.grid.order();
+  for_blocks(c.runner, images_begin_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const bool is_solid = n >= solids_;
+      const Index i = is_solid ? model.liquid_count + solids[n - solids_] : order[n];
+      const Real factor = is_solid ? factors.solid : factors.liquid[model.material[i]];
+      places[n].weight = model.rest_volume[i] * scale * factor;
+    }
+  });
+  for_blocks(c.runner, images.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      places[images_begin_ + k].weight = places[images[k].source].weight;
+    }
+  });
+}
+
+void PairSources::set_search_places(TaskRunner* runner) {
+  constexpr std::size_t kMostLanes = 16;  // loads may reach beyond the last
+  for (std::vector<float>* column : {&search_.x, &search_.y, &search_.z}) {
+    column->resize(places.size() + kMostLanes);
+  }
+  for_blocks(runner, count(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      search_.x[n] = static_cast<float>(places[n].x - search_.origin.x());
+      search_.y[n] = static_cast<float>(places[n].y - search_.origin.y());
+      search_.z[n] = static_cast<float>(places[n].z - search_.origin.z());
+    }
+  });
+}
+
+std::array<SourceGroup, 6> PairSources::groups(const UniformGrid& liquid,
+                                               const UniformGrid& solids) const {
+  return {SourceGroup{&liquid, 0},  SourceGroup{&solids, solids_}, group_of(kShiftedSolids),
+          group_of(kShiftedLiquid), group_of(kMirroredSolids),     group_of(kMirroredLiquid)};
+}
+
+std::array<SourceGroup, 3> PairSources::liquid_groups(const UniformGrid& liquid) const {
+  return {SourceGroup{&liquid, 0}, group_of(kShiftedLiquid), group_of(kMirroredLiquid)};
+}
+
+bool PairSources::is_current(const StepContext& c) const {
+  return version_ > 0 && liquid_version_ == c.work.liquid.version &&
+         solid_version_ == c.work.solids_in_liquid.version && wall_offset_ == motion_of(c).offset;
+}
+
+void PairSources::build(const StepContext& c, Real reach) {
+  ++version_;
+  liquid_version_ = c.work.liquid.version;
+  solid_version_ = c.work.solids_in_liquid.version;
+  wall_offset_ = motion_of(c).offset;
+  const CellSortedPoints& liquid = c.work.liquid;
+  const CellSortedPoints& solids = c.work.solids_in_liquid;
+  const bool solid = has_solids(c.model);
+  solids_ = static_cast<Index>(liquid.grid.order().size());
+  images_begin_ = solids_ + (solid ? static_cast<Index>(solids.grid.order().size()) : 0);
+  std::size_t image_count = 0;
+  for (const Images kind : {kShiftedSolids, kShiftedLiquid, kMirroredSolids, kMirroredLiquid}) {
+    const bool of_solids = kind == kShiftedSolids || kind == kMirroredSolids;
+    const bool is_mirrored = kind == kMirroredSolids || kind == kMirroredLiquid;
+    images_[kind].all.clear();
+    if ((of_solids && !solid) || (is_mirrored ? c.model.walls.empty() : !c.model.periodic.any())) {
+      continue;
+    }
+    find_images(c, reach, kind);
+    image_count += images_[kind].all.size();
+  }
+  images.resize(image_count);
+  places.resize(images_begin_ + images.size() + 1);
+  set_places(c);
+  for (const Images kind : {kShiftedSolids, kShiftedLiquid, kMirroredSolids, kMirroredLiquid}) {
+    if (!images_[kind].all.empty()) set_image_places(kind, c.runner);
+  }
+  set_weights(c, {});
+  search_.origin = liquid.grid.origin();
+  set_search_places(c.runner);
+  // Far from all that count, and finite in single precision.
+  constexpr Real kFar = 1e6;
+  const Vec3 far = search_.origin - Vec3::Constant(kFar * reach);
+  places.back() = {far.x(), far.y(), far.z(), 0};
+}
+
+}  // namespace vat

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/kernels/kernel_id.h"
+#include "core/pairs/pair_precision.h"
+#include "core/support/instruction_set.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// One that acts in sums over pairs, a source: a particle, or its image. By source.
+struct alignas(32) PairPlace {
+  Real x, y, z;
+  Real weight;  ///< rest volume times a kernel's scale, a pure number
+};
+struct alignas(32) PairMotion {
+  Real pressure;
+  Real vx, vy, vz;
+};
+/// How viscous a pair is where liquids differ: mu share / (own mu + resistance), mu of the target.
+struct PairViscosity {
+  Real share;
+  Real own;
+  Real resistance;
+};
+
+/// Particles of one cell, which sums are made for: sources [begin, end), and all sources that may
+/// be within a support radius of one of them, padded.
+struct TargetCluster {
+  Vec3 center;  ///< of the box around them [m]
+  Index begin = 0;
+  Index end = 0;
+  Index candidate_count = 0;        ///< a multiple of lane_count()
+  Index mirrored_begin = 0;         ///< candidates from here on are liquid's images in walls
+  std::size_t first_candidate = 0;  ///< in the chunk's candidates
+  bool has_mirrored = false;        ///< images in walls are among the candidates
+
+  Index size() const { return end - begin; }
+};
+/// More are split.
+inline constexpr Index kMostTargets = 16;
+
+struct PairInputs {
+  const PairPlace* places = nullptr;    ///< by source, as the next two
+  const PairMotion* motions = nullptr;  ///< null where none are read
+  const PairViscosity* viscosities =
+      nullptr;  ///< null: mu for all but mirror images, which have none
+  const Real* target_viscosities = nullptr;  ///< mu by target; null: that of all
+  Real viscosity = 0;                        ///< mu of all targets
+  Real inverse_support = 0;                  ///< [1/m]
+  Index first_mirrored = 0;                  ///< sources from here on are images in walls
+  Index first_target = 0;                    ///< source whose sums come first
+  const Index* candidates = nullptr;         ///< of the clusters' chunk
+};
+
+/// Sums over pairs for clusters of targets, with one instruction set. Distances x, q = |x| are over
+/// the support radius, from the source to the target; w(q) is the kernel over its scale and
+/// g(q) = w'(q) / q over its value's factor, see SmoothingKernel. Sources beyond the support add
+/// zero, and so does a target to itself wherever x is a factor.
+struct PairSums {
+  using Function = void (*)(const PairInputs&, std::span<const TargetCluster>, Real* sums);
+  /// sum_j a_j w; one number a target.
+  Function density;
+  /// sum_j a_j (-(p_i + p_j)) g x; three numbers a target.
+  Function pressure;
+  /// sum_j a_j (mu_ij v.x / (q^2 + 0.01/4) - (p_i + p_j)) g x, v = v_i - v_j; three numbers.
+  Function force;
+  /// sum_j a_j mu_ij max(p_i, p_j) / (q^2 + 0.01/4) g x_a^2 v_a for each axis a, over sources from
+  /// first_mirrored on or, where viscosities are given, all, but only candidates of clusters that
+  /// are or follow images of liquid; three numbers.
+  Function drag;
+  /// sum_j a_j g v.x; one number.
+  Function compression;
+  /// sum_j a_j g x; sum_j a_j p_j g^2 q^2; sum_j a_j vx_j |g| q; five numbers.
+  Function response;
+  /// sum_j a_j w vx_j x; sum_j a_j w; sum_j a_j w p_j; five numbers.
+  Function mean;
+};
+inline constexpr std::size_t kResponseSums = 5;
+inline constexpr std::size_t kMeanSums = 5;
+
+/// What the baseline is on processors without SSSE3: the same bits, one number at a time.
+const PairSums& pair_sums_without_vectors(PairPrecision precision, KernelId kernel);
+
+/// `set` must be one that the machine has.
+const PairSums& pair_sums(InstructionSet set, PairPrecision precision, KernelId kernel);
+
+/// The slots within `reach` of the box, appended to `found` from `count` on, which has room for all
+/// of them and lane_count() more; the new count. Coordinates by slot, low and high by axis.
+using CullFunction = std::size_t (*)(const float* x, const float* y, const float* z, Index begin,
+                                     Index end, const float* low, const float* high, float reach,
+                                     Index first_source, Index* found, std::size_t count);
+CullFunction cull_function(InstructionSet set);
+
+/// Numbers of single precision in a vector, 16 at most.
+std::size_t lane_count(InstructionSet set);
+
+}  // namespace vat

@@ -1,0 +1,265 @@
+#include "core/pairs/pair_sums.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/kernels/smoothing_kernel.h"
+
+// Every sum with every instruction set against plain sums in double precision.
+
+namespace vat {
+namespace {
+
+constexpr Real kSupport = 0.3;
+constexpr Index kTargets = 11;
+constexpr Index kSources = 700;  // more than a tile
+constexpr Index kMirrored = 500;
+
+/// One cluster of targets, the first sources, among sources within and beyond its reach.
+struct Pairs {
+  std::vector<PairPlace> places;
+  std::vector<PairMotion> motions;
+  std::vector<PairViscosity> viscosities;
+  std::vector<Real> target_viscosities;
+  std::vector<Index> candidates;
+  TargetCluster cluster;
+
+  Pairs() {
+    std::mt19937 generator(3);
+    const auto number = [&] { return static_cast<Real>(generator()) / 4294967295.0 - 0.5; };
+    for (Index n = 0; n < kSources; ++n) {
+      const Real size = n < kTargets ? 0.2 : 0.9;
+      places.push_back({5 + size * number(), size * number(), size * number(), 0.6 + number()});
+      motions.push_back({number() + 0.4, number(), number(), number()});
+      viscosities.push_back({number() + 0.6, n % 2 == 0 ? 1.0 : 0.0, 0.7 + number()});
+      candidates.push_back(n);
+    }
+    places[kTargets] = places[0];  // two in one place
+    for (Index i = 0; i < kTargets; ++i) target_viscosities.push_back(0.6 + number());
+    places.push_back({1e6, 1e6, 1e6, 0});
+    motions.push_back({});
+    viscosities.push_back({0, 0, 1});
+    while (candidates.size() % 16 != 0) candidates.push_back(kSources);
+    cluster.center = {5, 0, 0};
+    cluster.end = kTargets;
+    cluster.candidate_count = static_cast<Index>(candidates.size());
+    cluster.mirrored_begin = kMirrored;
+    cluster.has_mirrored = true;
+  }
+
+  PairInputs inputs(bool mixed) const {
+    PairInputs in;
+    in.places = places.data();
+    in.motions = motions.data();
+    in.inverse_support = 1 / kSupport;
+    in.viscosity = 0.8;
+    in.first_mirrored = kMirrored;
+    in.candidates = candidates.data();
+    if (mixed) {
+      in.viscosities = viscosities.data();
+      in.target_viscosities = target_viscosities.data();
+    }
+    return in;
+  }
+};
+
+/// What a term of a sum is made of, in double precision.
+struct Pair {
+  Index i;
+  Index j;
+  Vec3 x;  ///< over the support
+  Real q;
+  Real w;
+  Real g;
+  Vec3 v;
+};
+
+/// Sums and, for tolerances, sums of magnitudes.
+struct Expected {
+  std::vector<Real> sums;
+  std::vector<Real> sizes;
+};
+
+/// term(pair, add(entry, value)) over all pairs within the support.
+template <class Term>
+Expected add_up(const Pairs& pairs, KernelId id, std::size_t entries, Term&& term) {
+  const SmoothingKernel kernel(id, 1, 3);
+  Expected expected{std::vector<Real>(entries * kTargets), std::vector<Real>(entries * kTargets)};
+  for (Index i = 0; i < kTargets; ++i) {
+    for (Index j = 0; j < kSources; ++j) {
+      const PairPlace& a = pairs.places[i];
+      const PairPlace& b = pairs.places[j];
+      const Vec3 x = Vec3(a.x - b.x, a.y - b.y, a.z - b.z) / kSupport;
+      const Real q = x.norm();
+      if (q >= 1) continue;
+      const PairMotion& p = pairs.motions[i];
+      const PairMotion& r = pairs.motions[j];
+      const Pair pair{i,
+                      j,
+                      x,
+                      q,
+                      kernel.value(q) / kernel.scale(),
+                      kernel.slope_over_r(q) / kernel.slope_scale(),
+                      Vec3(p.vx - r.vx, p.vy - r.vy, p.vz - r.vz)};
+      term(pair, [&](std::size_t entry, Real value) {
+        expected.sums[i * entries + entry] += value;
+        expected.sizes[i * entries + entry] += std::abs(value);
+      });
+    }
+  }
+  return expected;
+}
+
+/// Calls f(table, precision's epsilon, its name) for all that there are.
+template <class F>
+void for_each_table(KernelId kernel, F&& f) {
+  for (const auto& [precision, epsilon] :
+       {std::pair(PairPrecision::single_precision, std::ldexp(1.0, -24)),
+        std::pair(PairPrecision::double_precision, std::ldexp(1.0, -53))}) {
+    for (const InstructionSet set : available_instruction_sets()) {
+      SCOPED_TRACE(testing::Message() << to_string(set) << ' ' << epsilon);
+      f(pair_sums(set, precision, kernel), epsilon);
+    }
+    SCOPED_TRACE("without vectors");
+    f(pair_sums_without_vectors(precision, kernel), epsilon);
+  }
+}
+
+/// A term is rounded some twenty times, its cancelling parts before it is one included, and the sum
+/// once for each vector of sources.
+void expect_sums(const Pairs& pairs, PairSums::Function function, bool mixed,
+                 const Expected& expected, Real epsilon) {
+  std::vector<Real> sums(expected.sums.size(), -1);
+  function(pairs.inputs(mixed), {&pairs.cluster, 1}, sums.data());
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const Real tolerance = epsilon * (200 * expected.sizes[k] + 1);
+    EXPECT_NEAR(sums[k], expected.sums[k], tolerance) << k;
+  }
+}
+
+Real softened(const Pair& pair) {
+  return pair.q * pair.q + 0.01 / 4;
+}
+
+class PairSumsOf : public testing::TestWithParam<KernelId> {
+ protected:
+  const Pairs pairs_;
+};
+INSTANTIATE_TEST_SUITE_P(Kernels, PairSumsOf,
+                         testing::Values(KernelId::wendland_c2, KernelId::cubic_spline));
+
+TEST_P(PairSumsOf, DensityIsThatOfAllSources) {
+  const Expected expected = add_up(pairs_, GetParam(), 1, [&](const Pair& p, auto add) {
+    add(0, pairs_.places[p.j].weight * p.w);
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.density, false, expected, epsilon);
+  });
+}
+
+TEST_P(PairSumsOf, PressureActsAlongPairs) {
+  const Expected expected = add_up(pairs_, GetParam(), 3, [&](const Pair& p, auto add) {
+    const Real both = pairs_.motions[p.i].pressure + pairs_.motions[p.j].pressure;
+    for (int a = 0; a < 3; ++a) add(a, -pairs_.places[p.j].weight * both * p.g * p.x[a]);
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.pressure, false, expected, epsilon);
+  });
+}
+
+TEST_P(PairSumsOf, ForceHasViscosityOfAllButImagesInWalls) {
+  for (const bool mixed : {false, true}) {
+    const Expected expected = add_up(pairs_, GetParam(), 3, [&](const Pair& p, auto add) {
+      const PairViscosity& other = pairs_.viscosities[p.j];
+      const Real own = mixed ? pairs_.target_viscosities[p.i] : 0.8;
+      const Real plain = p.j < kMirrored ? own : 0;
+      const Real mu = mixed ? own * other.share / (other.own * own + other.resistance) : plain;
+      const Real both = pairs_.motions[p.i].pressure + pairs_.motions[p.j].pressure;
+      const Real force = mu * p.v.dot(p.x) / softened(p) - both;
+      for (int a = 0; a < 3; ++a) add(a, pairs_.places[p.j].weight * force * p.g * p.x[a]);
+    });
+    for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+      expect_sums(pairs_, table.force, mixed, expected, epsilon);
+    });
+  }
+}
+
+TEST_P(PairSumsOf, DragIsThatOfImagesInWalls) {
+  for (const bool mixed : {false, true}) {
+    Pairs pairs = pairs_;
+    for (Index j = 0; mixed && j < kMirrored; ++j) pairs.viscosities[j].share = 0;
+    const Expected expected = add_up(pairs, GetParam(), 3, [&](const Pair& p, auto add) {
+      if (p.j < kMirrored) return;
+      const PairViscosity& other = pairs.viscosities[p.j];
+      const Real own = mixed ? pairs.target_viscosities[p.i] : 0.8;
+      const Real mu = mixed ? own * other.share / (other.own * own + other.resistance) : own;
+      const Real part = std::max(pairs.motions[p.i].pressure, pairs.motions[p.j].pressure);
+      const Real strength = pairs.places[p.j].weight * part * mu * p.g / softened(p);
+      for (int a = 0; a < 3; ++a) add(a, strength * p.x[a] * p.x[a] * p.v[a]);
+    });
+    for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+      expect_sums(pairs, table.drag, mixed, expected, epsilon);
+    });
+  }
+}
+
+TEST_P(PairSumsOf, CompressionIsTheRateOfDensity) {
+  const Expected expected = add_up(pairs_, GetParam(), 1, [&](const Pair& p, auto add) {
+    add(0, pairs_.places[p.j].weight * p.g * p.v.dot(p.x));
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.compression, false, expected, epsilon);
+  });
+}
+
+TEST_P(PairSumsOf, ResponseHasGradientsAndTheirSquares) {
+  const Expected expected = add_up(pairs_, GetParam(), kResponseSums, [&](const Pair& p, auto add) {
+    const Real weight = pairs_.places[p.j].weight;
+    for (int a = 0; a < 3; ++a) add(a, weight * p.g * p.x[a]);
+    add(3, weight * pairs_.motions[p.j].pressure * p.g * p.g * p.q * p.q);
+    add(4, weight * pairs_.motions[p.j].vx * p.g * p.q);
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.response, false, expected, epsilon);
+  });
+}
+
+TEST_P(PairSumsOf, MeanHasWeightsAndMoments) {
+  const Expected expected = add_up(pairs_, GetParam(), kMeanSums, [&](const Pair& p, auto add) {
+    const Real weight = pairs_.places[p.j].weight * p.w;
+    for (int a = 0; a < 3; ++a) add(a, weight * pairs_.motions[p.j].vx * p.x[a]);
+    add(3, weight);
+    add(4, weight * pairs_.motions[p.j].pressure);
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.mean, false, expected, epsilon);
+  });
+}
+
+TEST(PairSums, OfTheBaselineAreTheSameBitsWithoutVectors) {
+  const Pairs pairs;
+  for (const PairPrecision precision :
+       {PairPrecision::single_precision, PairPrecision::double_precision}) {
+    for (const KernelId kernel : {KernelId::wendland_c2, KernelId::cubic_spline}) {
+      const PairSums& a = pair_sums(InstructionSet::baseline, precision, kernel);
+      const PairSums& b = pair_sums_without_vectors(precision, kernel);
+      for (const auto function :
+           {&PairSums::density, &PairSums::pressure, &PairSums::force, &PairSums::drag,
+            &PairSums::compression, &PairSums::response, &PairSums::mean}) {
+        for (const bool mixed : {false, true}) {
+          std::vector<Real> with(kTargets * kMeanSums, 0);
+          std::vector<Real> without = with;
+          (a.*function)(pairs.inputs(mixed), {&pairs.cluster, 1}, with.data());
+          (b.*function)(pairs.inputs(mixed), {&pairs.cluster, 1}, without.data());
+          EXPECT_EQ(with, without);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vat
