@@ -72,6 +72,10 @@ PublishedState publish(const Simulation& simulation);
 std::vector<std::uint8_t> encode_key_frame(const PublishedState& state, const FrameGrid& grid);
 void patch_client(std::span<std::uint8_t> frame, std::uint32_t sequence, std::uint32_t dropped);
 
+/// Whether two key frames differ in nothing but when they were made and for whom: all but tick,
+/// time, publication, real-time factor, sequence and dropped.
+bool show_the_same(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b);
+
 /// The frame, only if every byte is as PROTOCOL.md says. Error codes: bad_magic, bad_version,
 /// bad_type, bad_header, bad_block, truncated, extra_bytes.
 Result<Frame> decode_frame(std::span<const std::uint8_t> bytes);

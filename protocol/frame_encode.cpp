@@ -99,6 +99,16 @@ std::vector<std::uint8_t> encode_key_frame(const PublishedState& state, const Fr
   return out.take();
 }
 
+bool show_the_same(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
+  VAT_CHECK(a.size() >= kHeaderSize && b.size() >= kHeaderSize);
+  const auto is_same = [&](std::size_t begin, std::size_t end) {
+    return std::equal(a.begin() + begin, a.begin() + end, b.begin() + begin);
+  };
+  return a.size() == b.size() && is_same(0, kSequenceOffset) &&
+         is_same(kDroppedOffset + sizeof(std::uint32_t), kRealTimeFactorOffset) &&
+         is_same(kHeaderSize, a.size());
+}
+
 void patch_client(std::span<std::uint8_t> frame, std::uint32_t sequence, std::uint32_t dropped) {
   VAT_CHECK(frame.size() >= kHeaderSize);
   store(frame, kSequenceOffset, sequence);

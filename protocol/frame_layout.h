@@ -16,6 +16,7 @@ inline constexpr std::uint16_t kSlowFlag = 2;
 inline constexpr std::size_t kHeaderSize = 96;
 inline constexpr std::size_t kSequenceOffset = 12;
 inline constexpr std::size_t kDroppedOffset = 48;
+inline constexpr std::size_t kRealTimeFactorOffset = 88;
 
 inline constexpr std::size_t kBlockHeaderSize = 12;
 inline constexpr std::uint8_t kGridEncoding = 1;

@@ -23,6 +23,7 @@ struct Member {
   std::uint64_t membership = 0;
   std::optional<Subscription> subscription;
   bool awaits_frame = false;  ///< sends the present state at the next chance, whatever `every` is
+  std::uint64_t shown = 0;    ///< what it was sent last, see FrameSource::content()
   std::map<std::uint64_t, BodyId> grabs;  ///< by the ids that the session gave
 };
 

@@ -29,7 +29,7 @@ SessionCore::SessionCore(std::string id, std::string name, Simulation simulation
       name_(std::move(name)),
       environment_(environment),
       run_(std::move(simulation), environment.metrics),
-      domain_(run_.simulation().scene().vat) {}
+      frames_(run_.simulation().scene().vat, environment.metrics) {}
 
 void SessionCore::set_playing(bool playing) {
   interrupt();
@@ -49,7 +49,7 @@ void SessionCore::load(Simulation simulation) {
   members_.forget_grabs();
   interrupt();
   rate_ = {};
-  domain_ = FrameDomain(run_.simulation().scene().vat);
+  frames_.set_vat(run_.simulation().scene().vat);
   description_due_ = status_due_ = true;
   members_.start_epoch();
 }
@@ -58,7 +58,7 @@ void SessionCore::reset() {
   run_.reset();
   members_.forget_grabs();
   interrupt();
-  domain_ = FrameDomain(run_.simulation().scene().vat);
+  frames_.set_vat(run_.simulation().scene().vat);
   description_due_ = status_due_ = true;
   members_.start_epoch();
 }
@@ -144,17 +144,13 @@ void SessionCore::send_frames(bool new_tick) {
     if (is_due(member, run_.tick(), new_tick)) receivers.push_back(&member);
   }
   if (receivers.empty()) return;
-  const PublishedState state = published();
-  domain_.include(state);
-  std::map<double, SharedFrame> encoded;  // by quantum: the origin is the same for all
+  frames_.publish(published(), members_.size());
   for (Member* member : receivers) {
-    const FrameGrid grid = domain_.grid(member->subscription->max_error);
-    SharedFrame& frame = encoded[grid.quantum];
-    if (frame == nullptr) {
-      frame = std::make_shared<const std::vector<std::uint8_t>>(encode_key_frame(state, grid));
-      environment_.metrics.add_encoded_frame();
-    }
-    member->outbox->offer_frame(member->membership, frame);
+    const double max_error = member->subscription->max_error;
+    const std::uint64_t content = frames_.content(max_error);
+    if (!member->awaits_frame && member->shown == content) continue;
+    member->outbox->offer_frame(member->membership, frames_.frame(max_error));
+    member->shown = content;
     member->awaits_frame = false;
   }
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "server/session/frame_domain.h"
+#include "server/session/frame_source.h"
 #include "server/session/members.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
@@ -76,7 +76,8 @@ class SessionCore {
   void interrupt();
   void tell_description();
   void tell_guard(const AdvanceReport& report);
-  /// To the subscribers whose turn this tick is, and to those that await a frame.
+  /// To the subscribers whose turn this tick is, where there is something that they have not been
+  /// shown, and to those that await a frame.
   void send_frames(bool new_tick);
   PublishedState published() const;
 
@@ -85,7 +86,7 @@ class SessionCore {
   const SessionEnvironment& environment_;
   SessionRun run_;
   Members members_;
-  FrameDomain domain_;
+  FrameSource frames_;
   RateMeter rate_;
   bool playing_ = true;
   double speed_ = 1;  // simulated seconds per second

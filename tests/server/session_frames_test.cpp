@@ -63,6 +63,14 @@ TEST_F(SessionFrames, OnlyEachSoManiethTickIsSent) {
   EXPECT_EQ(all, 20u);
 }
 
+TEST_F(SessionFrames, NothingIsEncodedForNobody) {
+  client->result("control.step", {{"ticks", 20}});
+  EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 0\n"), std::string::npos);
+  client->result("frames.subscribe");
+  client->wait_frame([](const Frame&) { return true; });
+  EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 1\n"), std::string::npos);
+}
+
 TEST_F(SessionFrames, AnUnsubscribedClientGetsNone) {
   client->result("frames.subscribe");
   client->wait_frame([](const Frame&) { return true; });

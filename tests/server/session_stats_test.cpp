@@ -35,6 +35,7 @@ const Json* find_stage(const Json& stats, const std::string& name) {
 }
 
 TEST_F(SessionStats, TellWhatTheTicksOfTheSceneCost) {
+  client->result("control.step", {{"ticks", 3}});
   client->result("scene.load", {{"scene", "mixed"}});
   EXPECT_EQ(client->result("session.stats").at("ticks"), 0) << "a new scene, a new account";
   client->result("control.step", {{"ticks", 5}});

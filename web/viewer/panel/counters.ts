@@ -61,6 +61,8 @@ export class Counters {
 
   showStatus(status: SessionStatus): void {
     this.showTick(status.tick, status.time);
+    // Whether it is slow is told by frames: where it changes, one comes.
+    this.showRate(status.real_time_factor, this.rate.dataset.slow === 'true');
     write(this.particles, status.particles, formatCount(status.particles));
   }
 
