@@ -133,7 +133,10 @@ ImageMotion::ImageMotion(const StepContext& c)
 
 PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& source) const {
   const Vec3 velocity = image.turn({source.vx, source.vy, source.vz});
-  if (image.axes == std::array<bool, 3>{}) return vat::motion_of(source.pressure, velocity);
+  const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
+  // Where there is no pressure, the weight beyond a wall adds none.
+  const bool is_free = !c_.model.is_filled && source.pressure <= 0;
+  if (!is_mirrored || is_free) return vat::motion_of(source.pressure, velocity);
   const PairPlace& place = c_.work.sources.places[image.source];
   const Vec3 position(place.x, place.y, place.z);
   const Mirror mirror = image.mirror();

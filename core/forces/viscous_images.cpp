@@ -74,7 +74,7 @@ void add_viscous_image_forces(StepContext& c) {
       [&](std::size_t s) { return vat::motion_of(is_thick_at(order[s]), velocities[order[s]]); },
       [](std::size_t) { return PairMotion{}; },
       [&](const PairImage& image, const PairMotion& source) {
-        const bool is_mirrored = image.axes != std::array<bool, 3>{};
+        const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
         if (image.source >= order.size() || !is_mirrored) return PairMotion{};
         const PairPlace& p = work.sources.places[image.source];
         const Mirror mirror = image.mirror();
