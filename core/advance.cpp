@@ -76,7 +76,7 @@ std::optional<Fault> Simulation::Impl::find_step_fault(Real dt) const {
     return Fault{GuardEvent::Cause::too_many_pairs, model->body[0], 0};
   }
   if (work.too_many_contacts) return Fault{GuardEvent::Cause::too_many_pairs, 0, 0};
-  const auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()));
+  const auto fault = find_fault(*model, state.now, bounds, std::ldexp(dt, -local.finest()), runner);
   if (fault || model->scene.numerics.control != StepControl::local) return fault;
   return local.find_fast(*model, state.now, dt, bounds);
 }
@@ -106,7 +106,7 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real sta
                                          AdvanceReport& report) {
   const std::size_t earlier_events = report.events.size();
   enter("keep_state");
-  step_start = state.now;
+  copy(state.now, runner, step_start);
   for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
     const auto event = take_step_in(1U << halvings, force_model, start, dt, report);
     if (!event) {
@@ -127,7 +127,7 @@ bool Simulation::Impl::take_guarded_step(const ForceModel& force_model, Real sta
 }
 
 Real Simulation::Impl::probe_start(const ForceModel& force_model, Real start, Real dt) {
-  step_start = state.now;
+  copy(state.now, runner, step_start);
   state.forces_current = false;
   probe.begin(state);
   force_model.evaluate(state.now, start, state.forces);

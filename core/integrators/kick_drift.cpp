@@ -123,13 +123,21 @@ void take_symplectic_euler_step(const ForceModel& f, State& state, Real time, Re
   finish_contacts(f, state, time, dt, scratch);
 }
 
-void keep_velocities(const Configuration& now, Configuration& kept) {
-  kept.velocity = now.velocity;
+void copy_velocities(const ForceModel& f, std::size_t count, const Configuration& from,
+                     Configuration& to) {
+  for_blocks(f.runner, count, [&](std::size_t begin, std::size_t end) {
+    std::copy(from.velocity.data() + begin, from.velocity.data() + end, to.velocity.data() + begin);
+  });
+}
+
+void keep_velocities(const ForceModel& f, const Configuration& now, Configuration& kept) {
+  kept.velocity.resize(now.velocity.size());
+  copy_velocities(f, now.velocity.size(), now, kept);
   kept.rigid = now.rigid;
 }
 
-void restore_velocities(const Model& model, const Configuration& kept, Configuration& now) {
-  std::copy_n(kept.velocity.begin(), model.free_count, now.velocity.begin());
+void restore_velocities(const ForceModel& f, const Configuration& kept, Configuration& now) {
+  copy_velocities(f, f.model.free_count, kept, now);
   for (std::size_t b = 0; b < now.rigid.size(); ++b) {
     now.rigid[b].momentum = kept.rigid[b].momentum;
     now.rigid[b].angular_momentum = kept.rigid[b].angular_momentum;
@@ -140,11 +148,11 @@ void restore_velocities(const Model& model, const Configuration& kept, Configura
 void evaluate_at_prediction(const ForceModel& f, State& state, Real time, Real dt,
                             IntegratorScratch& scratch) {
   f.enter("predict_velocities");
-  keep_velocities(state.now, scratch.start);
+  keep_velocities(f, state.now, scratch.start);
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
   f.evaluate(state.now, time, state.forces);
   f.enter("predict_velocities");
-  restore_velocities(f.model, scratch.start, state.now);
+  restore_velocities(f, scratch.start, state.now);
 }
 
 /// The forces that close a step, at the velocities that they lead to. Liquids whose viscosity needs
@@ -153,11 +161,13 @@ void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
                          IntegratorScratch& scratch) {
   f.enter("predict_velocities");
   const bool viscosity = must_solve_viscosity(f.model, dt);
-  keep_velocities(state.now, scratch.start);
+  keep_velocities(f, state.now, scratch.start);
   if (!viscosity) {
-    for (Index i = 0; i < f.model.liquid_count; ++i) {
-      state.now.velocity[i] += (dt / 2 * f.model.inverse_mass[i]) * state.forces.particle[i];
-    }
+    for_blocks(f.runner, f.model.liquid_count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        state.now.velocity[i] += (dt / 2 * f.model.inverse_mass[i]) * state.forces.particle[i];
+      }
+    });
   }
   f.work.keep_dampers = true;
   f.evaluate(state.now, time, state.forces);
@@ -165,7 +175,7 @@ void evaluate_with_solve(const ForceModel& f, State& state, Real time, Real dt,
   f.enter("solve_damping");
   solve_damping(f, scratch.start, state.now, time, dt / 2, viscosity, state.forces,
                 scratch.damping);
-  restore_velocities(f.model, scratch.start, state.now);
+  restore_velocities(f, scratch.start, state.now);
 }
 
 bool has_implicit_springs(const Model& model) {

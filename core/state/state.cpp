@@ -5,6 +5,26 @@
 #include "core/rigid/rigid_motion.h"
 
 namespace vat {
+namespace {
+
+template <class T>
+void copy_column(const std::vector<T>& from, TaskRunner* runner, std::vector<T>& to) {
+  to.resize(from.size());
+  for_blocks(runner, from.size(), [&](std::size_t begin, std::size_t end) {
+    std::copy(from.data() + begin, from.data() + end, to.data() + begin);
+  });
+}
+
+}  // namespace
+
+void copy(const Configuration& from, TaskRunner* runner, Configuration& to) {
+  copy_column(from.position, runner, to.position);
+  copy_column(from.velocity, runner, to.velocity);
+  to.rigid = from.rigid;
+  to.contacts = from.contacts;
+  copy_column(from.springs, runner, to.springs);
+  copy_column(from.pressure, runner, to.pressure);
+}
 
 void place_body(const Model& model, const ModelBody& body, Configuration& configuration) {
   const SampledBody& sample = *body.sample;

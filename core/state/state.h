@@ -5,6 +5,7 @@
 
 #include "core/diagnostics.h"
 #include "core/model/model.h"
+#include "core/support/parallel.h"
 #include "core/types.h"
 
 namespace vat {
@@ -44,6 +45,9 @@ struct Configuration {
   std::vector<SpringState> springs{};      ///< by end; empty where no spring may flow or tear
   std::vector<Real> pressure{};  ///< of liquid, that the next step starts from; incompressible [Pa]
 };
+
+/// to = from, many particles side by side.
+void copy(const Configuration& from, TaskRunner* runner, Configuration& to);
 
 /// Forces at a configuration: on every particle [N], and their resultants on rigid bodies.
 struct Forces {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "core/limits.h"
@@ -92,16 +93,27 @@ GuardEvent::Cause cause_of(const Vec3& position, const Vec3& velocity, const Gua
 }
 
 std::optional<Fault> find_free_fault(const ModelBody& body, Index index, const Configuration& at,
-                                     const GuardBounds& bounds, Real max_speed) {
-  for (Index i = body.particles.begin; i < body.particles.end; ++i) {
-    // Written so that a NaN fails it.
-    if (is_inside(at.position[i], bounds) &&
-        at.velocity[i].squaredNorm() <= max_speed * max_speed) {
-      continue;
+                                     const GuardBounds& bounds, Real max_speed,
+                                     TaskRunner* runner) {
+  const std::size_t count = body.particles.size();
+  std::atomic<std::size_t> first = count;  // at fault
+  for_blocks(runner, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = body.particles.begin + k;
+      // Written so that a NaN fails it.
+      if (is_inside(at.position[i], bounds) &&
+          at.velocity[i].squaredNorm() <= max_speed * max_speed) {
+        continue;
+      }
+      std::size_t known = first;
+      while (k < known && !first.compare_exchange_weak(known, k)) {
+      }
+      return;
     }
-    return Fault{cause_of(at.position[i], at.velocity[i], bounds), index, i - body.particles.begin};
-  }
-  return {};
+  });
+  if (first == count) return {};
+  const std::size_t i = body.particles.begin + first;
+  return Fault{cause_of(at.position[i], at.velocity[i], bounds), index, static_cast<Index>(first)};
 }
 
 std::optional<Fault> find_rigid_fault(const RigidModel& rigid, const RigidState& state, Real extent,
@@ -143,14 +155,14 @@ GuardBounds guard_bounds(const Model& model) {
 }
 
 std::optional<Fault> find_fault(const Model& model, const Configuration& at,
-                                const GuardBounds& bounds, Real dt) {
+                                const GuardBounds& bounds, Real dt, TaskRunner* runner) {
   for (Index b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
     const Real max_speed = std::min(kMaxSpeed, bounds.travel[b] / dt);
     const auto fault = body.kind == BodyKind::rigid
                            ? find_rigid_fault(model.rigid_bodies[body.rigid], at.rigid[body.rigid],
                                               bounds.extent[body.rigid], bounds, max_speed, dt)
-                           : find_free_fault(body, b, at, bounds, max_speed);
+                           : find_free_fault(body, b, at, bounds, max_speed, runner);
     if (fault) return fault;
   }
   return {};

@@ -35,6 +35,6 @@ GuardBounds guard_bounds(const Model& model);
 /// The first particle or rigid body that is non-finite, out of bounds, or too fast for steps of
 /// `dt`: above kMaxSpeed, above its travel, or, of rigid bodies, turning by more than a radian.
 std::optional<Fault> find_fault(const Model& model, const Configuration& configuration,
-                                const GuardBounds& bounds, Real dt);
+                                const GuardBounds& bounds, Real dt, TaskRunner* runner = nullptr);
 
 }  // namespace vat

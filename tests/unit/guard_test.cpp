@@ -8,6 +8,7 @@
 #include "core/limits.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
+#include "tests/support/thread_runner.h"
 
 namespace vat {
 namespace {
@@ -73,6 +74,29 @@ TEST(Guard, FindsWhatLeavesTheDomain) {
                1, 0);
   expect_fault(fault_after([](Configuration& at) { at.rigid[0].center_of_mass.z() = 1.1e6; }),
                outside_domain, 2, 0);
+}
+
+// The runner comes to the last blocks first.
+TEST(Guard, FindsTheFirstOfManyForAnyThreads) {
+  using enum GuardEvent::Cause;
+  Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
+  scene.bodies = {make_block("liquid", BodyKind::liquid, "a", 12, {0, 0, 0.5}, Vec3::Zero())};
+  ForceProbe probe(scene);
+  Configuration& at = probe.state().now;
+  ASSERT_GT(at.position.size(), 6 * kBlockSize);
+  const GuardBounds bounds = guard_bounds(probe.model());
+  for (const std::size_t threads : {1, 2, 4}) {
+    ThreadRunner runner(threads);
+    EXPECT_FALSE(find_fault(probe.model(), at, bounds, kStep, &runner)) << threads;
+  }
+  for (const std::size_t bad : {2 * kBlockSize + 7, 2 * kBlockSize + 9, 5 * kBlockSize}) {
+    at.position[bad].x() = kNan;
+  }
+  for (const std::size_t threads : {1, 2, 4}) {
+    ThreadRunner runner(threads);
+    expect_fault(find_fault(probe.model(), at, bounds, kStep, &runner), non_finite, 0,
+                 2 * kBlockSize + 7);
+  }
 }
 
 TEST(Guard, TheDomainOfAVatIsTwiceItsLongestSideAroundIt) {
