@@ -108,14 +108,19 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
                   : for_each_shifted(c.model, n, p, reach, add);
     }
   });
+  std::size_t total = 0;
+  group.begin.clear();
   for (const std::vector<PairImage>& found : group.found) {
-    group.all.insert(group.all.end(), found.begin(), found.end());
+    group.begin.push_back(total);
+    total += found.size();
   }
-  group.points.resize(group.all.size());
-  for_blocks(c.runner, group.all.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const PairImage& image = group.all[k];
-      group.points[k] = image.place(place_of(points, image.source - first));
+  group.all.resize(total);
+  group.points.resize(total);
+  for_blocks<1>(c.runner, group.found.size(), [&](std::size_t b, std::size_t) {
+    std::size_t k = group.begin[b];
+    for (const PairImage& image : group.found[b]) {
+      group.all[k] = image;
+      group.points[k++] = image.place(place_of(points, image.source - first));
     }
   });
   group.grid.build(group.points, pair_cell_size(c.model), c.runner);

@@ -92,6 +92,7 @@ class PairSources {
  private:
   struct ImageGroup {
     std::vector<std::vector<PairImage>> found;  ///< by block of particles
+    std::vector<std::size_t> begin;             ///< the same: of its images among all
     std::vector<PairImage> all;                 ///< in their order
     std::vector<Vec3> points;                   ///< the same
     UniformGrid grid;
