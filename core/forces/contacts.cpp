@@ -66,7 +66,9 @@ void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, Con
   if (push <= 0) return;
   sum.force += push * n;
   sum.load.stiffness += 2 * contact.stiffness;
-  if constexpr (terms.keep_dampers) kept->dampers.push_back({contact.other, damping, n});
+  if constexpr (terms.keep_dampers) {
+    if (damping > 0) kept->dampers.push_back({contact.other, damping, n});
+  }
   if constexpr (terms.friction) {
     const Friction friction =
         pair_friction(c.model, contact.self, contact.other, contact.stiffness);
@@ -96,7 +98,6 @@ void add_block(StepContext& c, std::size_t begin, std::size_t end) {
   for (std::size_t k = begin; k < end; ++k) {
     const auto i = static_cast<Index>(k);
     ContactSum sum;
-    if constexpr (terms.keep_dampers) kept->start(k - begin);
     c.work.contacts.for_each(c.model, c.configuration, i, [&](const Contact& contact) {
       const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
                                     c.model.scene.dimensions);
@@ -108,8 +109,8 @@ void add_block(StepContext& c, std::size_t begin, std::size_t end) {
     c.forces.particle[i] += sum.force;
     if constexpr (terms.friction) c.forces.rub_torque[i] += sum.torque;
     c.work.contact_loads[i] = sum.load;
+    if constexpr (terms.keep_dampers) kept->close(i);
   }
-  if constexpr (terms.keep_dampers) kept->start(end - begin);
 }
 
 template <bool keep_dampers>

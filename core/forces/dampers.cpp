@@ -1,41 +1,18 @@
 #include "core/forces/dampers.h"
 
+#include <algorithm>
+
 #include "core/forces/contact_rules.h"
 #include "core/forces/liquid_pairs.h"
 #include "core/forces/neighbour_lists.h"
 #include "core/forces/no_slip.h"
-#include "core/forces/restitution.h"
+#include "core/forces/spring_sums.h"
 #include "core/forces/walls.h"
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/step/force_model.h"
 
 namespace vat {
 namespace {
-
-void add_wall_dampers(const Yieldings& yieldings, const VatMotion& motion, Index i,
-                      const std::vector<Vec3>& spins, DamperBlock& block) {
-  const Model& model = yieldings.model;
-  const Configuration& at = yieldings.at;
-  const ContactLaw& law = model.wall_laws[model.material[i]];
-  const Friction friction = wall_friction(model, i);
-  if (law.damping == 0 && law.damping_ratio == 0 && !friction.acts()) return;
-  const Real threshold = law.threshold > 0 ? law.threshold : model.radius[i];
-  for (const int wall : model.walls) {
-    const Real overlap = threshold - wall_distance(*model.scene.vat, motion, wall, at.position[i]);
-    if (overlap <= 0) continue;
-    const Vec3 n = wall_normal(wall);
-    const Real speed = (at.velocity[i] - motion.velocity).dot(n);
-    const Real damping = yieldings.wall_damping(i, n);
-    const Real push = law.stiffness * overlap - damping * speed;
-    if (push <= 0) continue;
-    block.dampers.push_back({kNoParticle, damping, n});
-    if (!friction.acts()) continue;
-    const Vec3 arm = wall_arm(model, i, wall, threshold - overlap);
-    const Vec3 slip = wall_slip(*model.scene.vat, motion, wall,
-                                at.velocity[i] + turning_velocity(model, spins, i, arm));
-    block.rubs.push_back({kNoParticle, friction.drag(push, slip), n, arm, Vec3::Zero()});
-  }
-}
 
 void add_no_slip_dampers(const Model& model, const Workspace& work, const VatMotion& motion,
                          const Configuration& at, Index i, std::vector<Damper>& dampers) {
@@ -49,8 +26,11 @@ void add_no_slip_dampers(const Model& model, const Workspace& work, const VatMot
   }
 }
 
-void add_settling_dampers(const Model& model, Real time, Index i, std::vector<Damper>& dampers) {
-  if (!model.scene.settling || time >= model.scene.settling->until) return;
+bool is_settling(const Model& model, Real time) {
+  return model.scene.settling && time < model.scene.settling->until;
+}
+
+void add_settling_dampers(const Model& model, Index i, std::vector<Damper>& dampers) {
   const Real drag = model.mass[i] * model.scene.settling->drag;
   for (int axis = 0; axis < 3; ++axis) {
     dampers.push_back({kNoParticle, drag, Vec3(Vec3::Unit(axis))});
@@ -63,32 +43,61 @@ void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real t
                             bool viscosity) {
   const Model& model = f.model;
   is_viscous_ = viscosity && (model.is_coupled || has_viscosity(model));
-  const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
-  blocks_.resize(block_count(model.particle_count));
-  for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
-    DamperBlock& block = blocks_[begin / kBlockSize];
-    block.clear();
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<Index>(k);
-      block.start(k - begin);
-      const bool is_mirrored = model.is_coupled && i < model.liquid_count;
-      if (!is_mirrored) {
-        add_wall_dampers({model, f.work, at, f.step}, motion, i, f.work.spins, block);
-      }
-      if (i < model.liquid_count && is_viscous_ && !model.is_coupled) {
-        add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
-      }
-      if (i < model.liquid_count && viscosity) {
-        add_settling_dampers(model, time, i, block.dampers);
-      }
-    }
-    block.start(end - begin);
-  });
+  collect_own(f, at, time, viscosity);
   if (is_viscous_) collect_viscosity(f);
   has_images_ = is_viscous_ && has_viscous_images(model);
   if (has_images_) images_.collect(f, time);
   has_solid_drags_ = is_viscous_ && model.is_coupled && has_solids(model);
   if (has_solid_drags_) solid_drags_.collect(f);
+  collect_rigid(f);
+}
+
+void DampingMatrix::collect_own(const ForceModel& f, const Configuration& at, Real time,
+                                bool viscosity) {
+  const Model& model = f.model;
+  const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
+  const bool has_no_slip = is_viscous_ && !model.is_coupled && !model.no_slip_walls.empty();
+  const bool settles = viscosity && is_settling(model, time);
+  has_own_ = has_no_slip || settles;
+  if (!has_own_) return;
+  own_.resize(block_count(model.liquid_count));
+  for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    DamperBlock& block = own_[begin / kBlockSize];
+    block.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Index>(k);
+      if (has_no_slip) add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
+      if (settles) add_settling_dampers(model, i, block.dampers);
+      block.close(i);
+    }
+  });
+}
+
+void DampingMatrix::collect_rigid(const ForceModel& f) {
+  const Model& model = f.model;
+  rigid_.clear();
+  if (has_solid_drags_) {
+    for (Index i = model.free_count; i < model.particle_count; ++i) rigid_.push_back(i);
+    return;
+  }
+  for (std::size_t b = model.free_count / kBlockSize; b < block_count(model.particle_count); ++b) {
+    const std::size_t first = rigid_.size();
+    for_kept_blocks(f, b, [&](const DamperBlock& block) {
+      for (const DamperBlock::Row& row : block.rows) {
+        if (row.particle >= model.free_count) rigid_.push_back(row.particle);
+      }
+    });
+    const auto of_block = std::span(rigid_).subspan(first);
+    std::ranges::sort(of_block);
+    rigid_.resize(rigid_.size() - std::ranges::unique(of_block).size());
+  }
+}
+
+template <class F>
+void DampingMatrix::for_kept_blocks(const ForceModel& f, std::size_t block, F&& visit) const {
+  if (has_own_ && block < own_.size()) visit(own_[block]);
+  if (has_contact_forces(f.model)) visit(f.work.contact_dampers[block]);
+  if (has_wall_forces(f.model)) visit(f.work.wall_dampers[block]);
 }
 
 namespace {
@@ -132,44 +141,35 @@ void DampingMatrix::collect_viscosity(const ForceModel& f) {
 
 namespace {
 
-/// What the dampers of the block's k-th particle, `i`, do to it.
-Vec3 damp(const DamperBlock& block, std::size_t k, const std::vector<Vec3>& w, std::size_t i) {
-  Vec3 sum = Vec3::Zero();
-  for (Index d = block.begin[k]; d < block.begin[k + 1]; ++d) {
-    const Damper& damper = block.dampers[d];
-    const Vec3 change = damper.other == kNoParticle ? w[i] : Vec3(w[i] - w[damper.other]);
-    sum -= damper.strength * change.dot(damper.direction) * damper.direction;
-  }
-  return sum;
+/// What a damper does to particle i.
+Vec3 damp(const Damper& damper, const std::vector<Vec3>& w, Index i) {
+  const Vec3 change = damper.other == kNoParticle ? w[i] : Vec3(w[i] - w[damper.other]);
+  return -damper.strength * change.dot(damper.direction) * damper.direction;
 }
 
-/// What friction of the block's k-th particle, `i`, does to it.
-ContactForce rub(const Model& model, const DamperBlock& block, std::size_t k,
-                 const std::vector<Vec3>& w, const std::vector<Vec3>& spins, Index i) {
-  ContactForce sum;
-  for (Index d = block.rub_begin[k]; d < block.rub_begin[k + 1]; ++d) {
-    const RubDamper& damper = block.rubs[d];
-    Vec3 change = w[i] + turning_velocity(model, spins, i, damper.arm);
-    if (damper.other != kNoParticle) {
-      change -= w[damper.other] + turning_velocity(model, spins, damper.other, damper.other_arm);
-    }
-    const Vec3 force =
-        -damper.strength * slip_velocity(change, change.dot(damper.normal), damper.normal);
-    sum.force += force;
-    sum.torque += damper.arm.cross(force);
+ContactForce rub(const Model& model, const RubDamper& damper, const std::vector<Vec3>& w,
+                 const std::vector<Vec3>& spins, Index i) {
+  Vec3 change = w[i] + turning_velocity(model, spins, i, damper.arm);
+  if (damper.other != kNoParticle) {
+    change -= w[damper.other] + turning_velocity(model, spins, damper.other, damper.other_arm);
   }
-  return sum;
+  const Vec3 force =
+      -damper.strength * slip_velocity(change, change.dot(damper.normal), damper.normal);
+  return {force, damper.arm.cross(force)};
 }
 
-Vec3 damp_springs(const Model& model, const std::vector<Vec3>& directions,
-                  const std::vector<Vec3>& w, std::size_t i) {
-  Vec3 sum = Vec3::Zero();
-  for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
-    const SpringEnd& spring = model.spring_ends[s];
-    const Vec3& n = directions[s];
-    sum -= spring.damping * (w[i] - w[spring.other]).dot(n) * n;
-  }
-  return sum;
+void damp_springs(const ForceModel& f, const std::vector<Vec3>& w, Index begin, Index end,
+                  std::vector<Vec3>& force) {
+  const SpringEnd* const ends = f.model.spring_ends.data();
+  const Vec3* const directions = f.work.spring_directions.data();
+  BlockSums sums;
+  sum_over_springs(f.model, begin, end, sums, [&, changes = w.data()](Index e) {
+    return [=, own = changes[e]](Index s) -> Vec3 {
+      const Vec3& n = directions[s];
+      return (-ends[s].damping * (own - changes[ends[s].other]).dot(n)) * n;
+    };
+  });
+  std::copy_n(sums.begin(), end - begin, force.begin() + begin);
 }
 
 }  // namespace
@@ -177,27 +177,26 @@ Vec3 damp_springs(const Model& model, const std::vector<Vec3>& directions,
 void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
                              const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                              std::vector<Vec3>& torque) {
-  const bool has_contacts = has_contact_forces(f.model);
-  const bool has_springs = !f.model.spring_ends.empty();
-  for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    const std::size_t block = begin / kBlockSize;
-    for (std::size_t i = begin; i < end; ++i) {
-      force[i] = damp(blocks_[block], i - begin, w, i);
-      if (has_springs && i < f.model.implicit_begin) {
-        force[i] += damp_springs(f.model, f.work.spring_directions, w, i);
+  const Model& model = f.model;
+  for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
+    std::fill(force.begin() + static_cast<std::ptrdiff_t>(begin),
+              force.begin() + static_cast<std::ptrdiff_t>(end), Vec3::Zero());
+    const Index springs_begin = std::max(static_cast<Index>(begin), model.liquid_count);
+    const Index springs_end = std::min(static_cast<Index>(end), model.implicit_begin);
+    if (springs_begin < springs_end) damp_springs(f, w, springs_begin, springs_end, force);
+    for_kept_blocks(f, begin / kBlockSize, [&](const DamperBlock& block) {
+      Index damper = 0;
+      Index rubbing = 0;
+      for (const DamperBlock::Row& row : block.rows) {
+        const Index i = row.particle;
+        for (; damper < row.damper_end; ++damper) force[i] += damp(block.dampers[damper], w, i);
+        for (; rubbing < row.rub_end; ++rubbing) {
+          const ContactForce part = rub(model, block.rubs[rubbing], w, spins, i);
+          force[i] += part.force;
+          torque[i] += part.torque;
+        }
       }
-      if (has_contacts) force[i] += damp(f.work.contact_dampers[block], i - begin, w, i);
-      if (!f.model.has_friction) continue;
-      torque[i].setZero();
-      const auto add = [&](const DamperBlock& dampers) {
-        const ContactForce rubbing =
-            rub(f.model, dampers, i - begin, w, spins, static_cast<Index>(i));
-        force[i] += rubbing.force;
-        torque[i] += rubbing.torque;
-      };
-      add(blocks_[block]);
-      if (has_contacts) add(f.work.contact_dampers[block]);
-    }
+    });
   });
   if (!is_viscous_) return;
 

@@ -3,43 +3,55 @@
 #include "core/forces/connection.h"
 #include "core/forces/pair_direction.h"
 #include "core/forces/spring_changes.h"
+#include "core/forces/spring_sums.h"
 #include "core/step/workspace.h"
 
 namespace vat {
 namespace {
 
-// f = -(k (|p_e - p_i| - l) + c v_ei.n) n with n = (p_e - p_i) / |p_e - p_i|.      Boldt eq. 3
-Vec3 spring_force(const Configuration& at, Index e, const SpringEnd& spring, int dimensions,
-                  Vec3* direction) {
-  const Vec3 x = at.position[e] - at.position[spring.other];
-  const Real r = x.norm();
-  const Vec3 n = pair_direction(x, r, e, spring.other, dimensions);
-  // Those of torn springs are not asked for a damping that they no longer have.
-  if (direction != nullptr) *direction = spring.damping > 0 ? n : Vec3(Vec3::Zero());
-  const Real speed = (at.velocity[e] - at.velocity[spring.other]).dot(n);
-  return connection_push(spring.stiffness, spring.damping, spring.rest_length, r, speed) * n;
+/// f = -(k (|p_e - p_i| - l) + c v_ei.n) n with n = (p_e - p_i) / |p_e - p_i|.      Boldt eq. 3
+template <bool keep_directions, bool springs_change>
+void add_block(StepContext& c, Index begin, Index end) {
+  const SpringEnd* const ends = c.model.spring_ends.data();
+  const Vec3* const positions = c.configuration.position.data();
+  const Vec3* const velocities = c.configuration.velocity.data();
+  Vec3* const directions = c.work.spring_directions.data();
+  const int dimensions = c.model.scene.dimensions;
+  BlockSums sums;
+  sum_over_springs(c.model, begin, end, sums, [&](Index e) {
+    return [=, &c, position = positions[e], velocity = velocities[e]](Index s) -> Vec3 {
+      const SpringEnd& spring = ends[s];
+      const Vec3 x = position - positions[spring.other];
+      const Real r = x.norm();
+      const Vec3 n = r > 0 ? Vec3(x * (1 / r)) : coincident_direction(e, spring.other, dimensions);
+      const Real speed = (velocity - velocities[spring.other]).dot(n);
+      if constexpr (springs_change) {
+        const SpringEnd now = present_spring(c.model, c.configuration, s);
+        // Those of torn springs are not asked for a damping that they no longer have.
+        if constexpr (keep_directions) directions[s] = now.damping > 0 ? n : Vec3(Vec3::Zero());
+        return connection_push(now.stiffness, now.damping, now.rest_length, r, speed) * n;
+      } else {
+        if constexpr (keep_directions) directions[s] = n;
+        return connection_push(spring.stiffness, spring.damping, spring.rest_length, r, speed) * n;
+      }
+    };
+  });
+  for (Index e = begin; e < end; ++e) c.forces.particle[e] += sums[e - begin];
+}
+
+template <bool keep_directions>
+void add_springs(StepContext& c) {
+  for_spring_blocks(c.model, c.runner, [&](Index begin, Index end) {
+    c.configuration.springs.empty() ? add_block<keep_directions, false>(c, begin, end)
+                                    : add_block<keep_directions, true>(c, begin, end);
+  });
 }
 
 }  // namespace
 
-// Each spring is evaluated from both its ends: twice the arithmetic, but every particle's force has
-// one writer, and the two are opposite to the bit.
 void add_spring_forces(StepContext& c) {
-  const Index first = c.model.liquid_count;
-  const bool keep = c.work.keep_dampers;
-  if (keep) c.work.spring_directions.resize(c.model.spring_ends.size());
-  for_blocks(c.runner, c.model.implicit_begin - first, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Index e = first + static_cast<Index>(k);
-      Vec3 sum = Vec3::Zero();
-      for (Index s = c.model.spring_begin[e]; s < c.model.spring_begin[e + 1]; ++s) {
-        const SpringEnd spring = present_spring(c.model, c.configuration, s);
-        sum += spring_force(c.configuration, e, spring, c.model.scene.dimensions,
-                            keep ? &c.work.spring_directions[s] : nullptr);
-      }
-      c.forces.particle[e] += sum;
-    }
-  });
+  if (c.work.keep_dampers) c.work.spring_directions.resize(c.model.spring_ends.size());
+  c.work.keep_dampers ? add_springs<true>(c) : add_springs<false>(c);
 }
 
 }  // namespace vat

@@ -21,129 +21,160 @@ struct Equation {
   const Model& model() const { return force_model.model; }
 };
 
-Mat3 to_world(const Quat& orientation, const Mat3& tensor) {
-  const Mat3 r = orientation.toRotationMatrix();
-  return r * tensor * r.transpose();
-}
-
 void resize(const Model& model, Motion& motion) {
   motion.particle.resize(model.particle_count);
   motion.linear.resize(model.rigid_bodies.size());
   motion.angular.resize(model.rigid_bodies.size());
 }
 
-/// Calls f(x of a, x of b) for each free particle's entry and each rigid body's two.
-template <class F>
-void for_entries(const Equation& eq, Motion& a, const Motion& b, F&& f) {
-  for_blocks(eq.force_model.runner, eq.model().free_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) f(a.particle[i], b.particle[i]);
+/// The sums of f(i) over free particles, each over blocks in their order.
+template <class Sums, class F>
+Sums sum_over_particles(const Equation& eq, std::vector<Sums>& partial, F&& f) {
+  const Index count = eq.model().free_count;
+  partial.assign(block_count(count), Sums{});
+  for_blocks(eq.force_model.runner, count, [&](std::size_t begin, std::size_t end) {
+    Sums sum{};
+    for (std::size_t i = begin; i < end; ++i) f(i, sum);
+    partial[begin / kBlockSize] = sum;
   });
-  for (std::size_t r = 0; r < a.linear.size(); ++r) {
-    f(a.linear[r], b.linear[r]);
-    f(a.angular[r], b.angular[r]);
-  }
-}
-
-Real dot(const Equation& eq, const Motion& a, const Motion& b) {
-  std::vector<Real>& sums = eq.scratch.partial_sums;
-  sums.assign(block_count(eq.model().free_count), 0);
-  for_blocks(eq.force_model.runner, eq.model().free_count, [&](std::size_t begin, std::size_t end) {
-    Real sum = 0;
-    for (std::size_t i = begin; i < end; ++i) sum += a.particle[i].dot(b.particle[i]);
-    sums[begin / kBlockSize] = sum;
-  });
-  Real total = 0;
-  for (const Real sum : sums) total += sum;
-  for (std::size_t r = 0; r < a.linear.size(); ++r) {
-    total += a.linear[r].dot(b.linear[r]) + a.angular[r].dot(b.angular[r]);
-  }
+  Sums total{};
+  for (const Sums& sum : partial) total += sum;
   return total;
 }
 
-/// y = M x of velocities.
-void apply_mass(const Equation& eq, const Motion& x, Motion& y) {
+void find_inertias(const Equation& eq) {
   const Model& model = eq.model();
-  for_blocks(eq.force_model.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) y.particle[i] = model.mass[i] * x.particle[i];
-  });
-  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
+  std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  bodies.resize(model.rigid_bodies.size());
+  for (std::size_t r = 0; r < bodies.size(); ++r) {
     const RigidModel& rigid = model.rigid_bodies[r];
-    y.linear[r] = x.linear[r] / rigid.inverse_mass;
-    y.angular[r] = to_world(eq.at.rigid[r].orientation, rigid.inertia) * x.angular[r];
-  }
-}
-
-/// y = M^-1 x of forces; zero for what does not move.
-void apply_inverse_mass(const Equation& eq, const Motion& x, Motion& y) {
-  const Model& model = eq.model();
-  for_blocks(eq.force_model.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) y.particle[i] = model.inverse_mass[i] * x.particle[i];
-  });
-  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
-    const RigidModel& rigid = model.rigid_bodies[r];
-    if (rigid.is_held(eq.force_model.step)) {
-      y.linear[r].setZero();
-      y.angular[r].setZero();
-      continue;
-    }
-    y.linear[r] = rigid.inverse_mass * x.linear[r];
-    y.angular[r] = to_world(eq.at.rigid[r].orientation, rigid.inverse_inertia) * x.angular[r];
+    const Mat3 turn = eq.at.rigid[r].orientation.toRotationMatrix();
+    const bool is_held = rigid.is_held(eq.force_model.step);
+    bodies[r] = {
+        1 / rigid.inverse_mass, is_held ? 0 : rigid.inverse_mass,
+        turn * rigid.inertia * turn.transpose(),
+        is_held ? Mat3(Mat3::Zero()) : Mat3(turn * rigid.inverse_inertia * turn.transpose())};
   }
 }
 
 /// force = D w; writes the rigid particles' entries of w.
 void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   const Model& model = eq.model();
+  std::vector<Vec3>& rub_torque = eq.scratch.rub_torque;
   const auto for_rigid_particles = [&](auto&& f) {
-    for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
-      const IndexRange particles = model.rigid_bodies[r].particles;
-      for (Index e = particles.begin; e < particles.end; ++e) {
-        f(r, e, Vec3(eq.at.position[e] - eq.at.rigid[r].center_of_mass));
-      }
+    for (const Index e : eq.scratch.matrix.rigid_particles()) {
+      const Index r = model.bodies[model.body[e]].rigid;
+      f(r, e, Vec3(eq.at.position[e] - eq.at.rigid[r].center_of_mass));
     }
   };
-  for_rigid_particles([&](std::size_t r, Index e, const Vec3& arm) {
+  for_rigid_particles([&](Index r, Index e, const Vec3& arm) {
     w.particle[e] = w.linear[r] + w.angular[r].cross(arm);
+    if (model.has_friction) rub_torque[e].setZero();
   });
-  std::vector<Vec3>& rub_torque = eq.scratch.rub_torque;
   eq.scratch.matrix.multiply(eq.force_model, w.particle, w.angular, force.particle, rub_torque);
   std::ranges::fill(force.linear, Vec3::Zero());
   std::ranges::fill(force.angular, Vec3::Zero());
-  for_rigid_particles([&](std::size_t r, Index e, const Vec3& arm) {
+  for_rigid_particles([&](Index r, Index e, const Vec3& arm) {
     force.linear[r] += force.particle[e];
     force.angular[r] += arm.cross(force.particle[e]);
     if (model.has_friction) force.angular[r] += rub_torque[e];
   });
 }
 
-/// <w, M w>.
-Real size_of(const Equation& eq, const Motion& w) {
-  apply_mass(eq, w, eq.scratch.inertia);
-  return dot(eq, w, eq.scratch.inertia);
+/// r = dt f + M v with v the velocities given by particle, p = M^-1 r, w = 0, D w = 0; returns
+/// <r, M^-1 r>.
+template <class F>
+Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
+  const Model& model = eq.model();
+  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
+  Real error = sum_over_particles(eq, partial_sums, [&](std::size_t i, Real& sum) {
+    r.particle[i] = eq.dt * forces.particle[i] + model.mass[i] * given_velocity(i);
+    p.particle[i] = model.inverse_mass[i] * r.particle[i];
+    w.particle[i].setZero();
+    force.particle[i].setZero();
+    sum += r.particle[i].dot(p.particle[i]);
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    r.linear[b] = eq.dt * forces.rigid_force[b];
+    r.angular[b] = eq.dt * forces.rigid_torque[b];
+    p.linear[b] = bodies[b].inverse_mass * r.linear[b];
+    p.angular[b] = bodies[b].inverse_inertia * r.angular[b];
+    for (std::vector<Vec3>* zero : {&w.linear, &w.angular, &force.linear, &force.angular}) {
+      (*zero)[b].setZero();
+    }
+    error += r.linear[b].dot(p.linear[b]) + r.angular[b].dot(p.angular[b]);
+  }
+  return error;
 }
 
-/// Conjugate gradients from the change in the scratch, preconditioned with M.
-void iterate(const Equation& eq) {
-  auto& [matrix, w, residual, direction, inertia, product, rub_torque, partial_sums] = eq.scratch;
-  apply_damping(eq, w, residual);
-  for_entries(eq, residual, residual, [&](Vec3& r, const Vec3&) { r *= eq.dt; });
-  apply_inverse_mass(eq, residual, direction);
-  Real error = dot(eq, residual, direction);
+/// <p, (M - dt D) p> with q = D p.
+Real curvature_along(const Equation& eq) {
+  const Model& model = eq.model();
+  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
+  Real sum = sum_over_particles(eq, partial_sums, [&](std::size_t i, Real& part) {
+    part += p.particle[i].dot(model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    sum += p.linear[b].dot(bodies[b].mass * p.linear[b] - eq.dt * q.linear[b]);
+    sum += p.angular[b].dot(bodies[b].inertia * p.angular[b] - eq.dt * q.angular[b]);
+  }
+  return sum;
+}
+
+/// w += length p, and what follows from it for D w and r.
+DampingSums advance_along(const Equation& eq, Real length) {
+  const Model& model = eq.model();
+  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
+  DampingSums total = sum_over_particles(eq, sums, [&](std::size_t i, DampingSums& sum) {
+    w.particle[i] += length * p.particle[i];
+    force.particle[i] += length * q.particle[i];
+    r.particle[i] -= length * (model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
+    sum.error += model.inverse_mass[i] * r.particle[i].squaredNorm();
+    sum.size += model.mass[i] * w.particle[i].squaredNorm();
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const DampedBody& body = bodies[b];
+    w.linear[b] += length * p.linear[b];
+    w.angular[b] += length * p.angular[b];
+    force.linear[b] += length * q.linear[b];
+    force.angular[b] += length * q.angular[b];
+    r.linear[b] -= length * (body.mass * p.linear[b] - eq.dt * q.linear[b]);
+    r.angular[b] -= length * (body.inertia * p.angular[b] - eq.dt * q.angular[b]);
+    total.error += body.inverse_mass * r.linear[b].squaredNorm() +
+                   r.angular[b].dot(body.inverse_inertia * r.angular[b]);
+    total.size +=
+        body.mass * w.linear[b].squaredNorm() + w.angular[b].dot(body.inertia * w.angular[b]);
+  }
+  return total;
+}
+
+/// p = M^-1 r + share p.
+void turn_direction(const Equation& eq, Real share) {
+  const Model& model = eq.model();
+  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
+  for_blocks(eq.force_model.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      p.particle[i] = model.inverse_mass[i] * r.particle[i] + share * p.particle[i];
+    }
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    p.linear[b] = bodies[b].inverse_mass * r.linear[b] + share * p.linear[b];
+    p.angular[b] = bodies[b].inverse_inertia * r.angular[b] + share * p.angular[b];
+  }
+}
+
+/// Conjugate gradients from w = 0, preconditioned with M.
+void iterate(const Equation& eq, Real error) {
+  Real size = 0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (!(error > kTolerance * kTolerance * size_of(eq, w))) return;
-    apply_damping(eq, direction, product);
-    apply_mass(eq, direction, inertia);
-    for_entries(eq, product, inertia, [&](Vec3& q, const Vec3& m) { q = m - eq.dt * q; });
-    const Real curvature = dot(eq, direction, product);
+    if (!(error > kTolerance * kTolerance * size)) return;
+    apply_damping(eq, eq.scratch.direction, eq.scratch.product);
+    const Real curvature = curvature_along(eq);
     if (!(curvature > 0)) return;  // too small for numbers
-    const Real length = error / curvature;
-    for_entries(eq, w, direction, [&](Vec3& x, const Vec3& p) { x += length * p; });
-    for_entries(eq, residual, product, [&](Vec3& r, const Vec3& q) { r -= length * q; });
-    apply_inverse_mass(eq, residual, product);
-    const Real next = dot(eq, residual, product);
-    for_entries(eq, direction, product,
-                [&](Vec3& p, const Vec3& z) { p = z + (next / error) * p; });
-    error = next;
+    const DampingSums advance = advance_along(eq, error / curvature);
+    turn_direction(eq, advance.error / error);
+    error = advance.error;
+    size = advance.size;
   }
 }
 
@@ -198,25 +229,22 @@ bool must_solve_own_damping(const Model& model, Real dt) {
 void solve_damping(const ForceModel& f, const Configuration& from, const Configuration& at,
                    Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
   const Equation eq{f, at, dt, scratch};
-  auto& [matrix, w, residual, direction, inertia, product, rub_torque, partial_sums] = scratch;
-  matrix.collect(f, at, time, viscosity);
-  for (Motion* motion : {&w, &residual, &direction, &inertia, &product}) resize(f.model, *motion);
-  if (f.model.has_friction) rub_torque.resize(f.model.particle_count);
-  product.particle = forces.particle;  // one by one, which keeps their room
-  product.linear = forces.rigid_force;
-  product.angular = forces.rigid_torque;
-  apply_inverse_mass(eq, product, w);
-  for_entries(eq, w, w, [&](Vec3& x, const Vec3&) { x *= eq.dt; });
-  for (Index i = 0; i < f.model.free_count; ++i) {
-    w.particle[i] += from.velocity[i] - at.velocity[i];
+  scratch.matrix.collect(f, at, time, viscosity);
+  for (Motion* motion :
+       {&scratch.change, &scratch.force, &scratch.residual, &scratch.direction, &scratch.product}) {
+    resize(f.model, *motion);
   }
-  iterate(eq);
-  apply_damping(eq, w, product);
-  for (Index i = 0; i < f.model.particle_count; ++i) forces.particle[i] += product.particle[i];
+  if (f.model.has_friction) scratch.rub_torque.resize(f.model.particle_count);
+  find_inertias(eq);
+  iterate(eq, start(eq, forces,
+                    [&](std::size_t i) { return Vec3(from.velocity[i] - at.velocity[i]); }));
+  for (Index i = 0; i < f.model.free_count; ++i) {
+    forces.particle[i] += scratch.force.particle[i];
+  }
   for (std::size_t r = 0; r < f.model.rigid_bodies.size(); ++r) {
     if (f.model.rigid_bodies[r].is_held(f.step)) continue;
-    forces.rigid_force[r] += product.linear[r];
-    forces.rigid_torque[r] += product.angular[r];
+    forces.rigid_force[r] += scratch.force.linear[r];
+    forces.rigid_torque[r] += scratch.force.angular[r];
   }
 }
 

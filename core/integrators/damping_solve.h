@@ -13,16 +13,38 @@ struct Motion {
   std::vector<Vec3> angular;
 };
 
+/// A rigid body as the solve sees it, in world axes. What is held does not yield.
+struct DampedBody {
+  Real mass;
+  Real inverse_mass;
+  Mat3 inertia;
+  Mat3 inverse_inertia;
+};
+
+/// Sums over one block, or over all.
+struct DampingSums {
+  Real error = 0;  ///< <r, M^-1 r> of the residual r
+  Real size = 0;   ///< <w, M w>
+
+  DampingSums& operator+=(const DampingSums& other) {
+    error += other.error;
+    size += other.size;
+    return *this;
+  }
+};
+
 /// Scratch of solve_damping().
 struct DampingScratch {
   DampingMatrix matrix;
+  std::vector<DampedBody> bodies;
   Motion change;  ///< w
+  Motion force;   ///< D w
   Motion residual;
   Motion direction;
-  Motion inertia;  ///< M times the direction
-  Motion product;
+  Motion product;                  ///< D times the direction
   std::vector<Vec3> rub_torque;    ///< see DampingMatrix::multiply()
-  std::vector<Real> partial_sums;  ///< of dot products, by block
+  std::vector<Real> partial_sums;  ///< by block
+  std::vector<DampingSums> sums;   ///< the same
 };
 
 /// An upper bound of the oscillations that springs, liquids and the contacts of the last evaluation

@@ -124,8 +124,12 @@ void add_springs(Model& model) {
     model.springs_change = model.springs_change || (may_change && !ends[i].empty());
   }
   model.spring_begin.push_back(0);
-  for (std::vector<SpringEnd>& of_particle : ends) {
+  for (Index i = 0; i < model.free_count; ++i) {
+    std::vector<SpringEnd>& of_particle = ends[i];
     std::ranges::stable_sort(of_particle, {}, &SpringEnd::other);
+    const auto own = std::ranges::lower_bound(of_particle, i, {}, &SpringEnd::other);
+    model.spring_own_begin.push_back(model.spring_begin.back() +
+                                     static_cast<Index>(own - of_particle.begin()));
     model.spring_ends.insert(model.spring_ends.end(), of_particle.begin(), of_particle.end());
     model.spring_begin.push_back(static_cast<Index>(model.spring_ends.size()));
   }

@@ -168,8 +168,9 @@ struct Model {
   std::vector<RigidModel> rigid_bodies;
 
   // Static springs of free particles: ends of particle i are [spring_begin[i], spring_begin[i+1]),
-  // in order of `other`.
+  // in order of `other`, those to later particles from spring_own_begin[i] on.
   std::vector<Index> spring_begin;
+  std::vector<Index> spring_own_begin;
   std::vector<SpringEnd> spring_ends;
   // Cells of deformable bodies: corners at free particle i are [cell_begin[i], cell_begin[i+1]).
   std::vector<VolumeCell> cells;

@@ -214,6 +214,10 @@ bool has_contact_forces(const Model& model) {
   return model.contact_reach > 0 && (model.bodies_push || model.has_self_contact);
 }
 
+bool has_wall_forces(const Model& model) {
+  return !model.walls.empty() && model.walls_push;
+}
+
 bool is_thick(const LiquidModel& liquid, int dimensions) {
   return 2 * (dimensions + 2) * liquid.viscosity > liquid.central_viscosity / 2;
 }
@@ -256,11 +260,10 @@ StepPlan make_step_plan(const Model& model) {
     plan.add("cell_pressure", {position}, {cell_pressure}, &compute_cell_pressure);
     plan.add("cell_forces", {position, cell_pressure, force}, {force}, &add_cell_forces);
   }
-  const bool has_walls = !model.walls.empty() && model.walls_push;
-  if (has_walls && model.has_restitution) {
+  if (has_wall_forces(model) && model.has_restitution) {
     plan.add("walls", {position, velocity, rigid_state, yielding, force}, {force},
              &add_wall_forces);
-  } else if (has_walls) {
+  } else if (has_wall_forces(model)) {
     plan.add("walls", {position, velocity, force}, {force}, &add_wall_forces);
   }
   if (!model.rigid_bodies.empty()) {

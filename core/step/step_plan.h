@@ -73,6 +73,9 @@ bool has_viscosity(const Model& model);
 /// Whether particles that meet push each other, by springs or layers: there is a stage "contacts".
 bool has_contact_forces(const Model& model);
 
+/// The same of walls: there is a stage "walls".
+bool has_wall_forces(const Model& model);
+
 /// Whether walls take part in the viscosity of liquids, see core/forces/viscous_images.h; and
 /// whether slip ones do.
 bool has_viscous_images(const Model& model);

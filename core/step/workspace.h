@@ -99,21 +99,28 @@ struct RubDamper {
   Vec3 other_arm;  ///< and from the other's
 };
 
-/// Dampers of one block of particles: those of the block's k-th are [begin[k], begin[k + 1]).
+/// Dampers of those particles of one block that have any: of each, those after the ones before.
 struct DamperBlock {
+  struct Row {
+    Index particle;
+    Index damper_end;
+    Index rub_end;
+  };
+  std::vector<Row> rows;
   std::vector<Damper> dampers;
-  std::array<Index, kBlockSize + 1> begin;
-  std::vector<RubDamper> rubs{};
-  std::array<Index, kBlockSize + 1> rub_begin{};
+  std::vector<RubDamper> rubs;
 
   void clear() {
+    rows.clear();
     dampers.clear();
     rubs.clear();
   }
-  /// Those that follow are of the k-th particle.
-  void start(std::size_t k) {
-    begin[k] = static_cast<Index>(dampers.size());
-    rub_begin[k] = static_cast<Index>(rubs.size());
+  /// What was added since the last call is of this particle.
+  void close(Index particle) {
+    const std::size_t dampers_before = rows.empty() ? 0 : rows.back().damper_end;
+    const std::size_t rubs_before = rows.empty() ? 0 : rows.back().rub_end;
+    if (dampers.size() == dampers_before && rubs.size() == rubs_before) return;
+    rows.push_back({particle, static_cast<Index>(dampers.size()), static_cast<Index>(rubs.size())});
   }
 };
 
@@ -157,9 +164,10 @@ struct Workspace {
   std::vector<ContactLoad> contact_loads;  ///< by particle
   std::vector<Vec3> yieldings;             ///< see core/forces/restitution.h; by particle [1/kg]
   std::vector<Real> cell_pressure;         ///< by cell [Pa]
-  bool keep_dampers = false;               ///< asks for the next two lines
-  std::vector<Vec3> spring_directions;     ///< by end: n of Boldt eq. 3
+  bool keep_dampers = false;               ///< asks for the next three lines
+  std::vector<Vec3> spring_directions;     ///< n of Boldt eq. 3, by end that its block asked for
   std::vector<DamperBlock> contact_dampers;
+  std::vector<DamperBlock> wall_dampers;
 };
 
 /// What a stage sees.

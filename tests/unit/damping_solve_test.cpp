@@ -13,12 +13,12 @@ namespace {
 
 constexpr Real kStep = 0.01;
 
-/// A block of 27 particles whose springs are damped far beyond what explicit steps of kStep bear,
+/// A block of n^3 particles whose springs are damped far beyond what explicit steps of kStep bear,
 /// set in motion so that they move against one another.
-Scene make_damped_block() {
+Scene make_damped_block(int n = 3) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
   scene.materials = {test::make_material("gum")};
-  ParticleShape shape = test::make_particles(test::make_lattice(3, 3, 3, 0.1), 0.1);
+  ParticleShape shape = test::make_particles(test::make_lattice(n, n, n, 0.1), 0.1);
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const auto x = static_cast<Real>(i);
     shape.velocities.push_back(0.1 * Vec3(std::sin(x), std::cos(2 * x), std::sin(3 * x)));
@@ -102,6 +102,7 @@ Real force_error(const Scene& scene) {
 // dt = 16 of that.
 TEST(DampingSolve, VelocitiesAreThoseThatTheirOwnDampingLeadsTo) {
   EXPECT_LT(force_error(make_damped_block()), 0.08);
+  EXPECT_LT(force_error(make_damped_block(8)), 0.08);  // of more than one block of particles
   EXPECT_LT(force_error(make_viscous_drop()), 0.08);
   EXPECT_LT(force_error(make_viscous_channel()), 0.08);
 }
@@ -161,10 +162,13 @@ TEST(DampingSolve, GivesTheSameBitsForAnyNumberOfThreads) {
   std::vector<std::uint64_t> hashes;
   for (const unsigned threads : {1U, 2U, 4U}) {
     test::ThreadRunner runner(threads);
-    Scene scene = make_viscous_drop();
+    Scene scene = make_damped_block(9);
+    scene.materials.push_back(make_viscous_drop().materials[0]);
     ParticleShape shape = test::make_particles(test::make_lattice(9, 9, 9, 0.1), 1);
     for (const Vec3& x : shape.positions) shape.velocities.push_back({x.z(), x.x(), 0});
-    scene.bodies[0].shape = shape;
+    scene.bodies.push_back(make_viscous_drop().bodies[0]);
+    scene.bodies[1].shape = shape;
+    scene.bodies[1].position = {2, 0, 0};
     Simulation simulation = test::make_simulation(scene, &runner);
     simulation.advance(5);
     hashes.push_back(simulation.state_hash());

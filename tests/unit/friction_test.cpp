@@ -150,10 +150,11 @@ TEST(Friction, IsKeptForTheSolveAsADragAcrossTheContact) {
   const Controls controls;
   ForceModel{probe.model(), controls, work}.evaluate(probe.state().now, 0, probe.state().forces);
   const DamperBlock& block = work.contact_dampers[0];
-  ASSERT_EQ(block.begin[1], 1U);
+  ASSERT_EQ(block.rows[0].particle, 0U);
+  ASSERT_EQ(block.rows[0].damper_end, 1U);
   EXPECT_EQ(block.dampers[0].other, 1U);
   EXPECT_EQ(block.dampers[0].strength, 2);
-  ASSERT_EQ(block.rub_begin[1], 1U);
+  ASSERT_EQ(block.rows[0].rub_end, 1U);
   EXPECT_EQ(block.rubs[0].other, 1U);
   EXPECT_NEAR(block.rubs[0].strength, kFriction * kPush / 7, 1e-12);
   EXPECT_LT((block.rubs[0].normal - kNormal).norm(), 1e-12);

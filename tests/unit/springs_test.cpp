@@ -56,10 +56,10 @@ TEST(Springs, OnOnePairAddUp) {
 TEST(Springs, SumAsBruteForceDoesAndCancel) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<Real> unit(-1, 1);
-  std::vector<Vec3> positions(200);
+  std::vector<Vec3> positions(3 * kBlockSize - 100);  // springs cross blocks, both ways
   for (Vec3& p : positions) p = {unit(random), unit(random), unit(random)};
   std::vector<SpringDescription> springs;
-  for (Index s = 0; s < 900; ++s) {
+  for (Index s = 0; s < 3000; ++s) {
     const auto a = static_cast<Index>(random() % positions.size());
     const auto b = static_cast<Index>(random() % positions.size());
     if (a != b) springs.push_back({a, b, {10 + 5 * unit(random), 0}, 0.7});
