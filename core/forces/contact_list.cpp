@@ -1,10 +1,8 @@
 #include "core/forces/contact_list.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
-#include "core/forces/contact_search.h"
-#include "core/forces/contacts.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -13,16 +11,23 @@ namespace {
 /// Of the reach, beyond what was asked for: a thicker skin lasts longer and has more pairs in it.
 constexpr Real kSkinShare = 0.5;
 
+/// The first particle that has contacts: liquids may meet others by SPH alone.
+Index first_of(const Model& model) {
+  return model.is_coupled ? model.liquid_count : 0;
+}
+
 }  // namespace
 
-bool ContactList::is_current(const StepContext& c, Real slack) {
+bool ContactList::is_between_current(const StepContext& c, Real slack) {
   if (!(slack < skin_)) return false;
   const std::vector<Vec3>& position = c.configuration.position;
-  farthest_.resize(blocks_.size());
-  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
+  const Index first = first_of(c.model);
+  const std::size_t count = c.model.particle_count - first;
+  farthest_.resize(block_count(count));
+  for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
     Real farthest = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 way = position[i] - built_at_[i];
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3 way = position[first + k] - built_at_[first + k];
       const Real way2 =
           c.model.periodic.any() ? c.model.periodic.nearest(way).squaredNorm() : way.squaredNorm();
       if (!(way2 <= farthest)) farthest = way2;  // takes what is not a number
@@ -33,79 +38,102 @@ bool ContactList::is_current(const StepContext& c, Real slack) {
   return std::ranges::all_of(farthest_, [&](Real way2) { return way2 <= allowed * allowed; });
 }
 
+bool ContactList::is_current(const StepContext& c, Real slack) {
+  return is_between_current(c, slack) && std::ranges::all_of(within_, [&](SelfContactList& list) {
+           return list.is_current(c, slack);
+         });
+}
+
 std::size_t ContactList::size() const {
-  std::size_t size = 0;
-  for (const Block& block : blocks_) size += block.others.size();
+  std::size_t size = between_.size();
+  for (const SelfContactList& list : within_) size += list.size();
   return size;
 }
 
+void ContactList::make_own_lists(const Model& model) {
+  std::vector<Index> own_list(model.bodies.size(), kNoList);
+  within_.clear();
+  const bool has_any = model.has_self_contact && !model.periodic.any();
+  for (std::size_t b = 0; has_any && b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    if (body.kind != BodyKind::deformable || !model.self_contacts[body.material]) continue;
+    own_list[b] = static_cast<Index>(within_.size());
+    within_.emplace_back(body.particles);
+  }
+  own_list_ = std::move(own_list);  // all are made: there was memory for them
+}
+
 void ContactList::update(StepContext& c, Real slack) {
-  if (is_current(c, slack)) return;
-  const Real skin = slack + kSkinShare * c.model.contact_reach;
-  skin_ = 0;  // until the list is whole: there may be no memory for it
-  sort_solids(c, skin);
-  search(c, skin);
-  skin_ = skin;
+  if (own_list_.empty()) make_own_lists(c.model);
+  const bool were_listed = std::exchange(are_listed_, false);
+  bool has_searched = false;
+  for (SelfContactList& list : within_) has_searched |= list.update(c, slack);
+  if (!is_between_current(c, slack)) {
+    has_searched = true;
+    const Real skin = slack + kSkinShare * c.model.contact_reach;
+    skin_ = 0;  // until the list is whole: there may be no memory for it
+    search_between(c, skin);
+    skin_ = skin;
+  }
+  if (has_searched || !were_listed) list_particles(c);
+  are_listed_ = true;
 }
 
-void ContactList::find_near_bodies(const StepContext& c, Real skin) {
-  const std::vector<ModelBody>& bodies = c.model.bodies;
-  boxes_.assign(bodies.size(), {});
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    for (Index i = bodies[b].particles.begin; i < bodies[b].particles.end; ++i) {
-      boxes_[b].extend(c.configuration.position[i]);
-    }
-  }
-  const Real reach = c.model.contact_reach + skin;
-  for (Box& box : boxes_) {
-    box.min().array() -= reach;
-    box.max().array() += reach;
-  }
-  by_left_.resize(bodies.size());
-  std::iota(by_left_.begin(), by_left_.end(), Index{0});
-  std::ranges::sort(by_left_, {}, [&](Index b) { return boxes_[b].min().x(); });
-  near_.resize(bodies.size());
-  for (std::vector<Index>& near : near_) near.clear();
-  for (std::size_t k = 0; k < by_left_.size(); ++k) {
-    const Index b = by_left_[k];
-    for (std::size_t l = k + 1; l < by_left_.size(); ++l) {
-      const Index other = by_left_[l];
-      if (boxes_[other].min().x() > boxes_[b].max().x()) break;
-      if (!boxes_[b].intersects(boxes_[other])) continue;
-      near_[b].push_back(other);
-      near_[other].push_back(b);
-    }
-  }
-}
-
-bool ContactList::may_touch(const StepContext& c, Index i) const {
-  if (c.model.periodic.any()) return true;
-  const ModelBody& body = c.model.bodies[c.model.body[i]];
-  if (body.kind == BodyKind::deformable && c.model.self_contacts[body.material]) return true;
-  return std::ranges::any_of(near_[c.model.body[i]], [&](Index other) {
-    return boxes_[other].contains(c.configuration.position[i]);
-  });
-}
-
-void ContactList::search(StepContext& c, Real skin) {
-  built_at_ = c.configuration.position;
-  find_near_bodies(c, skin);
-  blocks_.resize(block_count(c.model.particle_count));
-  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    Block& block = blocks_[begin / kBlockSize];
-    block.others.clear();
+void ContactList::find_candidates(const StepContext& c, Real skin) {
+  const Model& model = c.model;
+  const std::vector<Vec3>& position = c.configuration.position;
+  const bool takes_all = model.periodic.any();
+  if (!takes_all) boxes_.build(model, position, model.contact_reach + skin, c.runner);
+  is_candidate_.resize(model.particle_count);
+  for_blocks(c.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t first = block.others.size();
-      block.begin[i - begin] = first;
-      if (!may_touch(c, static_cast<Index>(i))) continue;
-      for_each_contact(
-          c.model, c.work, c.configuration, static_cast<Index>(i),
-          [&](const Contact& contact) { block.others.push_back(contact.other); }, skin);
-      const auto begin_of_i = block.others.begin() + static_cast<std::ptrdiff_t>(first);
-      std::sort(begin_of_i, block.others.end());
-      block.others.erase(std::unique(begin_of_i, block.others.end()), block.others.end());
+      is_candidate_[i] = takes_all || boxes_.is_near_another(model.body[i], position[i]) ? 1 : 0;
     }
-    block.begin[end - begin] = block.others.size();
+  });
+  candidates_.clear();
+  for (Index i = model.liquid_count; i < model.particle_count; ++i) {
+    if (is_candidate_[i] != 0) candidates_.push_back(i);
+  }
+}
+
+void ContactList::find_between(const StepContext& c, Index i, Real skin,
+                               std::vector<Index>& found) const {
+  const Model& model = c.model;
+  if (i < first_of(model) || is_candidate_[i] == 0) return;
+  const ContactSearch search(model, c.configuration, i, skin);
+  const auto take = [&](Index j) { found.push_back(j); };
+  const Index body = model.body[i];
+  const bool takes_own = within_.empty() && model.has_self_contact;
+  search.look_in(
+      solids_, [&](Index slot) { return solids_.body[slot] != body || takes_own; },
+      [&](Index slot) { return solids_.particle[slot]; }, take);
+  if (model.is_coupled || (i < model.liquid_count && !model.liquids_touch)) return;
+  const std::span<const Index> liquids = c.work.liquid.grid.order();
+  search.look_in(
+      c.work.liquid,
+      [&](Index slot) {
+        return i >= model.liquid_count || model.material[liquids[slot]] != model.material[i];
+      },
+      [&](Index slot) { return liquids[slot]; }, take);
+}
+
+void ContactList::search_between(StepContext& c, Real skin) {
+  built_at_ = c.configuration.position;
+  find_candidates(c, skin);
+  solids_.build(c.model, c.configuration.position, candidates_, c.model.contact_reach + skin);
+  between_.fill(c.runner, c.model.particle_count,
+                [&](Index i, std::vector<Index>& found) { find_between(c, i, skin, found); });
+}
+
+void ContactList::list_particles(const StepContext& c) {
+  particles_.resize(block_count(c.model.particle_count));
+  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
+    std::vector<Index>& particles = particles_[begin / kBlockSize];
+    particles.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Index>(k);
+      if (!between_.of(i).empty() || !within(c.model, i).empty()) particles.push_back(i);
+    }
   });
 }
 

@@ -1,75 +1,78 @@
 #pragma once
 
-#include <cmath>
+#include <span>
+#include <vector>
 
 #include "core/forces/contact_rules.h"
-#include "core/step/workspace.h"
+#include "core/neighbours/uniform_grid.h"
+#include "core/state/state.h"
 
 namespace vat {
 
-/// for_each_contact() of a world that is periodic, or is not: the latter has no images to look at.
-template <bool periodic, class F>
-void search_contacts(const Model& model, const Workspace& work, const Configuration& at, Index i,
-                     Real slack, F&& f) {
-  const ContactRules rules(model, i);
-  const Vec3 p = periodic ? model.periodic.wrap(at.position[i]) : at.position[i];
-  const Real reach = model.contact_reach + slack;
-  const Real reach2 = reach * reach;
-  const auto visit = [&](const CellSortedPoints& points, Index slot, Index j,
-                         [[maybe_unused]] const Vec3& shift, auto&& wanted) {
-    Vec3 x(p.x() - points.x[slot], p.y() - points.y[slot], p.z() - points.z[slot]);
-    if constexpr (periodic) x += shift;
-    const Real r2 = x.squaredNorm();
-    if (!(r2 < reach2)) return;
-    Contact contact;
-    if (!wanted(j) || !rules.find_law(j, contact)) return;
-    const Real notice = contact.threshold + slack;
-    if (!(r2 < notice * notice) || rules.excluded(j)) return;
-    contact.self = i;
-    contact.other = j;
-    contact.x = x;
-    contact.distance = std::sqrt(r2);
-    f(contact);
-  };
-  const auto search = [&](const CellSortedPoints& points, Index first, auto&& wanted) {
-    const std::span<const Index> order = points.grid.order();
-    const auto search_image = [&](const Vec3& shift) {
-      const Vec3 image = periodic ? Vec3(p + shift) : p;
-      points.grid.for_each_run(image, reach, [&](Index begin, Index end) {
+/// Some particles in cell order, coordinates in columns of their own.
+struct SortedParticles {
+  UniformGrid grid;
+  std::vector<Index> particle;  ///< by slot, as the next
+  std::vector<Index> body;
+  std::vector<Real> x;
+  std::vector<Real> y;
+  std::vector<Real> z;
+
+  /// `cell_size`: best the search radius [m]. In a periodic world the coordinates are those of the
+  /// images in the box.
+  void build(const Model& model, const std::vector<Vec3>& positions,
+             std::span<const Index> particles, Real cell_size);
+
+ private:
+  std::vector<Vec3> places_;  ///< in the given order
+};
+
+/// Finds the others that particle i may touch, or may be up to `slack` [m] from touching.
+class ContactSearch {
+ public:
+  ContactSearch(const Model& model, const Configuration& at, Index i, Real slack)
+      : model_(model),
+        rules_(model, i),
+        place_(model.periodic.wrap(at.position[i])),
+        slack_(slack),
+        reach_(model.contact_reach + slack) {}
+
+  /// Calls f(j) for those of `points` with wanted(slot), where j is index_of(slot): in a periodic
+  /// world with the nearest images, and perhaps more than once.
+  template <class Points, class Wanted, class IndexOf, class F>
+  void look_in(const Points& points, Wanted&& wanted, IndexOf&& index_of, F&& f) const {
+    const Real reach2 = reach_ * reach_;
+    const auto look_from = [&](const Vec3& p) {
+      points.grid.for_each_run(p, reach_, [&](Index begin, Index end) {
         for (Index slot = begin; slot < end; ++slot) {
-          visit(points, slot, first + order[slot], shift, wanted);
+          if (!wanted(slot)) continue;
+          const Vec3 x(p.x() - points.x[slot], p.y() - points.y[slot], p.z() - points.z[slot]);
+          const Real r2 = x.squaredNorm();
+          if (r2 < reach2 && is_near(index_of(slot), r2)) f(index_of(slot));
         }
       });
     };
-    if constexpr (periodic) {
-      model.periodic.for_each_image(p, reach, search_image);
+    if (model_.periodic.any()) {
+      model_.periodic.for_each_image(place_, reach_,
+                                     [&](const Vec3& shift) { look_from(place_ + shift); });
     } else {
-      search_image(Vec3::Zero());
+      look_from(place_);
     }
-  };
-
-  if (model.is_coupled && i < model.liquid_count) return;
-  search(work.solids, model.liquid_count, [](Index) { return true; });
-  if (model.is_coupled) return;
-  if (i >= model.liquid_count) {
-    search(work.liquid, 0, [](Index) { return true; });
-  } else if (model.liquids_touch) {
-    search(work.liquid, 0, [&](Index j) { return model.material[j] != model.material[i]; });
   }
-}
 
-/// Calls f(contact) for every dynamic connection of particle i, in an order that depends on
-/// positions and indices alone; with `slack` [m] those too that are up to so much beyond their
-/// threshold. In a periodic world, with the nearest images of the others. Needs the columns
-/// liquid_cells and solid_cells.
-template <class F>
-void for_each_contact(const Model& model, const Workspace& work, const Configuration& at, Index i,
-                      F&& f, Real slack = 0) {
-  if (model.periodic.any()) {
-    search_contacts<true>(model, work, at, i, slack, f);
-  } else {
-    search_contacts<false>(model, work, at, i, slack, f);
+ private:
+  bool is_near(Index j, Real r2) const {
+    Contact contact;
+    if (!rules_.find_law(j, contact)) return false;
+    const Real notice = contact.threshold + slack_;
+    return r2 < notice * notice && !rules_.excluded(j);
   }
-}
+
+  const Model& model_;
+  ContactRules rules_;
+  Vec3 place_;
+  Real slack_;
+  Real reach_;
+};
 
 }  // namespace vat

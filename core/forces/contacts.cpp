@@ -12,12 +12,6 @@
 
 namespace vat {
 
-void sort_solids(StepContext& c, Real slack) {
-  const std::span<const Vec3> points(c.configuration.position);
-  c.work.solids.build(points.subspan(c.model.liquid_count), c.model.contact_reach + slack,
-                      c.model.periodic);
-}
-
 void find_contacts(StepContext& c) {
   c.work.contacts.update(c, 0);
 }
@@ -91,12 +85,10 @@ void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, Con
 }
 
 template <ContactTerms terms>
-void add_block(StepContext& c, std::size_t begin, std::size_t end) {
-  DamperBlock* const kept =
-      terms.keep_dampers ? &c.work.contact_dampers[begin / kBlockSize] : nullptr;
+void add_block(StepContext& c, std::size_t block) {
+  DamperBlock* const kept = terms.keep_dampers ? &c.work.contact_dampers[block] : nullptr;
   if constexpr (terms.keep_dampers) kept->clear();
-  for (std::size_t k = begin; k < end; ++k) {
-    const auto i = static_cast<Index>(k);
+  for (const Index i : c.work.contacts.particles(block)) {
     ContactSum sum;
     c.work.contacts.for_each(c.model, c.configuration, i, [&](const Contact& contact) {
       const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
@@ -108,20 +100,20 @@ void add_block(StepContext& c, std::size_t begin, std::size_t end) {
     });
     c.forces.particle[i] += sum.force;
     if constexpr (terms.friction) c.forces.rub_torque[i] += sum.torque;
-    c.work.contact_loads[i] = sum.load;
+    c.work.contact_loads[i] = sum.load;  // the first of its loads
     if constexpr (terms.keep_dampers) kept->close(i);
   }
 }
 
 template <bool keep_dampers>
-void add_terms(StepContext& c, std::size_t begin, std::size_t end) {
+void add_terms(StepContext& c, std::size_t block) {
   const Model& model = c.model;
   if (model.has_restitution || model.has_layers) {
-    model.has_friction ? add_block<ContactTerms{keep_dampers, true, true, true}>(c, begin, end)
-                       : add_block<ContactTerms{keep_dampers, false, true, true}>(c, begin, end);
+    model.has_friction ? add_block<ContactTerms{keep_dampers, true, true, true}>(c, block)
+                       : add_block<ContactTerms{keep_dampers, false, true, true}>(c, block);
   } else {
-    model.has_friction ? add_block<ContactTerms{keep_dampers, true, false, false}>(c, begin, end)
-                       : add_block<ContactTerms{keep_dampers, false, false, false}>(c, begin, end);
+    model.has_friction ? add_block<ContactTerms{keep_dampers, true, false, false}>(c, block)
+                       : add_block<ContactTerms{keep_dampers, false, false, false}>(c, block);
   }
 }
 
@@ -132,8 +124,9 @@ void add_contacts(StepContext& c) {
   if (c.work.keep_dampers) {
     c.work.contact_dampers.resize(block_count(c.model.particle_count));
   }
-  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    c.work.keep_dampers ? add_terms<true>(c, begin, end) : add_terms<false>(c, begin, end);
+  for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t) {
+    const std::size_t block = begin / kBlockSize;
+    c.work.keep_dampers ? add_terms<true>(c, block) : add_terms<false>(c, block);
   });
 }
 

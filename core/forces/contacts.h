@@ -6,10 +6,6 @@ namespace vat {
 
 struct StepContext;
 
-/// Cell order of the deformable and rigid particles, for searches up to `slack` [m] beyond the
-/// reach of contacts.
-void sort_solids(StepContext& context, Real slack);
-
 /// Stage: which pairs may be in contact.
 void find_contacts(StepContext& context);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/forces/contact_search.h"
 #include "core/forces/spring_changes.h"
 #include "core/limits.h"
 
@@ -66,8 +65,8 @@ void LocalPairs::build_contacts(const ForceModel& f, const Configuration& at,
   const Model& model = f.model;
   fill(f, contacts_, [&](Index i, std::vector<LocalPair>& pairs) {
     if (model.contact_reach <= 0) return;
-    for_each_contact(
-        model, f.work, at, i,
+    f.work.contacts.for_each(
+        model, at, i,
         [&](const Contact& contact) {
           const std::uint8_t level = std::max(levels.particle[i], levels.particle[contact.other]);
           pairs.push_back({contact.other, level, true, contact.stiffness, contact.damping,

@@ -115,8 +115,11 @@ void LocalStepper::build_pairs(const Moment& now) {
   now.force_model.enter("build_pairs");
   if (now.model().contact_reach > 0) {
     StepContext context = now.context(due_);
-    if (now.model().liquid_count > 0) sort_liquid(context);
-    sort_solids(context, now.state.levels.skin);
+    ContactList& contacts = now.force_model.work.contacts;
+    if (!contacts.is_current(context, now.state.levels.skin)) {
+      if (now.model().liquid_count > 0) sort_liquid(context);
+      contacts.update(context, now.state.levels.skin);
+    }
   }
   pairs_.build(now.force_model, now.at(), now.state.levels, !pairs_current_);
   pairs_current_ = true;

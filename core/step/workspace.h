@@ -158,7 +158,6 @@ struct Workspace {
   std::vector<PairBlock> solids_of_liquid;
   std::vector<PairBlock> liquid_of_solids;
   std::vector<Real> solid_pressure;  ///< by slot of solids_in_liquid [Pa]
-  CellSortedPoints solids;  ///< deformable and rigid particles; index 0 is the first of them
   ContactList contacts;
   std::vector<Vec3> spins;                 ///< by rigid body, where there is friction [rad/s]
   std::vector<ContactLoad> contact_loads;  ///< by particle

@@ -24,6 +24,7 @@ class ForceProbe {
   }
   const Model& model() const { return *model_; }
   State& state() { return state_; }
+  const State& state() const { return state_; }
   const Workspace& work() const { return work_; }
   /// Of particle `i` of the body with this place in the scene [N].
   const Vec3& force(std::size_t body, Index i = 0) const {

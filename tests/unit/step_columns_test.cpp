@@ -166,8 +166,14 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.surface);
     case Column::surface_normals:
       return bytes_of(columns.work.surface_normals);
-    case Column::contact_list:
-      return bytes_of(columns.work.solids.x);
+    case Column::contact_list: {
+      std::vector<Index> listed;
+      const ContactList& list = columns.work.contacts;
+      for (std::size_t b = 0; list.size() > 0 && b < block_count(now.position.size()); ++b) {
+        listed.insert(listed.end(), list.particles(b).begin(), list.particles(b).end());
+      }
+      return bytes_of(listed);
+    }
     case Column::yielding:
       return bytes_of(columns.work.yieldings);
     case Column::cell_pressure:

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/support/parallel.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// For each of a number of particles, others by rising index. One buffer a block, so that blocks
+/// are filled side by side.
+class PairTable {
+ public:
+  /// Fills it for `count` particles: find(i, found) adds what particle i has, in any order, and
+  /// even twice.
+  template <class Find>
+  void fill(TaskRunner* runner, std::size_t count, Find&& find) {
+    blocks_.resize(block_count(count));
+    for_blocks(runner, count, [&](std::size_t begin, std::size_t end) {
+      Block& block = blocks_[begin / kBlockSize];
+      block.others.clear();
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto first = static_cast<std::ptrdiff_t>(block.others.size());
+        block.begin[i - begin] = static_cast<Index>(first);
+        find(static_cast<Index>(i), block.others);
+        std::sort(block.others.begin() + first, block.others.end());
+        block.others.erase(std::unique(block.others.begin() + first, block.others.end()),
+                           block.others.end());
+      }
+      block.begin[end - begin] = static_cast<Index>(block.others.size());
+    });
+  }
+
+  std::span<const Index> of(Index i) const {
+    const Block& block = blocks_[i / kBlockSize];
+    const Index begin = block.begin[i % kBlockSize];
+    return {block.others.data() + begin, block.begin[i % kBlockSize + 1] - begin};
+  }
+
+  /// Of all entries.
+  std::size_t size() const {
+    std::size_t size = 0;
+    for (const Block& block : blocks_) size += block.others.size();
+    return size;
+  }
+
+ private:
+  /// Those of its k-th particle are [begin[k], begin[k + 1]).
+  struct Block {
+    std::vector<Index> others;
+    std::array<Index, kBlockSize + 1> begin;
+  };
+  std::vector<Block> blocks_;
+};
+
+}  // namespace vat
