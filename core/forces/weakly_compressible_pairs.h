@@ -40,20 +40,6 @@ inline Real softened_square(const LiquidModel& liquid, Real r) {
   return r * r + Real{0.01} * h * h;
 }
 
-/// What two particles do to each other along x, over their volumes and |x|: pressure, and viscosity
-/// 2 (d + 2) mu (v.x) / (x^2 + 0.01 h^2), which acts along x, so that it keeps angular momentum (J.
-/// J. Monaghan, Rep. Prog. Phys. 68 (2005) 1703, sec. 4). `viscosity` has the factor.
-inline Real central_force(const LiquidModel& liquid, Real viscosity, Real pressures,
-                          const Vec3& velocity, const Vec3& x, Real r) {
-  const Real viscous = viscosity * velocity.dot(x) / softened_square(liquid, r);
-  return (viscous - pressures) * liquid.slope_scale * liquid.kernel.slope_over_r(r);
-}
-
-/// The same of pressure alone.
-inline Real pressure_force(const LiquidModel& liquid, Real pressures, Real r) {
-  return -pressures * liquid.slope_scale * liquid.kernel.slope_over_r(r);
-}
-
 /// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2, up to s = 1.03, and from there on linear
 /// in the volume 1 / s. Only impacts press a liquid further together, with pressures rho c v that
 /// are those of the chosen speed of sound; and the denser a lattice, the shorter its stable step.

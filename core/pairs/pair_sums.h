@@ -67,6 +67,8 @@ struct PairSums {
   /// sum_j a_j (-(p_i + p_j)) g x; three numbers a target.
   Function pressure;
   /// sum_j a_j (mu_ij v.x / (q^2 + 0.01/4) - (p_i + p_j)) g x, v = v_i - v_j; three numbers.
+  /// Viscosity acts along x, so that it keeps angular momentum (J. J. Monaghan, Rep. Prog. Phys. 68
+  /// (2005) 1703, sec. 4).
   Function force;
   /// sum_j a_j mu_ij max(p_i, p_j) / (q^2 + 0.01/4) g x_a^2 v_a for each axis a, over sources from
   /// first_mirrored on or, where viscosities are given, all, but only candidates of clusters that
