@@ -110,6 +110,7 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Sa
   Controls new_controls = rebind(std::move(old_controls), *model, *new_model);
   GuardBounds new_bounds = guard_bounds(*new_model);
   StepBounds new_step_bounds = find_step_bounds(*new_model);
+  forget_samples(*new_model);
   adopt({std::move(new_model), std::move(new_state), std::move(new_controls)},
         std::move(new_bounds), std::move(new_step_bounds));
 }
@@ -130,8 +131,8 @@ Present Simulation::Impl::present() const {
     const auto part = [&](const auto& column) {
       return std::span(column).subspan(body.particles.begin, body.particles.size());
     };
-    present.bodies.push_back(
-        {part(state.now.position), part(model->radius), body.sample->springs.size()});
+    const std::size_t springs = body.sample ? body.sample->springs.size() : 0;
+    present.bodies.push_back({part(state.now.position), part(model->radius), springs});
   }
   if (model->scene.vat) present.vat_offset = vat_motion(*model->scene.vat, time()).offset;
   return present;

@@ -59,10 +59,12 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner,
   std::vector<BodyId> ids;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(impl.next_id++);
   std::vector<std::shared_ptr<const SampledBody>> samples(ids.size());
-  impl.model = compile(std::move(resolved), ids, std::move(samples));
-  impl.bounds = guard_bounds(*impl.model);
-  impl.step_bounds = find_step_bounds(*impl.model);
-  impl.state = initial_state(*impl.model);
+  const std::shared_ptr<Model> model = compile(std::move(resolved), ids, std::move(samples));
+  impl.bounds = guard_bounds(*model);
+  impl.step_bounds = find_step_bounds(*model);
+  impl.state = initial_state(*model);
+  forget_samples(*model);
+  impl.model = model;
   return simulation;
 }
 

@@ -44,10 +44,11 @@ void add_bodies(Model& model, const std::vector<BodyId>& ids,
     if (description.melting) {
       body.melts_at = first_step_from(description.melting->at, scene.numerics.step);
     }
-    body.sample = samples[b] ? std::move(samples[b])
-                             : std::make_shared<const SampledBody>(sample_body(
-                                   description, scene.materials[body.material], scene.dimensions));
+    body.sample = std::move(samples[b]);
     model.bodies.push_back(std::move(body));
+    if (model.bodies[b].sample) continue;
+    model.bodies[b].sample = sample_of(model, b);
+    model.bodies[b].is_as_described = true;
   }
 }
 
@@ -94,6 +95,12 @@ void lay_out_particles(Model& model) {
   const auto is_implicit = [&](const ModelBody& body) {
     return has_implicit_springs(model.scene, model.scene.materials[body.material]);
   };
+  std::size_t count = 0;
+  for (const ModelBody& body : model.bodies) count += body.sample->positions.size();
+  for (std::vector<Real>* column : {&model.mass, &model.inverse_mass, &model.radius}) {
+    column->reserve(count);
+  }
+  for (std::vector<Index>* column : {&model.body, &model.material}) column->reserve(count);
   append_bodies(model, [](const ModelBody& b) { return b.kind == BodyKind::liquid; });
   model.liquid_count = model.particle_count;
   append_bodies(
@@ -296,8 +303,22 @@ LiquidModel::LiquidModel(const Scene& scene, const Material& material, Real part
       tensile_strength(tensile_strength_of(scene, *material.liquid)),
       half_space(support_radius, scene.dimensions) {}
 
-std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids,
-                                     std::vector<std::shared_ptr<const SampledBody>> samples) {
+std::shared_ptr<const SampledBody> sample_of(const Model& model, std::size_t body) {
+  const ModelBody& one = model.bodies[body];
+  if (one.sample) return one.sample;
+  return std::make_shared<const SampledBody>(sample_body(
+      model.scene.bodies[body], model.scene.materials[one.material], model.scene.dimensions));
+}
+
+void forget_samples(Model& model) {
+  if (!model.scene.emitters.empty() || !model.scene.drains.empty()) return;
+  for (ModelBody& body : model.bodies) {
+    if (body.kind == BodyKind::liquid && body.is_as_described) body.sample.reset();
+  }
+}
+
+std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
+                               std::vector<std::shared_ptr<const SampledBody>> samples) {
   VAT_CHECK(ids.size() == scene.bodies.size() && samples.size() == scene.bodies.size());
   auto model = std::make_shared<Model>();
   model->scene = std::move(scene);

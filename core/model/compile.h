@@ -12,7 +12,14 @@ std::uint64_t first_step_from(Real time, Real step);
 
 /// Compiles a scene without errors. `ids` and `samples` have one entry per body of the scene; a
 /// null sample is made here.
-std::shared_ptr<const Model> compile(Scene scene, const std::vector<BodyId>& ids,
-                                     std::vector<std::shared_ptr<const SampledBody>> samples);
+std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
+                               std::vector<std::shared_ptr<const SampledBody>> samples);
+
+/// Lets go the samples of liquids that their descriptions can give again; for when the state at
+/// time 0 is known. Of scenes in which liquid flows in or out, where they are needed again soon, it
+/// keeps all.
+void forget_samples(Model& model);
+/// That of a body, made again where it was let go.
+std::shared_ptr<const SampledBody> sample_of(const Model& model, std::size_t body);
 
 }  // namespace vat

@@ -41,8 +41,9 @@ struct ModelBody {
   IndexRange particles;
   Index rigid = 0;  ///< place among the rigid bodies; only for kind rigid
   Real mass = 0;
-  std::uint64_t melts_at = kNever;  ///< the first nominal step in which it is liquid
-  std::shared_ptr<const SampledBody> sample;
+  std::uint64_t melts_at = kNever;            ///< the first nominal step in which it is liquid
+  std::shared_ptr<const SampledBody> sample;  ///< null once forgotten, see sample_of()
+  bool is_as_described = false;               ///< the sample is what the description gives
 };
 
 /// One material's SPH constants with everything that depends on h alone.

@@ -53,9 +53,11 @@ Real travel_share(const Model& model) {
   return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
 }
 
+/// But of liquids, which no bound asks for.
 std::vector<Vec3> starting_places(const Model& model) {
   std::vector<Vec3> at(model.particle_count);
   for (const ModelBody& body : model.bodies) {
+    if (!body.sample) continue;
     std::ranges::copy(body.sample->positions, at.begin() + body.particles.begin);
   }
   return at;
@@ -63,7 +65,7 @@ std::vector<Vec3> starting_places(const Model& model) {
 
 void add_cell_bounds(const Model& model, StepBounds& bounds) {
   for (const ModelBody& body : model.bodies) {
-    if (body.sample->cells.empty() || !model.scene.forces.springs) continue;
+    if (!body.sample || body.sample->cells.empty() || !model.scene.forces.springs) continue;
     const Real bulk_modulus = model.scene.materials[body.material].bulk_modulus;
     const Real omega2 = bound_cells(*body.sample, bulk_modulus, model.scene.dimensions);
     for (Index i = body.particles.begin; i < body.particles.end; ++i) {
