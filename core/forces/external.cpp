@@ -1,6 +1,9 @@
 #include "core/forces/external.h"
 
+#include <algorithm>
+
 #include "core/forces/vat_motion.h"
+#include "core/step/step_plan.h"
 #include "core/step/workspace.h"
 
 namespace vat {
@@ -56,10 +59,12 @@ void add_settling_drag(const Settling& settling, StepContext& c) {
 void set_external_forces(StepContext& c) {
   const Scene& scene = c.model.scene;
   const Vec3 gravity = scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero());
+  const bool has_loads = has_contact_forces(c.model) || has_wall_forces(c.model);
+  c.work.contact_loads.resize(has_loads ? c.model.particle_count : 0);
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
+    if (has_loads) std::fill_n(c.work.contact_loads.data() + begin, end - begin, ContactLoad{});
   });
-  c.work.contact_loads.assign(c.model.particle_count, {});
   if (c.model.has_friction) c.forces.rub_torque.assign(c.model.particle_count, Vec3::Zero());
   if (scene.forces.gravity && scene.central_field) add_central_field(*scene.central_field, c);
   if (scene.settling) add_settling_drag(*scene.settling, c);

@@ -178,21 +178,47 @@ void iterate(const Equation& eq, Real error) {
   }
 }
 
+Oscillation greater(const Oscillation& a, const Oscillation& b) {
+  return {std::max(a.omega2, b.omega2), std::max(a.rate, b.rate)};
+}
+
+/// Of bodies with particles that move on their own, by their own forces.
+Oscillation bound_bodies(const Model& model) {
+  Oscillation bound;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    const auto mobility =
+        std::span(model.inverse_mass).subspan(body.particles.begin, body.particles.size());
+    if (std::ranges::any_of(mobility, [](Real each) { return each > 0; })) {
+      bound = greater(bound, model.damping.own[b]);
+    }
+  }
+  return bound;
+}
+
 }  // namespace
 
 Oscillation find_bound(const ForceModel& f, const Configuration& at) {
   const Model& model = f.model;
   const std::vector<ContactLoad>& loads = f.work.contact_loads;
-  Oscillation bound;
-  const auto take = [&](const Oscillation& o) {
-    bound = {std::max(bound.omega2, o.omega2), std::max(bound.rate, o.rate)};
-  };
-  for (Index i = 0; i < model.free_count; ++i) {
-    const Real mobility = model.inverse_mass[i];
-    if (mobility == 0) continue;
-    take(model.damping.own[model.body[i]] +
-         Oscillation{mobility * loads[i].stiffness, mobility * loads[i].damping});
-  }
+  Oscillation bound = bound_bodies(model);
+  if (loads.empty()) return bound;
+  const auto take = [&](const Oscillation& o) { bound = greater(bound, o); };
+  std::vector<Oscillation>& by_block = f.work.load_bounds;
+  by_block.resize(block_count(model.free_count));
+  for_blocks(f.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    Oscillation& of_block = by_block[begin / kBlockSize];
+    of_block = {};
+    for (std::size_t i = begin; i < end; ++i) {
+      if (loads[i].stiffness == 0 && loads[i].damping == 0) continue;
+      const Real mobility = model.inverse_mass[i];
+      if (mobility == 0) continue;
+      of_block = greater(
+          of_block, model.damping.own[model.body[i]] +
+                        Oscillation{mobility * loads[i].stiffness, mobility * loads[i].damping});
+    }
+  });
+  std::ranges::for_each(by_block, take);
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
     const RigidModel& rigid = model.rigid_bodies[r];
     Oscillation sum;

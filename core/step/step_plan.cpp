@@ -215,7 +215,8 @@ bool has_contact_forces(const Model& model) {
 }
 
 bool has_wall_forces(const Model& model) {
-  return !model.walls.empty() && model.walls_push;
+  const bool is_all_coupled = model.is_coupled && model.liquid_count == model.particle_count;
+  return !model.walls.empty() && model.walls_push && !is_all_coupled;
 }
 
 bool is_thick(const LiquidModel& liquid, int dimensions) {

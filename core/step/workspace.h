@@ -160,7 +160,8 @@ struct Workspace {
   std::vector<Real> solid_pressure;  ///< by slot of solids_in_liquid [Pa]
   ContactList contacts;
   std::vector<Vec3> spins;                 ///< by rigid body, where there is friction [rad/s]
-  std::vector<ContactLoad> contact_loads;  ///< by particle
+  std::vector<ContactLoad> contact_loads;  ///< by particle; empty where nothing touches
+  std::vector<Oscillation> load_bounds;    ///< by block of particles
   std::vector<Vec3> yieldings;             ///< see core/forces/restitution.h; by particle [1/kg]
   std::vector<Real> cell_pressure;         ///< by cell [Pa]
   bool keep_dampers = false;               ///< asks for the next three lines
