@@ -11,7 +11,7 @@ namespace vat {
 void sort_solids_in_liquid(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);
   c.work.solids_in_liquid.update(points.subspan(c.model.liquid_count), pair_cell_size(c.model),
-                                c.model.periodic, c.runner);
+                                 c.model.periodic, c.runner);
 }
 
 // The mean pressure around a place, weighted with the kernel, and extrapolated by the weight of the
@@ -33,49 +33,35 @@ void extrapolate_pressure(StepContext& c) {
       [&](const PairImage& image, const PairMotion& source) {
         return PairMotion{image_motion(image, source).pressure, source.vx, 0, 0};
       });
-  work.pair_sums.resize(std::max(work.pair_sums.size(), kMeanSums * count));
   work.solid_pressure.resize(count);
-  PairInputs inputs = solid_force_inputs(c);
-  const PairSums& table = pair_sums_of(c);
-  work.solid_clusters.for_each_chunk(c.runner, inputs, [&](const PairInputs& in, auto clusters) {
-    table.mean(in, clusters, work.pair_sums.data());
-    for (const TargetCluster& cluster : clusters) {
-      for (Index n = cluster.begin; n < cluster.end; ++n) {
-        const std::size_t s = n - in.first_target;
-        const Real* const sums = &work.pair_sums[kMeanSums * s];
-        const Vec3 fall = fall_in_vat(model, {}, {solids.x[s], solids.y[s], solids.z[s]});
-        const Real weight = sums[3];
-        const Real sum = sums[4] + support * fall.dot(Eigen::Map<const Vec3>(sums));
-        const Real mean = weight > 0 ? sum / weight : 0;
-        work.solid_pressure[s] = model.is_filled ? mean : std::max(Real{0}, mean);
-      }
-    }
-  });
+  const auto set_pressure = [&](const TargetCluster&, Index target, const Real* sums) {
+    const std::size_t s = target - work.sources.first_solid();
+    const Vec3 fall = fall_in_vat(model, {}, {solids.x[s], solids.y[s], solids.z[s]});
+    const Real weight = sums[3];
+    const Real sum = sums[4] + support * fall.dot(Eigen::Map<const Vec3>(sums));
+    const Real mean = weight > 0 ? sum / weight : 0;
+    work.solid_pressure[s] = model.is_filled ? mean : std::max(Real{0}, mean);
+  };
+  work.solid_clusters.for_each_sum<kMeanSums>(c.runner, solid_force_inputs(c), pair_sums_of(c).mean,
+                                              set_pressure);
 }
 
 void add_tait_forces_on_solids(StepContext& c) {
   Workspace& work = c.work;
   const Model& model = c.model;
   const std::span<const Index> order = work.solids_in_liquid.grid.order();
-  work.pair_sums.resize(std::max(work.pair_sums.size(), 3 * order.size()));
   const bool is_mixed = has_several_liquids(model);
   if (is_mixed) set_solid_viscosities(c);
   set_slope_weights(c);
-  const PairInputs inputs = solid_force_inputs(c);
   const PairSums& table = pair_sums_of(c);
   const auto sum = has_central_viscosity(model) ? table.force : table.pressure;
   const Real factor = slope_factor(model, *model.liquids[model.material[0]]);
-  work.solid_clusters.for_each_chunk(c.runner, inputs, [&](const PairInputs& in, auto clusters) {
-    sum(in, clusters, work.pair_sums.data());
-    for (const TargetCluster& cluster : clusters) {
-      for (Index n = cluster.begin; n < cluster.end; ++n) {
-        const std::size_t s = n - in.first_target;
-        const Index b = model.liquid_count + order[s];
-        c.forces.particle[b] +=
-            model.rest_volume[b] * factor * Eigen::Map<const Vec3>(&work.pair_sums[3 * s]);
-      }
-    }
-  });
+  work.solid_clusters.for_each_sum<3>(
+      c.runner, solid_force_inputs(c), sum,
+      [&](const TargetCluster&, Index target, const Real* sums) {
+        const Index b = model.liquid_count + order[target - work.sources.first_solid()];
+        c.forces.particle[b] += model.rest_volume[b] * factor * Eigen::Map<const Vec3>(sums);
+      });
 }
 
 }  // namespace vat

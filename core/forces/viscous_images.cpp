@@ -87,18 +87,18 @@ void add_viscous_image_forces(StepContext& c) {
   if (has_several_liquids(model)) set_image_viscosities(c);
   PairInputs inputs = force_inputs(c);
   inputs.first_mirrored = work.sources.first_mirrored_liquid();
-  work.pair_sums.resize(std::max(work.pair_sums.size(), 3 * order.size()));
   const PairSums& table = pair_sums_of(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
   work.liquid_clusters.for_each_chunk(c.runner, inputs, [&](const PairInputs& in, auto clusters) {
     for (const TargetCluster& cluster : clusters) {
       if (!cluster.has_mirrored) continue;
-      table.drag(in, {&cluster, 1}, work.pair_sums.data());
+      std::array<Real, 3 * kMostTargets> sums;
+      table.drag(in.from_target(cluster.begin), {&cluster, 1}, sums.data());
       for (Index s = cluster.begin; s < cluster.end; ++s) {
         const Index i = order[s];
         c.forces.particle[i] += model.rest_volume[i] * factor[model.material[i]] *
-                                Eigen::Map<const Vec3>(&work.pair_sums[3 * std::size_t{s}]);
+                                Eigen::Map<const Vec3>(&sums[3 * (s - cluster.begin)]);
       }
     }
   });

@@ -61,26 +61,19 @@ void compute_tait_density(StepContext& c) {
   const VatMotion motion = motion_of(c);
   const std::span<const Index> order = work.liquid.grid.order();
   work.density.resize(model.liquid_count);
-  work.pair_sums.resize(std::max(work.pair_sums.size(), order.size()));
-  const PairInputs inputs = pair_inputs(c);
-  const PairSums& sums = pair_sums_of(c);
+  const PairSums& table = pair_sums_of(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return scale_factor(model, liquid); });
   const auto rest_density =
       by_material(model, [](const LiquidModel& liquid) { return liquid.rest_density; });
-  work.liquid_clusters.for_each_chunk(c.runner, inputs, [&](const PairInputs& in, auto clusters) {
-    sums.density(in, clusters, work.pair_sums.data());
-    for (const TargetCluster& cluster : clusters) {
-      const bool may_exceed = cluster.has_mirrored;
-      for (Index s = cluster.begin; s < cluster.end; ++s) {
-        const Index i = order[s];
-        const Index material = model.material[i];
-        Real sum = work.pair_sums[s] * factor[material];
-        if (may_exceed && sum > 1) sum -= own_excess(c, motion, liquid_of(model, i), s);
-        work.density[i] = rest_density[material] * sum;
-      }
-    }
-  });
+  const auto set_density = [&](const TargetCluster& cluster, Index slot, const Real* sums) {
+    const Index i = order[slot];
+    const Index material = model.material[i];
+    Real sum = *sums * factor[material];
+    if (cluster.has_mirrored && sum > 1) sum -= own_excess(c, motion, liquid_of(model, i), slot);
+    work.density[i] = rest_density[material] * sum;
+  };
+  work.liquid_clusters.for_each_sum<1>(c.runner, pair_inputs(c), table.density, set_density);
   // One particle is enough for the guard to see; which clusters were cut off depends on threads.
   if (work.too_many_pairs) work.density[0] = std::numeric_limits<Real>::quiet_NaN();
   work.density_version = work.sources.version();
@@ -130,22 +123,16 @@ void add_tait_forces(StepContext& c) {
   const std::span<const Index> order = work.liquid.grid.order();
   set_motions(c);
   if (has_several_liquids(model)) set_liquid_viscosities(c);
-  work.pair_sums.resize(std::max(work.pair_sums.size(), 3 * order.size()));
-  const PairInputs inputs = force_inputs(c);
   const PairSums& table = pair_sums_of(c);
   const auto sum = has_central_viscosity(model) ? table.force : table.pressure;
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
-  work.liquid_clusters.for_each_chunk(c.runner, inputs, [&](const PairInputs& in, auto clusters) {
-    sum(in, clusters, work.pair_sums.data());
-    for (const TargetCluster& cluster : clusters) {
-      for (Index s = cluster.begin; s < cluster.end; ++s) {
-        const Index i = order[s];
-        c.forces.particle[i] += model.rest_volume[i] * factor[model.material[i]] *
-                                Eigen::Map<const Vec3>(&work.pair_sums[3 * std::size_t{s}]);
-      }
-    }
-  });
+  work.liquid_clusters.for_each_sum<3>(
+      c.runner, force_inputs(c), sum, [&](const TargetCluster&, Index slot, const Real* sums) {
+        const Index i = order[slot];
+        c.forces.particle[i] +=
+            model.rest_volume[i] * factor[model.material[i]] * Eigen::Map<const Vec3>(sums);
+      });
 }
 
 }  // namespace vat

@@ -29,6 +29,8 @@ class PeriodicBox {
 
   bool any() const { return any_; }
   bool repeats(int axis) const { return repeats_[static_cast<std::size_t>(axis)]; }
+  /// Along a periodic axis.
+  Real length(int axis) const { return length_[axis]; }
 
   /// The image in the box, min <= x < max along periodic axes: `p` itself, to the bit, where it is
   /// in there already.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/support/grow.h"
+
 namespace vat {
 namespace {
 
@@ -40,12 +42,9 @@ Vec3 to_point(const SearchPlaces& places, const std::array<float, 3>& p) {
          Vec3(static_cast<Real>(p[0]), static_cast<Real>(p[1]), static_cast<Real>(p[2]));
 }
 
-/// Room for `wanted`; by quarters, since a vector by itself would double.
+/// Room for `wanted`.
 void make_room(std::vector<Index>& found, std::size_t wanted) {
-  if (found.size() >= wanted) return;
-  const std::size_t size = std::max(wanted, found.size() + found.size() / 4);
-  found.reserve(size);
-  found.resize(size);
+  if (found.size() < wanted) resize_closely(found, wanted);
 }
 
 /// Appends the clusters of the cells that begin in slots [begin, end).

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -55,7 +57,37 @@ class PairClusters {
     });
   }
 
+  /// Calls f(cluster, target, sums) for each source that is a target, those of a part one after the
+  /// other, with the `width` numbers that `sum` gives for it.
+  template <std::size_t width, class F>
+  void for_each_sum(TaskRunner* runner, const PairInputs& inputs, PairSums::Function sum,
+                    F&& f) const {
+    for_each_chunk(runner, inputs, [&](const PairInputs& in, auto clusters) {
+      std::array<Real, width * kTargetsAtOnce> sums;
+      for (; !clusters.empty(); clusters = clusters.subspan(size_of_batch(clusters))) {
+        const auto batch = clusters.first(size_of_batch(clusters));
+        const Index first = batch.front().begin;
+        sum(in.from_target(first), batch, sums.data());
+        for (const TargetCluster& cluster : batch) {
+          for (Index n = cluster.begin; n < cluster.end; ++n) {
+            f(cluster, n, &sums[width * (n - first)]);
+          }
+        }
+      }
+    });
+  }
+
  private:
+  static constexpr Index kTargetsAtOnce = 256;
+
+  /// How many of the clusters, one behind the other, have no more targets than that together.
+  static std::size_t size_of_batch(std::span<const TargetCluster> clusters) {
+    const auto beyond = std::ranges::find_if(clusters, [&](const TargetCluster& cluster) {
+      return cluster.end - clusters.front().begin > kTargetsAtOnce;
+    });
+    return static_cast<std::size_t>(beyond - clusters.begin());
+  }
+
   /// Of the cells that begin in one block of slots.
   struct Chunk {
     std::vector<TargetCluster> clusters;

@@ -78,12 +78,49 @@ Mirror PairImage::mirror() const {
   return mirror;
 }
 
-Index PairSources::first_of(Images which) const {
-  Index first = images_begin_;
-  for (int kind = 0; kind < which; ++kind) {
-    first += static_cast<Index>(images_[static_cast<std::size_t>(kind)].all.size());
+ImageOffsets::ImageOffsets(const Model& model, const VatMotion& motion) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<Real, kKinds>& along = offsets_[static_cast<std::size_t>(axis)];
+    if (model.periodic.repeats(axis)) {
+      along[kBack] = -model.periodic.length(axis);
+      along[kOn] = model.periodic.length(axis);
+    }
+    if (!model.scene.vat) continue;
+    along[kLowWall] = 2 * (model.scene.vat->min[axis] + motion.offset[axis]);
+    along[kHighWall] = 2 * (model.scene.vat->max[axis] + motion.offset[axis]);
   }
-  return first;
+}
+
+PackedImage ImageOffsets::pack(const PairImage& image) const {
+  PackedImage packed{image.source, {}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::array<Real, kKinds>& along = offsets_[axis];
+    const Real offset = image.offset[static_cast<Eigen::Index>(axis)];
+    std::uint8_t& kind = packed.offsets[axis];
+    if (image.axes[axis]) {
+      kind = offset == along[kLowWall] ? kLowWall : kHighWall;
+    } else if (offset != 0) {
+      kind = offset < 0 ? kBack : kOn;
+    }
+    VAT_ASSERT(offset == along[kind]);
+  }
+  return packed;
+}
+
+PairImage ImageOffsets::unpack(const PackedImage& image) const {
+  PairImage whole{{}, image.source, {}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    whole.offset[static_cast<Eigen::Index>(axis)] = offsets_[axis][image.offsets[axis]];
+    whole.axes[axis] = image.offsets[axis] >= kLowWall;
+  }
+  return whole;
+}
+
+Index PairSources::source_of(Index n) const {
+  if (n < images_begin_) return n;
+  const auto group = std::ranges::find_if(
+      images_, [&](const ImageGroup& one) { return n - one.first < one.count(); });
+  return group->image(n - group->first).source;
 }
 
 void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
@@ -94,12 +131,11 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
   const std::size_t count = points.grid.order().size();
   const VatMotion motion = motion_of(c);
   const ShowBox shown(c.model, motion, reach);
-  ImageGroup& group = images_[kind];
-  group.found.resize(block_count(count));
+  found_.resize(block_count(count));
   for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
-    std::vector<PairImage>& found = group.found[begin / kBlockSize];
+    std::vector<PackedImage>& found = found_[begin / kBlockSize];
     found.clear();
-    const auto add = [&](const PairImage& image) { found.push_back(image); };
+    const auto add = [&](const PairImage& image) { add_closely(found, offsets_.pack(image)); };
     for (std::size_t s = begin; s < end; ++s) {
       if (shown.hides(points.x[s], points.y[s], points.z[s])) continue;
       const Index n = first + static_cast<Index>(s);
@@ -108,22 +144,31 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
                   : for_each_shifted(c.model, n, p, reach, add);
     }
   });
+}
+
+/// What was found, in one column, and sorted.
+void PairSources::join_images(const StepContext& c, Images kind) {
+  const bool is_solid = kind == kShiftedSolids || kind == kMirroredSolids;
+  const CellSortedPoints& points = is_solid ? c.work.solids_in_liquid : c.work.liquid;
+  const Index first = is_solid ? solids_ : 0;
   std::size_t total = 0;
-  group.begin.clear();
-  for (const std::vector<PairImage>& found : group.found) {
-    group.begin.push_back(total);
+  found_begin_.clear();
+  for (const std::vector<PackedImage>& found : found_) {
+    found_begin_.push_back(total);
     total += found.size();
   }
-  group.all.resize(total);
-  group.points.resize(total);
-  for_blocks<1>(c.runner, group.found.size(), [&](std::size_t b, std::size_t) {
-    std::size_t k = group.begin[b];
-    for (const PairImage& image : group.found[b]) {
+  ImageGroup& group = images_[kind];
+  resize_closely(group.all, total);
+  resize_closely(image_points_, total);
+  for_blocks<1>(c.runner, found_.size(), [&](std::size_t b, std::size_t) {
+    std::size_t k = found_begin_[b];
+    for (const PackedImage& image : found_[b]) {
       group.all[k] = image;
-      group.points[k++] = image.place(place_of(points, image.source - first));
+      const Vec3 source = place_of(points, image.source - first);
+      image_points_[k++] = offsets_.unpack(image).place(source);
     }
   });
-  group.grid.build(group.points, pair_cell_size(c.model), c.runner);
+  group.grid.build(image_points_, pair_cell_size(c.model), c.runner);
 }
 
 void PairSources::set_places(const StepContext& c) {
@@ -138,15 +183,15 @@ void PairSources::set_places(const StepContext& c) {
   if (images_begin_ > solids_) set(c.work.solids_in_liquid, solids_);
 }
 
-void PairSources::set_image_places(Images kind, TaskRunner* runner) {
+/// Behind all places that there are.
+void PairSources::add_image_places(Images kind, TaskRunner* runner) {
   const ImageGroup& group = images_[kind];
-  const std::size_t first = first_of(kind);
   const std::span<const Index> order = group.grid.order();
-  for_blocks(runner, order.size(), [&](std::size_t begin, std::size_t end) {
+  resize_closely(places, group.first + group.count());
+  for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const Vec3& p = group.points[order[s]];
-      images[first - images_begin_ + s] = group.all[order[s]];
-      places[first + s] = {p.x(), p.y(), p.z(), 0};
+      const Vec3& p = image_points_[order[s]];
+      places[group.first + s] = {p.x(), p.y(), p.z(), 0};
     }
   });
 }
@@ -164,17 +209,19 @@ void PairSources::set_weights(const StepContext& c, const WeightFactors& factors
       places[n].weight = model.rest_volume[i] * scale * factor;
     }
   });
-  for_blocks(c.runner, images.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      places[images_begin_ + k].weight = places[images[k].source].weight;
-    }
-  });
+  for (const ImageGroup& group : images_) {
+    for_blocks(c.runner, group.count(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        places[group.first + s].weight = places[group.image(s).source].weight;
+      }
+    });
+  }
 }
 
 void PairSources::set_search_places(TaskRunner* runner) {
   constexpr std::size_t kMostLanes = 16;  // loads may reach beyond the last
   for (std::vector<float>* column : {&search_.x, &search_.y, &search_.z}) {
-    column->resize(places.size() + kMostLanes);
+    resize_closely(*column, places.size() + kMostLanes);
   }
   for_blocks(runner, count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -210,23 +257,22 @@ void PairSources::build(const StepContext& c, Real reach) {
   const bool solid = has_solids(c.model);
   solids_ = static_cast<Index>(liquid.grid.order().size());
   images_begin_ = solids_ + (solid ? static_cast<Index>(solids.grid.order().size()) : 0);
-  std::size_t image_count = 0;
-  for (const Images kind : {kShiftedSolids, kShiftedLiquid, kMirroredSolids, kMirroredLiquid}) {
+  resize_closely(places, images_begin_);
+  set_places(c);
+  offsets_ = ImageOffsets(c.model, motion_of(c));
+  for (const Images kind : kAllImages) {
     const bool of_solids = kind == kShiftedSolids || kind == kMirroredSolids;
     const bool is_mirrored = kind == kMirroredSolids || kind == kMirroredLiquid;
     images_[kind].all.clear();
+    images_[kind].first = static_cast<Index>(places.size());
     if ((of_solids && !solid) || (is_mirrored ? c.model.walls.empty() : !c.model.periodic.any())) {
       continue;
     }
     find_images(c, reach, kind);
-    image_count += images_[kind].all.size();
+    join_images(c, kind);
+    add_image_places(kind, c.runner);
   }
-  images.resize(image_count);
-  places.resize(images_begin_ + images.size() + 1);
-  set_places(c);
-  for (const Images kind : {kShiftedSolids, kShiftedLiquid, kMirroredSolids, kMirroredLiquid}) {
-    if (!images_[kind].all.empty()) set_image_places(kind, c.runner);
-  }
+  resize_closely(places, places.size() + 1);
   set_weights(c, {});
   search_.origin = liquid.grid.origin();
   set_search_places(c.runner);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "core/limits.h"
 #include "core/pairs/pair_clusters.h"
 #include "core/pairs/pair_sums.h"
+#include "core/support/grow.h"
 
 namespace vat {
 
@@ -24,6 +26,27 @@ struct PairImage {
   Vec3 place(const Vec3& p) const { return offset + turn(p); }
   /// The mirror alone, of an image in walls.
   Mirror mirror() const;
+};
+
+/// The same in few bytes: of each axis, which of the offsets that there are along it.
+struct PackedImage {
+  Index source;
+  std::array<std::uint8_t, 3> offsets;
+};
+
+/// The offsets of images along each axis.
+class ImageOffsets {
+ public:
+  ImageOffsets() = default;
+  ImageOffsets(const Model& model, const VatMotion& motion);
+
+  PackedImage pack(const PairImage& image) const;
+  PairImage unpack(const PackedImage& image) const;
+
+ private:
+  enum Kind : std::uint8_t { kNone, kBack, kOn, kLowWall, kHighWall, kKinds };
+
+  std::array<std::array<Real, kKinds>, 3> offsets_{};  ///< by axis [m]
 };
 
 struct WeightFactors {
@@ -51,7 +74,7 @@ class PairSources {
   /// motion(s) of liquid slots, solid(s) of solid slots, and image(image, motion of its source).
   template <class Liquid, class Solid, class Image>
   void set_motions(TaskRunner* runner, Liquid&& liquid, Solid&& solid, Image&& image) {
-    motions.resize(count() + 1);
+    resize_closely(motions, count() + 1);
     motions[count()] = {};
     for_blocks(runner, count(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
@@ -62,11 +85,14 @@ class PairSources {
         }
       }
     });
-    for_blocks(runner, images.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        motions[images_begin_ + k] = image(images[k], motions[images[k].source]);
-      }
-    });
+    for (const ImageGroup& group : images_) {
+      for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+          const PairImage& one = offsets_.unpack(group.image(s));
+          motions[group.first + s] = image(one, motions[one.source]);
+        }
+      });
+    }
   }
 
   /// Without the padding.
@@ -74,12 +100,10 @@ class PairSources {
   Index first_solid() const { return solids_; }
   Index first_image() const { return images_begin_; }
   /// The particle that an image is of; a particle itself.
-  Index source_of(Index n) const {
-    return n < images_begin_ ? n : images[n - images_begin_].source;
-  }
+  Index source_of(Index n) const;
   /// The first image in a wall; and the first of liquid.
-  Index first_mirrored() const { return first_of(kMirroredSolids); }
-  Index first_mirrored_liquid() const { return first_of(kMirroredLiquid); }
+  Index first_mirrored() const { return images_[kMirroredSolids].first; }
+  Index first_mirrored_liquid() const { return images_[kMirroredLiquid].first; }
   /// As above; and of them those of liquid.
   std::array<SourceGroup, 6> groups(const UniformGrid& liquid, const UniformGrid& solids) const;
   std::array<SourceGroup, 3> liquid_groups(const UniformGrid& liquid) const;
@@ -87,27 +111,34 @@ class PairSources {
 
   std::vector<PairPlace> places;    ///< by source, and the padding
   std::vector<PairMotion> motions;  ///< the same
-  std::vector<PairImage> images;    ///< by source, from first_image() on
 
  private:
   struct ImageGroup {
-    std::vector<std::vector<PairImage>> found;  ///< by block of particles
-    std::vector<std::size_t> begin;             ///< the same: of its images among all
-    std::vector<PairImage> all;                 ///< in their order
-    std::vector<Vec3> points;                   ///< the same
+    std::vector<PackedImage> all;  ///< in the order of their sources
     UniformGrid grid;
+    Index first = 0;  ///< source
+
+    std::size_t count() const { return all.size(); }
+    /// That in a slot.
+    const PackedImage& image(std::size_t slot) const { return all[grid.order()[slot]]; }
   };
   enum Images : std::uint8_t { kShiftedSolids, kShiftedLiquid, kMirroredSolids, kMirroredLiquid };
-  Index first_of(Images which) const;
-  SourceGroup group_of(Images which) const { return {&images_[which].grid, first_of(which)}; }
+  static constexpr std::array kAllImages = {kShiftedSolids, kShiftedLiquid, kMirroredSolids,
+                                            kMirroredLiquid};
+  SourceGroup group_of(Images which) const { return {&images_[which].grid, images_[which].first}; }
   void find_images(const StepContext& c, Real reach, Images kind);
+  void join_images(const StepContext& c, Images kind);
   void set_places(const StepContext& c);
-  void set_image_places(Images kind, TaskRunner* runner);
+  void add_image_places(Images kind, TaskRunner* runner);
   void set_search_places(TaskRunner* runner);
 
   Index solids_ = 0;  ///< first source that is a solid
   Index images_begin_ = 0;
   std::array<ImageGroup, 4> images_;
+  ImageOffsets offsets_;
+  std::vector<std::vector<PackedImage>> found_;  ///< by block of particles
+  std::vector<std::size_t> found_begin_;         ///< the same: of its images among all
+  std::vector<Vec3> image_points_;               ///< of the group last found
   SearchPlaces search_;
   std::uint64_t version_ = 0;
   std::uint64_t liquid_version_ = 0;

@@ -54,6 +54,14 @@ struct PairInputs {
   Index first_mirrored = 0;                  ///< sources from here on are images in walls
   Index first_target = 0;                    ///< source whose sums come first
   const Index* candidates = nullptr;         ///< of the clusters' chunk
+
+  /// With the sums of a later target first.
+  PairInputs from_target(Index first) const {
+    PairInputs in = *this;
+    if (target_viscosities != nullptr) in.target_viscosities += first - first_target;
+    in.first_target = first;
+    return in;
+  }
 };
 
 /// Sums over pairs for clusters of targets, with one instruction set. Distances x, q = |x| are over

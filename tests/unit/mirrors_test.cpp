@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/pairs/pair_sources.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -39,6 +40,28 @@ TEST(Mirrors, CompleteALatticeAtFacesEdgesAndCorners) {
       }
     }
   }
+}
+
+// Every way in which walls and a world that repeats itself show a particle.
+TEST(Mirrors, AreTheSameImagesOncePacked) {
+  Scene scene = make_full_box(3, 2);
+  scene.periodic = Periodicity{{-0.15, 0, 0}, {0.15, 0, 0}, {true, false, false}};
+  const ForceProbe probe(scene);
+  const VatMotion motion{{0, 0.1, -0.2}, {2, 0, 0}, {}};
+  const ImageOffsets offsets(probe.model(), motion);
+  const PeriodicBox& box = probe.model().periodic;
+  int count = 0;
+  for_each_mirror(probe.model(), motion, Vec3::Zero(), 1, [&](const Mirror& mirror) {
+    box.for_each_image(mirror.place(Vec3::Zero()), 1, [&](const Vec3& shift) {
+      const PairImage image{mirror.twice_plane + shift, 7, mirror.axes};
+      const PairImage unpacked = offsets.unpack(offsets.pack(image));
+      EXPECT_EQ(unpacked.offset, image.offset);
+      EXPECT_EQ(unpacked.axes, image.axes);
+      EXPECT_EQ(unpacked.source, 7U);
+      ++count;
+    });
+  });
+  EXPECT_EQ(count, 3 * (2 + 2 + 4));  // places of the box, faces and edges
 }
 
 TEST(Mirrors, ReflectPlacesAtMovingWalls) {

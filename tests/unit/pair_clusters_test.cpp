@@ -165,5 +165,42 @@ TEST(PairClusters, StopWhereThereIsTooMuchWork) {
   EXPECT_TRUE(clusters.build(how, cloud.groups[0], cloud.search, cloud.groups, nullptr));
 }
 
+/// Of each target its number, and its own viscosity.
+void tell_targets(const PairInputs& in, std::span<const TargetCluster> clusters, Real* sums) {
+  for (const TargetCluster& cluster : clusters) {
+    for (Index i = cluster.begin; i < cluster.end; ++i) {
+      Real* const out = sums + 2 * (i - in.first_target);
+      out[0] = static_cast<Real>(i);
+      out[1] = in.target_viscosities[i - in.first_target];
+    }
+  }
+}
+
+// However many there are in a cell.
+TEST(PairClusters, GiveEachTargetItsOwnSums) {
+  test::ThreadRunner runner(4);
+  Points points = random_points(2000, 1, 4);
+  points.insert(points.end(), 1000, Vec3::Zero());
+  // Targets behind other sources, as solids are.
+  const Cloud cloud(random_points(30, 1, 5), points, 0.1);
+  PairClusters clusters;
+  const PairSearch how = cloud.how(0.1, best_instruction_set());
+  ASSERT_TRUE(clusters.build(how, cloud.groups[1], cloud.search, cloud.groups, &runner));
+  std::vector<Real> viscosities;
+  for (Index i = 30; i < cloud.places.size(); ++i) viscosities.push_back(2 * i);
+  PairInputs inputs;
+  inputs.first_target = 30;
+  inputs.target_viscosities = viscosities.data();
+  std::vector<int> seen(cloud.places.size(), 0);
+  clusters.for_each_sum<2>(&runner, inputs, &tell_targets,
+                           [&](const TargetCluster& cluster, Index i, const Real* sums) {
+                             ++seen[i];
+                             EXPECT_TRUE(i >= cluster.begin && i < cluster.end);
+                             EXPECT_EQ(sums[0], static_cast<Real>(i));
+                             EXPECT_EQ(sums[1], static_cast<Real>(2 * i));
+                           });
+  for (Index i = 0; i < seen.size(); ++i) ASSERT_EQ(seen[i], i < 30 ? 0 : 1);
+}
+
 }  // namespace
 }  // namespace vat
