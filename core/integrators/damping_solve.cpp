@@ -187,6 +187,7 @@ Oscillation bound_bodies(const Model& model) {
   Oscillation bound;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
+    if (body.kind == BodyKind::rigid) continue;
     const auto mobility =
         std::span(model.inverse_mass).subspan(body.particles.begin, body.particles.size());
     if (std::ranges::any_of(mobility, [](Real each) { return each > 0; })) {

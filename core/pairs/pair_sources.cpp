@@ -107,15 +107,6 @@ PackedImage ImageOffsets::pack(const PairImage& image) const {
   return packed;
 }
 
-PairImage ImageOffsets::unpack(const PackedImage& image) const {
-  PairImage whole{{}, image.source, {}};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    whole.offset[static_cast<Eigen::Index>(axis)] = offsets_[axis][image.offsets[axis]];
-    whole.axes[axis] = image.offsets[axis] >= kLowWall;
-  }
-  return whole;
-}
-
 Index PairSources::source_of(Index n) const {
   if (n < images_begin_) return n;
   const auto group = std::ranges::find_if(

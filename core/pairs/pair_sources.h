@@ -41,7 +41,12 @@ class ImageOffsets {
   ImageOffsets(const Model& model, const VatMotion& motion);
 
   PackedImage pack(const PairImage& image) const;
-  PairImage unpack(const PackedImage& image) const;
+  PairImage unpack(const PackedImage& image) const {
+    const auto& [x, y, z] = image.offsets;
+    return {{offsets_[0][x], offsets_[1][y], offsets_[2][z]},
+            image.source,
+            {x >= kLowWall, y >= kLowWall, z >= kLowWall}};
+  }
 
  private:
   enum Kind : std::uint8_t { kNone, kBack, kOn, kLowWall, kHighWall, kKinds };
