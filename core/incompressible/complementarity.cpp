@@ -6,8 +6,8 @@
 namespace vat {
 
 void Complementarity::resize(std::size_t count) {
-  for (std::vector<Real>* column :
-       {&x, &excess, &diagonal, &scale, &gradient_, &direction_, &product_}) {
+  for (std::vector<Real>* column : {&x, &excess, &diagonal, &scale, &start_, &start_excess_,
+                                    &gradient_, &direction_, &product_}) {
     column->resize(count);
   }
   partial_.resize(block_count(count));
@@ -26,12 +26,29 @@ Real Complementarity::sum(TaskRunner* runner, F&& f) {
   return total;
 }
 
-bool Complementarity::find_way_to_bounds(TaskRunner* runner) {
-  const Real below = sum(runner, [&](std::size_t i) {
-    direction_[i] = x[i] < 0 ? -x[i] : 0;
-    return direction_[i];
+void Complementarity::keep_start(TaskRunner* runner) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      start_[i] = x[i];
+      start_excess_[i] = excess[i];
+    }
   });
-  return below > 0;
+}
+
+void Complementarity::clamp(TaskRunner* runner) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x[i] = std::max(Real{0}, x[i]);
+      direction_[i] = x[i] - start_[i];
+    }
+  });
+}
+
+void Complementarity::find_excess(TaskRunner* runner, SolveReport& report) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) excess[i] = start_excess_[i] - product_[i];
+  });
+  find_gradient(runner, report);
 }
 
 Real Complementarity::choose_direction(bool is_new, TaskRunner* runner) {

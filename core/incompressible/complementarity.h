@@ -15,6 +15,8 @@ struct SolveLimits {
   Real mean = 0;
   Real greatest = 0;
   int most_iterations = 0;
+  /// Whether the excess is found anew, and solved on where it is too much, once x below 0 are 0.
+  bool is_checked = true;
 };
 
 /// Find x >= 0 whose excess e(x) = e(0) - A x is nowhere above 0, and 0 where x > 0, with A
@@ -22,9 +24,9 @@ struct SolveLimits {
 ///
 /// By conjugate gradients with the diagonal as preconditioner (E. Polak, G. Ribiere, Rev. Franc.
 /// Inform. Rech. Oper. 16 (1969) 35) for the x that are above 0 or whose excess is; once these are
-/// solved, x below 0 become 0 and the search begins anew (an active set that is corrected as a
-/// whole, as by M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865). The same bits
-/// for any number of threads.
+/// solved, x below 0 become 0, and where the excess is then too much the search begins anew (an
+/// active set that is corrected as a whole, as by M. Hintermueller, K. Ito, K. Kunisch, SIAM J.
+/// Optim. 13 (2003) 865). The same bits for any number of threads.
 class Complementarity {
  public:
   std::vector<Real> x;
@@ -34,26 +36,38 @@ class Complementarity {
 
   void resize(std::size_t count);
 
-  /// From the present x >= 0 and its excess; `multiply(d, product)` sets product = A d. At the end
-  /// no x is below 0.
-  template <class Multiply>
-  SolveReport solve(const SolveLimits& limits, TaskRunner* runner, Multiply&& multiply) {
+  /// From the present x >= 0 and its excess. `act(d)` and then `find_product(product)` set product
+  /// = A d. At the end no x is below 0, and where there were iterations the last to act was the x
+  /// found less the x at the start.
+  template <class Act, class FindProduct>
+  SolveReport solve(const SolveLimits& limits, TaskRunner* runner, Act&& act,
+                    FindProduct&& find_product) {
     SolveReport report;
     bool is_new = true;
+    keep_start(runner);
     find_gradient(runner, report);
-    for (;;) {
+    const auto is_open = [&] {
       // A NaN ends it, and is the guard's to see.
-      const bool is_open = !std::isnan(report.mean) &&
-                           (report.mean > limits.mean || report.greatest > limits.greatest);
-      const bool is_last = report.iterations + 1 >= limits.most_iterations;
-      const bool is_clamped = !is_open || is_last;
-      if (is_clamped && !find_way_to_bounds(runner)) return report;
-      const Real slope = is_clamped ? 0 : choose_direction(is_new, runner);
-      multiply(direction_, product_);
+      return !std::isnan(report.mean) &&
+             (report.mean > limits.mean || report.greatest > limits.greatest);
+    };
+    // The last one is to close the solve.
+    while (is_open() && report.iterations + 2 <= limits.most_iterations) {
+      const Real slope = choose_direction(is_new, runner);
+      act(direction_);
+      find_product(product_);
       ++report.iterations;
-      take_step(is_clamped ? 1 : length_of_step(runner, slope), runner, report);
-      is_new = is_clamped;
+      take_step(length_of_step(runner, slope), runner, report);
+      is_new = !is_open() || report.iterations + 2 > limits.most_iterations;
+      if (!is_new) continue;
+      clamp(runner);
+      act(direction_);
+      if (!limits.is_checked) break;
+      find_product(product_);
+      ++report.iterations;
+      find_excess(runner, report);
     }
+    return report;
   }
 
  private:
@@ -65,9 +79,12 @@ class Complementarity {
     Real mixed = 0;   ///< the same with that before
   };
 
+  void keep_start(TaskRunner* runner);
   void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
-  /// Makes the direction that from each x below 0 to 0; false where there is none.
-  bool find_way_to_bounds(TaskRunner* runner);
+  /// Sets x below 0 to 0, and the direction to the way from the start to x.
+  void clamp(TaskRunner* runner);
+  /// Of x, by the product of the way from the start; and gradient and residuals there.
+  void find_excess(TaskRunner* runner, SolveReport& report);
   /// d = g + beta d, or g where that does not lead down; the slope d.e.
   Real choose_direction(bool is_new, TaskRunner* runner);
   Real follow(Real share, TaskRunner* runner);
@@ -78,6 +95,8 @@ class Complementarity {
   template <class F>
   Real sum(TaskRunner* runner, F&& f);
 
+  std::vector<Real> start_;         ///< x at the start
+  std::vector<Real> start_excess_;  ///< its excess
   std::vector<Real> gradient_;
   std::vector<Real> direction_;
   std::vector<Real> product_;

@@ -13,12 +13,13 @@
 namespace vat {
 namespace {
 
-constexpr Real kGreatestOverMean = 20;  // of residuals
-constexpr Real kClosing = 0.5;          // of what is missing at rest density, in a step
-constexpr int kMostCorrections = 12;    // rounds of Newton's method
-constexpr Real kLinearShare = 0.25;     // of the density tolerance, for the solve of one round
-constexpr Real kMostExpansion = 0.05;   // in one round: further, linear theory leads astray
-constexpr Real kAlone = 1;              // the diagonal of a particle with nothing around it
+constexpr Real kGreatestOverMean = 36;     // of densities
+constexpr Real kGreatestDivergence = 200;  // of changes of density, which places correct
+constexpr Real kClosing = 0.5;             // of what is missing at rest density, in a step
+constexpr int kMostCorrections = 12;       // rounds of Newton's method
+constexpr Real kLinearShare = 0.25;        // of the density tolerance, for the solve of one round
+constexpr Real kMostExpansion = 0.05;      // in one round: further, linear theory leads astray
+constexpr Real kAlone = 1;                 // the diagonal of a particle with nothing around it
 
 /// Of the vat's walls over the step.
 Vec3 wall_velocity(const Model& model, Real time, Real dt) {
@@ -53,8 +54,8 @@ class VolumeSolve {
     });
   }
   void set_up();
-  SolveReport solve(PressureResponse& response, Real mean);
-  void apply_impulses(PressureResponse& response);
+  /// The response's motion is then that by the change of x.
+  SolveReport solve(PressureResponse& response, const SolveLimits& limits);
 
   const ForceModel& f_;
   Configuration& now_;
@@ -67,7 +68,6 @@ class VolumeSolve {
 void VolumeSolve::set_up() {
   problem_.resize(order_.size());
   s_.relative_density.resize(order_.size());
-  s_.start.resize(order_.size());
   PressureResponse(f_, now_, s_.response, true).find_diagonal(problem_.diagonal);
   each_slot([&](std::size_t s) {
     const Index i = order_[s];
@@ -79,31 +79,28 @@ void VolumeSolve::set_up() {
 }
 
 SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
+  const IncompressibleSolve& wanted = f_.model.scene.incompressible;
   PressureResponse response(f_, now_, s_.response, true);
   response.see_velocities(wall_velocity);
   response.compress(problem_.excess);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
-    const Real room = kClosing * std::max(Real{0}, 1 - density);
+    const Real room =
+        density < 1 ? kClosing * (1 - density) : -std::min(density - 1, wanted.density_tolerance);
     problem_.excess[s] = problem_.scale[s] * (dt_ * problem_.excess[s] - room);
     const bool is_alone = problem_.diagonal[s] == kAlone;
     problem_.x[s] = is_alone ? 0 : now_.pressure[order_[s]] / (density * density);
     if (is_alone) problem_.excess[s] = std::min(problem_.excess[s], Real{0});
-    s_.start[s] = problem_.x[s];
   });
-  const SolveReport report = solve(response, f_.model.scene.incompressible.divergence_tolerance);
-  if (report.iterations > 0) apply_impulses(response);
-  return report;
-}
-
-void VolumeSolve::apply_impulses(PressureResponse& response) {
+  const Real tolerance = wanted.divergence_tolerance;
+  const SolveReport report =
+      solve(response, {tolerance, kGreatestDivergence * tolerance, wanted.most_iterations});
+  if (report.iterations == 0) return report;
   each_slot([&](std::size_t s) {
-    const Real density = s_.relative_density[s];
-    now_.pressure[order_[s]] = problem_.x[s] * density * density;
-    problem_.x[s] -= s_.start[s];
+    now_.pressure[order_[s]] = problem_.x[s] * s_.relative_density[s] * s_.relative_density[s];
   });
-  response.accelerate(problem_.x);
   response.kick(dt_);
+  return report;
 }
 
 int VolumeSolve::shift_places() {
@@ -112,21 +109,19 @@ int VolumeSolve::shift_places() {
     problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMostExpansion);
     problem_.x[s] = 0;
   });
-  const Real tolerance = kLinearShare * f_.model.scene.incompressible.density_tolerance;
-  const SolveReport report = solve(response, tolerance);
-  if (report.iterations == 0) return 0;
-  response.accelerate(problem_.x);
-  response.shift(dt_ * dt_);
+  const IncompressibleSolve& wanted = f_.model.scene.incompressible;
+  const Real tolerance = kLinearShare * wanted.density_tolerance;
+  // The densities that this leads to are measured, so the end of the solve need not be.
+  const SolveReport report =
+      solve(response, {tolerance, kGreatestOverMean * tolerance, wanted.most_iterations, false});
+  if (report.iterations > 0) response.shift(dt_ * dt_);
   return report.iterations;
 }
 
-SolveReport VolumeSolve::solve(PressureResponse& response, Real mean) {
-  const SolveLimits limits{mean, kGreatestOverMean * mean,
-                           f_.model.scene.incompressible.most_iterations};
-  return problem_.solve(limits, f_.runner, [&](std::span<const Real> d, std::span<Real> product) {
-    response.accelerate(d);
-    response.compress(product, problem_.scale, -dt_ * dt_);
-  });
+SolveReport VolumeSolve::solve(PressureResponse& response, const SolveLimits& limits) {
+  return problem_.solve(
+      limits, f_.runner, [&](std::span<const Real> d) { response.accelerate(d); },
+      [&](std::span<Real> product) { response.compress(product, problem_.scale, -dt_ * dt_); });
 }
 
 /// Cells, pairs and densities of places that have changed.

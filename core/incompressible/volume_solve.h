@@ -11,7 +11,6 @@ struct VolumeScratch {
   ResponseScratch response;
   Complementarity problem;
   std::vector<Real> relative_density;  ///< by slot
-  std::vector<Real> start;             ///< by slot: the pressure that the velocities have seen
 };
 
 /// The pressure that the last step ended with.
@@ -25,9 +24,10 @@ void recall_pressure(StepContext& context);
 /// an incompressible liquid.
 ///
 /// With s = rho / rho_0 and the rate D of PressureResponse, impulses dt F(p), p >= 0, change the
-/// velocities of liquid and solids until dt D_i(v) <= max(0, 1 - s_i) / 2: what is dense enough is
-/// not compressed, what is not closes half of its gap. Those of the last step are part of the
-/// forces already; only the difference is solved for.
+/// velocities of liquid and solids until dt D_i(v) <= r_i. Where s_i < 1, r_i = (1 - s_i) / 2: half
+/// of a gap is closed. Elsewhere r_i = -min(s_i - 1, the density tolerance): what steps leave too
+/// dense is undone before the places need it, with a speed that the tolerance bounds. Impulses of
+/// the last step are part of the forces already; only the difference is solved for.
 SolveReport project_velocities(const ForceModel& force_model, Configuration& now, Real time,
                                Real dt, VolumeScratch& scratch);
 

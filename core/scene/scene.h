@@ -46,7 +46,8 @@ enum class SurfaceModel : std::uint8_t {
 };
 
 /// How well the solves of an incompressible liquid keep its volume: relative changes of density,
-/// means over its particles; 20 times as much is allowed to one particle.
+/// means over its particles; one particle may be 36 times as much too dense, and its density change
+/// 200 times as much.
 struct IncompressibleSolve {
   Real density_tolerance = 5e-4;     ///< too dense at the end of a step
   Real divergence_tolerance = 1e-5;  ///< by the velocities within a step

@@ -19,8 +19,8 @@ namespace {
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kTravelShare = 0.5;         // of the guard's: two bodies may approach each other
 constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, by each of two particles
-constexpr Real kIncompressibleTravelShare = 0.15;  // densities change by a percent in a step
-constexpr Real kGreatestTurn = 0.5;                // [rad] a step; the guard's is 1
+constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by a percent in a step
+constexpr Real kGreatestTurn = 0.5;               // [rad] a step; the guard's is 1
 
 /// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they lie in `at`.
 template <class Constant>
@@ -169,21 +169,29 @@ Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
   return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
 }
 
-/// Of a body's own forces: sound and viscosity, or the greatest pressure, where viscosity is solved
-/// for.
-Oscillation liquid_bound(const Present& present, std::size_t body) {
+/// What one in kRare of a liquid's particles exceed: greater ones are impacts, gone before they can
+/// shake the lattice.
+Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& particles,
+                      std::vector<Real>& scratch) {
+  constexpr Index kRare = 100;
+  if (particles.size() == 0) return 0;
+  scratch.assign(pressure.begin() + particles.begin, pressure.begin() + particles.end);
+  const auto place = scratch.begin() + (particles.size() - 1 - (particles.size() - 1) / kRare);
+  std::ranges::nth_element(scratch, place);
+  return *place;
+}
+
+/// Of a body's own forces: sound and viscosity, or the pressure, where viscosity is solved for.
+Oscillation liquid_bound(const Present& present, std::size_t body, std::vector<Real>& scratch) {
   const Model& model = present.model;
   if (!model.is_incompressible) return compressed(model, model.damping.own[body]);
   const ModelBody& liquid = model.bodies[body];
-  Real pressure = 0;
-  for (Index i = liquid.particles.begin; i < liquid.particles.end; ++i) {
-    pressure = std::max(pressure, present.state.now.pressure[i]);
-  }
+  const Real pressure = lasting_pressure(present.state.now.pressure, liquid.particles, scratch);
   const LiquidModel& constants = *model.liquids[liquid.material];
   return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius), 0};
 }
 
-Real liquid_step(const Present& present) {
+Real liquid_step(const Present& present, std::vector<Real>& scratch) {
   const Vec3 mean = mean_liquid_velocity(present.model, present.state.now);
   Real step = kInfinity;
   for (std::size_t b = 0; b < present.model.bodies.size(); ++b) {
@@ -197,8 +205,9 @@ Real liquid_step(const Present& present) {
     }
     const Real way =
         travel_share(present.model) * present.model.liquids[body.material]->support_radius;
-    step = std::min({step, safe_step(present.model.scene.numerics, liquid_bound(present, b)),
-                     travel_time(way, std::sqrt(speed2), acceleration)});
+    step =
+        std::min({step, safe_step(present.model.scene.numerics, liquid_bound(present, b, scratch)),
+                  travel_time(way, std::sqrt(speed2), acceleration)});
   }
   return step;
 }
@@ -273,7 +282,7 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   steps.rigid.resize(model.rigid_bodies.size());
   limit_free_travel(present, f.runner, steps.particle);
   limit_rigid_travel(present, steps.rigid);
-  steps.liquid = liquid_step(present);
+  steps.liquid = liquid_step(present, steps.pressures);
   limit_grabs(f, steps);
   const Real approach = greatest_approach(present, longest);
   if (model.contact_reach > 0 && !f.work.contacts.is_current(context, approach)) {

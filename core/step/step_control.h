@@ -19,6 +19,7 @@ struct PresentSteps {
   std::vector<Real> rigid;     ///< by rigid body
   Real liquid = 0;             ///< by the liquids' own forces
   ContactScratch contacts;
+  std::vector<Real> pressures;  ///< scratch
 
   Real least() const;
 };
@@ -30,9 +31,10 @@ struct PresentSteps {
 /// - contacts that act, or may before the step's end, are resolved to the tolerance;
 /// - travel, at the present speed and force: half the way at which the guard interferes; in a
 /// liquid
-///   a quarter of its support radius, of an incompressible one 0.15, measured in the liquids' mean
-///   motion;
-/// - the greatest pressure of an incompressible liquid: see pressed_lattice_omega2();
+///   a quarter of its support radius, of an incompressible one a fifth, measured in the liquids'
+///   mean motion;
+/// - the pressure of an incompressible liquid, but for its greatest hundredth: see
+///   pressed_lattice_omega2();
 /// - rigid bodies turn by at most half a radian;
 /// - users' grabs are stable, and the central field is resolved to the tolerance.
 ///

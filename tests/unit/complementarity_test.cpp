@@ -51,10 +51,12 @@ class Problem {
   }
   SolveReport solve(Complementarity& problem, const SolveLimits& limits,
                     TaskRunner* runner = nullptr) const {
-    return problem.solve(limits, runner, [&](const std::vector<Real>& d, std::vector<Real>& out) {
-      multiply(d, out);
-    });
+    return problem.solve(
+        limits, runner, [&](const std::vector<Real>& d) { last_ = d; },
+        [&](std::vector<Real>& product) { multiply(last_, product); });
   }
+  /// The last that acted.
+  const std::vector<Real>& last() const { return last_; }
   /// From the start, not as the solver keeps it.
   std::vector<Real> excess_at(const std::vector<Real>& x) const {
     std::vector<Real> excess = excess_;
@@ -68,6 +70,7 @@ class Problem {
   std::size_t count_;
   std::vector<Real> matrix_;
   std::vector<Real> excess_;
+  mutable std::vector<Real> last_;
 };
 
 constexpr SolveLimits kClose{1e-10, 1e-9, 10000};
@@ -91,6 +94,24 @@ TEST(Complementarity, IsSolvedFromAnyStart) {
       }
       EXPECT_GT(above, 5U);
       EXPECT_LT(above, 55U);
+    }
+  }
+}
+
+// Also where the end is not checked, and some x were below 0 before it.
+TEST(Complementarity, EndsWithTheWayFromTheStart) {
+  for (const bool is_checked : {true, false}) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      const Problem given(60, seed);
+      Complementarity problem = given.start();
+      std::ranges::fill(problem.x, 0.5);
+      problem.excess = given.excess_at(problem.x);
+      ASSERT_GT(given.solve(problem, {1e-3, 1e-2, 1000, is_checked}).iterations, 0);
+      ASSERT_GE(std::ranges::min(problem.x), 0);
+      for (std::size_t i = 0; i < problem.x.size(); ++i) {
+        EXPECT_NEAR(given.last()[i], problem.x[i] - 0.5, 1e-15);
+      }
+      EXPECT_NE(std::ranges::count(problem.x, 0), 0);
     }
   }
 }
