@@ -35,13 +35,14 @@ void Complementarity::keep_start(TaskRunner* runner) {
   });
 }
 
-void Complementarity::clamp(TaskRunner* runner) {
-  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      x[i] = std::max(Real{0}, x[i]);
-      direction_[i] = x[i] - start_[i];
-    }
+Real Complementarity::clamp(TaskRunner* runner) {
+  const Real undone = sum(runner, [&](std::size_t i) {
+    const Real change = x[i] < 0 ? -x[i] : 0;
+    x[i] += change;
+    direction_[i] = x[i] - start_[i];
+    return change * diagonal[i] / scale[i];
   });
+  return undone / static_cast<Real>(x.size());
 }
 
 void Complementarity::find_excess(TaskRunner* runner, SolveReport& report) {

@@ -15,8 +15,7 @@ struct SolveLimits {
   Real mean = 0;
   Real greatest = 0;
   int most_iterations = 0;
-  /// Whether the excess is found anew, and solved on where it is too much, once x below 0 are 0.
-  bool is_checked = true;
+  Real row = 0;  ///< of A: the sum of magnitudes over the diagonal, at most
 };
 
 /// Find x >= 0 whose excess e(x) = e(0) - A x is nowhere above 0, and 0 where x > 0, with A
@@ -24,9 +23,9 @@ struct SolveLimits {
 ///
 /// By conjugate gradients with the diagonal as preconditioner (E. Polak, G. Ribiere, Rev. Franc.
 /// Inform. Rech. Oper. 16 (1969) 35) for the x that are above 0 or whose excess is; once these are
-/// solved, x below 0 become 0, and where the excess is then too much the search begins anew (an
-/// active set that is corrected as a whole, as by M. Hintermueller, K. Ito, K. Kunisch, SIAM J.
-/// Optim. 13 (2003) 865). The same bits for any number of threads.
+/// solved, x below 0 become 0, and where the mean excess may then be too much it is found anew, and
+/// the search begins anew (an active set that is corrected as a whole, as by M. Hintermueller, K.
+/// Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865). The same bits for any number of threads.
 class Complementarity {
  public:
   std::vector<Real> x;
@@ -60,9 +59,12 @@ class Complementarity {
       take_step(length_of_step(runner, slope), runner, report);
       is_new = !is_open() || report.iterations + 2 > limits.most_iterations;
       if (!is_new) continue;
-      clamp(runner);
+      const Real change = limits.row * clamp(runner);
       act(direction_);
-      if (!limits.is_checked) break;
+      if (report.mean + change <= limits.mean) {
+        report.mean += change;
+        break;
+      }
       find_product(product_);
       ++report.iterations;
       find_excess(runner, report);
@@ -81,8 +83,9 @@ class Complementarity {
 
   void keep_start(TaskRunner* runner);
   void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
-  /// Sets x below 0 to 0, and the direction to the way from the start to x.
-  void clamp(TaskRunner* runner);
+  /// Sets x below 0 to 0, and the direction to the way from the start to x. The mean of their
+  /// changes times the diagonal over the scale.
+  Real clamp(TaskRunner* runner);
   /// Of x, by the product of the way from the start; and gradient and residuals there.
   void find_excess(TaskRunner* runner, SolveReport& report);
   /// d = g + beta d, or g where that does not lead down; the slope d.e.

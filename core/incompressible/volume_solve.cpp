@@ -17,6 +17,7 @@ constexpr Real kGreatestOverMean = 36;     // of densities
 constexpr Real kGreatestDivergence = 200;  // of changes of density, which places correct
 constexpr Real kClosing = 0.5;             // of what is missing at rest density, in a step
 constexpr int kMostCorrections = 12;       // rounds of Newton's method
+constexpr Real kRow = 16;                  // of a lattice in space with a support of 3 spacings
 constexpr Real kLinearShare = 0.25;        // of the density tolerance, for the solve of one round
 constexpr Real kMostExpansion = 0.05;      // in one round: further, linear theory leads astray
 constexpr Real kAlone = 1;                 // the diagonal of a particle with nothing around it
@@ -55,7 +56,7 @@ class VolumeSolve {
   }
   void set_up();
   /// The response's motion is then that by the change of x.
-  SolveReport solve(PressureResponse& response, const SolveLimits& limits);
+  SolveReport solve(PressureResponse& response, Real mean, Real greatest);
 
   const ForceModel& f_;
   Configuration& now_;
@@ -93,8 +94,7 @@ SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
     if (is_alone) problem_.excess[s] = std::min(problem_.excess[s], Real{0});
   });
   const Real tolerance = wanted.divergence_tolerance;
-  const SolveReport report =
-      solve(response, {tolerance, kGreatestDivergence * tolerance, wanted.most_iterations});
+  const SolveReport report = solve(response, tolerance, kGreatestDivergence * tolerance);
   if (report.iterations == 0) return report;
   each_slot([&](std::size_t s) {
     now_.pressure[order_[s]] = problem_.x[s] * s_.relative_density[s] * s_.relative_density[s];
@@ -111,14 +111,13 @@ int VolumeSolve::shift_places() {
   });
   const IncompressibleSolve& wanted = f_.model.scene.incompressible;
   const Real tolerance = kLinearShare * wanted.density_tolerance;
-  // The densities that this leads to are measured, so the end of the solve need not be.
-  const SolveReport report =
-      solve(response, {tolerance, kGreatestOverMean * tolerance, wanted.most_iterations, false});
+  const SolveReport report = solve(response, tolerance, kGreatestOverMean * tolerance);
   if (report.iterations > 0) response.shift(dt_ * dt_);
   return report.iterations;
 }
 
-SolveReport VolumeSolve::solve(PressureResponse& response, const SolveLimits& limits) {
+SolveReport VolumeSolve::solve(PressureResponse& response, Real mean, Real greatest) {
+  const SolveLimits limits{mean, greatest, f_.model.scene.incompressible.most_iterations, kRow};
   return problem_.solve(
       limits, f_.runner, [&](std::span<const Real> d) { response.accelerate(d); },
       [&](std::span<Real> product) { response.compress(product, problem_.scale, -dt_ * dt_); });

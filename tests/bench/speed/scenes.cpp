@@ -107,7 +107,8 @@ Scene peer_dam_break(int edge, PressureSolver solver) {
   Scene scene;
   scene.pressure_solver = solver;
   scene.materials = {water(liquid)};
-  scene.incompressible.divergence_tolerance = 1e-4;  // the peer has 1e-3
+  // Of changes as the peer has it; of densities what leaves less of an error than it has.
+  scene.incompressible = {.density_tolerance = 1.5e-3, .divergence_tolerance = 1e-3};
   scene.vat = closed_vat({-2, -0.75, 0}, {2, 0.75, 3});
   scene.bodies = {box_of("block", BodyKind::liquid, "water", spacing, {-1.5, 0, 0.5}, {1, 1, 1})};
   choose_steps(scene);
