@@ -187,6 +187,7 @@ bool Simulation::Impl::take_varied_step(ForceModel& force_model, AdvanceReport& 
 }
 
 void Simulation::Impl::melt_on_time(AdvanceReport& report) {
+  wake_all();
   std::vector<MeltedBody> melting;
   for (std::size_t b = 0; b < model->bodies.size(); ++b) {
     if (model->bodies[b].melts_at > state.step_count) continue;
@@ -225,7 +226,9 @@ bool Simulation::Impl::take_nominal_step(AdvanceReport& report) {
 bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& report) {
   for (std::uint32_t s = 0; s < steps; ++s) {
     change_bodies_on_time(report);
-    if (!take_nominal_step(report)) return false;
+    if (model->scene.sleeping) sleep_and_wake();
+    const bool all_sleep = sleepers && model->bodies.empty();
+    if (!all_sleep && !take_nominal_step(report)) return false;
     ++state.step_count;
     if (model->periodic.any()) {
       enter("wrap");
@@ -280,6 +283,7 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   });
   if (!impl.model->rigid_bodies.empty()) impl.enter("pose_rigid_bodies");
   impl.pose_rigid_particles();
+  impl.show();
   return report;
 }
 

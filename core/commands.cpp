@@ -41,8 +41,9 @@ Status check_in_world(const Scene& scene, const Vec3& value, Real limit, const s
 }  // namespace
 
 Result<BodyId> Simulation::add_body(const BodyDescription& body) {
-  Errors errors = find_body_errors(impl_->model->scene, impl_->present(), body, "/body");
+  Errors errors = find_body_errors(impl_->all().scene, impl_->present(), body, "/body");
   if (!errors.empty()) return errors;
+  impl_->wake_all();
   Scene scene = impl_->model->scene;
   scene.bodies.push_back(body);
   std::vector<BodyId> ids = impl_->ids();
@@ -55,6 +56,7 @@ Result<BodyId> Simulation::add_body(const BodyDescription& body) {
 Status Simulation::remove_body(BodyId id) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
+  impl_->wake_all();
   const auto index = body - impl_->model->bodies.data();
   Scene scene = impl_->model->scene;
   std::vector<BodyId> ids = impl_->ids();
@@ -66,11 +68,12 @@ Status Simulation::remove_body(BodyId id) {
 }
 
 Status Simulation::set_emitter(std::string_view name, bool open) {
-  const auto found = std::ranges::find(impl_->model->scene.emitters, name, &Emitter::name);
-  if (found == impl_->model->scene.emitters.end()) {
+  const auto found = std::ranges::find(impl_->all().scene.emitters, name, &Emitter::name);
+  if (found == impl_->all().scene.emitters.end()) {
     return Error{"unknown_name", "/emitter", "must be the name of one of the scene's emitters"};
   }
-  const auto index = found - impl_->model->scene.emitters.begin();
+  const auto index = found - impl_->all().scene.emitters.begin();
+  impl_->wake_all();
   auto model = std::make_shared<Model>(*impl_->model);
   model->scene.emitters[static_cast<std::size_t>(index)].open = open;
   impl_->model = std::move(model);
@@ -80,9 +83,10 @@ Status Simulation::set_emitter(std::string_view name, bool open) {
 Status Simulation::melt_body(BodyId id, const std::string& material) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
-  const auto index = static_cast<std::size_t>(body - impl_->model->bodies.data());
-  Errors errors = find_melting_errors(impl_->model->scene, impl_->present(), index, material);
+  const auto index = static_cast<std::size_t>(body - impl_->all().bodies.data());
+  Errors errors = find_melting_errors(impl_->all().scene, impl_->present(), index, material);
   if (!errors.empty()) return errors;
+  impl_->wake_all();
   impl_->melt({{index, material}});
   return {};
 }
@@ -90,6 +94,7 @@ Status Simulation::melt_body(BodyId id, const std::string& material) {
 Status Simulation::set_gravity(const Vec3& gravity) {
   Status status = check_in_world(impl_->model->scene, gravity, kMaxGravity, "/gravity");
   if (!status) return status;
+  impl_->wake_all();
   auto model = std::make_shared<Model>(*impl_->model);
   model->scene.gravity = gravity;
   impl_->model = std::move(model);
@@ -99,8 +104,9 @@ Status Simulation::set_gravity(const Vec3& gravity) {
 
 Status Simulation::set_interface(const InterfaceDescription& interface) {
   Errors errors =
-      find_interface_errors(impl_->model->scene, impl_->present(), interface, "/interface");
+      find_interface_errors(impl_->all().scene, impl_->present(), interface, "/interface");
   if (!errors.empty()) return errors;
+  impl_->wake_all();
   Scene scene = impl_->model->scene;
   const auto same_pair = [&](const InterfaceDescription& other) {
     return std::ranges::is_permutation(other.materials, interface.materials);
@@ -130,6 +136,7 @@ Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
     return Error{"limit_reached", "",
                  "at most " + std::to_string(kMaxAppliedForces) + " applied forces at once"};
   }
+  impl_->wake_all();
   // Rounding must not add a step to a duration of whole steps.
   const Real steps = std::max(Real{1}, std::ceil(duration / impl_->step_size() - 1e-6));
   const Vec3 acceleration = force * (duration / (steps * impl_->step_size() * body->mass));
@@ -203,6 +210,7 @@ Status Simulation::grab_start(std::uint64_t id, BodyId body_id, Index particle,
   if (known == grabs.end() && grabs.size() >= kMaxGrabs) {
     return Error{"limit_reached", "", "at most " + std::to_string(kMaxGrabs) + " grabs at once"};
   }
+  impl_->wake_all();
   Grab grab;
   grab.id = id;
   grab.body_id = body_id;

@@ -51,6 +51,7 @@ struct Diagnostics {
   std::optional<VolumeReport> volume;  ///< of incompressible liquids
   std::size_t torn_springs;            ///< of static ones, which have no force any more
   std::size_t particles_outside;       ///< beyond a wall of the vat
+  std::size_t sleeping_bodies;         ///< see Scene::sleeping
   std::uint64_t emitted_particles;  ///< since time 0: what there was at the start, and this, less
   std::uint64_t drained_particles;  ///< this, is what there is, but for commands
 };

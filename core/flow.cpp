@@ -171,6 +171,11 @@ void Simulation::Impl::flow() {
   flow.set_free();
   flow.emit(time(), step == 0 ? 0 : static_cast<Real>(step - 1) * step_size());
   if (flow.is_empty()) return;
+  if (sleepers) {  // places below are those in a model of all bodies
+    wake_all();
+    this->flow();
+    return;
+  }
 
   Samples samples(model->bodies.size());
   std::vector<std::optional<std::vector<Index>>> kept(model->bodies.size());

@@ -6,47 +6,10 @@
 #include "core/model/compile.h"
 #include "core/scene/melting.h"
 #include "core/simulation_impl.h"
+#include "core/state/body_state.h"
 
 namespace vat {
 namespace {
-
-/// One of a scene's models, with one of its bodies.
-struct Placed {
-  const Model& model;
-  const ModelBody& body;
-};
-
-/// Copies the state of a body from one model's columns to another's; what its sample has beyond
-/// `kept`, where that is given, is where it starts already.
-void carry_over(const Placed& from, const Configuration& source, const Placed& to,
-                const std::optional<std::vector<Index>>& kept, Configuration& target) {
-  const Index first = from.body.particles.begin;
-  const Index new_first = to.body.particles.begin;
-  if (kept) {
-    for (std::size_t k = 0; k < kept->size(); ++k) {
-      target.position[new_first + k] = source.position[first + (*kept)[k]];
-      target.velocity[new_first + k] = source.velocity[first + (*kept)[k]];
-      if (source.pressure.empty()) continue;
-      target.pressure[new_first + k] = source.pressure[first + (*kept)[k]];
-    }
-    return;
-  }
-  const auto count = static_cast<std::ptrdiff_t>(from.body.particles.size());
-  std::copy_n(source.position.begin() + first, count, target.position.begin() + new_first);
-  std::copy_n(source.velocity.begin() + first, count, target.velocity.begin() + new_first);
-  if (from.body.kind == BodyKind::liquid && !source.pressure.empty()) {
-    std::copy_n(source.pressure.begin() + first, count, target.pressure.begin() + new_first);
-  }
-  if (from.body.kind == BodyKind::rigid) {
-    target.rigid[to.body.rigid] = source.rigid[from.body.rigid];
-  } else if (to.body.kind == BodyKind::deformable && !source.springs.empty() &&
-             !target.springs.empty()) {
-    const Index end = from.model.spring_begin[first];
-    const auto ends = from.model.spring_begin[from.body.particles.end] - end;
-    std::copy_n(source.springs.begin() + end, ends,
-                target.springs.begin() + to.model.spring_begin[new_first]);
-  }
-}
 
 /// Lets go what of the held particles is gone; false where the one in the hand is.
 bool keep_held(const std::vector<Index>& kept, Grab& grab) {
@@ -67,8 +30,8 @@ bool keep_held(const std::vector<Index>& kept, Grab& grab) {
   return true;
 }
 
-/// Those of `controls` whose bodies stay, bound to the places of their bodies in `model`. A body
-/// that has melted is let go.
+}  // namespace
+
 Controls rebind(Controls controls, const Model& before, const Model& model) {
   const auto bind = [&](auto& control) {
     const auto found = std::ranges::find(model.bodies, control.body_id, &ModelBody::id);
@@ -81,8 +44,6 @@ Controls rebind(Controls controls, const Model& before, const Model& model) {
   std::erase_if(controls.applied_forces, [&](AppliedForce& applied) { return !bind(applied); });
   return controls;
 }
-
-}  // namespace
 
 void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
                                  const std::vector<std::optional<std::vector<Index>>>& kept) {
@@ -111,7 +72,7 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Sa
   GuardBounds new_bounds = guard_bounds(*new_model);
   StepBounds new_step_bounds = find_step_bounds(*new_model);
   forget_samples(*new_model);
-  adopt({std::move(new_model), std::move(new_state), std::move(new_controls)},
+  adopt({std::move(new_model), std::move(new_state), std::move(new_controls), nullptr},
         std::move(new_bounds), std::move(new_step_bounds));
 }
 
@@ -121,20 +82,21 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
 
 std::vector<BodyId> Simulation::Impl::ids() const {
   std::vector<BodyId> ids;
-  for (const ModelBody& body : model->bodies) ids.push_back(body.id);
+  for (const ModelBody& body : all().bodies) ids.push_back(body.id);
   return ids;
 }
 
 Present Simulation::Impl::present() const {
   Present present;
-  for (const ModelBody& body : model->bodies) {
+  const Model& whole = all();
+  for (const ModelBody& body : whole.bodies) {
     const auto part = [&](const auto& column) {
       return std::span(column).subspan(body.particles.begin, body.particles.size());
     };
     const std::size_t springs = body.sample ? body.sample->springs.size() : 0;
-    present.bodies.push_back({part(state.now.position), part(model->radius), springs});
+    present.bodies.push_back({part(all_now().position), part(whole.radius), springs});
   }
-  if (model->scene.vat) present.vat_offset = vat_motion(*model->scene.vat, time()).offset;
+  if (whole.scene.vat) present.vat_offset = vat_motion(*whole.scene.vat, time()).offset;
   return present;
 }
 

@@ -30,8 +30,9 @@ const char* to_string(GuardEvent::Cause cause) {
 }
 
 const ModelBody* Simulation::Impl::find(BodyId id) const {
-  const auto found = std::ranges::find(model->bodies, id, &ModelBody::id);
-  return found == model->bodies.end() ? nullptr : &*found;
+  const std::vector<ModelBody>& bodies = all().bodies;
+  const auto found = std::ranges::find(bodies, id, &ModelBody::id);
+  return found == bodies.end() ? nullptr : &*found;
 }
 
 void Simulation::Impl::pose_rigid_particles() {
@@ -97,26 +98,32 @@ std::uint32_t Simulation::steps_per_tick() const {
   return impl_->steps_per_tick();
 }
 std::size_t Simulation::particle_count() const {
-  return impl_->model->particle_count;
+  return impl_->all().particle_count;
 }
 std::size_t Simulation::greatest_particle_count() const {
   std::size_t count = 0;
-  for (std::size_t b = 0; b < impl_->model->bodies.size(); ++b) {
-    const std::size_t present = impl_->model->bodies[b].particles.size();
-    count += std::max(present, most_particles(impl_->model->scene, impl_->model->scene.bodies[b]));
+  for (std::size_t b = 0; b < impl_->all().bodies.size(); ++b) {
+    const std::size_t present = impl_->all().bodies[b].particles.size();
+    count += std::max(present, most_particles(impl_->all().scene, impl_->all().scene.bodies[b]));
   }
   return count;
 }
 std::size_t Simulation::spring_count() const {
-  return impl_->model->spring_ends.size() / 2;
+  return impl_->all().spring_ends.size() / 2;
+}
+std::size_t Simulation::sleeping_body_count() const {
+  if (!impl_->sleepers) return 0;
+  const std::vector<Index>& islands = impl_->sleepers->islands;
+  return islands.size() - static_cast<std::size_t>(std::ranges::count(islands, kAwake));
 }
 const Scene& Simulation::scene() const {
-  return impl_->model->scene;
+  return impl_->all().scene;
 }
 
 namespace {
 
-BodyView view_of(const Model& model, const Configuration& at, const ModelBody& body) {
+BodyView view_of(const Model& model, const Configuration& at, const ModelBody& body,
+                 const Sleepers* sleepers) {
   const auto part = [&](const auto& column) {
     return std::span(column).subspan(body.particles.begin, body.particles.size());
   };
@@ -130,6 +137,9 @@ BodyView view_of(const Model& model, const Configuration& at, const ModelBody& b
                 part(model.radius),
                 {},
                 {}};
+  view.is_asleep =
+      sleepers != nullptr &&
+      sleepers->islands[static_cast<std::size_t>(&body - model.bodies.data())] != kAwake;
   if (body.kind == BodyKind::rigid) {
     const RigidModel& rigid = model.rigid_bodies[body.rigid];
     const RigidState& state = at.rigid[body.rigid];
@@ -147,9 +157,9 @@ BodyView view_of(const Model& model, const Configuration& at, const ModelBody& b
 
 std::vector<BodyView> Simulation::bodies() const {
   std::vector<BodyView> views;
-  views.reserve(impl_->model->bodies.size());
-  for (const ModelBody& body : impl_->model->bodies) {
-    views.push_back(view_of(*impl_->model, impl_->state.now, body));
+  views.reserve(impl_->all().bodies.size());
+  for (const ModelBody& body : impl_->all().bodies) {
+    views.push_back(view_of(impl_->all(), impl_->all_now(), body, impl_->sleepers.get()));
   }
   return views;
 }
@@ -157,44 +167,48 @@ std::vector<BodyView> Simulation::bodies() const {
 std::optional<BodyView> Simulation::find_body(BodyId id) const {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return {};
-  return view_of(*impl_->model, impl_->state.now, *body);
+  return view_of(impl_->all(), impl_->all_now(), *body, impl_->sleepers.get());
 }
 
 std::optional<BodyId> Simulation::find_body(std::string_view name) const {
-  const auto found = std::ranges::find(impl_->model->bodies, name, &ModelBody::name);
-  if (found == impl_->model->bodies.end()) return {};
+  const auto found = std::ranges::find(impl_->all().bodies, name, &ModelBody::name);
+  if (found == impl_->all().bodies.end()) return {};
   return found->id;
 }
 
 Vec3 Simulation::vat_offset() const {
-  const std::optional<Vat>& vat = impl_->model->scene.vat;
+  const std::optional<Vat>& vat = impl_->all().scene.vat;
   return vat ? vat_motion(*vat, impl_->time()).offset : Vec3(Vec3::Zero());
 }
 
 namespace {
 
-void add_state(const Model& model, const State& state, StateHash& hash) {
-  hash.add(state.step_count);
-  for (Index i = 0; i < model.free_count; ++i) hash.add(state.now.position[i]);
-  for (Index i = 0; i < model.free_count; ++i) hash.add(state.now.velocity[i]);
-  for (const RigidState& rigid : state.now.rigid) {
+void add_configuration(const Model& model, const Configuration& now, StateHash& hash) {
+  for (Index i = 0; i < model.free_count; ++i) hash.add(now.position[i]);
+  for (Index i = 0; i < model.free_count; ++i) hash.add(now.velocity[i]);
+  for (const RigidState& rigid : now.rigid) {
     hash.add(rigid.center_of_mass);
     hash.add(rigid.orientation);
     hash.add(rigid.momentum);
     hash.add(rigid.angular_momentum);
   }
-  for (const ContactImpulse& contact : state.now.contacts) {
+  for (const ContactImpulse& contact : now.contacts) {
     hash.add(std::uint64_t{contact.particle});
     hash.add(contact.other);
     hash.add(contact.drift);
     hash.add(contact.finish);
     hash.add(std::uint64_t{contact.is_steady});
   }
-  for (const SpringState& spring : state.now.springs) {
+  for (const SpringState& spring : now.springs) {
     hash.add(spring.rest_length);
     hash.add(std::uint64_t{spring.is_torn});
   }
-  for (const Real pressure : state.now.pressure) hash.add(pressure);
+  for (const Real pressure : now.pressure) hash.add(pressure);
+}
+
+/// The rest of the state of what is stepped.
+void add_state(const Model& model, const State& state, StateHash& hash) {
+  for (const std::uint32_t looks : state.slow_looks) hash.add(std::uint64_t{looks});
   const StepControl control = model.scene.numerics.control;
   if (control != StepControl::fixed) {
     hash.add(state.history.step);
@@ -235,9 +249,14 @@ void add_controls(const Controls& controls, StateHash& hash) {
 
 std::uint64_t Simulation::state_hash() const {
   StateHash hash;
+  hash.add(impl_->state.step_count);
+  add_configuration(impl_->all(), impl_->gather(), hash);
+  if (impl_->sleepers) {
+    for (const Index island : impl_->sleepers->islands) hash.add(std::uint64_t{island});
+  }
   add_state(*impl_->model, impl_->state, hash);
-  hash.add(impl_->model->scene.gravity);
-  for (const Emitter& emitter : impl_->model->scene.emitters) {
+  hash.add(impl_->all().scene.gravity);
+  for (const Emitter& emitter : impl_->all().scene.emitters) {
     hash.add(std::uint64_t{emitter.open});
   }
   add_controls(impl_->controls, hash);
@@ -245,12 +264,13 @@ std::uint64_t Simulation::state_hash() const {
 }
 
 Diagnostics Simulation::diagnostics() const {
-  const ForceModel force_model{*impl_->model, impl_->controls, impl_->measured,
+  const ForceModel force_model{impl_->all(),  impl_->controls, impl_->measured,
                                impl_->runner, nullptr,         impl_->state.step_count};
-  Diagnostics result = measure(force_model, impl_->state.now, impl_->time());
+  Diagnostics result = measure(force_model, impl_->all_now(), impl_->time());
   result.emitted_particles = impl_->state.emitted;
   result.drained_particles = impl_->state.drained;
-  if (impl_->model->is_incompressible) result.volume = impl_->state.volume;
+  result.sleeping_bodies = sleeping_body_count();
+  if (impl_->all().is_incompressible) result.volume = impl_->state.volume;
   return result;
 }
 
@@ -269,7 +289,7 @@ Result<LiquidFields> Simulation::liquid_fields(BodyId id) const {
 }
 
 std::string Simulation::plan_text() const {
-  return to_text(impl_->model->plan);
+  return to_text(impl_->all().plan);
 }
 void Simulation::set_observer(StageObserver* observer) {
   impl_->observer = observer;
@@ -280,8 +300,9 @@ Snapshot Simulation::snapshot() const {
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  const Model& model = *snapshot.content_->model;
-  impl_->adopt(*snapshot.content_, guard_bounds(model), find_step_bounds(model));
+  const Snapshot::Content& content = *snapshot.content_;
+  impl_->adopt(content, Impl::bounds_of(content), find_step_bounds(*content.model));
+  impl_->show();
 }
 
 Snapshot::Snapshot(std::shared_ptr<const Content> content) : content_(std::move(content)) {}

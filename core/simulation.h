@@ -39,6 +39,7 @@ struct BodyView {
   std::span<const Real> radii;            ///< [m]
   std::optional<RigidPose> pose;          ///< rigid bodies
   std::span<const Vec3> local_positions;  ///< [m] rigid bodies: about the centre of mass, body axes
+  bool is_asleep = false;                 ///< see Scene::sleeping
 };
 
 /// SPH fields of one liquid body at the present positions, one value a particle.
@@ -137,6 +138,8 @@ class Simulation {
   /// With all that emitters may add.
   std::size_t greatest_particle_count() const;
   std::size_t spring_count() const;
+  /// Those that are not stepped at present; see Scene::sleeping.
+  std::size_t sleeping_body_count() const;
   const Scene& scene() const;  ///< as it is now: commands change it
 
   /// In the order of the scene; added bodies are last.

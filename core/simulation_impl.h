@@ -8,6 +8,7 @@
 #include "core/integrators/integrator.h"
 #include "core/scene/validate.h"
 #include "core/simulation.h"
+#include "core/sleep/sleepers.h"
 #include "core/step/controls.h"
 #include "core/step/guard.h"
 #include "core/step/local_step.h"
@@ -17,10 +18,15 @@ namespace vat {
 
 /// What a snapshot holds: everything but scratch.
 struct Snapshot::Content {
-  std::shared_ptr<const Model> model;
+  std::shared_ptr<const Model> model;  ///< of what is stepped: all bodies, but for sleepers
   State state;
   Controls controls;
+  std::shared_ptr<const Sleepers> sleepers;  ///< null where no body sleeps
 };
+
+/// Those of `controls` whose bodies are in `model`, bound to their places there. A body that has
+/// melted is let go.
+Controls rebind(Controls controls, const Model& before, const Model& model);
 
 /// A body that is to melt.
 struct MeltedBody {
@@ -51,6 +57,11 @@ struct Simulation::Impl : Snapshot::Content {
   MotionProbe probe;
   LocalStepper local;
   mutable Workspace measured;  ///< scratch of read-only questions
+  Configuration shown;         ///< of all bodies after a call, but for contacts, where some sleep
+  std::shared_ptr<const Sleepers> shown_sleepers;  ///< those that it has
+  // Scratch of wake_near().
+  std::vector<Index> near;
+  std::vector<Index> woken;
 
   Real step_size() const { return model->scene.numerics.step; }
   std::uint32_t steps_per_tick() const {
@@ -58,10 +69,15 @@ struct Simulation::Impl : Snapshot::Content {
     return static_cast<std::uint32_t>(std::llround(numerics.tick / numerics.step));
   }
   Real time() const { return static_cast<Real>(state.step_count) * step_size(); }
+  /// Of all bodies, whether they sleep or not; between calls, as they are now.
+  const Model& all() const { return sleepers ? *sleepers->model : *model; }
+  const Configuration& all_now() const { return sleepers ? shown : state.now; }
   const ModelBody* find(BodyId id) const;
   /// For the checks of what users add.
   Present present() const;
 
+  /// How far bodies may move in a step depends on all that may notice them: sleepers too.
+  static GuardBounds bounds_of(const Content& content);
   /// Takes over what belongs together. Does not fail.
   void adopt(Content content, GuardBounds content_bounds, StepBounds content_step_bounds) noexcept;
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
@@ -71,12 +87,26 @@ struct Simulation::Impl : Snapshot::Content {
   void recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
                  const std::vector<std::optional<std::vector<Index>>>& kept);
   void recompile(Scene scene, const std::vector<BodyId>& ids);
-  /// Of the bodies, in their order.
+  /// Of all bodies, in their order.
   std::vector<BodyId> ids() const;
   /// Changes nothing where it fails.
   void melt(const std::vector<MeltedBody>& bodies);
   /// Rigid particles to their poses, for views.
   void pose_rigid_particles();
+
+  /// All bodies are stepped from now on. What may change what holds them at rest begins with it.
+  void wake_all();
+  /// Puts what has rested to sleep, and wakes what something may reach in the next nominal step.
+  void sleep_and_wake();
+  void look_for_rest();
+  void wake_near();
+  /// Configuration of all bodies at any time.
+  Configuration gather() const;
+  /// Brings `shown` up to date, where some sleep.
+  void show();
+  /// Goes on with the bodies that are in no island, from a configuration of all of them.
+  void step_others_than(std::vector<Index> islands, std::shared_ptr<const Model> whole,
+                        Configuration now);
 
   /// Tells the observer that `stage` begins.
   void enter(std::string_view stage) const {

@@ -190,6 +190,9 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   read_part(reader, "settling", scene.settling, errors, [&](const Json& value, std::string path) {
     return scene_parts::to_settling(value, std::move(path), errors);
   });
+  read_part(reader, "sleeping", scene.sleeping, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_sleeping(value, std::move(path), errors);
+  });
   read_part(reader, "incompressible", scene.incompressible, errors,
             [&](const Json& value, std::string path) {
               return scene_parts::to_incompressible(value, std::move(path), errors);

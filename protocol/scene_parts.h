@@ -24,6 +24,7 @@ Vat to_vat(const Json& value, std::string path, Errors& errors);
 Periodicity to_periodicity(const Json& value, std::string path, Errors& errors);
 CentralField to_central_field(const Json& value, std::string path, Errors& errors);
 Settling to_settling(const Json& value, std::string path, Errors& errors);
+Sleeping to_sleeping(const Json& value, std::string path, Errors& errors);
 Emitter to_emitter(const Json& value, std::string path, Errors& errors);
 Drain to_drain(const Json& value, std::string path, Errors& errors);
 IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors);

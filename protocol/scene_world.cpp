@@ -104,6 +104,15 @@ Settling to_settling(const Json& value, std::string path, Errors& errors) {
   return settling;
 }
 
+Sleeping to_sleeping(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  Sleeping sleeping;
+  sleeping.speed = reader.real("speed", kMinSleepSpeed, kMaxSleepSpeed, sleeping.speed);
+  sleeping.after = reader.real("after", kMinStep, kMaxSleepAfter, sleeping.after);
+  reader.refuse_unknown();
+  return sleeping;
+}
+
 IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   IncompressibleSolve solve;

@@ -265,6 +265,9 @@ Json write_scene(const Scene& scene) {
   if (scene.settling) {
     json["settling"] = {{"drag", scene.settling->drag}, {"until", scene.settling->until}};
   }
+  if (scene.sleeping) {
+    json["sleeping"] = {{"speed", scene.sleeping->speed}, {"after", scene.sleeping->after}};
+  }
   return json;
 }
 

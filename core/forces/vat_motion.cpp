@@ -1,5 +1,6 @@
 #include "core/forces/vat_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,11 @@ VatMotion vat_motion(const Vat& vat, Real time) {
   return {axis * (half_stroke * (1 - std::cos(rate * time))),
           axis * (half_stroke * rate * std::sin(rate * time)),
           axis * (half_stroke * rate * rate * std::cos(rate * time))};
+}
+
+bool moves_walls(const Vat& vat) {
+  if (vat.motion && vat.motion->stroke > 0) return true;
+  return std::ranges::any_of(vat.walls, [](const Wall& wall) { return !wall.velocity.isZero(0); });
 }
 
 }  // namespace vat

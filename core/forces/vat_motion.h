@@ -13,6 +13,9 @@ struct VatMotion {
 };
 VatMotion vat_motion(const Vat& vat, Real time);
 
+/// Whether any of its walls ever moves, across itself or along.
+bool moves_walls(const Vat& vat);
+
 /// How far `p` is inside each wall of the vat (negative: beyond it) [m], and the walls' inward
 /// normals. The last wall is the lid.
 inline constexpr int kWallCount = 6;

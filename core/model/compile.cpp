@@ -318,7 +318,8 @@ void forget_samples(Model& model) {
 }
 
 std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
-                               std::vector<std::shared_ptr<const SampledBody>> samples) {
+                               std::vector<std::shared_ptr<const SampledBody>> samples,
+                               const Model* whole) {
   VAT_CHECK(ids.size() == scene.bodies.size() && samples.size() == scene.bodies.size());
   auto model = std::make_shared<Model>();
   model->scene = std::move(scene);
@@ -329,7 +330,8 @@ std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
   }
   add_bodies(*model, ids, std::move(samples));
   lay_out_particles(*model);
-  for (Index m = 0; m < model->scene.materials.size(); ++m) {
+  if (whole != nullptr) model->liquids = whole->liquids;
+  for (auto m = static_cast<Index>(model->liquids.size()); m < model->scene.materials.size(); ++m) {
     model->liquids.emplace_back();
     if (model->scene.materials[m].liquid) model->liquids.back() = make_liquid(*model, m);
   }

@@ -11,9 +11,11 @@ namespace vat {
 std::uint64_t first_step_from(Real time, Real step);
 
 /// Compiles a scene without errors. `ids` and `samples` have one entry per body of the scene; a
-/// null sample is made here.
+/// null sample is made here. Where the bodies are some of those of a model `whole`, given its
+/// materials, their liquids have the constants that they have there.
 std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
-                               std::vector<std::shared_ptr<const SampledBody>> samples);
+                               std::vector<std::shared_ptr<const SampledBody>> samples,
+                               const Model* whole = nullptr);
 
 /// Lets go the samples of liquids that their descriptions can give again; for when the state at
 /// time 0 is known. Of scenes in which liquid flows in or out, where they are needed again soon, it

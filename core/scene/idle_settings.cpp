@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/forces/vat_motion.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/volumes.h"
 
@@ -174,6 +175,9 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
   if (scene.settling && std::ranges::none_of(scene.bodies, is_liquid)) {
     warn("/settling", "no body is liquid", warnings);
+  }
+  if (scene.sleeping && scene.vat && moves_walls(*scene.vat)) {
+    warn("/sleeping", "nothing sleeps in a vat that moves", warnings);
   }
   warn_of_solver(scene, warnings);
   warn_of_tolerance(scene.numerics, warnings);

@@ -299,6 +299,13 @@ struct Settling {
   Real until = 0;  ///< time at which it ends [s]
 };
 
+/// When what has come to rest is no longer stepped; see core/sleep/islands.h. What moves more
+/// slowly than that for so long is stopped.
+struct Sleeping {
+  Real speed = 0.01;  ///< of any particle [m/s]
+  Real after = 0.5;   ///< how long all particles were slower [s]
+};
+
 /// A nozzle from which a liquid body grows: a tube of moving liquid that ends in an opening. In the
 /// tube, which is as long as the liquid's support radius, layers of particles a spacing of the body
 /// apart move with the nozzle's speed, whatever pushes them; at the opening they become free.
@@ -364,6 +371,7 @@ struct Scene {
   std::optional<Periodicity> periodic;
   std::optional<CentralField> central_field;
   std::optional<Settling> settling;
+  std::optional<Sleeping> sleeping;  ///< nothing ever sleeps without
   std::vector<Emitter> emitters;
   std::vector<Drain> drains;
   ForceSwitches forces;

@@ -223,6 +223,7 @@ Errors find_errors(const Scene& scene) {
   if (scene.periodic) check_periodicity(*scene.periodic, check);
   if (scene.central_field) check_central_field(*scene.central_field, check);
   if (scene.settling) check_settling(*scene.settling, check);
+  if (scene.sleeping) check_sleeping(*scene.sleeping, check);
   if (scene.vat) check_vat(scene, check);
   if (scene.dimensions == 2) check_plane(scene, check);
   check_numerics(scene.numerics, check);

@@ -35,6 +35,7 @@ void check_vat(const Scene& scene, RangeCheck& check);
 void check_periodicity(const Periodicity& periodic, RangeCheck& check);
 void check_central_field(const CentralField& field, RangeCheck& check);
 void check_settling(const Settling& settling, RangeCheck& check);
+void check_sleeping(const Sleeping& sleeping, RangeCheck& check);
 /// Of emitters and drains.
 void check_flow(const Scene& scene, Errors& errors);
 void check_numerics(const Numerics& numerics, RangeCheck& check);

@@ -111,6 +111,11 @@ void check_settling(const Settling& settling, RangeCheck& check) {
   check.real(settling.until, 0, kMaxRelease, "/settling/until");
 }
 
+void check_sleeping(const Sleeping& sleeping, RangeCheck& check) {
+  check.real(sleeping.speed, kMinSleepSpeed, kMaxSleepSpeed, "/sleeping/speed");
+  check.real(sleeping.after, kMinStep, kMaxSleepAfter, "/sleeping/after");
+}
+
 void check_numerics(const Numerics& numerics, RangeCheck& check) {
   constexpr Real kWhole = 1e-9;  // rounding of tick / step
   const bool tick = check.real(numerics.tick, kMinStep, kMaxTick, "/numerics/tick");

@@ -63,6 +63,7 @@ State initial_state(const Model& model) {
       state.now.springs.push_back({spring.rest_length, false});
     }
   }
+  if (model.scene.sleeping) state.slow_looks.assign(model.bodies.size(), 0);
   state.forces.particle.assign(model.particle_count, Vec3::Zero());
   state.forces.rigid_force.assign(model.rigid_bodies.size(), Vec3::Zero());
   state.forces.rigid_torque.assign(model.rigid_bodies.size(), Vec3::Zero());

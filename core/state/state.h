@@ -89,6 +89,8 @@ struct State {
   LocalLevels levels;         ///< with which the forces were evaluated; local control only
   std::uint64_t emitted = 0;  ///< particles, since time 0
   std::uint64_t drained = 0;  ///< the same
+  /// By body, for how many looks it has been slow; where the scene has sleeping.
+  std::vector<std::uint32_t> slow_looks{};
 };
 
 /// The state at time 0.

@@ -97,6 +97,10 @@ class BitWriter {
     const auto& [drag, until] = settling;
     put_all(drag, until);
   }
+  void put(const Sleeping& sleeping) {
+    const auto& [speed, after] = sleeping;
+    put_all(speed, after);
+  }
   void put(const IncompressibleSolve& solve) {
     const auto& [density_tolerance, divergence_tolerance, most_iterations] = solve;
     put_all(density_tolerance, divergence_tolerance, most_iterations);
@@ -163,13 +167,13 @@ class BitWriter {
   }
   void put(const Scene& scene) {
     const auto& [name, title, description, gravity, materials, interfaces, default_interface,
-                 bodies, vat, periodic, central_field, settling, emitters, drains, forces,
+                 bodies, vat, periodic, central_field, settling, sleeping, emitters, drains, forces,
                  pressure_solver, incompressible, printed_pressure_force, kernel, pair_precision,
                  surface_model, dimensions, numerics] = scene;
     put_all(name, title, description, gravity, materials, interfaces, default_interface, bodies,
-            vat, periodic, central_field, settling, emitters, drains, forces, pressure_solver,
-            incompressible, printed_pressure_force, kernel, pair_precision, surface_model,
-            dimensions, numerics);
+            vat, periodic, central_field, settling, sleeping, emitters, drains, forces,
+            pressure_solver, incompressible, printed_pressure_force, kernel, pair_precision,
+            surface_model, dimensions, numerics);
   }
 
  private:

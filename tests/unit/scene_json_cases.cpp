@@ -21,6 +21,7 @@ const char* const kFullDocument = R"json({
   "incompressible": {"density_tolerance": 0.00025, "divergence_tolerance": 2e-05,
                      "most_iterations": 40},
   "settling": {"drag": 47.5, "until": 0.1875},
+  "sleeping": {"speed": 0.03125, "after": 0.75},
   "emitters": [
     {"name": "hose", "body": "pool", "position": [1.5, -0.5, 1.5], "direction": [0, 1, -1],
      "size": [0.25, 0.125], "speed": 0.5, "from": 0.5, "until": 2.5, "most_particles": 4000,
@@ -207,6 +208,7 @@ Scene full_scene() {
   scene.central_field = CentralField{{0.5, -0.125, 0.75}, 1.25};
   scene.incompressible = {0.00025, 2e-5, 40};
   scene.settling = Settling{47.5, 0.1875};
+  scene.sleeping = Sleeping{0.03125, 0.75};
   scene.emitters = {{.name = "hose",
                      .body = "pool",
                      .position = {1.5, -0.5, 1.5},

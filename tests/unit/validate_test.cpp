@@ -100,6 +100,22 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/vat/motion/period", "out_of_range", [](Scene& s) { s.vat->motion->period = 0; }},
         Mistake{"/vat/motion/period", "out_of_range",
                 [](Scene& s) { s.vat->motion->stroke = 1e5; }},
+        Mistake{"/sleeping/speed", "out_of_range",
+                [](Scene& s) {
+                  s.sleeping = {0, 0.5};
+                }},
+        Mistake{"/sleeping/speed", "out_of_range",
+                [](Scene& s) {
+                  s.sleeping = {1.5, 0.5};
+                }},
+        Mistake{"/sleeping/after", "out_of_range",
+                [](Scene& s) {
+                  s.sleeping = {0.01, 0};
+                }},
+        Mistake{"/sleeping/after", "out_of_range",
+                [](Scene& s) {
+                  s.sleeping = {0.01, kNan};
+                }},
         Mistake{"/numerics/step", "out_of_range", [](Scene& s) { s.numerics.step = 0; }},
         Mistake{"/numerics/tick", "out_of_range", [](Scene& s) { s.numerics.tick = 2; }},
         Mistake{"/numerics/tick", "out_of_range", [](Scene& s) { s.numerics.tick = 0.0205; }},

@@ -186,6 +186,14 @@ TEST(Warnings, OfSettingsWithoutEffect) {
   scene.settling = Settling{1, 1};
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /settling"));
   scene.settling.reset();
+  scene.sleeping = Sleeping{};
+  EXPECT_THAT(warnings_of(scene), testing::IsEmpty());
+  scene.vat = Vat{{-1, -1, -1}, {1, 1, 1}, true, SlideMotion{}, {}};
+  EXPECT_THAT(warnings_of(scene), testing::Not(testing::Contains("no_effect /sleeping")));
+  scene.vat->motion->stroke = 0.1;
+  EXPECT_THAT(warnings_of(scene), testing::Contains("no_effect /sleeping"));
+  scene.vat.reset();
+  scene.sleeping.reset();
   scene.incompressible.most_iterations = 50;
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /incompressible"));
 }
@@ -214,7 +222,8 @@ TEST(Warnings, OfWhatThePressureSolverDoesNotUse) {
   scene.pressure_solver = PressureSolver::tait;
   EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /printed_pressure_force"));
   scene.pressure_solver = PressureSolver::gas;
-  EXPECT_THAT(warnings_of(scene), testing::ElementsAre("no_effect /kernel", "no_effect /pair_precision"));
+  EXPECT_THAT(warnings_of(scene),
+              testing::ElementsAre("no_effect /kernel", "no_effect /pair_precision"));
 }
 
 TEST(Warnings, OfNoSlipForALiquidThatIsNotViscous) {

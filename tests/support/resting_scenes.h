@@ -1,0 +1,67 @@
+#pragma once
+
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "tests/support/scenes.h"
+
+/// Bodies that come to rest on a floor, and sleep there.
+namespace vat::test {
+
+inline constexpr Real kRestRadius = 0.05;  ///< of particles [m]
+inline constexpr Real kCrateRest = 0.15;   ///< height of a crate's centre on the floor [m]
+inline constexpr Real kCrateEdge = 0.3;    ///< [m]
+
+/// A floor on which contacts are projections, so that what rests does so to rounding.
+inline Scene make_resting_scene(Real step = 1.0 / 240) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.numerics.tick = 4 * step;
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {make_material("wood")};
+  scene.default_interface = {.friction = 0.5, .law = InterfaceLaw::projection};
+  scene.vat = Vat{{-20, -20, 0}, {20, 20, 20}, false, {}, {}};
+  scene.sleeping = Sleeping{1e-3, 0.2};
+  return scene;
+}
+
+/// A cube of 27 particles and 2.7 kg about `center`.
+inline BodyDescription make_crate(std::string name, const Vec3& center) {
+  BodyDescription crate = make_body(std::move(name), BodyKind::rigid, "wood",
+                                    make_particles(make_lattice(3, 3, 3, 0.1), 0.1), kRestRadius);
+  crate.position = center;
+  return crate;
+}
+inline BodyDescription make_crate(std::string name, Real x) {
+  return make_crate(std::move(name), {x, 0, kCrateRest});
+}
+
+/// One particle of 0.5 kg.
+inline BodyDescription make_marble(std::string name, const Vec3& center) {
+  BodyDescription marble = make_body(std::move(name), BodyKind::rigid, "wood",
+                                     make_particles({Vec3::Zero()}, 0.5), kRestRadius);
+  marble.position = center;
+  return marble;
+}
+
+inline bool is_asleep(const Simulation& simulation, const std::string& name) {
+  return simulation.find_body(simulation.find_body(name).value())->is_asleep;
+}
+
+/// Goes on, tick by tick, until the body sleeps or `time` is reached.
+inline void advance_to_sleep(Simulation& simulation, const std::string& name, Real time) {
+  while (simulation.time() < time && !is_asleep(simulation, name)) {
+    simulation.advance(simulation.steps_per_tick());
+  }
+}
+
+/// The least distance of two bodies' particles [m].
+inline Real distance_of(const BodyView& a, const BodyView& b) {
+  Real least = 1e9;
+  for (const Vec3& p : a.positions) {
+    for (const Vec3& q : b.positions) least = std::min(least, (p - q).norm());
+  }
+  return least;
+}
+
+}  // namespace vat::test

@@ -1,0 +1,294 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/support/resting_scenes.h"
+
+// What wakes bodies that sleep.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+/// Asleep, but for a marble that falls on the first of them if there is one.
+Simulation make_sleeping(const Scene& scene, const std::string& name) {
+  Simulation simulation = make_simulation(scene);
+  advance_to_sleep(simulation, name, 2);
+  EXPECT_TRUE(is_asleep(simulation, name));
+  return simulation;
+}
+
+Scene make_two_crates() {
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("one", 0.0), make_crate("two", 5.0)};
+  return scene;
+}
+
+TEST(Wake, NothingTouchesWhatSleeps) {
+  for (const bool is_local : {false, true}) {
+    Scene scene = make_resting_scene();
+    if (is_local) {
+      scene.default_interface = {20000, 40, 0.3};
+      scene.numerics = {IntegratorId::velocity_verlet, 4e-3, 0.016, StepControl::local};
+      scene.sleeping->speed = 0.02;
+    }
+    scene.bodies = {make_crate("crate", 0.0), make_marble("marble", {0.05, 0.02, 6})};
+    Simulation simulation = make_simulation(scene);
+    bool slept = false;
+    bool touched = false;
+    while (simulation.time() < 2) {
+      simulation.advance(1);
+      const auto bodies = simulation.bodies();
+      slept = slept || bodies[0].is_asleep;
+      if (distance_of(bodies[0], bodies[1]) > 2 * kRestRadius) continue;
+      ASSERT_FALSE(bodies[0].is_asleep);
+      touched = true;
+    }
+    EXPECT_TRUE(slept);
+    EXPECT_TRUE(touched);
+  }
+}
+
+/// Sleeping takes no more than its speed from what moved, so that places differ by that speed times
+/// the time since, and velocities by it: the impact is central, and makes no difference grow.
+TEST(Wake, AnImpactIsThatWithoutSleep) {
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("crate", 0.0), make_marble("marble", {0, 0, 4})};
+  Scene awake = scene;
+  awake.sleeping.reset();
+  Simulation a = make_simulation(scene);
+  Simulation b = make_simulation(awake);
+  Real slept_at = 0;
+  for (int n = 0; n < 300; ++n) {
+    a.advance(1);
+    b.advance(1);
+    if (slept_at == 0 && is_asleep(a, "crate")) slept_at = a.time() - a.step_size();
+    const Real bound = scene.sleeping->speed * (a.time() - slept_at);
+    for (std::size_t body = 0; body < 2; ++body) {
+      ASSERT_LE((position_of(a, body) - position_of(b, body)).norm(), bound) << n;
+      ASSERT_LE((velocity_of(a, body) - velocity_of(b, body)).norm(), scene.sleeping->speed) << n;
+    }
+  }
+  EXPECT_GT(slept_at, 0);
+  EXPECT_LT(position_of(b, 1).z(), 0.5);  // it met the crate
+}
+
+TEST(Wake, OneIslandAndNotTheNext) {
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("low", 0.0), make_crate("high", {0, 0, kCrateRest + kCrateEdge}),
+                  make_crate("far", 5.0), make_marble("marble", {0, 0, 6})};
+  Simulation simulation = make_sleeping(scene, "low");
+  ASSERT_TRUE(is_asleep(simulation, "high"));
+  while (simulation.time() < 2 && is_asleep(simulation, "high")) simulation.advance(1);
+  EXPECT_LT(simulation.time(), 1.2);  // it falls for 1.05 s
+  EXPECT_FALSE(is_asleep(simulation, "low"));
+  EXPECT_TRUE(is_asleep(simulation, "far"));
+  advance_to_sleep(simulation, "low", 6);
+  EXPECT_TRUE(is_asleep(simulation, "low"));
+  EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 4U);
+}
+
+TEST(Wake, AcrossTheSeamOfAPeriodicWorld) {
+  Scene scene = make_resting_scene();
+  scene.gravity.setZero();
+  scene.vat.reset();
+  scene.periodic = Periodicity{{-2, -2, -2}, {2, 2, 2}, {true, false, false}};
+  scene.bodies = {make_crate("crate", {1.85, 0, 0}), make_marble("marble", {-1.4, 0, 0})};
+  scene.bodies[1].velocity = {-0.3, 0, 0};
+  Simulation simulation = make_sleeping(scene, "crate");
+  while (simulation.time() < 2 && velocity_of(simulation, 1).x() == -0.3) {
+    ASSERT_GE(position_of(simulation, 1).x(), -2.05 + 2 * kRestRadius - 1e-9);
+    simulation.advance(1);
+  }
+  EXPECT_FALSE(is_asleep(simulation, "crate"));
+  EXPECT_LT(velocity_of(simulation, 0).x(), 0);
+}
+
+TEST(Wake, ByAFloatingBodyInLiquid) {
+  Scene scene = make_resting_scene(2e-3);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.materials.push_back(make_liquid("water", 1000, {100, 5, 0.2}));
+  scene.default_interface = {2000, 20};
+  scene.vat = Vat{{-0.4, -0.4, 0}, {0.4, 0.4, 20}, false, {}, {}};
+  BodyDescription water = make_body("water", BodyKind::liquid, "water",
+                                    make_particles(make_lattice(8, 8, 4, 0.1), 1), kRestRadius);
+  water.position.z() = 0.2;
+  scene.bodies = {water, make_marble("cork", {0, 0, 0.45}), make_crate("falls", {0, 0, 30})};
+  scene.vat->max.z() = 40;
+  scene.bodies[2].release = 100;
+  scene.sleeping = Sleeping{0.02, 0.3};
+  scene.interfaces = {{{"wood", "water"}, {.law = InterfaceLaw::sph}, {}}};
+  Simulation simulation = make_simulation(scene);
+  advance_to_sleep(simulation, "water", 30);
+  ASSERT_TRUE(is_asleep(simulation, "water"));
+  EXPECT_TRUE(is_asleep(simulation, "cork"));
+  ASSERT_TRUE(simulation.add_body(make_marble("pebble", {0.1, 0.1, 3})).ok());
+  EXPECT_FALSE(is_asleep(simulation, "water"));
+  bool slept = false;
+  for (int n = 0; n < 1000; ++n) {
+    simulation.advance(1);
+    const auto bodies = simulation.bodies();
+    slept = slept || bodies[0].is_asleep;
+    if (distance_of(bodies[0], bodies[3]) < 0.2) {
+      ASSERT_FALSE(bodies[0].is_asleep);
+    }
+    ASSERT_EQ(bodies[0].is_asleep, bodies[1].is_asleep);
+  }
+  EXPECT_TRUE(slept);
+  EXPECT_FALSE(is_asleep(simulation, "water"));
+  EXPECT_LT(position_of(simulation, 3).z(), 0.6);
+}
+
+/// What is awake does not go further in a step than at which sleepers would notice it.
+TEST(Wake, TheGuardMindsSleepers) {
+  Scene scene = make_resting_scene();
+  scene.gravity.setZero();
+  scene.vat.reset();
+  scene.bodies = {make_crate("crate", {0, 0, 0}), make_marble("marble", {100, 0, 0})};
+  scene.bodies[1].velocity = {-30, 0, 0};  // 0.125 m in a step, and the reach is 0.1 m
+  Simulation simulation = make_simulation(scene);
+  EXPECT_FALSE(simulation.advance(120).events.empty());
+  ASSERT_TRUE(is_asleep(simulation, "crate"));
+  EXPECT_FALSE(simulation.advance(1).events.empty());
+  while (simulation.time() < 3.4) simulation.advance(1);
+  EXPECT_FALSE(is_asleep(simulation, "crate"));
+  // Momentum 15 kg m/s, all of it shared: nothing springs back.
+  EXPECT_NEAR(velocity_of(simulation, 0, 13).x(), -15 / 3.2, 1e-9);
+}
+
+TEST(Wake, ByLiquidThatGoesDownADrain) {
+  Scene scene = make_resting_scene();
+  scene.default_interface = {1000, 20};
+  scene.interfaces = {{{"wood", "vat"}, {.friction = 0.5, .law = InterfaceLaw::projection}, {}}};
+  scene.materials.push_back(make_liquid("water", 1000, {10, 1, 0.2}));
+  BodyDescription water = make_body("water", BodyKind::liquid, "water",
+                                    make_particles({{0, 0, 3}, {0.1, 0, 3}}, 1), kRestRadius);
+  scene.bodies = {water, make_crate("crate", 5.0)};
+  scene.drains = {{"drain", {-1, -1, 0}, {1, 1, 1}}};
+  Simulation simulation = make_simulation(scene);
+  advance_to_sleep(simulation, "crate", 2);
+  ASSERT_TRUE(is_asleep(simulation, "crate"));
+  ASSERT_EQ(simulation.bodies()[0].positions.size(), 2U);
+  while (simulation.time() < 1 && simulation.diagnostics().drained_particles == 0) {
+    simulation.advance(1);
+  }
+  EXPECT_EQ(simulation.diagnostics().drained_particles, 2U);
+  EXPECT_FALSE(is_asleep(simulation, "crate"));
+  EXPECT_EQ(simulation.bodies()[0].positions.size(), 0U);
+  EXPECT_NEAR(position_of(simulation, 1, 13).z(), kCrateRest, 1e-9);
+}
+
+struct Command {
+  const char* name;
+  std::function<Status(Simulation&)> give;
+};
+
+BodyId first_of(const Simulation& simulation) {
+  return simulation.bodies()[0].id;
+}
+
+TEST(Wake, ByEveryCommandThatMayMoveSomething) {
+  const Command commands[] = {
+      {"gravity",
+       [](Simulation& s) {
+         return s.set_gravity({0, 0, -5});
+       }},
+      {"interface",
+       [](Simulation& s) {
+         return s.set_interface(
+             {{"wood", "wood"}, {.friction = 0.1, .law = InterfaceLaw::projection}, {}});
+       }},
+      {"add",
+       [](Simulation& s) {
+         return s.add_body(make_crate("new", {0, 9, kCrateRest})).ok() ? Status{}
+                                                                       : Error{"failed", "", ""};
+       }},
+      {"remove", [](Simulation& s) { return s.remove_body(s.find_body("two").value()); }},
+      {"force",
+       [](Simulation& s) {
+         return s.apply_force(first_of(s), {1, 0, 0}, 0.1);
+       }},
+      {"grab",
+       [](Simulation& s) {
+         return s.grab_start(1, first_of(s), 0, {0, 0, 1});
+       }},
+  };
+  for (const Command& command : commands) {
+    Simulation simulation = make_sleeping(make_two_crates(), "one");
+    ASSERT_TRUE(command.give(simulation).ok()) << command.name;
+    EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 0U) << command.name;
+    EXPECT_FALSE(is_asleep(simulation, "one")) << command.name;
+    EXPECT_GT(simulation.advance(4).steps, 0U) << command.name;
+    // Not at the next look, whatever had been slow before.
+    simulation.advance(4);
+    EXPECT_FALSE(is_asleep(simulation, "one")) << command.name;
+  }
+}
+
+TEST(Wake, ACommandBeginsTheTimeOfRestAnew) {
+  const Scene scene = make_two_crates();
+  Simulation simulation = make_simulation(scene);
+  advance_to_sleep(simulation, "one", 2);
+  Simulation disturbed = make_simulation(scene);
+  disturbed.advance(40);
+  ASSERT_TRUE(disturbed.set_gravity({0, 0, -9.8}).ok());
+  const Real since = disturbed.time();
+  advance_to_sleep(disturbed, "one", 2);
+  EXPECT_TRUE(is_asleep(disturbed, "one"));
+  EXPECT_GE(disturbed.time() - since, scene.sleeping->after);
+  EXPECT_GT(disturbed.time(), simulation.time());
+}
+
+TEST(Wake, ByAGrabItFollowsIt) {
+  Simulation simulation = make_sleeping(make_two_crates(), "two");
+  const BodyId two = simulation.find_body("two").value();
+  ASSERT_TRUE(simulation.grab_start(1, two, 13, {5, 0, 1}).ok());
+  simulation.advance(480);
+  EXPECT_NEAR(position_of(simulation, 1, 13).z(), 1, 0.1);  // it hangs a little below
+  EXPECT_TRUE(is_asleep(simulation, "one"));
+}
+
+TEST(Wake, NotByCommandsThatFail) {
+  const Command commands[] = {
+      {"gravity",
+       [](Simulation& s) {
+         return s.set_gravity({0, 0, 1e9});
+       }},
+      {"interface",
+       [](Simulation& s) {
+         return s.set_interface({{"wood", "iron"}, {}, {}});
+       }},
+      {"add",
+       [](Simulation& s) {
+         return s.add_body(make_crate("one", {0, 9, kCrateRest})).ok() ? Status{}
+                                                                       : Error{"failed", "", ""};
+       }},
+      {"remove", [](Simulation& s) { return s.remove_body(99); }},
+      {"melt", [](Simulation& s) { return s.melt_body(first_of(s), "wood"); }},
+      {"emitter", [](Simulation& s) { return s.set_emitter("tap", true); }},
+      {"force",
+       [](Simulation& s) {
+         return s.apply_force(first_of(s), {1, 0, 0}, -1);
+       }},
+      {"grab",
+       [](Simulation& s) {
+         return s.grab_start(1, first_of(s), 99, {0, 0, 1});
+       }},
+      {"move",
+       [](Simulation& s) {
+         return s.grab_move(1, {0, 0, 1});
+       }},
+      {"end", [](Simulation& s) { return s.grab_end(1); }},
+  };
+  Simulation simulation = make_sleeping(make_two_crates(), "one");
+  const std::uint64_t before = simulation.state_hash();
+  for (const Command& command : commands) {
+    ASSERT_FALSE(command.give(simulation).ok()) << command.name;
+    EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 2U) << command.name;
+    EXPECT_EQ(simulation.state_hash(), before) << command.name;
+  }
+}
+
+}  // namespace
+}  // namespace vat
