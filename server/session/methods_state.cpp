@@ -91,6 +91,7 @@ SessionAction read_stats(ObjectReader&, Errors&) {
     return Json{{"instruction_set", to_string(simulation.instruction_set())},
                 {"threads", core.environment().runner.thread_count()},
                 {"particles", simulation.particle_count()},
+                {"sleeping_bodies", simulation.sleeping_body_count()},
                 {"ticks", totals.ticks},
                 {"substeps", totals.substeps},
                 {"undone_substeps", totals.undone_substeps},

@@ -58,6 +58,17 @@ TEST_F(SessionStats, TellWhatTheTicksOfTheSceneCost) {
   }
 }
 
+TEST_F(SessionStats, CountWhatSleeps) {
+  Json scene = Json::parse(R"({"format": "vat.scene/1", "gravity": [0, 0, 0],
+      "sleeping": {"after": 0.1}, "materials": [{"name": "wood"}],
+      "bodies": [{"name": "block", "kind": "rigid", "material": "wood", "spacing": 0.1,
+                  "shape": {"type": "box", "size": [0.2, 0.2, 0.2]}}]})");
+  client->result("scene.load", {{"scene", scene}});
+  EXPECT_EQ(client->result("session.stats").at("sleeping_bodies"), 0);
+  client->result("control.step", {{"ticks", 20}});
+  EXPECT_EQ(client->result("session.stats").at("sleeping_bodies"), 1);
+}
+
 TEST_F(SessionStats, StayThroughAReset) {
   client->result("control.step", {{"ticks", 2}});
   const Json before = client->result("session.stats").at("ticks");

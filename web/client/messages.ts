@@ -114,6 +114,7 @@ export interface SessionStats {
   instruction_set: InstructionSetName;
   threads: number;
   particles: number;
+  sleeping_bodies: number;
   ticks: number;
   /** Parts of steps and undone ones included. */
   substeps: number;
