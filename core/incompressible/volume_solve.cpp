@@ -9,6 +9,7 @@
 #include "core/forces/weakly_compressible.h"
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/incompressible/pressure_response.h"
+#include "core/step/hold_inside.h"
 
 namespace vat {
 namespace {
@@ -123,6 +124,14 @@ SolveReport VolumeSolve::solve(PressureResponse& response, Real mean, Real great
       [&](std::span<Real> product) { response.compress(product, problem_.scale, -dt_ * dt_); });
 }
 
+/// Puts back liquid that has passed a wall, before anything is found in places that a later step
+/// would have to find anew.
+void hold_liquid_inside(const ForceModel& f, Real time, Configuration& now) {
+  const std::uint64_t stops =
+      hold_particles_inside(f.model, time, f.model.liquid_count, f.runner, now);
+  if (f.report != nullptr) f.report->wall_stops += stops;
+}
+
 /// Cells, pairs and densities of places that have changed.
 void find_density(StepContext& c) {
   sort_liquid(c);
@@ -162,6 +171,7 @@ SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
   if (!f.model.rigid_bodies.empty()) pose_rigid_bodies(c);
   SolveReport report;
   for (int round = 0;; ++round) {
+    hold_liquid_inside(f, time, now);
     find_density(c);
     measure_excess(c, report);
     const bool is_solved =

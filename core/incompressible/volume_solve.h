@@ -37,8 +37,7 @@ SolveReport project_velocities(const ForceModel& force_model, Configuration& now
 ///
 /// The shifts leave velocities alone (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)
 /// 264), so that places that are too dense give no energy: what overlaps at a start makes room, and
-/// does not explode. What has passed a wall, and is put back at the end of the step, is its own
-/// mirror image until then and as dense.
+/// does not explode. What has passed a wall is put back first, see hold_particles_inside().
 SolveReport correct_density(const ForceModel& force_model, Configuration& now, Real time,
                             VolumeScratch& scratch);
 

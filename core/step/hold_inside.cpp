@@ -188,13 +188,13 @@ bool hold_body(const Walls& walls, const RigidModel& rigid, const Quat& earlier_
 
 }  // namespace
 
-std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const StepEnd& end,
-                          const Configuration& before, TaskRunner* runner, Configuration& now) {
+std::uint64_t hold_particles_inside(const Model& model, Real time, std::size_t count,
+                                    TaskRunner* runner, Configuration& now) {
   if (model.walls.empty()) return 0;
-  const Walls walls{model, vat_motion(*model.scene.vat, end.time)};
+  const Walls walls{model, vat_motion(*model.scene.vat, time)};
   const ClearBox clear(walls);
   std::atomic<std::uint64_t> stops = 0;
-  for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t stop) {
+  for_blocks(runner, count, [&](std::size_t begin, std::size_t stop) {
     for (std::size_t i = begin; i < stop; ++i) {
       if (clear.has(now.position[i]) || model.inverse_mass[i] == 0) continue;
       const bool is_mirrored = model.is_coupled && i < model.liquid_count;
@@ -203,6 +203,14 @@ std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const S
       }
     }
   });
+  return stops;
+}
+
+std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const StepEnd& end,
+                          const Configuration& before, TaskRunner* runner, Configuration& now) {
+  if (model.walls.empty()) return 0;
+  const Walls walls{model, vat_motion(*model.scene.vat, end.time)};
+  std::uint64_t stops = hold_particles_inside(model, end.time, model.free_count, runner, now);
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = now.rigid[b];

@@ -29,4 +29,8 @@ struct StepEnd {
 std::uint64_t hold_inside(const Model& model, const GuardBounds& bounds, const StepEnd& end,
                           const Configuration& before, TaskRunner* runner, Configuration& now);
 
+/// The same for the free particles before `count` alone.
+std::uint64_t hold_particles_inside(const Model& model, Real time, std::size_t count,
+                                    TaskRunner* runner, Configuration& now);
+
 }  // namespace vat
