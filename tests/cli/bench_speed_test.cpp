@@ -54,10 +54,17 @@ TEST(BenchSpeedFigures, TimesGoByTheMedian) {
 }
 
 // A cubic lattice of 4^3 has 6 n^2 (n - 1), 12 n (n - 1)^2 and 8 (n - 1)^3 ordered pairs at 1, sqrt
-// 2 and sqrt 3 spacings; those at exactly two spacings, the support radius, are none.
+// 2 and sqrt 3 spacings; those at exactly two spacings, the support radius, are none. Half a
+// spacing from walls it goes on in them.
 TEST(BenchSpeedFigures, NeighboursOfALattice) {
-  const Simulation simulation = Simulation::create(peer_dam_break(4, PressureSolver::tait)).value();
-  EXPECT_DOUBLE_EQ(mean_neighbours(simulation), (6 * 16 * 3 + 12 * 4 * 9 + 8 * 27) / 64.0);
+  Scene scene = peer_dam_break(4, PressureSolver::tait);
+  scene.vat->min = {-3, -2, -1};
+  EXPECT_DOUBLE_EQ(mean_neighbours(Simulation::create(scene).value()),
+                   (6 * 16 * 3 + 12 * 4 * 9 + 8 * 27) / 64.0);
+  scene.vat = Vat{{-2, -0.5, 0}, {-1, 0.5, 1}, true, {}};
+  EXPECT_DOUBLE_EQ(mean_neighbours(Simulation::create(scene).value()), 26);
+  scene.vat->lid = false;
+  EXPECT_DOUBLE_EQ(mean_neighbours(Simulation::create(scene).value()), 26 - 9 / 4.0);
   EXPECT_TRUE(std::isnan(
       mean_neighbours(Simulation::create(rigid_pile(1, InterfaceLaw::penalty)).value())));
 }

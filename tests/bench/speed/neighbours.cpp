@@ -56,6 +56,30 @@ class Cells {
   std::vector<std::int64_t> keys_;
 };
 
+/// Adds the images of points within `reach` of the walls across each axis, and of these images in
+/// the next axis' walls.
+void add_images(const Simulation& simulation, Real reach, std::vector<Vec3>& points) {
+  const Vat& vat = *simulation.scene().vat;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == 1 && simulation.scene().dimensions == 2) continue;
+    const bool has_top = axis < 2 || vat.lid;
+    const Real low = vat.min[axis] + simulation.vat_offset()[axis];
+    const Real high = vat.max[axis] + simulation.vat_offset()[axis];
+    for (std::size_t k = points.size(); k-- > 0;) {
+      Vec3 image = points[k];
+      const Real p = image[axis];
+      if (p - low < reach) {
+        image[axis] = 2 * low - p;
+        points.push_back(image);
+      }
+      if (has_top && high - p < reach) {
+        image[axis] = 2 * high - p;
+        points.push_back(image);
+      }
+    }
+  }
+}
+
 Real support_radius_of(const Scene& scene, std::string_view material) {
   const auto found = std::ranges::find(scene.materials, material, &Material::name);
   return found->liquid->support_radius;
@@ -75,7 +99,12 @@ Real mean_neighbours(const Simulation& simulation) {
   std::size_t neighbours = 0;
   for (const BodyView& body : simulation.bodies()) {
     if (body.kind != BodyKind::liquid || body.positions.empty()) continue;
-    const Cells cells(points, support_radius_of(scene, body.material));
+    const Real reach = support_radius_of(scene, body.material);
+    std::vector<Vec3> all = points;
+    if (scene.vat && scene.pressure_solver != PressureSolver::gas) {
+      add_images(simulation, reach, all);
+    }
+    const Cells cells(std::move(all), reach);
     for (const Vec3& p : body.positions) neighbours += cells.count_near(p) - 1;
     particles += body.positions.size();
   }
