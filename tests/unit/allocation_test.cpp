@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
+#include <thread>
+
 #include "tests/support/shaken_vat.h"
 #include "tests/unit/allocation_counter.h"
 
@@ -56,8 +60,54 @@ TEST(Allocation, NoneInASteadyStepOfAnIncompressibleLiquid) {
   EXPECT_EQ(allocation_count(), before);
 }
 
+/// Helpers that are there from the start and wait without a pause. It allocates nothing itself.
+class WaitingRunner : public TaskRunner {
+ public:
+  WaitingRunner() {
+    for (std::thread& helper : helpers_) helper = std::thread([this] { help(); });
+  }
+  ~WaitingRunner() override {
+    is_over_ = true;
+    ++jobs_;
+    jobs_.notify_all();
+    for (std::thread& helper : helpers_) helper.join();
+  }
+
+  void run(std::size_t block_count, const std::function<void(std::size_t)>& block) override {
+    block_ = &block;
+    next_ = block_count;
+    at_work_ = static_cast<int>(helpers_.size());
+    ++jobs_;
+    jobs_.notify_all();
+    do_blocks();
+    for (int left = at_work_; left > 0; left = at_work_) at_work_.wait(left);
+    ++runs_;
+  }
+  std::size_t thread_count() const override { return helpers_.size() + 1; }
+  std::size_t runs() const { return runs_; }
+
+ private:
+  void do_blocks() {
+    for (std::ptrdiff_t n = --next_; n >= 0; n = --next_) (*block_)(static_cast<std::size_t>(n));
+  }
+  void help() {
+    for (int seen = 0; !is_over_; do_blocks(), --at_work_, at_work_.notify_one()) {
+      jobs_.wait(seen++);
+      if (is_over_) return;
+    }
+  }
+
+  const std::function<void(std::size_t)>* block_ = nullptr;
+  std::atomic<std::ptrdiff_t> next_ = 0;
+  std::atomic<int> at_work_ = 0;
+  std::atomic<int> jobs_ = 0;
+  std::atomic<bool> is_over_ = false;
+  std::size_t runs_ = 0;
+  std::array<std::thread, 3> helpers_;
+};
+
 /// A cube of thick liquid on the floor of a vat, with a speed of sound of 10 m/s.
-Scene make_wet_vat(PressureSolver solver) {
+Scene make_wet_vat(PressureSolver solver, int width = 5) {
   constexpr Real kSpacing = 0.1;
   const bool is_tait = solver == PressureSolver::tait;
   Scene scene =
@@ -65,13 +115,14 @@ Scene make_wet_vat(PressureSolver solver) {
   scene.pressure_solver = solver;
   scene.materials = {make_liquid("honey", 1000, {100, 1000, 3 * kSpacing})};
   scene.bodies = {make_body("honey", BodyKind::liquid, "honey",
-                            make_particles(make_lattice(5, 5, 5, kSpacing), 1), kSpacing / 2)};
-  scene.vat = Vat{{-1, -1, -0.25}, {1, 1, 1}, true, {}, {}};
+                            make_particles(make_lattice(width, width, width, kSpacing), 1),
+                            kSpacing / 2)};
+  scene.vat = Vat{{-1, -1, -kSpacing * width / 2}, {1, 1, 1}, true, {}, {}};
   return scene;
 }
 
-void expect_no_allocations(const Scene& scene) {
-  Simulation simulation = make_simulation(scene);
+void expect_no_allocations(const Scene& scene, TaskRunner* runner = nullptr) {
+  Simulation simulation = make_simulation(scene, runner);
   ASSERT_TRUE(simulation.advance(500).events.empty());
   const std::size_t before = allocation_count();
   simulation.advance(100);
@@ -81,6 +132,16 @@ void expect_no_allocations(const Scene& scene) {
 TEST(Allocation, NoneInASteadyStepThatSolvesForViscosity) {
   expect_no_allocations(make_wet_vat(PressureSolver::tait));
   expect_no_allocations(make_wet_vat(PressureSolver::incompressible));
+}
+
+TEST(Allocation, NoneInASteadyStepOfSeveralThreads) {
+  for (const PressureSolver solver :
+       {PressureSolver::gas, PressureSolver::tait, PressureSolver::incompressible}) {
+    WaitingRunner runner;
+    SCOPED_TRACE(to_string(solver));
+    expect_no_allocations(make_wet_vat(solver, 8), &runner);  // more than a block
+    EXPECT_GT(runner.runs(), 600U);
+  }
 }
 
 TEST(Allocation, NoneInASteadyStepOfASurface) {
