@@ -5,6 +5,7 @@
 
 #include "core/limits.h"
 #include "core/support/check.h"
+#include "core/support/grow.h"
 
 namespace vat {
 
@@ -49,9 +50,10 @@ void UniformGrid::build(std::span<const Vec3> points, Real cell_size, TaskRunner
   VAT_CHECK(cell_size > 0);
   choose_cells(points, cell_size, runner);
   const std::size_t cell_count = std::size_t{count_[0]} * count_[1] * count_[2];
-  cell_begin_.assign(cell_count + 1, 0);
-  cell_of_.resize(points.size());
-  order_.resize(points.size());
+  resize_closely(cell_begin_, cell_count + 1);
+  std::ranges::fill(cell_begin_, 0);
+  resize_closely(cell_of_, points.size());
+  resize_closely(order_, points.size());
 
   for_blocks(runner, points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

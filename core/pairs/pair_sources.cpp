@@ -174,11 +174,9 @@ void PairSources::set_places(const StepContext& c) {
   if (images_begin_ > solids_) set(c.work.solids_in_liquid, solids_);
 }
 
-/// Behind all places that there are.
-void PairSources::add_image_places(Images kind, TaskRunner* runner) {
+void PairSources::set_image_places(Images kind, TaskRunner* runner) {
   const ImageGroup& group = images_[kind];
   const std::span<const Index> order = group.grid.order();
-  resize_closely(places, group.first + group.count());
   for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Vec3& p = image_points_[order[s]];
@@ -248,22 +246,27 @@ void PairSources::build(const StepContext& c, Real reach) {
   const bool solid = has_solids(c.model);
   solids_ = static_cast<Index>(liquid.grid.order().size());
   images_begin_ = solids_ + (solid ? static_cast<Index>(solids.grid.order().size()) : 0);
-  resize_closely(places, images_begin_);
+  Index end = images_begin_;
+  // What there is of the last time is written over: only what is new is filled in twice.
+  const auto make_room = [&] { resize_closely(places, std::max<std::size_t>(places.size(), end)); };
+  make_room();
   set_places(c);
   offsets_ = ImageOffsets(c.model, motion_of(c));
   for (const Images kind : kAllImages) {
     const bool of_solids = kind == kShiftedSolids || kind == kMirroredSolids;
     const bool is_mirrored = kind == kMirroredSolids || kind == kMirroredLiquid;
-    images_[kind].all.clear();
-    images_[kind].first = static_cast<Index>(places.size());
+    images_[kind].first = end;
     if ((of_solids && !solid) || (is_mirrored ? c.model.walls.empty() : !c.model.periodic.any())) {
+      images_[kind].all.clear();
       continue;
     }
     find_images(c, reach, kind);
     join_images(c, kind);
-    add_image_places(kind, c.runner);
+    end += static_cast<Index>(images_[kind].count());
+    make_room();
+    set_image_places(kind, c.runner);
   }
-  resize_closely(places, places.size() + 1);
+  resize_closely(places, end + 1);
   set_weights(c, {});
   search_.origin = liquid.grid.origin();
   set_search_places(c.runner);

@@ -134,7 +134,7 @@ class PairSources {
   void find_images(const StepContext& c, Real reach, Images kind);
   void join_images(const StepContext& c, Images kind);
   void set_places(const StepContext& c);
-  void add_image_places(Images kind, TaskRunner* runner);
+  void set_image_places(Images kind, TaskRunner* runner);
   void set_search_places(TaskRunner* runner);
 
   Index solids_ = 0;  ///< first source that is a solid
