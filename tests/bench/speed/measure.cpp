@@ -186,6 +186,10 @@ class TimedScene {
     for (std::size_t n = 0; n < rows_.size(); ++n) rows_[n].threads = threads[n];
   }
 
+  bool all_sleep() const {
+    return simulation_.sleeping_body_count() == simulation_.bodies().size();
+  }
+
   Status time_repetition(SpeedRow& row) {
     simulation_.restore(start_);
     const Real begin_time = simulation_.time();
@@ -200,7 +204,7 @@ class TimedScene {
       row.stages = stages.stages();
     }
     row.seconds.push_back(seconds);
-    row.steps = report.value().steps;
+    row.steps = std::max(report.value().steps, all_sleep() ? steps_ : 0);
     row.undone_steps = report.value().undone_steps;
     row.simulated = simulation_.time() - begin_time;
     row.state_hash = simulation_.state_hash();

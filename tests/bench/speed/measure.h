@@ -40,8 +40,8 @@ struct SpeedRow {
   std::size_t springs = 0;
   std::size_t threads = 0;
   InstructionSet instructions = InstructionSet::baseline;
-  std::vector<Real> seconds;       ///< wall time of each repetition, ascending
-  std::uint64_t steps = 0;         ///< of one repetition
+  std::vector<Real> seconds;  ///< wall time of each repetition, ascending
+  std::uint64_t steps = 0;    ///< of one repetition; where all bodies sleep, those slept through
   std::uint64_t undone_steps = 0;  ///< of them, by the guard
   Real simulated = 0;              ///< [s] of one repetition
   FlowFigures flow;

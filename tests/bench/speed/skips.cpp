@@ -66,6 +66,39 @@ SkipPair skip_viscosity_solve() {
   return pair;
 }
 
+/// A scene whose bodies are at rest, and sleep, when the clock starts.
+SkipPair skip_rest(std::string what, Scene scene, Real warm_up, Real most) {
+  SkipPair pair{.what = std::move(what),
+                .with = scene,
+                .without = std::move(scene),
+                .settings = {.warm_up = warm_up, .measured = 0.1},
+                .most = most};
+  pair.with.sleeping = Sleeping{};
+  return pair;
+}
+
+SkipPair skip_resting_liquid() {
+  return skip_rest("10 000 particles of liquid at rest (without: all are stepped)",
+                   pool(PressureSolver::tait), 3, 1.0 / 20);
+}
+
+SkipPair skip_resting_solids() {
+  return skip_rest("200 rigid bodies at rest (without: all are stepped)",
+                   rigid_pile(200, InterfaceLaw::projection), 4, 1.0 / 50);
+}
+
+/// What sleep costs where nothing does.
+SkipPair skip_nothing() {
+  SkipPair pair{.what = "nothing, for nothing rests (without: nothing is looked at)",
+                .with = dam_break(17, PressureSolver::tait),
+                .without = {},
+                .settings = {.warm_up = 0.3, .measured = 0.1},
+                .most = 1.02};
+  pair.without = pair.with;
+  pair.with.sleeping = Sleeping{};
+  return pair;
+}
+
 struct Skip {
   const char* name;
   SkipPair (*make)();
@@ -73,7 +106,10 @@ struct Skip {
 
 constexpr Skip kSkips[] = {{"skip-liquid-stages", skip_liquid},
                            {"skip-short-steps", skip_short_steps},
-                           {"skip-viscosity-solve", skip_viscosity_solve}};
+                           {"skip-viscosity-solve", skip_viscosity_solve},
+                           {"skip-resting-liquid", skip_resting_liquid},
+                           {"skip-resting-solids", skip_resting_solids},
+                           {"skip-nothing-at-rest", skip_nothing}};
 
 }  // namespace
 
