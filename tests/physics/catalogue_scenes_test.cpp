@@ -49,6 +49,10 @@ TEST_P(CatalogueScene, RunsWithoutTheGuardAndStaysInItsVat) {
   }
   EXPECT_DOUBLE_EQ(simulation.time(), kSeconds);
   EXPECT_LT(mean_error, kMaxCompression);
+  // What has a rest to come to has come to it.
+  if (scene.value().sleeping && kSeconds >= 20) {
+    EXPECT_EQ(simulation.sleeping_body_count(), simulation.bodies().size());
+  }
   // A vat that stands still takes energy only, where nothing flows in.
   if (!scene.value().vat->motion && scene.value().emitters.empty()) {
     const Diagnostics end = simulation.diagnostics();
