@@ -22,20 +22,36 @@ void BodyBoxes::build(const Model& model, const std::vector<Vec3>& positions, Re
   find_pairs();
 }
 
-// Sweeps along x.
+int BodyBoxes::longest_axis() const {
+  Vec3 sum = Vec3::Zero();
+  Vec3 squares = Vec3::Zero();
+  for (const Index b : by_left_) {
+    const Vec3 center = boxes_[b].center();
+    sum += center;
+    squares += center.cwiseAbs2();
+  }
+  const Vec3 spread =
+      squares - sum.cwiseAbs2() / static_cast<Real>(std::max<std::size_t>(1, by_left_.size()));
+  int axis = 0;
+  spread.maxCoeff(&axis);
+  return axis;
+}
+
+// Sweeps along the axis along which the boxes lie furthest apart, so that few overlap there.
 void BodyBoxes::find_pairs() {
   by_left_.clear();
   for (Index b = 0; b < boxes_.size(); ++b) {
     // Neither an empty box nor one that has what is not a number.
     if ((boxes_[b].min().array() <= boxes_[b].max().array()).all()) by_left_.push_back(b);
   }
-  std::ranges::sort(by_left_, {}, [&](Index b) { return boxes_[b].min().x(); });
+  const int axis = longest_axis();
+  std::ranges::sort(by_left_, {}, [&](Index b) { return boxes_[b].min()[axis]; });
   pairs_.clear();
   for (std::size_t k = 0; k < by_left_.size(); ++k) {
     const Box& box = wide_[by_left_[k]];
     for (std::size_t l = k + 1; l < by_left_.size(); ++l) {
       const Box& other = boxes_[by_left_[l]];
-      if (other.min().x() > box.max().x()) break;
+      if (other.min()[axis] > box.max()[axis]) break;
       if (box.intersects(other)) pairs_.emplace_back(by_left_[k], by_left_[l]);
     }
   }

@@ -29,10 +29,12 @@ class BodyBoxes {
   using Box = Eigen::AlignedBox<Real, 3>;
 
   void find_pairs();
+  /// Of the boxes in by_left_, by the variance of their centres.
+  int longest_axis() const;
 
   std::vector<Box> boxes_;      ///< by body
   std::vector<Box> wide_;       ///< grown by the reach
-  std::vector<Index> by_left_;  ///< bodies, by the least x of their boxes
+  std::vector<Index> by_left_;  ///< bodies, by the least coordinate of their boxes
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<Index> near_begin_;
   std::vector<Index> near_;
