@@ -129,7 +129,10 @@ void set_slope_weights(const StepContext& c) {
 }
 
 ImageMotion::ImageMotion(const StepContext& c)
-    : c_(c), motion_(vat::motion_of(c)), pressure_(c.model, motion_, Vec3::Zero()) {}
+    : c_(c),
+      motion_(vat::motion_of(c)),
+      pressure_(c.model, motion_, Vec3::Zero()),
+      is_same_liquid_(!has_several_liquids(c.model)) {}
 
 PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& source) const {
   const Vec3 velocity = image.turn({source.vx, source.vy, source.vz});
@@ -139,13 +142,18 @@ PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& sou
   if (!is_mirrored || is_free) return vat::motion_of(source.pressure, velocity);
   const PairPlace& place = c_.work.sources.places[image.source];
   const Vec3 position(place.x, place.y, place.z);
-  const Mirror mirror = image.mirror();
-  const Index first =
-      image.source < c_.work.sources.first_solid() ? c_.work.liquid.grid.order()[image.source] : 0;
-  const LiquidModel& liquid = liquid_of(c_.model, first);
+  const bool is_first = is_same_liquid_ || image.source >= c_.work.sources.first_solid();
+  const LiquidModel& liquid =
+      liquid_of(c_.model, is_first ? 0 : c_.work.liquid.grid.order()[image.source]);
   if (!c_.model.scene.central_field) {
-    return vat::motion_of(pressure_(liquid, source.pressure, position, mirror), velocity);
+    Vec3 way = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool turns = image.axes[static_cast<std::size_t>(axis)];
+      way[axis] = turns ? (image.offset[axis] - position[axis]) - position[axis] : 0;
+    }
+    return vat::motion_of(pressure_.near(liquid, source.pressure, way), velocity);
   }
+  const Mirror mirror = image.mirror();
   const ImagePressure pressure(c_.model, motion_, mirror.place(position));
   return vat::motion_of(pressure(liquid, source.pressure, position, mirror), velocity);
 }

@@ -77,6 +77,7 @@ class ImageMotion {
   const StepContext& c_;
   const VatMotion motion_;
   const ImagePressure pressure_;  ///< the same everywhere but in a central field
+  const bool is_same_liquid_;     ///< all liquid
 };
 
 }  // namespace vat

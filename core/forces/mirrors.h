@@ -14,11 +14,9 @@ struct Mirror {
   Vec3 twice_plane = Vec3::Zero();  ///< 2 w of the walls' places w, along those [m]
 
   /// A direction as the mirror has it.
-  Vec3 turn(Vec3 x) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axes[static_cast<std::size_t>(axis)]) x[axis] = -x[axis];
-    }
-    return x;
+  Vec3 turn(const Vec3& x) const {
+    const auto turned = [&](std::size_t axis, Real along) { return axes[axis] ? -along : along; };
+    return {turned(0, x.x()), turned(1, x.y()), turned(2, x.z())};
   }
   Vec3 place(const Vec3& x) const { return twice_plane + turn(x); }
 };

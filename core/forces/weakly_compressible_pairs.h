@@ -117,7 +117,11 @@ class ImagePressure {
 
   Real operator()(const LiquidModel& liquid, Real pressure, const Vec3& position,
                   const Mirror& mirror) const {
-    const Real more = liquid.rest_density * fall_.dot(mirror.place(position) - position);
+    return near(liquid, pressure, mirror.place(position) - position);
+  }
+  /// `way`: from the particle to its image [m].
+  Real near(const LiquidModel& liquid, Real pressure, const Vec3& way) const {
+    const Real more = liquid.rest_density * fall_.dot(way);
     if (may_pull_) return pressure + more;
     if (pressure <= 0) return pressure;
     // What the weight of one layer of particles makes.
