@@ -44,6 +44,30 @@ inline BodyDescription make_marble(std::string name, const Vec3& center) {
   return marble;
 }
 
+inline constexpr Real kPoolSupport = 0.2;    ///< radius of the liquid's kernel [m]
+inline constexpr Real kPebbleRelease = 5;    ///< [s]
+inline constexpr Real kPebbleSplash = 5.75;  ///< the pebble is in the liquid [s]
+
+/// A pool of two blocks of particles that carries a cork, and a pebble that falls from 3 m above
+/// the floor once both sleep.
+inline Scene make_resting_pool(PressureSolver solver) {
+  Scene scene = make_resting_scene(4e-3);
+  scene.pressure_solver = solver;
+  scene.numerics.tick = 0.012;
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  scene.materials.push_back(make_liquid("water", 1000, {100, 20, kPoolSupport}));
+  scene.default_interface = {2000, 20};
+  scene.interfaces = {{{"wood", "water"}, {.law = InterfaceLaw::sph}, {}}};
+  scene.vat = Vat{{-0.4, -0.4, 0}, {0.4, 0.4, 4}, false, {}, {}};
+  BodyDescription water = make_body("water", BodyKind::liquid, "water",
+                                    make_particles(make_lattice(8, 8, 5, 0.1), 1), kRestRadius);
+  water.position.z() = 0.25;
+  scene.bodies = {water, make_marble("cork", {0, 0, 0.55}), make_marble("pebble", {0.1, 0.1, 3})};
+  scene.bodies[2].release = kPebbleRelease;
+  scene.sleeping = Sleeping{0.05, 0.3};  // half a percent of the speed of sound
+  return scene;
+}
+
 inline bool is_asleep(const Simulation& simulation, const std::string& name) {
   return simulation.find_body(simulation.find_body(name).value())->is_asleep;
 }

@@ -33,6 +33,48 @@ TEST(SleepState, HasTheSameBitsForAnyThreadsAndFromASnapshot) {
   expect_same_bits(make_struck_stack(), kAsleep + kStruck, 300);
 }
 
+TEST(SleepState, OfLiquidsHasTheSameBitsToo) {
+  for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
+    const Scene scene = make_resting_pool(solver);
+    Simulation simulation = make_simulation(scene);
+    const auto asleep = static_cast<std::uint32_t>(kPebbleRelease / scene.numerics.step);
+    const auto splash = static_cast<std::uint32_t>(kPebbleSplash / scene.numerics.step) - asleep;
+    simulation.advance(asleep);
+    ASSERT_TRUE(is_asleep(simulation, "water"));
+    simulation.advance(splash);
+    ASSERT_FALSE(is_asleep(simulation, "water"));
+    expect_same_bits(scene, asleep, splash + 50);
+  }
+}
+
+/// Bodies whose springs flow, and steps of their own for all particles.
+TEST(SleepState, OfDeformableBodiesHasTheSameBitsToo) {
+  for (const StepControl control :
+       {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
+    Scene scene = make_resting_scene(2e-3);
+    scene.numerics.control = control;
+    scene.default_interface = {2000, 20, 0.3};
+    scene.materials.push_back(make_material("clay"));
+    scene.materials[1].plasticity = Plasticity{0.02, 0.1, 0.01, 0.5};
+    for (const Real x : {0.0, 3.0}) {
+      BodyDescription clay = make_crate("clay " + std::to_string(x), x);
+      clay.kind = BodyKind::deformable;
+      clay.material = "clay";
+      const auto points = std::get<ParticleShape>(clay.shape).positions;
+      clay.springs = join_near(points, 0.18, {2000, 10});
+      scene.bodies.push_back(clay);
+    }
+    scene.bodies.push_back(make_crate("falls", {0.02, 0.03, 8}));
+    scene.sleeping = Sleeping{0.01, 0.2};
+    Simulation simulation = make_simulation(scene);
+    simulation.advance(550);
+    ASSERT_EQ(simulation.sleeping_body_count(), 2U) << to_string(control);
+    simulation.advance(120);
+    ASSERT_EQ(simulation.sleeping_body_count(), 1U) << to_string(control);
+    expect_same_bits(scene, 550, 200);
+  }
+}
+
 TEST(SleepState, IsInTheHash) {
   // The same places and velocities: one has slept, the other is about to.
   Scene scene = make_resting_scene();
