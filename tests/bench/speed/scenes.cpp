@@ -54,7 +54,7 @@ void choose_steps(Scene& scene) {
   if (scene.pressure_solver == PressureSolver::incompressible) {
     scene.numerics.integrator = IntegratorId::symplectic_euler;
     scene.numerics.control = StepControl::adaptive;
-    scene.numerics.step = kLongestStep;
+    scene.numerics.step = kTick;
     return;
   }
   scene.numerics.step = kTick / std::ceil(kTick / longest_explicit_step(scene));
