@@ -163,7 +163,7 @@ Real Simulation::Impl::wanted_step(const ForceModel& force_model, Real start) {
   if (state.history.observed_rate > 0) {
     step = std::min(step, resolving_phase_of_places(numerics) / state.history.observed_rate);
   }
-  return step;
+  return without_viscosity_solve(*model, std::min(step, numerics.step));
 }
 
 bool Simulation::Impl::take_varied_step(ForceModel& force_model, AdvanceReport& report) {

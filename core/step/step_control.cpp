@@ -8,6 +8,7 @@
 #include "core/forces/contacts.h"
 #include "core/forces/liquid.h"
 #include "core/forces/rigid.h"
+#include "core/integrators/damping_solve.h"
 #include "core/limits.h"
 #include "core/rigid/rigid_motion.h"
 #include "core/scene/error_model.h"
@@ -291,6 +292,16 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   }
   find_contact_steps(f, state.now, time, longest, approach, bounds, steps.contacts, steps.particle,
                      steps.rigid);
+}
+
+Real without_viscosity_solve(const Model& model, Real step) {
+  if (!model.is_incompressible || !must_solve_own_damping(model, step)) return step;
+  Real longest = step;
+  for (const auto& [omega2, rate] : model.damping.own) {
+    if (rate > 0) longest = std::min(longest, 2 / (rate + std::sqrt(rate * rate + omega2)));
+  }
+  constexpr Real kRounding = 1e-9;
+  return longest > step / 2 ? (1 - kRounding) * longest : step;
 }
 
 std::uint32_t level_of(Real step, Real nominal) {

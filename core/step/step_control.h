@@ -53,6 +53,11 @@ void find_present_steps(const ForceModel& force_model, State& state, Real time, 
 Real greatest_base_step(const ForceModel& force_model, const State& state,
                         const StepBounds& bounds);
 
+/// The longest step in which an incompressible liquid need not be solved for its viscosity, where
+/// that is more than half of `step`; such a solve costs about as much as the rest of a step.
+/// Otherwise `step`.
+Real without_viscosity_solve(const Model& model, Real step);
+
 /// The least level l with nominal / 2^l <= step, at most kMaxStepLevel.
 std::uint32_t level_of(Real step, Real nominal);
 

@@ -239,6 +239,40 @@ TEST(Incompressible, IsStableWithBodiesOfAnyDensity) {
   }
 }
 
+/// Notes whether damping was solved for.
+class SolveWatch final : public StageObserver {
+ public:
+  void stage_begins(std::string_view stage) override {
+    has_solved = has_solved || stage == "solve_damping";
+  }
+  void stages_end() override {}
+  bool has_solved = false;
+};
+
+// A solve costs about a step: as the liquid gets thicker steps get shorter, down to half, and from
+// there on it is solved for.
+TEST(Incompressible, SolvesForViscosityWhereStepsWouldBeLessThanHalf) {
+  Real thin = 0;
+  Real shortest_unsolved = 1;
+  Real shortest_solved = 1;
+  for (Real viscosity = 1; viscosity < 1e4; viscosity *= 1.25) {
+    Scene scene = make_column(12, 20, 0.025);
+    scene.numerics.control = StepControl::adaptive;
+    scene.numerics.step = scene.numerics.tick;
+    scene.materials[0].liquid->viscosity = viscosity;
+    Simulation simulation = make_simulation(scene);
+    SolveWatch watch;
+    simulation.set_observer(&watch);
+    const Real step = simulation.advance(1).greatest_step;
+    if (thin == 0) thin = step;
+    Real& shortest = watch.has_solved ? shortest_solved : shortest_unsolved;
+    shortest = std::min(shortest, step / thin);
+  }
+  EXPECT_GT(shortest_unsolved, 0.45);
+  EXPECT_LT(shortest_unsolved, 0.7);
+  EXPECT_GT(shortest_solved, 0.9);
+}
+
 // A thrown drop, in 2 and 3 dimensions, against walls that move.
 TEST(Incompressible, DropThrownIntoAMovingVatStaysInIt) {
   for (const int dimensions : {2, 3}) {
