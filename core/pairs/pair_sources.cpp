@@ -62,6 +62,7 @@ template <class F>
 void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, const Vec3& p,
                        Real reach, F&& f) {
   for_each_mirror(model, motion, p, reach, [&](const Mirror& mirror) {
+    if (!model.periodic.any()) return f(PairImage{mirror.twice_plane, n, mirror.axes});
     model.periodic.for_each_image(mirror.place(p), reach, [&](const Vec3& shift) {
       f(PairImage{mirror.twice_plane + shift, n, mirror.axes});
     });
