@@ -64,6 +64,9 @@ void collect_targets(const SourceGroup& targets, std::size_t begin, std::size_t 
   }
 }
 
+/// Slots of a chunk: few enough that those of a thousand particles are shared evenly by threads.
+constexpr std::size_t kChunkSize = 128;
+
 /// Finds the candidates of clusters, one after the other.
 class CandidateSearch {
  public:
@@ -120,10 +123,10 @@ bool PairClusters::build(const PairSearch& search, const SourceGroup& targets,
                          TaskRunner* runner) {
   const CandidateSearch candidates(search, places, groups);
   const std::size_t slots = targets.grid->order().size();
-  chunks_.resize(block_count(slots));
+  chunks_.resize(block_count(slots, kChunkSize));
   std::atomic<std::size_t> work = 0;
-  for_blocks(runner, slots, [&](std::size_t begin, std::size_t end) {
-    Chunk& chunk = chunks_[begin / kBlockSize];
+  for_blocks<kChunkSize>(runner, slots, [&](std::size_t begin, std::size_t end) {
+    Chunk& chunk = chunks_[begin / kChunkSize];
     chunk.clusters.clear();
     collect_targets(targets, begin, end, chunk.clusters);
     std::size_t count = 0;
