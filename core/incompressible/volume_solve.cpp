@@ -16,6 +16,7 @@ namespace {
 
 constexpr Real kGreatestOverMean = 36;     // of densities
 constexpr Real kGreatestDivergence = 200;  // of changes of density, which places correct
+constexpr Real kLeftAlone = 0.2;           // of the density tolerance, by velocities
 constexpr Real kClosing = 0.5;             // of what is missing at rest density, in a step
 constexpr int kMostCorrections = 12;       // rounds of Newton's method
 constexpr Real kRow = 16;                  // of a lattice in space with a support of 3 spacings
@@ -87,8 +88,9 @@ SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   response.compress(problem_.excess);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
-    const Real room =
-        density < 1 ? kClosing * (1 - density) : -std::min(density - 1, wanted.density_tolerance);
+    const Real excess = density - 1 - kLeftAlone * wanted.density_tolerance;
+    const Real room = density < 1 ? kClosing * (1 - density)
+                                  : -std::clamp(excess, Real{0}, wanted.density_tolerance);
     problem_.excess[s] = problem_.scale[s] * (dt_ * problem_.excess[s] - room);
     const bool is_alone = problem_.diagonal[s] == kAlone;
     problem_.x[s] = is_alone ? 0 : now_.pressure[order_[s]] / (density * density);

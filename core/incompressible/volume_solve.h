@@ -25,9 +25,11 @@ void recall_pressure(StepContext& context);
 ///
 /// With s = rho / rho_0 and the rate D of PressureResponse, impulses dt F(p), p >= 0, change the
 /// velocities of liquid and solids until dt D_i(v) <= r_i. Where s_i < 1, r_i = (1 - s_i) / 2: half
-/// of a gap is closed. Elsewhere r_i = -min(s_i - 1, the density tolerance): what steps leave too
-/// dense is undone before the places need it, with a speed that the tolerance bounds. Impulses of
-/// the last step are part of the forces already; only the difference is solved for.
+/// of a gap is closed. Where s_i is above 1 by more than a fifth of the density tolerance, the rest
+/// of it, the tolerance at most, makes r_i negative: what steps leave too dense is undone before
+/// the places need it, with a speed that the tolerance bounds. Closer to 1 liquid at rest hovers,
+/// and undoing that would be noise in its pressure. Impulses of the last step are part of the
+/// forces already; only the difference is solved for.
 SolveReport project_velocities(const ForceModel& force_model, Configuration& now, Real time,
                                Real dt, VolumeScratch& scratch);
 

@@ -178,7 +178,7 @@ TEST(Incompressible, KeepsTheMomentumOfLiquidsAndSolids) {
   EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(),
             1e-3 * size.angular_momentum);
   EXPECT_THAT(greatest, testing::Each(testing::Gt(1))) << "of outer forces [N]";
-  EXPECT_GT(iterations, 20);
+  EXPECT_GT(iterations, 10) << "or nothing was solved for";
 }
 
 TEST(Incompressible, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
