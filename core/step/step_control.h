@@ -30,9 +30,8 @@ struct PresentSteps {
 ///   find_step_limits() for those of springs and liquids, and ContactOutlook;
 /// - contacts that act, or may before the step's end, are resolved to the tolerance;
 /// - travel, at the present speed and force: half the way at which the guard interferes; in a
-/// liquid
-///   a quarter of its support radius, of an incompressible one a fifth, measured in the liquids'
-///   mean motion;
+///   liquid a quarter of its support radius, of an incompressible one a fifth, measured in the
+///   liquids' mean motion;
 /// - the pressure of an incompressible liquid, but for its greatest hundredth: see
 ///   pressed_lattice_omega2();
 /// - rigid bodies turn by at most half a radian;
