@@ -8,10 +8,10 @@
 namespace vat {
 
 struct ServerLimits {
-  std::size_t max_connections = 256;         ///< WebSockets; one thread reads all of them
-  std::size_t max_sessions = 16;             ///< each holds a simulation and steps it
-  std::size_t max_clients_per_session = 64;  ///< each frame is copied and sent once a client
-  std::size_t max_particles = 200'000;       ///< of one session; memory: up to 2 kB each
+  std::size_t max_connections = 1024;          ///< WebSockets; a file descriptor each
+  std::size_t max_sessions = 16;               ///< each holds a simulation and steps it
+  std::size_t max_clients_per_session = 1024;  ///< each frame is sent once a client
+  std::size_t max_particles = 200'000;         ///< of one session; memory: up to 2 kB each
   /// Particles times steps of one tick: a tick is not interrupted, and commands wait for it. About
   /// a second at the limit.
   std::size_t max_particle_steps_per_tick = 4'000'000;

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -18,6 +19,7 @@
 
 #include "protocol/scene_json.h"
 #include "server/cli/command.h"
+#include "server/cli/open_files.h"
 #include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"
 #include "server/http/http_site.h"
@@ -32,6 +34,10 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr std::size_t kMaxThreads = 256;
+constexpr std::size_t kMaxEndpoints = 64;
+constexpr std::size_t kMostConnections = 100'000;
+/// Open files beside the connections: refused ones, HTTP requests, the log, the threads' own.
+constexpr std::size_t kOtherFiles = 512;
 
 constexpr const char* kFooter = R"(Prints one line with its URL when it is ready; all else goes to
 standard error. SIGINT and SIGTERM end it cleanly, a second one at once.
@@ -45,6 +51,8 @@ struct Options {
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
   std::string web_folder = VAT_DEFAULT_WEB_DIR;
   std::size_t threads = 0;
+  std::size_t endpoints = 1;
+  ServerLimits limits;
   InstructionSet instructions = best_instruction_set();
   std::string log_level = "info";
 };
@@ -84,8 +92,18 @@ void warn_of_open_host(const std::string& host) {
   spdlog::warn("listening on {}: whoever can reach this address can use the server", host);
 }
 
+void raise_file_limit(std::size_t connections) {
+  const std::size_t allowed = raise_open_files(connections + kOtherFiles);
+  if (allowed >= connections + kOtherFiles) return;
+  spdlog::warn(
+      "the system allows {} open files (ulimit -n): too few for {} connections, and those beyond "
+      "about {} will be refused",
+      allowed, connections, allowed - std::min(allowed, kOtherFiles));
+}
+
 TransportSettings transport_settings(const Options& options, const ServerLimits& limits) {
   TransportSettings settings;
+  settings.endpoints = options.endpoints;
   settings.host = options.host;
   settings.port = options.port;
   settings.max_connections = limits.max_connections;
@@ -101,6 +119,7 @@ int serve(const Options& options, const Catalogue& catalogue, const Scene& scene
   ServerSettings settings;
   settings.version = VAT_VERSION;
   settings.threads = options.threads;
+  settings.limits = options.limits;
   settings.instructions = options.instructions;
   spdlog::info("instruction set: {}", to_string(settings.instructions));
   SessionServer sessions(catalogue, settings);
@@ -110,6 +129,7 @@ int serve(const Options& options, const Catalogue& catalogue, const Scene& scene
   const auto transport = make_websocket_transport(
       transport_settings(options, settings.limits), sessions,
       make_http_site(std::move(viewer), [&] { return sessions.metrics(); }));
+  raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
   warn_of_open_host(options.host);
   std::cout << "vat is at " << viewer_url(options.host, port) << " (Ctrl-C stops it)" << std::endl;
@@ -153,6 +173,21 @@ void add_options(CLI::App& command, Options& options) {
       .add_option("--threads", options.threads,
                   "Threads that step sessions, and share the steps of the few; 0: one per core")
       ->check(CLI::Range(std::size_t{0}, kMaxThreads))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--endpoints", options.endpoints,
+          "Threads that share the connections of the port; one serves about a thousand viewers")
+      ->check(CLI::Range(std::size_t{1}, kMaxEndpoints))
+      ->capture_default_str();
+  command
+      .add_option("--max-connections", options.limits.max_connections,
+                  "WebSockets at once; the next is closed")
+      ->check(CLI::Range(std::size_t{1}, kMostConnections))
+      ->capture_default_str();
+  command
+      .add_option("--max-clients", options.limits.max_clients_per_session, "Clients of one session")
+      ->check(CLI::Range(std::size_t{1}, kMostConnections))
       ->capture_default_str();
   add_isa_option(command, options.instructions);
   command.add_option("--log-level", options.log_level, "What to log")

@@ -32,8 +32,9 @@ class Connection {
   virtual void close(std::uint16_t code, std::string_view reason) = 0;
 };
 
-/// Told of what comes in, always on the transport's one thread, in order for each connection:
-/// opened, then messages, then closed.
+/// Told of what comes in: of one connection always on the same thread of the transport, and in
+/// order: opened, then messages, then closed. Of several connections at once where there are
+/// several endpoints.
 class ConnectionHandler {
  public:
   virtual ~ConnectionHandler() = default;
@@ -52,22 +53,27 @@ struct HttpResponse {
   std::vector<std::pair<std::string, std::string>> headers;  ///< further ones: name, value
 };
 
-/// Answers a plain HTTP request; called on the transport's thread.
+/// Answers a plain HTTP request; called on the transport's threads, several at once.
 using HttpHandler = std::function<HttpResponse(std::string_view method, std::string_view target)>;
 
 struct TransportSettings {
   std::string host = "127.0.0.1";                  ///< a numeric address
   std::uint16_t port = 8080;                       ///< 0: any free port
-  std::size_t max_connections = 256;               ///< WebSockets; the next is closed with 1013
+  std::size_t endpoints = 1;                       ///< threads that share the port's connections
+  std::size_t max_connections = 1024;              ///< WebSockets; the next is closed with 1013
   std::size_t max_message_bytes = 1024 * 1024;     ///< a longer one closes with 1009
   std::size_t max_http_request_bytes = 16 * 1024;  ///< of the body; a longer one gets 413
   std::chrono::milliseconds handshake_timeout{10'000};  ///< for a whole request or upgrade
+  /// Of the system for each connection. Small: what lies in it is late and cannot be taken back.
+  int send_buffer_bytes = 128 * 1024;
   std::chrono::milliseconds ping_interval{20'000};  ///< a peer silent for two of them is dropped
-  /// Told of faults of this program (a handler that throws); called on the transport's thread.
+  /// Told of faults of this program (a handler that throws); called on the transport's threads.
   std::function<void(std::string_view)> report;
 };
 
-/// One port for HTTP and WebSocket, served by one thread of its own from start() to stop().
+/// One port for HTTP and WebSocket, served from start() to stop() by as many threads of its own as
+/// there are endpoints. The system spreads the connections over them; each stays where it came.
+/// Limits hold for all endpoints together.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -75,7 +81,7 @@ class Transport {
   /// Returns the port that is listened on.
   virtual std::uint16_t start() = 0;
   /// Stops listening, closes every connection with 1001, waits for the closing handshakes at most
-  /// one second, and joins the thread.
+  /// one second, and joins the threads.
   virtual void stop() = 0;
 };
 

@@ -1,7 +1,5 @@
 #include "server/net/ws_connection.h"
 
-#include <algorithm>
-#include <boost/asio/post.hpp>
 #include <utility>
 
 namespace vat {
@@ -24,23 +22,12 @@ class QueuedBytes {
   std::size_t size_;
 };
 
-/// What fits into a close frame. Ends before a whole character: the library refuses half a one.
-std::string fit_reason(const std::string& reason) {
-  constexpr std::size_t kMaxSize = websocketpp::frame::limits::close_reason_size;
-  std::size_t size = std::min(reason.size(), kMaxSize);
-  if (size < reason.size()) {
-    const auto inside_character = [](char byte) { return (byte & 0xc0) == 0x80; };
-    while (size > 0 && inside_character(reason[size])) --size;
-  }
-  return reason.substr(0, size);
-}
-
 }  // namespace
 
-WsConnection::WsConnection(ConnectionId id, std::shared_ptr<boost::asio::io_context> io,
+WsConnection::WsConnection(ConnectionId id, std::shared_ptr<WsLane> lane,
                            std::weak_ptr<WsStream> stream)
     : id_(id),
-      io_(std::move(io)),
+      lane_(std::move(lane)),
       stream_(std::move(stream)),
       queued_bytes_(std::make_shared<std::atomic<std::size_t>>(0)) {}
 
@@ -55,25 +42,12 @@ void WsConnection::send_binary(std::shared_ptr<const std::string> bytes) {
 void WsConnection::send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode) {
   if (!open_) return;
   auto queued = std::make_shared<QueuedBytes>(queued_bytes_, payload->size());
-  auto message = std::make_shared<WsMessage>(opcode, std::move(payload), std::move(queued));
-  boost::asio::post(*io_, [stream = stream_, message = std::move(message)] {
-    // A stream that is no longer open refuses the message, which is then dropped as promised.
-    if (const auto alive = stream.lock()) alive->send(message);
-  });
+  lane_->send(stream_, std::make_shared<WsMessage>(opcode, std::move(payload), std::move(queued)));
 }
 
 void WsConnection::close(std::uint16_t code, std::string_view reason) {
   if (!open_.exchange(false)) return;
-  boost::asio::post(*io_, [stream = stream_, code, reason = std::string(reason)] {
-    if (const auto alive = stream.lock()) close_stream(*alive, code, reason);
-  });
-}
-
-void close_stream(WsStream& stream, std::uint16_t code, const std::string& reason) {
-  if (stream.get_state() != websocketpp::session::state::open) return;
-  websocketpp::lib::error_code error;
-  stream.close(code, fit_reason(reason), error);
-  if (error) stream.terminate(error);
+  lane_->close(stream_, code, std::string(reason));
 }
 
 }  // namespace vat

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <boost/asio/io_context.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,15 +8,14 @@
 #include <string_view>
 
 #include "server/net/transport.h"
-#include "server/net/ws_server.h"
+#include "server/net/ws_lane.h"
 
 namespace vat {
 
-/// Hands every call over to the transport's thread, the only one that touches the stream.
+/// Hands every call over to the endpoint's thread, the only one that touches the stream.
 class WsConnection final : public Connection {
  public:
-  WsConnection(ConnectionId id, std::shared_ptr<boost::asio::io_context> io,
-               std::weak_ptr<WsStream> stream);
+  WsConnection(ConnectionId id, std::shared_ptr<WsLane> lane, std::weak_ptr<WsStream> stream);
 
   ConnectionId id() const override { return id_; }
   void send_text(std::string message) override;
@@ -32,14 +30,10 @@ class WsConnection final : public Connection {
   void send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode);
 
   ConnectionId id_;
-  std::shared_ptr<boost::asio::io_context> io_;
+  std::shared_ptr<WsLane> lane_;
   std::weak_ptr<WsStream> stream_;
   std::shared_ptr<std::atomic<std::size_t>> queued_bytes_;
   std::atomic<bool> open_{true};
 };
-
-/// Begins the closing handshake; drops the connection where that is not possible. Transport's
-/// thread only.
-void close_stream(WsStream& stream, std::uint16_t code, const std::string& reason);
 
 }  // namespace vat

@@ -184,6 +184,30 @@ TEST_F(TransportMessageTest, CountsTheBytesThatTheSocketHasNotTaken) {
   EXPECT_EQ(bytes.use_count(), 1) << "shared bytes are still held";
 }
 
+/// Bytes that go out to a peer that reads nothing, until one message of 16 KiB waits for a second.
+std::size_t bytes_taken(Connection& connection) {
+  constexpr std::size_t kMost = 16 * 1024 * 1024;
+  const auto bytes = std::make_shared<const std::string>(16 * 1024, 'x');
+  for (std::size_t taken = 0; taken < kMost; taken += bytes->size()) {
+    connection.send_binary(bytes);
+    for (int wait = 0; connection.queued_bytes() > 0; ++wait) {
+      if (wait == 1000) return taken;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  return kMost;
+}
+
+// What the system has taken is late for the peer and cannot be taken back. The server's side holds
+// twice its setting (socket(7)), the peer's what it holds before it grows with reading.
+TEST_F(TransportMessageTest, TheSystemTakesLittleForAPeerThatDoesNotRead) {
+  start();
+  WsClient client(port);
+  const std::size_t little = bytes_taken(*only_connection());
+  EXPECT_GE(little, std::size_t{64} * 1024);
+  EXPECT_LE(little, std::size_t{1024} * 1024);
+}
+
 TEST_F(TransportMessageTest, BytesQueuedForAPeerThatVanishesAreLetGo) {
   start();
   WsClient client(port);

@@ -1,0 +1,350 @@
+#include "server/net/ws_endpoint.h"
+
+#include <sys/socket.h>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/socket_base.hpp>
+#include <cerrno>
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "server/net/ws_connection.h"
+#include "server/net/ws_upgrade.h"
+
+namespace vat {
+
+namespace {
+
+using boost::asio::ip::tcp;
+namespace opcode = websocketpp::frame::opcode;
+
+constexpr std::chrono::seconds kStopTimeout{1};
+constexpr std::chrono::seconds kResponseTimeout{60};  ///< for a peer to take a whole file
+constexpr long kClosingHandshakeTimeout = 5000;       // [ms]
+/// Sockets beyond the WebSockets: HTTP requests, upgrades under way, connections refused or ending.
+constexpr std::size_t kMaxOtherSockets = 256;
+
+constexpr std::uint16_t kGoingAway = 1001;
+constexpr std::uint16_t kInternalError = 1011;
+constexpr std::uint16_t kTryAgainLater = 1013;
+
+websocketpp::lib::error_code share_port(tcp::acceptor& acceptor) {
+  const int on = 1;
+  if (setsockopt(acceptor.native_handle(), SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0)
+    return {};
+  return {errno, std::system_category()};
+}
+
+[[noreturn]] void fail_to_listen(const std::string& host, std::uint16_t port,
+                                 const std::string& reason) {
+  const bool is_v6 = host.find(':') != std::string::npos;
+  throw std::runtime_error("cannot listen on " + (is_v6 ? "[" + host + "]" : host) + ":" +
+                           std::to_string(port) + ": " + reason);
+}
+
+/// Listens for a moment, alone on the port; what is wrong with that, if anything.
+boost::system::error_code try_to_listen(boost::asio::io_context& io,
+                                        const tcp::endpoint& endpoint) {
+  boost::system::error_code error;
+  tcp::acceptor acceptor(io);
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
+  return error;
+}
+
+/// The library keeps the reason to itself, so the same is tried without it.
+std::string why_not_listen(boost::asio::io_context& io, const tcp::endpoint& endpoint) {
+  const auto error = try_to_listen(io, endpoint);
+  return error ? error.message() : "the port was in use a moment ago";
+}
+
+}  // namespace
+
+WsEndpoint::WsEndpoint(WsShared& shared)
+    : shared_(shared), lane_(std::make_shared<WsLane>(io_)), ping_timer_(io_), stop_timer_(io_) {
+  configure();
+  set_handlers();
+}
+
+WsEndpoint::~WsEndpoint() {
+  lane_->shut();
+}
+
+void WsEndpoint::configure() {
+  server_.init_asio(&io_);
+  server_.set_reuse_addr(true);
+  server_.set_user_agent("");
+  server_.set_max_message_size(shared_.settings.max_message_bytes);
+  server_.set_max_http_body_size(shared_.settings.max_http_request_bytes);
+  server_.set_open_handshake_timeout(static_cast<long>(shared_.settings.handshake_timeout.count()));
+  server_.set_close_handshake_timeout(kClosingHandshakeTimeout);
+}
+
+void WsEndpoint::set_handlers() {
+  server_.set_tcp_pre_init_handler(
+      [this](const Handle& handle) { guarded("accept", [&] { accepted(*stream_of(handle)); }); });
+  server_.set_validate_handler([this](const Handle& handle) {
+    bool granted = false;
+    return guarded("upgrade", [&] { granted = validate(*stream_of(handle)); }) && granted;
+  });
+  server_.set_open_handler([this](const Handle& handle) {
+    const StreamPtr opened_stream = stream_of(handle);
+    if (guarded("open", [&] { opened(opened_stream); })) return;
+    guarded("open", [&] { close_stream(*opened_stream, kInternalError, "internal error"); });
+  });
+  server_.set_message_handler([this](const Handle& handle, const WsMessage::ptr& message) {
+    const StreamPtr sender = stream_of(handle);
+    if (guarded("message", [&] { received(*sender, *message); })) return;
+    guarded("message", [&] { close_stream(*sender, kInternalError, "internal error"); });
+  });
+  server_.set_ping_handler([this](const Handle& handle, const std::string& payload) {
+    guarded("ping", [&] { answer_ping(*stream_of(handle), payload); });
+    return false;
+  });
+  server_.set_pong_handler([this](const Handle& handle, const std::string&) {
+    guarded("pong", [&] { stream_of(handle)->unanswered_pings = 0; });
+  });
+  server_.set_close_handler(
+      [this](const Handle& handle) { guarded("close", [&] { closed(*stream_of(handle)); }); });
+  server_.set_http_handler(
+      [this](const Handle& handle) { guarded("http", [&] { answer_http(stream_of(handle)); }); });
+}
+
+tcp::endpoint WsEndpoint::address(std::uint16_t port) const {
+  const std::string& host = shared_.settings.host;
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address(host, error);
+  if (error) fail_to_listen(host, port, "the host must be a numeric address");
+  return {address, port};
+}
+
+void WsEndpoint::check_free(std::uint16_t port) {
+  const auto error = try_to_listen(io_, address(port));
+  if (error) fail_to_listen(shared_.settings.host, port, error.message());
+}
+
+std::uint16_t WsEndpoint::listen(std::uint16_t port, bool shares_port) {
+  const std::string& host = shared_.settings.host;
+  const tcp::endpoint endpoint = address(port);
+  if (shares_port) {
+    server_.set_tcp_pre_bind_handler([](const auto& acceptor) { return share_port(*acceptor); });
+  }
+  websocketpp::lib::error_code error;
+  server_.listen(endpoint, error);
+  if (error) fail_to_listen(host, port, why_not_listen(io_, endpoint));
+  server_.start_accept(error);
+  if (error) fail_to_listen(host, port, error.message());
+  boost::system::error_code port_error;
+  return server_.get_local_endpoint(port_error).port();
+}
+
+void WsEndpoint::start() {
+  start_pings();
+  thread_ = std::thread([this] { run(); });
+}
+
+void WsEndpoint::run() {
+  bool finished = false;
+  while (!finished) finished = guarded("network", [this] { io_.run(); });
+  forget_all();
+}
+
+/// Connections whose closing handshake did not end in time.
+void WsEndpoint::forget_all() {
+  for (const StreamPtr& left : open_streams()) {
+    guarded("close", [&] { closed(*left); });
+  }
+}
+
+void WsEndpoint::begin_stop() {
+  boost::asio::post(io_, [this] {
+    if (!guarded("stop", [this] { close_all(); })) io_.stop();
+  });
+}
+
+void WsEndpoint::join() {
+  thread_.join();
+}
+
+void WsEndpoint::close_all() {
+  stopping_ = true;
+  ping_timer_.cancel();
+  websocketpp::lib::error_code ignored;  // it is listening
+  server_.stop_listening(ignored);
+  const std::vector<StreamPtr> streams = open_streams();
+  if (streams.empty()) return io_.stop();
+  stop_timer_.expires_after(kStopTimeout);
+  stop_timer_.async_wait([this](boost::system::error_code) { io_.stop(); });
+  for (const StreamPtr& open : streams) close_stream(*open, kGoingAway, "the server is stopping");
+}
+
+/// Limits the sockets before they have said anything: the library would go on accepting until the
+/// process is out of file descriptors.
+void WsEndpoint::accepted(WsStream& stream) {
+  const std::size_t count = ++*shared_.socket_count;
+  stream.socket_slot = std::shared_ptr<void>(
+      nullptr, [counter = shared_.socket_count](std::nullptr_t) { --*counter; });
+  boost::system::error_code ignored;  // a socket that is closed already is found by the first read
+  if (count > shared_.settings.max_connections + kMaxOtherSockets) {
+    stream.get_raw_socket().close(ignored);
+    return;
+  }
+  stream.get_raw_socket().set_option(tcp::no_delay(true), ignored);
+  stream.get_raw_socket().set_option(
+      boost::asio::socket_base::send_buffer_size(shared_.settings.send_buffer_bytes), ignored);
+}
+
+bool WsEndpoint::validate(WsStream& stream) {
+  const auto refusal = refuse_upgrade(
+      {stream.get_request().get_uri(), stream.get_request_header("Host"),
+       stream.get_request_header("Origin"), stream.get_request_header("Sec-WebSocket-Version"),
+       stream.get_requested_subprotocols()});
+  if (!refusal) {
+    stream.select_subprotocol(kSubprotocol);
+    return true;
+  }
+  stream.set_status(static_cast<websocketpp::http::status_code::value>(refusal->status));
+  stream.append_header("Content-Type", "text/plain; charset=utf-8");
+  stream.append_header("Connection", "close");
+  stream.set_body(refusal->message);
+  return false;
+}
+
+void WsEndpoint::opened(const StreamPtr& stream) {
+  if (stopping_) return close_stream(*stream, kGoingAway, "the server is stopping");
+  if (++shared_.open_count > shared_.settings.max_connections) {
+    --shared_.open_count;
+    return close_stream(*stream, kTryAgainLater, "too many connections");
+  }
+  stream->id = ++shared_.last_id;
+  stream->peer = std::make_shared<WsConnection>(stream->id, lane_, stream);
+  open_.emplace(stream->id, stream);
+  shared_.connections.opened(stream->peer);
+}
+
+void WsEndpoint::received(WsStream& stream, const WsMessage& message) {
+  if (stream.id == 0) return;
+  stream.unanswered_pings = 0;
+  if (message.get_opcode() == opcode::TEXT) {
+    shared_.connections.text_received(stream.id, message.get_payload());
+  } else {
+    shared_.connections.binary_received(stream.id, message.get_payload());
+  }
+}
+
+/// Answers unless an earlier pong still waits for the socket, so that a peer that pings and never
+/// reads makes nothing grow. RFC 6455, section 5.5.3 allows to skip pongs.
+void WsEndpoint::answer_ping(WsStream& stream, const std::string& payload) {
+  stream.unanswered_pings = 0;
+  if (!stream.unsent_pong.expired()) return;
+  const auto token = std::make_shared<char>();
+  stream.unsent_pong = token;
+  stream.send(std::make_shared<WsMessage>(opcode::PONG,
+                                          std::make_shared<const std::string>(payload), token));
+}
+
+void WsEndpoint::closed(WsStream& stream) {
+  if (stream.id == 0) return;
+  const ConnectionId id = std::exchange(stream.id, 0);
+  stream.peer->set_gone();
+  stream.peer.reset();
+  open_.erase(id);
+  --shared_.open_count;
+  if (stopping_ && open_.empty()) io_.stop();
+  shared_.connections.closed(id);
+}
+
+void WsEndpoint::answer_http(const StreamPtr& stream) {
+  // Deferring takes the response out of the handshake's time limit, which is too short for a large
+  // file on a slow line.
+  stream->defer_http_response();
+  stream->response_deadline.emplace(io_, kResponseTimeout);
+  stream->response_deadline->async_wait(
+      [handle = std::weak_ptr<WsStream>(stream)](boost::system::error_code error) {
+        if (error) return;
+        if (const auto slow = handle.lock()) {
+          slow->terminate(make_error_code(websocketpp::transport::error::timeout));
+        }
+      });
+  const HttpResponse response = ask_http_handler(*stream);
+  stream->set_status(static_cast<websocketpp::http::status_code::value>(response.status));
+  if (stream->get_request().get_method() != "HEAD") stream->set_body(response.body);
+  for (const auto& [name, value] : response.headers) stream->replace_header(name, value);
+  stream->replace_header("Content-Type", response.content_type);
+  stream->replace_header("Content-Length", std::to_string(response.body.size()));
+  stream->replace_header("Connection", "close");
+  stream->send_http_response();
+}
+
+HttpResponse WsEndpoint::ask_http_handler(const WsStream& stream) {
+  HttpResponse response;
+  const auto& request = stream.get_request();
+  const bool answered =
+      guarded("http", [&] { response = shared_.http(request.get_method(), request.get_uri()); });
+  if (answered) return response;
+  return {500, "text/plain; charset=utf-8", "Internal error.\n", {}};
+}
+
+void WsEndpoint::start_pings() {
+  ping_timer_.expires_after(shared_.settings.ping_interval);
+  ping_timer_.async_wait([this](boost::system::error_code error) {
+    if (error || stopping_) return;
+    guarded("ping", [this] { ping_all(); });
+    start_pings();
+  });
+}
+
+void WsEndpoint::ping_all() {
+  for (const StreamPtr& stream : open_streams()) {
+    websocketpp::lib::error_code error;
+    if (stream->unanswered_pings >= 2) {
+      stream->terminate(make_error_code(websocketpp::transport::error::timeout));
+    } else {
+      ++stream->unanswered_pings;
+      stream->ping("", error);  // fails on a connection that is closing, which has its own deadline
+    }
+  }
+}
+
+std::vector<WsEndpoint::StreamPtr> WsEndpoint::open_streams() const {
+  std::vector<StreamPtr> streams;
+  streams.reserve(open_.size());
+  for (const auto& [id, handle] : open_) {
+    if (StreamPtr stream = handle.lock()) streams.push_back(std::move(stream));
+  }
+  return streams;
+}
+
+WsEndpoint::StreamPtr WsEndpoint::stream_of(const Handle& handle) {
+  return server_.get_con_from_hdl(handle);
+}
+
+template <class Work>
+bool WsEndpoint::guarded(const char* place, Work&& work) noexcept {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& fault) {
+    report(place, fault.what());
+  } catch (...) {
+    report(place, "unknown exception");
+  }
+  return false;
+}
+
+void WsEndpoint::report(const char* place, const char* fault) noexcept {
+  if (!shared_.settings.report) return;
+  try {
+    shared_.settings.report(std::string(place) + ": " + fault);
+  } catch (...) {  // nobody is left to tell
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "server/net/transport.h"
+#include "server/net/ws_lane.h"
+#include "server/net/ws_server.h"
+
+namespace vat {
+
+/// What the endpoints of a transport have in common. Its limits hold for all of them together.
+struct WsShared {
+  WsShared(TransportSettings settings_in, ConnectionHandler& connections_in, HttpHandler http_in)
+      : settings(std::move(settings_in)), connections(connections_in), http(std::move(http_in)) {}
+
+  const TransportSettings settings;
+  ConnectionHandler& connections;
+  const HttpHandler http;
+  std::atomic<ConnectionId> last_id = 0;
+  std::atomic<std::size_t> open_count = 0;  ///< WebSockets
+  /// All sockets; shared with the streams, which may outlive the transport.
+  const std::shared_ptr<std::atomic<std::size_t>> socket_count =
+      std::make_shared<std::atomic<std::size_t>>(0);
+};
+
+/// One endpoint of websocketpp, and the thread that alone calls the library for it.
+class WsEndpoint {
+ public:
+  explicit WsEndpoint(WsShared& shared);
+  /// Must have been joined if it was run.
+  ~WsEndpoint();
+  WsEndpoint(const WsEndpoint&) = delete;
+  WsEndpoint& operator=(const WsEndpoint&) = delete;
+
+  /// Throws as listen() does if another program listens on the port, which would go unnoticed where
+  /// endpoints share it.
+  void check_free(std::uint16_t port);
+  /// Listens on the port, 0 for any, beside other endpoints that listen on it where `shares_port`.
+  /// Returns the port. Throws std::runtime_error that names host and port if it cannot.
+  std::uint16_t listen(std::uint16_t port, bool shares_port);
+  /// Serves, on a thread of its own.
+  void start();
+  /// Begins what Transport::stop() promises; join() waits for its end.
+  void begin_stop();
+  void join();
+
+ private:
+  using Handle = websocketpp::connection_hdl;
+  using StreamPtr = std::shared_ptr<WsStream>;
+
+  boost::asio::ip::tcp::endpoint address(std::uint16_t port) const;
+  void configure();
+  void set_handlers();
+  void run();
+  void forget_all();
+
+  void accepted(WsStream& stream);
+  bool validate(WsStream& stream);
+  void opened(const StreamPtr& stream);
+  void received(WsStream& stream, const WsMessage& message);
+  void answer_ping(WsStream& stream, const std::string& payload);
+  void closed(WsStream& stream);
+  void answer_http(const StreamPtr& stream);
+  HttpResponse ask_http_handler(const WsStream& stream);
+
+  void start_pings();
+  void ping_all();
+  void close_all();
+  std::vector<StreamPtr> open_streams() const;
+
+  StreamPtr stream_of(const Handle& handle);
+  template <class Work>
+  bool guarded(const char* place, Work&& work) noexcept;
+  void report(const char* place, const char* fault) noexcept;
+
+  WsShared& shared_;
+  boost::asio::io_context io_{1};
+  /// Shared with the connections, which may outlive the endpoint.
+  std::shared_ptr<WsLane> lane_;
+  WsServer server_;
+  boost::asio::steady_timer ping_timer_;
+  boost::asio::steady_timer stop_timer_;
+  std::thread thread_;
+
+  // The endpoint's thread only, once it runs.
+  std::unordered_map<ConnectionId, std::weak_ptr<WsStream>> open_;
+  bool stopping_ = false;
+};
+
+}  // namespace vat
