@@ -1,5 +1,6 @@
 #include "server/session/client_outbox.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "protocol/frame_codec.h"
@@ -21,6 +22,11 @@ void ControlQueue::sent(std::size_t bytes, bool control, std::size_t queued) {
 
 bool ControlQueue::over_limit() const {
   return control_bytes_ > kMaxControlQueueBytes || long_messages_ > kMaxLongMessages;
+}
+
+bool ControlQueue::holds_frame(std::size_t queued) {
+  take(queued);
+  return std::ranges::any_of(waiting_, [](const Entry& entry) { return !entry.control; });
 }
 
 // The socket takes messages in order: those that still wait are the last ones.
@@ -51,7 +57,7 @@ void ClientOutbox::send(std::string text) {
 std::uint64_t ClientOutbox::join() {
   const std::lock_guard lock(mutex_);
   membership_ += membership_ % 2 == 0 ? 1 : 2;
-  waiting_ = nullptr;
+  is_subscribed_ = false;
   acknowledged_ = sequence_;
   return membership_;
 }
@@ -59,7 +65,7 @@ std::uint64_t ClientOutbox::join() {
 void ClientOutbox::leave() {
   const std::lock_guard lock(mutex_);
   membership_ += membership_ % 2;
-  waiting_ = nullptr;
+  is_subscribed_ = false;
 }
 
 void ClientOutbox::send_event(std::uint64_t membership, const std::string& text) {
@@ -67,31 +73,53 @@ void ClientOutbox::send_event(std::uint64_t membership, const std::string& text)
   if (membership == membership_) send_control(text);
 }
 
-void ClientOutbox::offer_frame(std::uint64_t membership, SharedFrame frame) {
+void ClientOutbox::start_epoch(std::uint64_t membership, std::uint32_t epoch) {
   const std::lock_guard lock(mutex_);
-  if (membership != membership_ || closed_) return;
-  if (sequence_ - acknowledged_ < kFrameWindow) {
-    send_frame(frame);
-    return;
-  }
-  if (waiting_ != nullptr) ++dropped_;
-  waiting_ = std::move(frame);
+  if (membership == membership_) epoch_ = epoch;
 }
 
-void ClientOutbox::drop_waiting(std::uint64_t membership) {
+std::uint64_t ClientOutbox::subscribe(std::uint64_t membership, std::weak_ptr<FrameWaker> waker) {
   const std::lock_guard lock(mutex_);
-  if (membership != membership_ || waiting_ == nullptr) return;
-  waiting_ = nullptr;
-  ++dropped_;
+  if (membership != membership_) return 0;
+  waker_ = std::move(waker);
+  is_subscribed_ = true;
+  return ++subscription_;
+}
+
+void ClientOutbox::unsubscribe() {
+  const std::lock_guard lock(mutex_);
+  is_subscribed_ = false;
+}
+
+bool ClientOutbox::ready_for_frame(std::uint64_t subscription) {
+  const std::lock_guard lock(mutex_);
+  if (closed_ || !is_subscribed_ || subscription != subscription_) return false;
+  wants_wake_ = !is_ready();
+  return !wants_wake_;
+}
+
+void ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
+                              const SharedFrame& frame, std::uint32_t dropped) {
+  const std::lock_guard lock(mutex_);
+  if (closed_ || !is_subscribed_ || subscription != subscription_ || epoch != epoch_) return;
+  // The caller's bytes are shared with other clients, so the two fields go into a copy.
+  auto bytes = std::make_shared<std::string>(frame->begin(), frame->end());
+  patch_client({reinterpret_cast<std::uint8_t*>(bytes->data()), bytes->size()}, ++sequence_,
+               dropped);
+  queue_.sent(bytes->size(), false, connection_->queued_bytes());
+  connection_->send_binary(std::move(bytes));
 }
 
 bool ClientOutbox::acknowledge(std::uint32_t sequence) {
-  const std::lock_guard lock(mutex_);
-  if (sequence == 0 || sequence > sequence_) return false;
-  if (sequence > acknowledged_) acknowledged_ = sequence;
-  if (waiting_ != nullptr && sequence_ - acknowledged_ < kFrameWindow) {
-    send_frame(std::exchange(waiting_, nullptr));
+  std::shared_ptr<FrameWaker> waker;
+  {
+    const std::lock_guard lock(mutex_);
+    if (sequence == 0 || sequence > sequence_) return false;
+    if (sequence <= acknowledged_) return true;
+    acknowledged_ = sequence;
+    if (std::exchange(wants_wake_, false) && is_subscribed_) waker = waker_.lock();
   }
+  if (waker != nullptr) waker->wake(id());
   return true;
 }
 
@@ -115,20 +143,17 @@ void ClientOutbox::send_control(std::string text) {
   queue_.sent(text.size(), true, connection_->queued_bytes());
   if (queue_.over_limit()) {
     closed_ = true;
-    waiting_ = nullptr;
     connection_->close(kTooSlow, "too slow: the control queue is full");
     return;
   }
   connection_->send_text(std::move(text));
 }
 
-void ClientOutbox::send_frame(const SharedFrame& frame) {
-  // The caller's bytes are shared with other clients, so the two fields go into a copy.
-  auto bytes = std::make_shared<std::string>(frame->begin(), frame->end());
-  patch_client({reinterpret_cast<std::uint8_t*>(bytes->data()), bytes->size()}, ++sequence_,
-               dropped_);
-  queue_.sent(bytes->size(), false, connection_->queued_bytes());
-  connection_->send_binary(std::move(bytes));
+// A frame that was acknowledged has been taken, even if the transport has not said so yet.
+bool ClientOutbox::is_ready() {
+  const std::uint32_t in_flight = sequence_ - acknowledged_;
+  if (in_flight == 0) return true;
+  return in_flight < kFrameWindow && !queue_.holds_frame(connection_->queued_bytes());
 }
 
 }  // namespace vat

@@ -23,6 +23,8 @@ class ControlQueue {
   /// Notes a message that is sent; `queued` is what the socket had not taken just before.
   void sent(std::size_t bytes, bool control, std::size_t queued);
   bool over_limit() const;
+  /// Whether some message that is not control waits, `queued` being what the socket has not taken.
+  bool holds_frame(std::size_t queued);
 
  private:
   struct Entry {
@@ -38,11 +40,18 @@ class ControlQueue {
   std::size_t long_messages_ = 0;
 };
 
+/// Told that a client which was not ready for a frame may be so now.
+class FrameWaker {
+ public:
+  virtual ~FrameWaker() = default;
+  virtual void wake(ConnectionId client) = 0;
+};
+
 /// One client's side of the flow control in PROTOCOL.md: replies and events are reliable, frames
-/// latest-wins in a window of three. Safe to use from any thread.
+/// go out in a window of three. Safe to use from any thread.
 ///
-/// What a session sends names the membership that the client's last join got; after the client has
-/// left, it goes nowhere, however late it comes.
+/// What a session sends names the membership that the client's last join got, frames the
+/// subscription and the epoch; after these have ended, it goes nowhere, however late it comes.
 class ClientOutbox {
  public:
   explicit ClientOutbox(std::shared_ptr<Connection> connection);
@@ -55,10 +64,17 @@ class ClientOutbox {
   std::uint64_t join();
   void leave();
   void send_event(std::uint64_t membership, const std::string& text);
-  /// Sends the frame, or keeps it in place of the one that waits.
-  void offer_frame(std::uint64_t membership, SharedFrame frame);
-  /// Drops the frame that waits: its epoch has ended.
-  void drop_waiting(std::uint64_t membership);
+  /// From now on frames are sent in this epoch only.
+  void start_epoch(std::uint64_t membership, std::uint32_t epoch);
+  /// Begins a subscription and ends the one before. 0 if the membership has ended.
+  std::uint64_t subscribe(std::uint64_t membership, std::weak_ptr<FrameWaker> waker);
+  void unsubscribe();
+
+  /// Whether a frame may go out: fewer than three are not acknowledged, and the system has taken
+  /// those that were sent. If not, the waker is called once that may have changed.
+  bool ready_for_frame(std::uint64_t subscription);
+  void send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame,
+                  std::uint32_t dropped);
   /// False if there was no frame of this sequence.
   bool acknowledge(std::uint32_t sequence);
 
@@ -70,19 +86,22 @@ class ClientOutbox {
  private:
   // All with the mutex held.
   void send_control(std::string text);
-  void send_frame(const SharedFrame& frame);
+  bool is_ready();
 
   const std::shared_ptr<Connection> connection_;
   std::mutex mutex_;
   ControlQueue queue_;
   bool closed_ = false;
   std::uint64_t membership_ = 0;  // even: in no session
-  std::size_t commands_ = 0;      // in flight
+  std::uint32_t epoch_ = 0;
+  std::size_t commands_ = 0;  // in flight
   std::size_t command_bytes_ = 0;
-  SharedFrame waiting_;
+  std::uint64_t subscription_ = 0;
+  bool is_subscribed_ = false;
+  std::weak_ptr<FrameWaker> waker_;
+  bool wants_wake_ = false;
   std::uint32_t sequence_ = 0;      // of the last frame sent
   std::uint32_t acknowledged_ = 0;  // as far as the client has taken them
-  std::uint32_t dropped_ = 0;
 };
 
 }  // namespace vat

@@ -1,5 +1,6 @@
 #include "server/session/members.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace vat {
@@ -32,13 +33,20 @@ void Members::send_event(const std::string& text) {
   for (auto& [id, member] : members_) member.outbox->send_event(member.membership, text);
 }
 
-void Members::start_epoch() {
-  for (auto& [id, member] : members_) member.outbox->drop_waiting(member.membership);
-  await_frames();
+void Members::start_epoch(std::uint32_t epoch) {
+  for (auto& [id, member] : members_) member.outbox->start_epoch(member.membership, epoch);
 }
 
-void Members::await_frames() {
-  for (auto& [id, member] : members_) member.awaits_frame = member.subscription.has_value();
+bool Members::is_watched(std::uint64_t tick) const {
+  return std::ranges::any_of(members_, [&](const auto& entry) {
+    const auto& subscription = entry.second.subscription;
+    return subscription && tick % subscription->every == 0;
+  });
+}
+
+bool Members::is_watched() const {
+  return std::ranges::any_of(
+      members_, [](const auto& entry) { return entry.second.subscription.has_value(); });
 }
 
 void Members::forget_grabs() {

@@ -9,21 +9,15 @@
 
 #include "core/types.h"
 #include "server/session/client_outbox.h"
+#include "server/session/subscription.h"
 
 namespace vat {
-
-struct Subscription {
-  double max_error = 0;     ///< [m]; 0: the finest grid
-  std::uint64_t every = 1;  ///< [ticks]
-};
 
 /// A client in a session.
 struct Member {
   std::shared_ptr<ClientOutbox> outbox;
   std::uint64_t membership = 0;
   std::optional<Subscription> subscription;
-  bool awaits_frame = false;  ///< sends the present state at the next chance, whatever `every` is
-  std::uint64_t shown = 0;    ///< what it was sent last, see FrameSource::content()
   std::map<std::uint64_t, BodyId> grabs;  ///< by the ids that the session gave
 };
 
@@ -40,9 +34,11 @@ class Members {
   Member* holder_of(std::uint64_t grab);
 
   void send_event(const std::string& text);
-  /// Ends an epoch: frames that wait are dropped, and all subscribers await one of the new epoch.
-  void start_epoch();
-  void await_frames();
+  /// Members get no frame of an earlier epoch from now on.
+  void start_epoch(std::uint32_t epoch);
+  /// Whether a member has subscribed to the frame of this tick.
+  bool is_watched(std::uint64_t tick) const;
+  bool is_watched() const;
   void forget_grabs();
   void forget_grab(std::uint64_t grab);
   void forget_grabs_of(BodyId body);

@@ -12,18 +12,15 @@ SessionAction read_subscribe(ObjectReader& params, Errors&) {
   Subscription subscription;
   subscription.max_error = params.real("max_error", 0, kMaxLength, 0.0);
   subscription.every = params.count("every", 1, kMaxFrameInterval, 1);
-  return [subscription](SessionCore&, Member& member) -> ActionResult {
-    member.subscription = subscription;
-    member.awaits_frame = true;
+  return [subscription](SessionCore& core, Member& member) -> ActionResult {
+    core.subscribe(member, subscription);
     return Json::object();
   };
 }
 
 SessionAction read_unsubscribe(ObjectReader&, Errors&) {
-  return [](SessionCore&, Member& member) -> ActionResult {
-    member.subscription.reset();
-    member.awaits_frame = false;
-    member.outbox->drop_waiting(member.membership);
+  return [](SessionCore& core, Member& member) -> ActionResult {
+    core.unsubscribe(member);
     return Json::object();
   };
 }

@@ -230,7 +230,7 @@ void Session::tick_turn() {
 void Session::run_tick(SteadyClock::time_point now, bool timed) {
   if (!core_.tick(now, timed)) return;
   update_summary();  // before the frames: who acknowledges one is told no earlier tick
-  core_.send_tick_frames();
+  core_.publish_tick();
 }
 
 void Session::follow_clock() {

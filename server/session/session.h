@@ -23,10 +23,10 @@ namespace vat {
 /// others at most as long as their turns take.
 ///
 /// Locks are taken in this order, and none is held while a scene is read, stepped or encoded: the
-/// directory's (who is where), a session's (its inbox and summary), a client's outbox, and that of
-/// the connection. So commands reach the inbox in the order of joins and leaves, and what a client
-/// has left cannot write to it. Turns take the later two only; all else of a session is used on its
-/// strand alone.
+/// directory's (who is where), a session's (its inbox and summary), a client's outbox or a
+/// session's frame feed, and that of the connection. So commands reach the inbox in the order of
+/// joins and leaves, and what a client has left cannot write to it. Turns take the later ones only;
+/// all else of a session is used on its strand alone.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::string id, std::string name, Simulation simulation,

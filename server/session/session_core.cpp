@@ -3,8 +3,8 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <memory>
 #include <utility>
-#include <vector>
 
 #include "server/session/describe.h"
 
@@ -16,11 +16,6 @@ double wall_clock() {
   return std::chrono::duration<double>(now).count();
 }
 
-bool is_due(const Member& member, std::uint64_t tick, bool new_tick) {
-  if (!member.subscription) return false;
-  return member.awaits_frame || (new_tick && tick % member.subscription->every == 0);
-}
-
 }  // namespace
 
 SessionCore::SessionCore(std::string id, std::string name, Simulation simulation,
@@ -29,7 +24,8 @@ SessionCore::SessionCore(std::string id, std::string name, Simulation simulation
       name_(std::move(name)),
       environment_(environment),
       run_(std::move(simulation), environment.metrics),
-      frames_(run_.simulation().scene().vat, environment.metrics) {}
+      frames_(std::make_shared<FrameFeed>(id_, run_.simulation().scene().vat, environment.metrics,
+                                          environment.frame_threads)) {}
 
 void SessionCore::set_playing(bool playing) {
   interrupt();
@@ -49,24 +45,26 @@ void SessionCore::load(Simulation simulation) {
   members_.forget_grabs();
   interrupt();
   rate_ = {};
-  frames_.set_vat(run_.simulation().scene().vat);
-  description_due_ = status_due_ = true;
-  members_.start_epoch();
+  frames_->set_vat(run_.simulation().scene().vat);
+  start_epoch();
 }
 
 void SessionCore::reset() {
   run_.reset();
   members_.forget_grabs();
   interrupt();
-  frames_.set_vat(run_.simulation().scene().vat);
-  description_due_ = status_due_ = true;
-  members_.start_epoch();
+  frames_->set_vat(run_.simulation().scene().vat);
+  start_epoch();
 }
 
 void SessionCore::bodies_changed() {
   run_.start_epoch();
-  description_due_ = status_due_ = true;
-  members_.start_epoch();
+  start_epoch();
+}
+
+void SessionCore::start_epoch() {
+  description_due_ = status_due_ = frame_due_ = true;
+  members_.start_epoch(run_.epoch());
 }
 
 void SessionCore::interrupt() {
@@ -80,7 +78,23 @@ bool SessionCore::take_interruption() {
 Member& SessionCore::join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t membership) {
   leave(outbox->id());
   status_due_ = true;
+  outbox->start_epoch(membership, run_.epoch());
   return members_.add(std::move(outbox), membership);
+}
+
+void SessionCore::subscribe(Member& member, const Subscription& subscription) {
+  const std::uint64_t number = member.outbox->subscribe(member.membership, frames_);
+  if (number == 0) return;  // it is about to leave
+  member.subscription = subscription;
+  frames_->add(member.outbox, number, subscription);
+  frame_due_ = true;
+}
+
+void SessionCore::unsubscribe(Member& member) {
+  if (!member.subscription) return;
+  member.subscription.reset();
+  member.outbox->unsubscribe();
+  frames_->remove(member.outbox->id());
 }
 
 void SessionCore::leave(ConnectionId client) {
@@ -90,6 +104,7 @@ void SessionCore::leave(ConnectionId client) {
     const Status ended = run_.simulation().grab_end(grab);
     if (!ended) spdlog::warn("session {}: grab {} was gone already", id_, grab);
   }
+  if (member->subscription) frames_->remove(client);
   members_.remove(client);
   status_due_ = true;
 }
@@ -120,9 +135,9 @@ void SessionCore::tell_description() {
   description_due_ = false;  // what fails stays due
 }
 
-void SessionCore::send_tick_frames() {
+void SessionCore::publish_tick() {
   tell_description();  // a tick may begin an epoch
-  send_frames(true);
+  if (frame_due_ || members_.is_watched(run_.tick())) publish_frame();
 }
 
 void SessionCore::announce() {
@@ -131,28 +146,16 @@ void SessionCore::announce() {
     announce_status();
     status_due_ = false;
   }
-  send_frames(false);
+  if (frame_due_) publish_frame();
 }
 
 void SessionCore::announce_status() {
   if (members_.size() > 0) members_.send_event(write_event("session.status", status()));
 }
 
-void SessionCore::send_frames(bool new_tick) {
-  std::vector<Member*> receivers;
-  for (auto& [id, member] : members_.all()) {
-    if (is_due(member, run_.tick(), new_tick)) receivers.push_back(&member);
-  }
-  if (receivers.empty()) return;
-  frames_.publish(published(), members_.size());
-  for (Member* member : receivers) {
-    const double max_error = member->subscription->max_error;
-    const std::uint64_t content = frames_.content(max_error);
-    if (!member->awaits_frame && member->shown == content) continue;
-    member->outbox->offer_frame(member->membership, frames_.frame(max_error));
-    member->shown = content;
-    member->awaits_frame = false;
-  }
+void SessionCore::publish_frame() {
+  frame_due_ = false;
+  if (members_.is_watched()) frames_->publish(published());
 }
 
 PublishedState SessionCore::published() const {

@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "server/session/frame_source.h"
+#include "server/session/frame_feed.h"
 #include "server/session/members.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
@@ -56,11 +56,14 @@ class SessionCore {
   Member& join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t membership);
   /// Frees the client's grabs.
   void leave(ConnectionId client);
+  /// The member gets the present state at the next chance, and then those that it asks for.
+  void subscribe(Member& member, const Subscription& subscription);
+  void unsubscribe(Member& member);
 
-  /// Runs one tick; its frames are due then. False if the guard failed, which pauses the session.
+  /// Runs one tick; its frame is due then. False if the guard failed, which pauses the session.
   /// The rate is measured where `timed`: ticks of control.step keep no pace.
   bool tick(SteadyClock::time_point now, bool timed);
-  void send_tick_frames();
+  void publish_tick();
   /// Tells what is due.
   void announce();
   void announce_status();
@@ -76,9 +79,8 @@ class SessionCore {
   void interrupt();
   void tell_description();
   void tell_guard(const AdvanceReport& report);
-  /// To the subscribers whose turn this tick is, where there is something that they have not been
-  /// shown, and to those that await a frame.
-  void send_frames(bool new_tick);
+  void start_epoch();
+  void publish_frame();
   PublishedState published() const;
 
   const std::string id_;
@@ -86,13 +88,14 @@ class SessionCore {
   const SessionEnvironment& environment_;
   SessionRun run_;
   Members members_;
-  FrameSource frames_;
+  const std::shared_ptr<FrameFeed> frames_;
   RateMeter rate_;
   bool playing_ = true;
   double speed_ = 1;  // simulated seconds per second
   std::uint64_t last_grab_ = 0;
   bool description_due_ = false;
   bool status_due_ = false;
+  bool frame_due_ = false;  // whatever tick it is
   bool interrupted_ = false;
 };
 

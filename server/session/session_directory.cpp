@@ -28,7 +28,9 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
     : catalogue_(catalogue),
       settings_(std::move(settings)),
       runner_(thread_count(settings_.threads)),
-      environment_{catalogue_, settings_.limits, settings_.instructions, runner_, metrics_},
+      frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
+      environment_{catalogue_, settings_.limits, settings_.instructions,
+                   runner_,    metrics_,         frame_threads_},
       pool_(runner_.thread_count()),
       creations_(boost::asio::make_strand(pool_)) {}
 
@@ -197,6 +199,7 @@ void SessionDirectory::stop() {
     while (!sessions_.empty()) close_session(sessions_.begin(), "the server stops", {});
   }
   pool_.join();
+  frame_threads_.join();
 }
 
 SessionDirectory::Sessions::iterator SessionDirectory::find_session(const SessionId& id) {

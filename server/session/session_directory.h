@@ -76,10 +76,11 @@ class SessionDirectory {
 
   const Catalogue& catalogue_;
   const ServerSettings settings_;
-  // Four that outlive the sessions. The runner's threads help with their steps as far as the
+  // Five that outlive the sessions. The runner's threads help with their steps as far as the
   // pool's have nothing to do.
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
+  boost::asio::thread_pool frame_threads_;
   const SessionEnvironment environment_;
   boost::asio::thread_pool pool_;
   // Creations come one after the other: they take one thread from the sessions at most.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <boost/asio/thread_pool.hpp>
+
 #include "core/support/instruction_set.h"
 #include "protocol/scene_json.h"
 #include "server/limits.h"
@@ -15,6 +17,7 @@ struct SessionEnvironment {
   InstructionSet instructions;
   ThreadPoolRunner& runner;  ///< for the blocks of all sessions' steps
   ServerMetrics& metrics;
+  boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send all sessions' frames
 };
 
 }  // namespace vat

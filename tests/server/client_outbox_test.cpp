@@ -23,38 +23,61 @@ std::string make_text(std::size_t bytes) {
   return "\"" + std::string(bytes - 2, 'x') + "\"";
 }
 
+class CountingWaker final : public FrameWaker {
+ public:
+  void wake(ConnectionId) override { ++count; }
+  int count = 0;
+};
+
+constexpr std::uint32_t kEpoch = 5;
+
 class Outbox : public testing::Test {
  protected:
+  Outbox() {
+    outbox.start_epoch(membership, kEpoch);
+    subscribe();
+  }
+  void subscribe() { subscription = outbox.subscribe(membership, waker); }
+  /// Sends frames as long as it is ready for them.
   void offer(std::uint64_t first, std::uint64_t last) {
     for (std::uint64_t tick = first; tick <= last; ++tick) {
-      outbox.offer_frame(membership, make_frame(tick));
+      if (outbox.ready_for_frame(subscription)) send(tick);
     }
   }
+  void send(std::uint64_t tick) { outbox.send_frame(subscription, kEpoch, make_frame(tick), 0); }
   FrameHeader last_frame() const { return connection->frames().back().header; }
   std::size_t frame_count() const { return connection->frames().size(); }
 
   const std::shared_ptr<FakeConnection> connection = std::make_shared<FakeConnection>(1);
+  const std::shared_ptr<CountingWaker> waker = std::make_shared<CountingWaker>();
   ClientOutbox outbox{connection};
   std::uint64_t membership = outbox.join();
+  std::uint64_t subscription = 0;
 };
 
-TEST_F(Outbox, SendsThreeFramesAndKeepsTheNewest) {
+TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
   offer(1, 50);
   ASSERT_EQ(frame_count(), 3u);
   EXPECT_EQ(last_frame().tick, 3u);
   EXPECT_EQ(last_frame().sequence, 3u);
-  EXPECT_EQ(last_frame().dropped, 0u);
-
   EXPECT_TRUE(outbox.acknowledge(1));
+  offer(51, 60);
   ASSERT_EQ(frame_count(), 4u);
-  EXPECT_EQ(last_frame().tick, 50u) << "the newest wins";
-  EXPECT_EQ(last_frame().sequence, 4u);
-  EXPECT_EQ(last_frame().dropped, 46u) << "4 to 49";
-
-  EXPECT_TRUE(outbox.acknowledge(2));
-  EXPECT_EQ(frame_count(), 4u) << "nothing waits";
-  offer(51, 51);
   EXPECT_EQ(last_frame().tick, 51u);
+}
+
+TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
+  offer(1, 3);
+  EXPECT_TRUE(outbox.acknowledge(1));
+  EXPECT_EQ(waker->count, 0) << "none was missed";
+  offer(4, 10);
+  EXPECT_TRUE(outbox.acknowledge(2));
+  EXPECT_TRUE(outbox.acknowledge(3));
+  EXPECT_EQ(waker->count, 1);
+  offer(11, 20);
+  outbox.unsubscribe();
+  EXPECT_TRUE(outbox.acknowledge(5));
+  EXPECT_EQ(waker->count, 1) << "it wants none any more";
 }
 
 TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
@@ -63,6 +86,7 @@ TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
   offer(4, 10);
   EXPECT_EQ(frame_count(), 6u);
   EXPECT_TRUE(outbox.acknowledge(2)) << "late, and of no effect";
+  offer(11, 12);
   EXPECT_EQ(frame_count(), 6u);
 }
 
@@ -72,21 +96,38 @@ TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
   offer(1, 5);
   EXPECT_FALSE(outbox.acknowledge(4));
   EXPECT_FALSE(outbox.acknowledge(0xffffffff));
-  EXPECT_EQ(frame_count(), 3u) << "the window is still full";
+  EXPECT_FALSE(outbox.ready_for_frame(subscription)) << "the window is still full";
 }
 
-TEST_F(Outbox, ADroppedFrameIsCounted) {
-  offer(1, 4);
-  outbox.drop_waiting(membership);
-  EXPECT_TRUE(outbox.acknowledge(3));
+// What a peer that stops reading costs beyond the system's buffers.
+TEST_F(Outbox, OneFrameAtMostWaitsForTheSocket) {
+  connection->stall(true);
+  offer(1, 50);
+  EXPECT_EQ(frame_count(), 1u);
+  connection->stall(false);
+  offer(51, 60);
   EXPECT_EQ(frame_count(), 3u);
-  offer(5, 5);
-  EXPECT_EQ(last_frame().dropped, 1u);
+}
+
+TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
+  connection->stall(true);
+  outbox.send_event(membership, R"("event")");
+  EXPECT_TRUE(outbox.ready_for_frame(subscription));
+}
+
+// The transport may be late to say that the socket has taken it.
+TEST_F(Outbox, WhatIsAcknowledgedWaitsNoLonger) {
+  connection->stall(true);
+  offer(1, 1);
+  EXPECT_FALSE(outbox.ready_for_frame(subscription));
+  EXPECT_TRUE(outbox.acknowledge(1));
+  EXPECT_TRUE(outbox.ready_for_frame(subscription));
 }
 
 TEST_F(Outbox, FramesInFlightDoNotCountAfterAJoin) {
   offer(1, 4);
   membership = outbox.join();
+  subscribe();
   offer(10, 12);
   ASSERT_EQ(frame_count(), 6u);
   EXPECT_EQ(last_frame().tick, 12u);
@@ -95,20 +136,36 @@ TEST_F(Outbox, FramesInFlightDoNotCountAfterAJoin) {
 
 TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
   const std::uint64_t old = membership;
-  offer(1, 4);
+  offer(1, 2);
   outbox.leave();
   outbox.send_event(old, R"("left")");
-  outbox.offer_frame(old, make_frame(5));
-  EXPECT_TRUE(outbox.acknowledge(3));
-  EXPECT_EQ(frame_count(), 3u);
+  send(5);
+  EXPECT_FALSE(outbox.ready_for_frame(subscription));
+  EXPECT_EQ(outbox.subscribe(old, waker), 0u);
+  EXPECT_EQ(frame_count(), 2u);
   membership = outbox.join();
   outbox.send_event(old, R"("late")");
-  outbox.offer_frame(old, make_frame(6));
-  outbox.drop_waiting(old);
-  EXPECT_EQ(frame_count(), 3u);
+  send(6);
+  EXPECT_EQ(frame_count(), 2u);
   EXPECT_TRUE(connection->texts().empty());
   outbox.send_event(membership, R"("new")");
   EXPECT_EQ(connection->texts(), std::vector<Json>{"new"});
+}
+
+TEST_F(Outbox, NothingOfAnEarlierSubscriptionOrEpochIsSent) {
+  const std::uint64_t old = subscription;
+  subscribe();
+  EXPECT_FALSE(outbox.ready_for_frame(old));
+  outbox.send_frame(old, kEpoch, make_frame(1), 0);
+  EXPECT_EQ(frame_count(), 0u);
+  outbox.start_epoch(membership, kEpoch + 1);
+  send(2);
+  EXPECT_EQ(frame_count(), 0u);
+  outbox.send_frame(subscription, kEpoch + 1, make_frame(3), 0);
+  EXPECT_EQ(frame_count(), 1u);
+  outbox.unsubscribe();
+  outbox.send_frame(subscription, kEpoch + 1, make_frame(4), 0);
+  EXPECT_EQ(frame_count(), 1u);
 }
 
 TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
@@ -134,9 +191,8 @@ TEST_F(Outbox, FramesDoNotCountForTheControlQueue) {
   state.bodies.push_back({1, BodyKind::liquid, std::vector<Vec3>(200'000, Vec3::Zero())});
   const auto frame = std::make_shared<const std::vector<std::uint8_t>>(
       encode_key_frame(state, make_frame_grid(Vec3::Zero(), Vec3::Ones(), 0)));
-  for (int i = 0; i < 20; ++i) outbox.offer_frame(membership, frame);
-  EXPECT_EQ(frame_count(), kFrameWindow);
-  EXPECT_EQ(connection->queued(), kFrameWindow * frame->size());
+  outbox.send_frame(subscription, kEpoch, frame, 0);
+  EXPECT_EQ(connection->queued(), frame->size());
   outbox.send("1");
   EXPECT_FALSE(connection->close_code().has_value());
 }

@@ -1,0 +1,98 @@
+#include "server/session/frame_feed.h"
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <utility>
+
+namespace vat {
+namespace {
+
+/// A tenth of the processor where all want it: an encoder that comes late drops a frame, a tick
+/// that comes late slows the session down.
+constexpr int kNiceness = 10;
+
+/// Of the calling thread, for good. What the system refuses is no fault: it is only less fair.
+bool give_way() {
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // of a thread, on Linux
+  pthread_setname_np(pthread_self(), "vat-frames");
+  return true;
+}
+
+}  // namespace
+
+FrameFeed::FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
+                     boost::asio::thread_pool& pool)
+    : session_(std::move(session)),
+      strand_(boost::asio::make_strand(pool.get_executor())),
+      delivery_(vat, metrics) {}
+
+void FrameFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
+                    Subscription wish) {
+  put([&] { mail_.changes.emplace_back(Added{std::move(outbox), subscription, wish}); });
+}
+
+void FrameFeed::remove(ConnectionId client) {
+  put([&] { mail_.changes.emplace_back(client); });
+}
+
+void FrameFeed::set_vat(const std::optional<Vat>& vat) {
+  put([&] {
+    mail_.changes.emplace_back(vat);
+    mail_.state.reset();
+  });
+}
+
+void FrameFeed::publish(PublishedState state) {
+  put([&] { mail_.state = std::move(state); });
+}
+
+void FrameFeed::wake(ConnectionId client) {
+  put([&] { mail_.woken.push_back(client); });
+}
+
+template <class Put>
+void FrameFeed::put(Put&& put) {
+  const std::lock_guard lock(mutex_);
+  put();
+  if (std::exchange(turn_scheduled_, true)) return;
+  boost::asio::post(strand_, [self = shared_from_this()] { self->turn(); });
+}
+
+void FrameFeed::turn() {
+  thread_local const bool gives_way = give_way();
+  static_cast<void>(gives_way);
+  Mail mail;
+  {
+    const std::lock_guard lock(mutex_);
+    mail = std::exchange(mail_, {});
+    turn_scheduled_ = false;
+  }
+  try {
+    carry_out(std::move(mail));
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: frames lost by a fault of the server: {}", session_, error.what());
+  }
+}
+
+void FrameFeed::carry_out(Mail mail) {
+  for (Change& change : mail.changes) {
+    if (auto* added = std::get_if<Added>(&change)) {
+      delivery_.add(std::move(added->outbox), added->subscription, added->wish);
+    } else if (const auto* client = std::get_if<ConnectionId>(&change)) {
+      delivery_.remove(*client);
+    } else {
+      delivery_.set_vat(std::get<std::optional<Vat>>(change));
+    }
+  }
+  if (mail.state) {
+    delivery_.publish(*std::move(mail.state));
+  } else {
+    delivery_.retry(mail.woken);
+  }
+}
+
+}  // namespace vat

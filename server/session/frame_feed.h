@@ -1,0 +1,60 @@
+#pragma once
+
+#include <boost/asio/strand.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/session/frame_delivery.h"
+
+namespace vat {
+
+/// The way of a session's frames to those who watch it: a strand on the pool of the frame threads,
+/// which give way to all others, so that no tick waits for an encoder. Where the strand is still
+/// busy with a state, the newest takes the place of the one that waits. Safe to use from any
+/// thread.
+class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<FrameFeed> {
+ public:
+  FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
+            boost::asio::thread_pool& pool);
+
+  /// What is done here takes effect before a state that is published later.
+  void add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription, Subscription wish);
+  void remove(ConnectionId client);
+  void set_vat(const std::optional<Vat>& vat);
+
+  void publish(PublishedState state);
+  void wake(ConnectionId client) override;
+
+ private:
+  struct Added {
+    std::shared_ptr<ClientOutbox> outbox;
+    std::uint64_t subscription;
+    Subscription wish;
+  };
+  using Change = std::variant<Added, ConnectionId, std::optional<Vat>>;
+  struct Mail {
+    std::vector<Change> changes;
+    std::optional<PublishedState> state;
+    std::vector<ConnectionId> woken;
+  };
+  template <class Put>
+  void put(Put&& put);
+  void turn();
+  void carry_out(Mail mail);
+
+  const std::string session_;
+  boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
+
+  std::mutex mutex_;
+  Mail mail_;
+  bool turn_scheduled_ = false;
+
+  FrameDelivery delivery_;  // used on the strand only
+};
+
+}  // namespace vat
