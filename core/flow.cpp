@@ -102,6 +102,12 @@ class Flow {
     sample.velocities = selected(all.velocities, kept);
     sample.masses = selected(all.masses, kept);
     sample.radii = selected(all.radii, kept);
+    sample.next_number = std::max(all.next_number, body.particles.size());
+    if (!all.numbers.empty()) {
+      sample.numbers = selected(all.numbers, kept);
+    } else if (kept.size() < body.particles.size()) {
+      sample.numbers = kept;
+    }
     for (NozzleParticle each : all.in_nozzles) {
       each.particle =
           static_cast<Index>(std::ranges::lower_bound(kept, each.particle) - kept.begin());
@@ -127,6 +133,9 @@ class Flow {
     const std::uint64_t free_from =
         first_step_from(time - nozzle.age(layer, time), model_.scene.numerics.step);
     for (const Vec3& place : nozzle.layer) {
+      const bool some_are_gone = sample.next_number > sample.positions.size();
+      if (some_are_gone) sample.numbers.push_back(sample.next_number);
+      ++sample.next_number;
       if (free_from > state_.step_count) {
         sample.in_nozzles.push_back({static_cast<Index>(sample.positions.size()), free_from});
       }

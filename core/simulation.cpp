@@ -137,6 +137,7 @@ BodyView view_of(const Model& model, const Configuration& at, const ModelBody& b
                 part(model.radius),
                 {},
                 {}};
+  if (body.sample) view.numbers = body.sample->numbers;
   view.is_asleep =
       sleepers != nullptr &&
       sleepers->islands[static_cast<std::size_t>(&body - model.bodies.data())] != kAwake;

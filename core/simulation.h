@@ -27,7 +27,8 @@ struct RigidPose {
 
 /// Read-only view of one body; valid until the simulation next changes. A particle's index is its
 /// place here: emitted particles are added at the end, and where some are drained, those after them
-/// move up in their order.
+/// move up in their order. Its number is its own from its coming to its going: the n particles that
+/// a body starts with have 0 to n - 1, and each one emitted has the next.
 struct BodyView {
   BodyId id;
   std::string_view name;
@@ -40,6 +41,7 @@ struct BodyView {
   std::optional<RigidPose> pose;          ///< rigid bodies
   std::span<const Vec3> local_positions;  ///< [m] rigid bodies: about the centre of mass, body axes
   bool is_asleep = false;                 ///< see Scene::sleeping
+  std::span<const Index> numbers{};       ///< rising; empty: each particle's is its index
 };
 
 /// SPH fields of one liquid body at the present positions, one value a particle.

@@ -2,82 +2,80 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "core/simulation.h"
 #include "core/support/result.h"
+#include "protocol/grid_frame.h"
 
+/// The binary frames of PROTOCOL.md, "Frames".
 namespace vat {
 
-/// The header fields of PROTOCOL.md, "Frames"; block_count, magic, version and type are implied.
-struct FrameHeader {
-  bool playing = false;
-  bool slow = false;
-  std::uint32_t epoch = 0;
-  std::uint32_t sequence = 0;
-  std::uint64_t tick = 0;
-  double time = 0;
-  double published = 0;
-  std::uint32_t dropped = 0;
-  std::array<double, 3> origin{};
-  double quantum = 0;
-  float real_time_factor = 0;
+/// A client keeps that many of the last frames that it got, from the last key frame on; any two of
+/// them may be references.
+inline constexpr std::size_t kFrameRing = 16;
+/// How much later than its references a frame may be, in numbers.
+inline constexpr std::uint32_t kMaxReferenceDistance = 65'535;
+
+/// What a delta frame builds on: frames that the client has got, the newest first. Both null: a key
+/// frame.
+struct FrameReferences {
+  const GridFrame* first = nullptr;
+  const GridFrame* second = nullptr;
 };
 
-struct FrameBlock {
-  enum class Kind : std::uint8_t { liquid = 0, deformable = 1, rigid = 2, vat = 3 };
-  std::uint32_t body = 0;
-  Kind kind = Kind::liquid;
-  std::vector<std::uint16_t> grid_positions;     ///< 3 n, liquid and deformable bodies
-  std::array<double, 3> position{};              ///< rigid: centre of mass; vat: displacement
-  std::array<float, 4> orientation{1, 0, 0, 0};  ///< rigid
+/// Whether `reference` may be one of `frame`: an earlier number of the same epoch, at most
+/// kMaxReferenceDistance before it, with the same scale and blocks. Detail and region may differ.
+bool can_refer(const GridFrame& frame, const GridFrame& reference);
+
+/// Makes the bytes of frames. One may make any frames in turn; it only keeps memory. Used by one
+/// thread at a time.
+class FrameEncoder {
+ public:
+  FrameEncoder();
+  ~FrameEncoder();
+  FrameEncoder(FrameEncoder&&) noexcept;
+  FrameEncoder& operator=(FrameEncoder&&) noexcept;
+
+  /// The bytes depend on the arguments alone, so that all clients with the same references share
+  /// them; `stride` goes into the header. The references must be as can_refer() says, the second
+  /// earlier than the first. The result lives until the next call.
+  std::span<const std::uint8_t> encode(const GridFrame& frame, const FrameReferences& references,
+                                       std::uint8_t stride = 1);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
-struct Frame {
-  FrameHeader header;
-  std::vector<FrameBlock> blocks;
+/// A client's side: decodes one frame after the other and keeps the last kFrameRing of them.
+class FrameDecoder {
+ public:
+  FrameDecoder();
+  ~FrameDecoder();
+  FrameDecoder(FrameDecoder&&) noexcept;
+  FrameDecoder& operator=(FrameDecoder&&) noexcept;
+
+  /// A key frame makes the decoder forget all before it.
+  ///
+  /// The frame, only if every byte is as PROTOCOL.md says: the same integers that were encoded,
+  /// whatever its references were. It lives until the next call. A frame that is refused changes
+  /// nothing. Error codes: bad_magic, bad_version, bad_type, bad_header, bad_block, bad_check,
+  /// missing_reference, truncated, extra_bytes.
+  Result<const GridFrame*> decode(std::span<const std::uint8_t> bytes);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
-/// The grid on which positions are sent: covers [min, max] with at most 65 535 steps per axis.
-struct FrameGrid {
-  std::array<double, 3> origin{};
-  double quantum = 0;  ///< [m] finite and above 0
-};
-/// The coarsest grid that keeps `max_error` [m] per axis: quantum = 2 * max_error, or more where
-/// [min, max] does not fit. A `max_error` that is not above 0 asks for the finest grid that covers
-/// the domain. The corners must be finite.
-FrameGrid make_frame_grid(const Vec3& min, const Vec3& max, double max_error);
+/// What a frame's header says; the bytes must be a frame's.
+std::uint32_t frame_number(std::span<const std::uint8_t> frame);
+bool is_key_frame(std::span<const std::uint8_t> frame);
 
-/// What a session publishes at a tick: a copy that encoders may read at any time, from any thread.
-struct PublishedState {
-  struct Body {
-    BodyId id;
-    BodyKind kind;
-    std::vector<Vec3> positions;             ///< liquid and deformable bodies
-    std::array<double, 3> center_of_mass{};  ///< rigid bodies
-    std::array<float, 4> orientation{1, 0, 0, 0};
-  };
-  FrameHeader header;  ///< sequence, dropped and the grid are set when it is encoded
-  bool has_vat = false;
-  Vec3 vat_offset = Vec3::Zero();
-  std::vector<Body> bodies;
-};
-PublishedState publish(const Simulation& simulation);
-
-/// Bytes of a key frame. A position inside the grid is sent with an error of at most quantum / 2
-/// per axis; one outside is moved to the nearest grid position. `sequence` and `dropped` may be
-/// patched in afterwards by patch_client, so that clients share one encoding.
-std::vector<std::uint8_t> encode_key_frame(const PublishedState& state, const FrameGrid& grid);
-void patch_client(std::span<std::uint8_t> frame, std::uint32_t sequence, std::uint32_t dropped);
-
-/// Whether two key frames differ in nothing but when they were made and for whom: all but tick,
-/// time, publication, real-time factor, sequence and dropped.
-bool show_the_same(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b);
-
-/// The frame, only if every byte is as PROTOCOL.md says. Error codes: bad_magic, bad_version,
-/// bad_type, bad_header, bad_block, truncated, extra_bytes.
-Result<Frame> decode_frame(std::span<const std::uint8_t> bytes);
+/// A key frame and its content, for who has no use for more.
+std::vector<std::uint8_t> encode_key_frame(const GridFrame& frame);
+Result<GridFrame> decode_key_frame(std::span<const std::uint8_t> bytes);
 
 }  // namespace vat

@@ -3,30 +3,39 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "protocol/grid_frame.h"
+
 /// Sizes, offsets and codes of PROTOCOL.md, "Frames".
 namespace vat::frame_layout {
 
 inline constexpr std::uint32_t kMagic = 0x46544156;  // "VATF"
-inline constexpr std::uint8_t kVersion = 1;
+inline constexpr std::uint8_t kVersion = 2;
 inline constexpr std::uint8_t kKeyFrame = 1;
+inline constexpr std::uint8_t kDeltaFrame = 2;
 
-inline constexpr std::uint16_t kPlayingFlag = 1;
-inline constexpr std::uint16_t kSlowFlag = 2;
+inline constexpr std::uint8_t kPlayingFlag = 1;
+inline constexpr std::uint8_t kSlowFlag = 2;
+inline constexpr int kDetailShift = 2;
+inline constexpr std::uint8_t kRegionFlag = 16;
+inline constexpr std::uint8_t kKnownFlags = 31;
 
-inline constexpr std::size_t kHeaderSize = 96;
-inline constexpr std::size_t kSequenceOffset = 12;
-inline constexpr std::size_t kDroppedOffset = 48;
-inline constexpr std::size_t kRealTimeFactorOffset = 88;
-
-inline constexpr std::size_t kBlockHeaderSize = 12;
-inline constexpr std::uint8_t kGridEncoding = 1;
-inline constexpr std::uint8_t kPoseEncoding = 2;
-inline constexpr std::uint8_t kOffsetEncoding = 3;
-
-inline constexpr std::size_t kGridPositionSize = 6;  // three u16
-inline constexpr std::size_t kPoseSize = 40;
-inline constexpr std::size_t kOffsetSize = 24;
+inline constexpr std::size_t kTypeOffset = 5;
+inline constexpr std::size_t kNumberOffset = 12;
+inline constexpr std::size_t kHeaderSize = 52;
+inline constexpr std::size_t kScaleSize = 56;  // in key frames, after the header
 
 inline constexpr double kMaxGridCoordinate = 65535;
+inline constexpr std::int32_t kMaxAttribute = 1 << 20;
+inline constexpr std::int32_t kMaxPlace = 1 << 30;
+inline constexpr std::uint8_t kLeastOrientationBits = 4;
+inline constexpr std::uint8_t kMostOrientationBits = 28;
+
+/// Whether blocks of this kind have the attribute in frames of this scale.
+inline bool has_attribute(GridBlock::Kind kind, const FrameScale& scale, std::size_t attribute) {
+  if (!(scale.attribute_quanta[attribute] > 0)) return false;
+  return kind == GridBlock::Kind::liquid ||
+         (kind == GridBlock::Kind::deformable &&
+          attribute == static_cast<std::size_t>(FrameAttribute::speed));
+}
 
 }  // namespace vat::frame_layout

@@ -1,32 +1,64 @@
-#include "protocol/frame_codec.h"
+#include "protocol/published_state.h"
 
 namespace vat {
 namespace {
 
-PublishedState::Body publish_body(const BodyView& view) {
-  PublishedState::Body body{view.id, view.kind, {}, {}, {1, 0, 0, 0}};
-  if (view.kind != BodyKind::rigid) {
-    body.positions.assign(view.positions.begin(), view.positions.end());
-    return body;
+template <class Values>
+std::vector<float> to_floats(const Values& values) {
+  return {values.begin(), values.end()};
+}
+
+std::vector<float> speeds_of(const BodyView& view) {
+  std::vector<float> speeds;
+  speeds.reserve(view.velocities.size());
+  for (const Vec3& velocity : view.velocities) {
+    speeds.push_back(static_cast<float>(velocity.norm()));
   }
+  return speeds;
+}
+
+void publish_particles(const Simulation& simulation, const BodyView& view,
+                       const ByAttribute<bool>& wanted, PublishedState::Body& body) {
+  const auto [speed, density, pressure] = wanted;
+  body.positions.assign(view.positions.begin(), view.positions.end());
+  body.numbers.assign(view.numbers.begin(), view.numbers.end());
+  if (speed) body.attributes[0] = speeds_of(view);
+  if (view.kind != BodyKind::liquid || !(density || pressure)) return;
+  const LiquidFields fields = simulation.liquid_fields(view.id).value();
+  if (density) body.attributes[1] = to_floats(fields.density);
+  if (pressure) body.attributes[2] = to_floats(fields.pressure);
+}
+
+void publish_pose(const BodyView& view, PublishedState::Body& body) {
   VAT_CHECK(view.pose.has_value());
-  const RigidPose& pose = *view.pose;
-  body.center_of_mass = {pose.center_of_mass.x(), pose.center_of_mass.y(), pose.center_of_mass.z()};
-  const Eigen::Quaternionf orientation = pose.orientation.cast<float>();
+  const Vec3& center = view.pose->center_of_mass;
+  const Quat& orientation = view.pose->orientation;
+  body.center_of_mass = {center.x(), center.y(), center.z()};
   body.orientation = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
-  return body;
+  for (const Vec3& position : view.local_positions) {
+    body.bounding_radius = std::max(body.bounding_radius, position.norm());
+  }
 }
 
 }  // namespace
 
-PublishedState publish(const Simulation& simulation) {
+PublishedState publish(const Simulation& simulation, const ByAttribute<bool>& wanted) {
   PublishedState state;
   state.header.time = simulation.time();
   state.has_vat = simulation.scene().vat.has_value();
   state.vat_offset = simulation.vat_offset();
   const std::vector<BodyView> views = simulation.bodies();
   state.bodies.reserve(views.size());
-  for (const BodyView& view : views) state.bodies.push_back(publish_body(view));
+  for (const BodyView& view : views) {
+    PublishedState::Body& body = state.bodies.emplace_back();
+    body.id = view.id;
+    body.kind = view.kind;
+    if (view.kind == BodyKind::rigid) {
+      publish_pose(view, body);
+    } else {
+      publish_particles(simulation, view, wanted, body);
+    }
+  }
   return state;
 }
 

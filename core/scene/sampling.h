@@ -40,6 +40,10 @@ struct SampledBody {
   std::vector<SampledSpring> springs;
   std::vector<SampledCell> cells;            ///< where the material keeps their volume
   std::vector<NozzleParticle> in_nozzles{};  ///< that no force moves
+  /// Of the particles, from their coming to their going: empty while none has gone, and they are
+  /// 0, 1, 2, ... in their order.
+  std::vector<Index> numbers{};
+  Index next_number = 0;  ///< of the particle that comes next; 0 too while none has come or gone
 };
 
 /// Turns a body's description into particles and springs, in an order that depends on nothing but

@@ -58,7 +58,8 @@ std::uint64_t ClientOutbox::join() {
   const std::lock_guard lock(mutex_);
   membership_ += membership_ % 2 == 0 ? 1 : 2;
   is_subscribed_ = false;
-  acknowledged_ = sequence_;
+  last_sent_ = 0;  // another session counts its own
+  in_flight_.clear();
   return membership_;
 }
 
@@ -99,24 +100,22 @@ bool ClientOutbox::ready_for_frame(std::uint64_t subscription) {
 }
 
 void ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
-                              const SharedFrame& frame, std::uint32_t dropped) {
+                              const SharedFrame& frame) {
   const std::lock_guard lock(mutex_);
   if (closed_ || !is_subscribed_ || subscription != subscription_ || epoch != epoch_) return;
-  // The caller's bytes are shared with other clients, so the two fields go into a copy.
-  auto bytes = std::make_shared<std::string>(frame->begin(), frame->end());
-  patch_client({reinterpret_cast<std::uint8_t*>(bytes->data()), bytes->size()}, ++sequence_,
-               dropped);
-  queue_.sent(bytes->size(), false, connection_->queued_bytes());
-  connection_->send_binary(std::move(bytes));
+  last_sent_ = frame_number({reinterpret_cast<const std::uint8_t*>(frame->data()), frame->size()});
+  in_flight_.push_back(last_sent_);
+  queue_.sent(frame->size(), false, connection_->queued_bytes());
+  connection_->send_binary(frame);
 }
 
-bool ClientOutbox::acknowledge(std::uint32_t sequence) {
+bool ClientOutbox::acknowledge(std::uint32_t number) {
   std::shared_ptr<FrameWaker> waker;
   {
     const std::lock_guard lock(mutex_);
-    if (sequence == 0 || sequence > sequence_) return false;
-    if (sequence <= acknowledged_) return true;
-    acknowledged_ = sequence;
+    if (number == 0 || number > last_sent_) return false;
+    if (in_flight_.empty() || number < in_flight_.front()) return true;
+    while (!in_flight_.empty() && in_flight_.front() <= number) in_flight_.pop_front();
     if (std::exchange(wants_wake_, false) && is_subscribed_) waker = waker_.lock();
   }
   if (waker != nullptr) waker->wake(id());
@@ -151,9 +150,8 @@ void ClientOutbox::send_control(std::string text) {
 
 // A frame that was acknowledged has been taken, even if the transport has not said so yet.
 bool ClientOutbox::is_ready() {
-  const std::uint32_t in_flight = sequence_ - acknowledged_;
-  if (in_flight == 0) return true;
-  return in_flight < kFrameWindow && !queue_.holds_frame(connection_->queued_bytes());
+  if (in_flight_.empty()) return true;
+  return in_flight_.size() < kFrameWindow && !queue_.holds_frame(connection_->queued_bytes());
 }
 
 }  // namespace vat

@@ -12,8 +12,8 @@
 
 namespace vat {
 
-/// An encoded frame that many clients share; sequence and dropped are patched into each copy.
-using SharedFrame = std::shared_ptr<const std::vector<std::uint8_t>>;
+/// An encoded frame that many clients share.
+using SharedFrame = std::shared_ptr<const std::string>;
 
 /// Control messages that the socket has not taken yet, known from the sizes of all that was sent
 /// and the bytes that are queued now. The bound of PROTOCOL.md: 1 MiB, and beside it two messages
@@ -73,10 +73,9 @@ class ClientOutbox {
   /// Whether a frame may go out: fewer than three are not acknowledged, and the system has taken
   /// those that were sent. If not, the waker is called once that may have changed.
   bool ready_for_frame(std::uint64_t subscription);
-  void send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame,
-                  std::uint32_t dropped);
-  /// False if there was no frame of this sequence.
-  bool acknowledge(std::uint32_t sequence);
+  void send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame);
+  /// All frames up to this number; false if none so late was sent since the last join.
+  bool acknowledge(std::uint32_t number);
 
   /// Counts a command in, unless the client would then have more than `max_commands` of them, or
   /// `max_bytes` of their messages, in flight.
@@ -100,8 +99,8 @@ class ClientOutbox {
   bool is_subscribed_ = false;
   std::weak_ptr<FrameWaker> waker_;
   bool wants_wake_ = false;
-  std::uint32_t sequence_ = 0;      // of the last frame sent
-  std::uint32_t acknowledged_ = 0;  // as far as the client has taken them
+  std::uint32_t last_sent_ = 0;          // number of a frame
+  std::deque<std::uint32_t> in_flight_;  // numbers, as they were sent
 };
 
 }  // namespace vat

@@ -56,7 +56,6 @@ void FrameDelivery::note_turns(const PublishedState& state) {
     viewer.awaits_any |= is_new_epoch;
     const bool is_due =
         viewer.awaits_any || turn_has_come(viewer.wish.every, tick_, state.header.tick);
-    if (is_due && viewer.is_owed) ++viewer.dropped;
     viewer.is_owed |= is_due;
   }
   has_state_ = true;
@@ -72,8 +71,7 @@ void FrameDelivery::serve(Viewer& viewer) {
     return;
   }
   if (!viewer.outbox->ready_for_frame(viewer.subscription)) return;
-  viewer.outbox->send_frame(viewer.subscription, epoch_, source_.frame(viewer.wish.max_error),
-                            static_cast<std::uint32_t>(viewer.dropped));
+  viewer.outbox->send_frame(viewer.subscription, epoch_, source_.frame(viewer.wish.max_error));
   viewer.shown = content;
   viewer.awaits_any = viewer.is_owed = false;
 }

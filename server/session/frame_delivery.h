@@ -38,7 +38,6 @@ class FrameDelivery {
     bool awaits_any = true;  ///< also a frame that shows nothing new
     bool is_owed = false;    ///< its turn has come, and it has got nothing since
     std::uint64_t shown = 0;
-    std::uint64_t dropped = 0;
   };
   void note_turns(const PublishedState& state);
   void serve(Viewer& viewer);

@@ -8,16 +8,11 @@
 namespace vat {
 namespace {
 
-bool is_same_body(const PublishedState::Body& a, const PublishedState::Body& b) {
-  return a.id == b.id && a.kind == b.kind && a.center_of_mass == b.center_of_mass &&
-         a.orientation == b.orientation && a.positions == b.positions;
-}
-
 /// Where anything has moved, mostly the first particle has.
 bool shows_the_same(const PublishedState& a, const PublishedState& b) {
   return a.header.epoch == b.header.epoch && a.header.playing == b.header.playing &&
          a.header.slow == b.header.slow && a.has_vat == b.has_vat && a.vat_offset == b.vat_offset &&
-         std::ranges::equal(a.bodies, b.bodies, is_same_body);
+         a.bodies == b.bodies;
 }
 
 }  // namespace
@@ -51,7 +46,7 @@ SharedFrame FrameSource::frame(double max_error) {
 FrameSource::Encoded& FrameSource::find(double max_error) {
   const FrameGrid grid = domain_.grid(max_error);
   Encoded& encoded = encoded_[grid.quantum];  // the origin is the same for all
-  if (encoded.places != places_ || encoded.grid.origin != grid.origin) {
+  if (encoded.places != places_ || encoded.grid != grid) {
     encoded.grid = grid;
     encode(encoded);
   }
@@ -59,12 +54,15 @@ FrameSource::Encoded& FrameSource::find(double max_error) {
 }
 
 void FrameSource::encode(Encoded& encoded) {
-  auto frame =
-      std::make_shared<const std::vector<std::uint8_t>>(encode_key_frame(state_, encoded.grid));
-  if (encoded.frame == nullptr || !show_the_same(*encoded.frame, *frame)) {
+  GridFrame shown;
+  make_grid_frame(state_, {encoded.grid, {}}, shown);
+  shown.header.number = static_cast<std::uint32_t>(places_);
+  if (encoded.frame == nullptr || !show_the_same(encoded.shown, shown)) {
     encoded.content = ++last_content_;
   }
-  encoded.frame = std::move(frame);
+  const auto bytes = encoder_.encode(shown, {});
+  encoded.frame = std::make_shared<const std::string>(bytes.begin(), bytes.end());
+  encoded.shown = std::move(shown);
   encoded.places = places_;
   encoded.publication = publication_;
   metrics_.add_encoded_frame();

@@ -18,7 +18,8 @@ class FrameSource {
 
   /// The grids of another scene, or of the same from its start.
   void set_vat(const std::optional<Vat>& vat);
-  /// A further state, from which frames are made from now on; `watchers` bounds what is kept.
+  /// A further state, from which frames are made from now on; `watchers` bounds what is kept. It
+  /// gets the next number where it shows something new.
   void publish(PublishedState state, std::size_t watchers);
 
   /// Names what a frame of this accuracy shows: two that differ only in when they were made, or by
@@ -30,6 +31,7 @@ class FrameSource {
  private:
   struct Encoded {
     SharedFrame frame;
+    GridFrame shown;
     FrameGrid grid;
     std::uint64_t content = 0;
     std::uint64_t places = 0;       // of the state that it was made of
@@ -44,6 +46,7 @@ class FrameSource {
   std::uint64_t places_ = 0;       // counts states that differ in more than time
   std::uint64_t publication_ = 0;  // counts states
   std::uint64_t last_content_ = 0;
+  FrameEncoder encoder_;
   std::map<double, Encoded> encoded_;  // by quantum
 };
 

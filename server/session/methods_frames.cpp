@@ -27,12 +27,11 @@ SessionAction read_unsubscribe(ObjectReader&, Errors&) {
 
 // Not a command of the session: the window opens at once, not at its next turn.
 ServerAction read_ack(ObjectReader& params, Errors&) {
-  const auto sequence = static_cast<std::uint32_t>(
-      params.count("sequence", 1, std::numeric_limits<std::uint32_t>::max()));
-  return [sequence](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
-    if (!caller.client()->acknowledge(sequence)) {
-      return invalid_params(
-          {Error{"out_of_range", "/sequence", "must be of a frame that was sent"}});
+  const auto number = static_cast<std::uint32_t>(
+      params.count("number", 1, std::numeric_limits<std::uint32_t>::max()));
+  return [number](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
+    if (!caller.client()->acknowledge(number)) {
+      return invalid_params({Error{"out_of_range", "/number", "must be of a frame that was sent"}});
     }
     Json reply = Json::object();
     if (const auto tick = directory.tick_of(caller)) reply["tick"] = *tick;

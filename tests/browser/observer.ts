@@ -29,7 +29,7 @@ export class Observer {
       {
         onDescription: (description) => this.entered(description),
         onEvent: (event) => this.waiting.splice(0).forEach((tell) => tell(event)),
-        onFrame: ({ header }) => this.session.acknowledge(header.sequence),
+        onFrame: ({ header }) => this.session.acknowledge(header.number),
       },
     );
   }

@@ -28,7 +28,7 @@ class CheckingConnection final : public Connection {
   }
   void send_binary(std::shared_ptr<const std::string> bytes) override {
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes->data());
-    VAT_CHECK(decode_frame({data, bytes->size()}).ok());
+    VAT_CHECK(decode_key_frame({data, bytes->size()}).ok());
   }
   std::size_t queued_bytes() const override { return 0; }
   void close(std::uint16_t, std::string_view) override {}

@@ -266,12 +266,7 @@ void Player::receive_text(Peer& peer, const std::string& text) {
 }
 
 void Player::receive_frame(Peer& peer, const std::string& bytes) {
-  Json frame = frame_to_json(bytes);
-  if (frame["sequence"] != peer.last_sequence + 1) {
-    throw Failure("expected frame " + std::to_string(peer.last_sequence + 1) + ", came " +
-                  frame["sequence"].dump());
-  }
-  ++peer.last_sequence;
+  Json frame = frame_to_json(bytes, peer.decoder);
   if (peer.epoch && frame["epoch"] != *peer.epoch) {
     throw Failure("a frame of epoch " + frame["epoch"].dump() + " after the description of epoch " +
                   std::to_string(*peer.epoch));

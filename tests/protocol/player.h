@@ -3,6 +3,7 @@
 #include <deque>
 #include <vector>
 
+#include "protocol/frame_codec.h"
 #include "tests/protocol/client.h"
 #include "tests/protocol/script.h"
 
@@ -38,7 +39,7 @@ class Player {
     std::deque<Json> events;
     std::deque<Json> frames;
     std::optional<Message> closed;
-    std::uint64_t last_sequence = 0;
+    FrameDecoder decoder;
     std::optional<std::uint64_t> epoch;  ///< of the last description
   };
   using Inbox = std::deque<Json> Peer::*;

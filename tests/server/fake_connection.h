@@ -67,7 +67,7 @@ class FakeConnection final : public Connection {
     const std::lock_guard lock(mutex_);
     return texts_;
   }
-  std::vector<Frame> frames() const {
+  std::vector<GridFrame> frames() const {
     const std::lock_guard lock(mutex_);
     return frames_;
   }
@@ -97,11 +97,12 @@ class FakeConnection final : public Connection {
   }
 
  private:
-  static Frame decode(const std::string& bytes) {
+  /// As a client that gets all frames in their order.
+  GridFrame decode(const std::string& bytes) {
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-    Result<Frame> frame = decode_frame({data, bytes.size()});
+    const Result<const GridFrame*> frame = decoder_.decode({data, bytes.size()});
     if (!frame) throw std::runtime_error("a frame is damaged: " + frame.errors().front().message);
-    return std::move(frame).value();
+    return *frame.value();
   }
   void add_queued(std::size_t bytes) {
     if (stalled_) queued_ += bytes;
@@ -124,7 +125,8 @@ class FakeConnection final : public Connection {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Json> texts_;
-  std::vector<Frame> frames_;
+  FrameDecoder decoder_;
+  std::vector<GridFrame> frames_;
   std::size_t queued_ = 0;
   bool stalled_ = false;
   std::atomic<bool> failing_ = false;

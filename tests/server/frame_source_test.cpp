@@ -10,8 +10,13 @@ constexpr double kError = 0.005;  // [m]: a grid of 0.01 m
 PublishedState make_state(double x = 0.5) {
   PublishedState state;
   state.header.epoch = 1;
-  state.bodies.push_back({1, BodyKind::liquid, {{x, 0.5, 0.5}, {0.2, 0.2, 0.2}}, {}, {}});
-  state.bodies.push_back({2, BodyKind::rigid, {}, {0.1, 0.2, 0.3}, {1, 0, 0, 0}});
+  state.bodies.resize(2);
+  state.bodies[0].id = 1;
+  state.bodies[0].positions = {{x, 0.5, 0.5}, {0.2, 0.2, 0.2}};
+  state.bodies[1].id = 2;
+  state.bodies[1].kind = BodyKind::rigid;
+  state.bodies[1].center_of_mass = {0.1, 0.2, 0.3};
+  state.bodies[1].bounding_radius = 0.1;
   state.has_vat = true;
   return state;
 }
@@ -24,7 +29,9 @@ class FrameSourceTest : public testing::Test {
     source.publish(std::move(state), 2);
   }
   std::uint64_t tick_of(double max_error) {
-    return decode_frame(*source.frame(max_error)).value().header.tick;
+    const std::string& bytes = *source.frame(max_error);
+    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    return decode_key_frame({data, bytes.size()}).value().header.tick;
   }
   bool has_encoded(std::uint64_t frames) {
     const std::string sample = "\nvat_frames_encoded_total " + std::to_string(frames) + '\n';
@@ -89,12 +96,12 @@ TEST_F(FrameSourceTest, EveryOtherDifferenceIsAChange) {
       }),
       changed([](PublishedState& s) { s.bodies[0].id = 7; }),
       changed([](PublishedState& s) { s.bodies[0].kind = BodyKind::deformable; }),
-      changed([](PublishedState& s) { s.bodies[1].center_of_mass[2] += 1e-9; }),
+      changed([](PublishedState& s) { s.bodies[1].center_of_mass[2] += 0.01; }),
       changed([](PublishedState& s) {
         s.bodies[1].orientation = {0, 1, 0, 0};
       }),
       changed([](PublishedState& s) { s.bodies.pop_back(); }),
-      changed([](PublishedState& s) { s.vat_offset.x() = 1e-9; }),
+      changed([](PublishedState& s) { s.vat_offset.x() = 0.01; }),
       changed([](PublishedState& s) { s.has_vat = false; }),
       changed([](PublishedState& s) { s.header.epoch = 2; }),
       changed([](PublishedState& s) { s.header.playing = true; }),

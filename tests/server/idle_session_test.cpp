@@ -21,7 +21,7 @@ class IdleSession : public SessionTest {};
 TEST_F(IdleSession, CostsLessThanAThousandthOfACore) {
   constexpr std::chrono::seconds kWatch(3);
   client->result("frames.subscribe");
-  client->wait_frame([](const Frame&) { return true; });
+  client->wait_frame([](const GridFrame&) { return true; });
   std::this_thread::sleep_for(std::chrono::milliseconds(100));  // what was under way has ended
   const double before = processor_seconds();
   std::this_thread::sleep_for(kWatch);

@@ -48,7 +48,8 @@ TEST_F(SessionCommands, OfAPlayingSessionTakeEffectAtTheTickOfTheirReply) {
   std::vector<std::uint64_t> ticks;
   for (int i = 0; i < 5; ++i) {
     ticks.push_back(tick_of("world.set_gravity", {{"gravity", {i, 0, -9}}}));
-    client->wait_frame([&](const Frame& frame) { return frame.header.tick > ticks.back() + 1; });
+    client->wait_frame(
+        [&](const GridFrame& frame) { return frame.header.tick > ticks.back() + 1; });
   }
   const std::uint64_t end = tick_of("control.pause");
 
@@ -149,7 +150,8 @@ TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
   EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
   EXPECT_EQ(description.at("tick"), 3);
   EXPECT_EQ(description.at("bodies").at(1).at("kind"), "liquid");
-  const Frame frame = client->wait_frame([](const Frame& each) { return each.header.tick == 3; });
+  const GridFrame frame =
+      client->wait_frame([](const GridFrame& each) { return each.header.tick == 3; });
   EXPECT_EQ(frame.header.epoch, description.at("epoch").get<std::uint32_t>());
   EXPECT_EQ(client->error("grab.end", {{"grab", grab.at("grab")}}).at("code"), -32602);
 }
@@ -173,12 +175,13 @@ TEST_F(SessionCommands, LiquidFlowsInWithoutANewEpoch) {
   client->result("frames.subscribe");
   client->mark();
   client->result("control.step", {{"ticks", 10}});
-  const Frame frame = client->wait_frame([](const Frame& each) { return each.header.tick == 10; });
+  const GridFrame frame =
+      client->wait_frame([](const GridFrame& each) { return each.header.tick == 10; });
   EXPECT_EQ(frame.header.epoch, before.at("epoch").get<std::uint32_t>());
   const auto particles = before.at("bodies").at(0).at("particles").get<std::size_t>();
   // The tube holds two layers of one particle, and others come 0 s and 0.1 s after these; the last
   // step of the ten ticks begins before 0.2 s.
-  EXPECT_EQ(frame.blocks.at(1).grid_positions.size(), 3 * (particles + 4));
+  EXPECT_EQ(frame.blocks.at(1).positions.size(), 3 * (particles + 4));
   EXPECT_TRUE(client->events("session.description").empty());
   const Json state = client->result("state.query", {{"bodies", {"pool"}}});
   EXPECT_EQ(state.at("bodies").at(0).at("positions").size(), particles + 4);

@@ -20,7 +20,7 @@ class SessionControl : public SessionTest {
 
 TEST_F(SessionControl, APausedSessionStays) {
   play_fast();
-  client->wait_frame([](const Frame& frame) { return frame.header.tick >= 2; });
+  client->wait_frame([](const GridFrame& frame) { return frame.header.tick >= 2; });
   const std::uint64_t end = client->result("control.pause").at("tick");
   const std::string before = hash();
   EXPECT_EQ(client->result("control.pause").at("tick"), end) << "again";
@@ -30,14 +30,15 @@ TEST_F(SessionControl, APausedSessionStays) {
   wait_status([&](const Json& status) { return status.at("tick") == end; });
   EXPECT_EQ(hash(), before);
   client->result("control.step");
-  const Frame last = client->wait_frame([&](const Frame& f) { return f.header.tick == end + 1; });
+  const GridFrame last =
+      client->wait_frame([&](const GridFrame& f) { return f.header.tick == end + 1; });
   EXPECT_FALSE(last.header.playing);
 }
 
 TEST_F(SessionControl, PlayingAgainChangesNothing) {
   play_fast();
   client->result("control.play");
-  client->wait_frame([](const Frame& frame) { return frame.header.tick >= 5; });
+  client->wait_frame([](const GridFrame& frame) { return frame.header.tick >= 5; });
   const std::uint64_t end = client->result("control.pause").at("tick");
   Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
   advance_ticks(reference, end);
@@ -46,7 +47,7 @@ TEST_F(SessionControl, PlayingAgainChangesNothing) {
 
 TEST_F(SessionControl, AStepWhilePlayingPausesFirst) {
   play_fast();
-  const Frame frame = client->wait_frame([](const Frame& f) { return f.header.tick >= 2; });
+  const GridFrame frame = client->wait_frame([](const GridFrame& f) { return f.header.tick >= 2; });
   EXPECT_TRUE(frame.header.playing);
   const Json reply = client->result("control.step", {{"ticks", 4}});
   EXPECT_GE(reply.at("tick"), frame.header.tick + 4);
@@ -84,13 +85,13 @@ TEST_F(SessionControl, ResetGoesBackToTheSceneThatWasLoaded) {
 
 TEST_F(SessionControl, ResetKeepsPlaying) {
   play_fast();
-  client->wait_frame([](const Frame& frame) { return frame.header.tick >= 5; });
+  client->wait_frame([](const GridFrame& frame) { return frame.header.tick >= 5; });
   client->mark();
   client->result("control.reset");
   const Json description = client->wait_event("session.description");
   EXPECT_EQ(description.at("playing"), true);
   EXPECT_EQ(description.at("tick"), 0);
-  client->wait_frame([&](const Frame& frame) {
+  client->wait_frame([&](const GridFrame& frame) {
     return frame.header.epoch == description.at("epoch") && frame.header.tick >= 2;
   });
 }
@@ -136,7 +137,7 @@ TEST_F(SessionControl, PlayingIsNotFasterThanTheSpeed) {
   client->result("frames.subscribe");
   const auto begin = SteadyClock::now();
   client->result("control.play");
-  client->wait_frame([](const Frame& frame) { return frame.header.tick >= 40; });
+  client->wait_frame([](const GridFrame& frame) { return frame.header.tick >= 40; });
   const std::chrono::duration<double> wall = SteadyClock::now() - begin;
   // A late tick is made up for by at most one period.
   EXPECT_GE(wall.count(), 38 * 0.02 / 4);

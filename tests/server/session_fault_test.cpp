@@ -61,7 +61,7 @@ TEST_F(SessionFaults, AFaultInOneSessionIsNotOneOfOthers) {
   other->result("frames.subscribe");
   client->connection->fail(true);
   client->send("session.hash");
-  other->wait_frame([](const Frame& frame) { return frame.header.tick >= 20; });
+  other->wait_frame([](const GridFrame& frame) { return frame.header.tick >= 20; });
   client->connection->fail(false);
   client->result("session.hash");
 }

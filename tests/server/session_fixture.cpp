@@ -121,11 +121,11 @@ Json TestClient::wait_event(std::string_view event, const std::function<bool(con
   return connection->wait_text(fits_text, mark_).at("params");
 }
 
-Frame TestClient::wait_frame(const std::function<bool(const Frame&)>& fits) {
+GridFrame TestClient::wait_frame(const std::function<bool(const GridFrame&)>& fits) {
   for (;; ++seen_frames_) {
     connection->wait_frames(seen_frames_ + 1);
-    const Frame frame = connection->frames()[seen_frames_];
-    notify("frames.ack", {{"sequence", frame.header.sequence}});
+    const GridFrame frame = connection->frames()[seen_frames_];
+    notify("frames.ack", {{"number", frame.header.number}});
     if (fits(frame)) return frame;
   }
 }

@@ -47,7 +47,7 @@ class TestClient {
   /// The params of the first event since mark() that fits.
   Json wait_event(std::string_view event, const std::function<bool(const Json&)>& fits = {});
   /// The first frame that fits; acknowledges all frames until then.
-  Frame wait_frame(const std::function<bool(const Frame&)>& fits);
+  GridFrame wait_frame(const std::function<bool(const GridFrame&)>& fits);
   /// The params of all events since mark().
   std::vector<Json> events(std::string_view event) const;
   /// Events before this are not looked at again.

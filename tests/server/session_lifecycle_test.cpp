@@ -147,7 +147,7 @@ TEST_F(SessionLifecycle, ClosingEndsTheEventsAndTheFramesOfTheSession) {
   create("second");
   const auto guest = join("s2");
   guest->result("frames.subscribe");
-  guest->wait_frame([](const Frame&) { return true; });
+  guest->wait_frame([](const GridFrame&) { return true; });
   client->result("session.close", {{"session", "s2"}});
   guest->wait_event("session.closed");
   const std::vector<Json> texts = guest->connection->texts();
@@ -169,7 +169,7 @@ TEST_F(SessionLifecycle, ClosingAnswersWhatWaitsForAStep) {
 TEST_F(SessionLifecycle, AClientThatLeavesGetsNothingMoreOfTheSession) {
   const auto guest = join();
   guest->result("frames.subscribe");
-  guest->wait_frame([](const Frame&) { return true; });
+  guest->wait_frame([](const GridFrame&) { return true; });
   guest->result("session.leave");
   const std::size_t texts = guest->connection->texts().size();
   const std::size_t frames = guest->connection->frames().size();
@@ -198,14 +198,14 @@ TEST_F(SessionLifecycle, ASceneThatIsRefusedLeavesTheOldOneRunning) {
   client->result("control.set_speed", {{"speed", 4}});
   client->result("frames.subscribe");
   client->result("control.play");
-  client->wait_frame([](const Frame& frame) { return frame.header.tick >= 3; });
+  client->wait_frame([](const GridFrame& frame) { return frame.header.tick >= 3; });
   client->mark();
   Json scene = Json::parse(mixed_scene_text());
   scene["bodies"][2]["material"] = "lead";
   EXPECT_EQ(client->error("scene.load", {{"scene", scene}}).at("data").at("path"),
             "/scene/bodies/2/material");
   const std::uint64_t now = tick();
-  client->wait_frame([&](const Frame& frame) { return frame.header.tick > now; });
+  client->wait_frame([&](const GridFrame& frame) { return frame.header.tick > now; });
   EXPECT_TRUE(client->events("session.description").empty());
   const std::uint64_t end = client->result("control.pause").at("tick");
   Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();

@@ -212,10 +212,10 @@ describe('requests', () => {
   it('leaves params out where there are none', () => {
     const socket = openLine();
     connection.request('control.play', {}).catch(() => undefined);
-    connection.notify('frames.ack', { sequence: 7 });
+    connection.notify('frames.ack', { number: 7 });
     expect(socket.sent).toEqual([
       { jsonrpc: '2.0', id: 1, method: 'control.play' },
-      { jsonrpc: '2.0', method: 'frames.ack', params: { sequence: 7 } },
+      { jsonrpc: '2.0', method: 'frames.ack', params: { number: 7 } },
     ]);
   });
 

@@ -7,11 +7,11 @@ let newest: NewestFrame;
 
 beforeEach(() => {
   acknowledged = [];
-  newest = new NewestFrame((sequence) => acknowledged.push(sequence));
+  newest = new NewestFrame((number) => acknowledged.push(number));
 });
 
-function frame(sequence: number): Frame {
-  return { header: { sequence } } as Frame;
+function frame(number: number): Frame {
+  return { header: { number } } as Frame;
 }
 
 it('gives the last of several frames, once, and acknowledges it', () => {

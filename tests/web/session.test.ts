@@ -124,13 +124,13 @@ describe('while it is in', () => {
   it('decodes frames and acknowledges them when told to', async () => {
     session.open();
     const socket = await enter();
-    const bytes = goldenBytes('v1-all');
+    const bytes = goldenBytes('v2-all');
     socket.receive(bytes);
     expect(frames).toHaveLength(1);
     expect(frames[0]?.bytes).toBe(bytes.byteLength);
     expect(socket.methods).not.toContain('frames.ack');
-    session.acknowledge(frames[0]?.frame.header.sequence ?? 0);
-    expect(socket.sent.at(-1)).toMatchObject({ method: 'frames.ack', params: { sequence: 9 } });
+    session.acknowledge(frames[0]?.frame.header.number ?? 0);
+    expect(socket.sent.at(-1)).toMatchObject({ method: 'frames.ack', params: { number: 9 } });
     expect(socket.sent.at(-1)).not.toHaveProperty('id');
   });
 
@@ -139,7 +139,7 @@ describe('while it is in', () => {
     const socket = await enter();
     socket.receive(new ArrayBuffer(10));
     expect(faults).toEqual([expect.stringContaining('(truncated)')]);
-    socket.receive(goldenBytes('v1-empty'));
+    socket.receive(goldenBytes('v2-empty'));
     expect(frames).toHaveLength(1);
   });
 

@@ -12,20 +12,24 @@ export interface FrameHeader {
   playing: boolean;
   /** The session runs slower than its set speed. */
   slow: boolean;
+  /** Level of detail, 0 to 3, and whether there is more beyond a region. */
+  detail: number;
+  region: boolean;
   epoch: number;
-  sequence: number;
+  /** Counts the session's frames that show something new. */
+  number: number;
+  /** This client gets every stride-th number. */
+  stride: number;
   tick: number;
   /** Simulation time [s]. */
   time: number;
   /** Server's clock when the state was published [s since 1970]. */
   published: number;
-  /** Frames dropped for this client so far. */
-  dropped: number;
+  /** Simulated seconds per second. */
+  realTimeFactor: number;
   /** A position is origin + quantum * integer, per axis [m]. */
   origin: [number, number, number];
   quantum: number;
-  /** Simulated seconds per second. */
-  realTimeFactor: number;
 }
 
 /** Positions of a liquid or deformable body: x, y, z of each particle in grid steps. */
@@ -56,6 +60,8 @@ export type FrameBlock = GridBlock | PoseBlock | VatBlock;
 
 export interface Frame {
   header: FrameHeader;
+  /** Frames that the server left out for this client so far. */
+  dropped: number;
   blocks: FrameBlock[];
 }
 
@@ -79,34 +85,46 @@ export class FrameError extends Error {
   }
 }
 
-const kHeaderBytes = 96;
+const kHeaderBytes = 108;
 const kBlockHeaderBytes = 12;
-const kPoseBytes = 40;
-const kOffsetBytes = 24;
 const kMagic = 0x46544156; // "VATF", little-endian
-const kKnownFlags = 0b11;
-/** The encoding that belongs to each kind, by the kind's value. */
-const kEncodings = [1, 1, 2, 3];
-const kUnitTolerance = 1e-3;
+const kKnownFlags = 31;
+
+/** Decodes the frames of one connection in their order. */
+export class FrameDecoder {
+  private last = 0;
+  private dropped = 0;
+
+  /** @throws FrameError as decodeFrame() */
+  decode(buffer: ArrayBuffer): Frame {
+    const frame = decodeFrame(buffer);
+    const { number, stride } = frame.header;
+    if (this.last > 0 && number > this.last) {
+      this.dropped += Math.max(0, Math.round((number - this.last) / stride) - 1);
+    }
+    this.last = number;
+    return { ...frame, dropped: this.dropped };
+  }
+}
 
 /**
- * Decodes one key frame. Grid positions in the result share `buffer`.
+ * Decodes one key frame.
  * @throws FrameError with the first reason, in the order of the bytes, why this is not one frame.
  */
-export function decodeFrame(buffer: ArrayBuffer): Frame {
+export function decodeFrame(buffer: ArrayBuffer): Omit<Frame, 'dropped'> {
   const view = new DataView(buffer);
-  needBytes(view, 0, kHeaderBytes);
+  needBytes(view, 0, kHeaderBytes + 4);
   checkFixedFields(view);
   const header = readHeader(view);
   checkNumbers(header);
-  const blockCount = view.getUint32(52, true);
-  needBytes(view, kHeaderBytes, blockCount * kBlockHeaderBytes);
+  const blockCount = view.getUint32(kHeaderBytes, true);
+  let offset = kHeaderBytes + 4;
+  needBytes(view, offset, blockCount * kBlockHeaderBytes);
   const blocks: FrameBlock[] = [];
-  let offset = kHeaderBytes;
   for (let i = 0; i < blockCount; ++i) {
-    const block = readBlock(view, offset, i === 0);
+    const [block, end] = readBlock(view, offset, i === 0, header);
     blocks.push(block);
-    offset += blockBytes(block);
+    offset = end;
   }
   if (offset !== view.byteLength) {
     throw new FrameError('extra_bytes', `${view.byteLength - offset} bytes after the last block`);
@@ -119,31 +137,33 @@ function checkFixedFields(view: DataView): void {
     throw new FrameError('bad_magic', 'the first four bytes are not "VATF"');
   }
   const version = view.getUint8(4);
-  if (version !== 1) throw new FrameError('bad_version', `version ${version} where 1 is known`);
+  if (version !== 2) throw new FrameError('bad_version', `version ${version} where 2 is known`);
   const type = view.getUint8(5);
   if (type !== 1) throw new FrameError('bad_type', `type ${type} where 1, a key frame, is known`);
-  if ((view.getUint16(6, true) & ~kKnownFlags) !== 0 || view.getUint32(92, true) !== 0) {
-    throw new FrameError('bad_header', 'unused flags and the reserved field must be 0');
+  if ((view.getUint8(6) & ~kKnownFlags) !== 0 || view.getUint8(7) === 0) {
+    throw new FrameError('bad_header', 'unused flags must be 0, and the stride above 0');
   }
-  if (view.getUint32(40, true) !== 0 || view.getUint32(44, true) !== 0) {
+  if (view.getUint32(16, true) !== 0) {
     throw new FrameError('bad_header', 'a key frame must have no references');
   }
 }
 
 function readHeader(view: DataView): FrameHeader {
-  const flags = view.getUint16(6, true);
+  const flags = view.getUint8(6);
   return {
     playing: (flags & 1) !== 0,
     slow: (flags & 2) !== 0,
+    detail: (flags >> 2) & 3,
+    region: (flags & 16) !== 0,
+    stride: view.getUint8(7),
     epoch: view.getUint32(8, true),
-    sequence: view.getUint32(12, true),
-    tick: Number(view.getBigUint64(16, true)),
-    time: view.getFloat64(24, true),
-    published: view.getFloat64(32, true),
-    dropped: view.getUint32(48, true),
-    origin: readVector(view, 56),
-    quantum: view.getFloat64(80, true),
-    realTimeFactor: view.getFloat32(88, true),
+    number: view.getUint32(12, true),
+    tick: Number(view.getBigUint64(24, true)),
+    time: view.getFloat64(32, true),
+    published: view.getFloat64(40, true),
+    realTimeFactor: view.getFloat32(48, true),
+    origin: [view.getFloat64(52, true), view.getFloat64(60, true), view.getFloat64(68, true)],
+    quantum: view.getFloat64(76, true),
   };
 }
 
@@ -156,88 +176,65 @@ function checkNumbers({ time, published, realTimeFactor, origin, quantum }: Fram
   }
 }
 
-function readBlock(view: DataView, offset: number, first: boolean): FrameBlock {
+/** The block, and the offset behind it. */
+function readBlock(
+  view: DataView,
+  offset: number,
+  first: boolean,
+  header: FrameHeader,
+): [FrameBlock, number] {
   needBytes(view, offset, kBlockHeaderBytes);
   const body = view.getUint32(offset, true);
   const kind = view.getUint8(offset + 4);
+  const numbered = view.getUint16(offset + 6, true);
   const count = view.getUint32(offset + 8, true);
-  checkBlockHeader(view, offset, first);
-  const data = offset + kBlockHeaderBytes;
-  switch (kind) {
-    case BodyKind.rigid:
-      return { kind, body, ...readPose(view, data) };
-    case BodyKind.vat:
-      return { kind, body: 0, offset: readPosition(view, data, kOffsetBytes) };
-    default:
-      needBytes(view, data, 6 * count);
-      return { kind: kind as GridBlock['kind'], body, positions: gridView(view, data, 3 * count) };
-  }
-}
-
-function checkBlockHeader(view: DataView, offset: number, first: boolean): void {
-  const kind = view.getUint8(offset + 4);
   const isVat = kind === BodyKind.vat;
-  const hasParticles = kind === BodyKind.liquid || kind === BodyKind.deformable;
-  if (kind >= kEncodings.length) badBlock('its kind must be from 0 to 3');
-  if (view.getUint8(offset + 5) !== kEncodings[kind]) badBlock('its encoding must fit its kind');
-  if (view.getUint16(offset + 6, true) !== 0) badBlock('its reserved field must be 0');
-  if (!hasParticles && view.getUint32(offset + 8, true) !== 0) badBlock('it has no particles');
-  if (isVat !== (view.getUint32(offset, true) === 0)) badBlock('body 0 must be the vat');
+  if (kind > BodyKind.vat) badBlock('its kind must be from 0 to 3');
+  if (isVat !== (body === 0)) badBlock('body 0 must be the vat');
   if (isVat && !first) badBlock('the vat must come first');
+  const data = offset + kBlockHeaderBytes;
+  if (isVat) {
+    needBytes(view, data, 12);
+    return [{ kind, body: 0, offset: readPlace(view, data, [0, 0, 0], header.quantum) }, data + 12];
+  }
+  if (kind === BodyKind.rigid) {
+    needBytes(view, data, 28);
+    const position = readPlace(view, data, header.origin, header.quantum / 2);
+    return [{ kind, body, position, orientation: readOrientation(view, data + 12) }, data + 28];
+  }
+  const places = data + (numbered ? 4 * count : 0);
+  needBytes(view, places, 6 * count);
+  const positions = new Uint16Array(3 * count);
+  for (let i = 0; i < positions.length; ++i) positions[i] = view.getUint16(places + 2 * i, true);
+  return [{ kind: kind as GridBlock['kind'], body, positions }, places + 6 * count];
 }
 
 function badBlock(reason: string): never {
   throw new FrameError('bad_block', `a block is wrong: ${reason}`);
 }
 
-/** Every part of a frame has an even length, so the view is aligned. */
-function gridView(view: DataView, offset: number, length: number): GridBlock['positions'] {
-  return new Uint16Array(view.buffer as ArrayBuffer, offset, length);
-}
+type Vector = [number, number, number];
 
-function readPose(view: DataView, offset: number): Pick<PoseBlock, 'position' | 'orientation'> {
-  const position = readPosition(view, offset, kPoseBytes);
-  const orientation: PoseBlock['orientation'] = [
-    view.getFloat32(offset + 24, true),
-    view.getFloat32(offset + 28, true),
-    view.getFloat32(offset + 32, true),
-    view.getFloat32(offset + 36, true),
-  ];
-  const square = orientation.reduce((sum, component) => sum + component * component, 0);
-  if (!(Math.abs(square - 1) <= kUnitTolerance)) badBlock('its orientation must have length 1');
-  return { position, orientation };
-}
-
-/** The vector with which `bytes` bytes begin. */
-function readPosition(view: DataView, offset: number, bytes: number): [number, number, number] {
-  needBytes(view, offset, bytes);
-  const position = readVector(view, offset);
-  if (!position.every(Number.isFinite)) badBlock('its position must be finite');
-  return position;
-}
-
-function readVector(view: DataView, offset: number): [number, number, number] {
+function readPlace(view: DataView, offset: number, [x, y, z]: Vector, step: number): Vector {
   return [
-    view.getFloat64(offset, true),
-    view.getFloat64(offset + 8, true),
-    view.getFloat64(offset + 16, true),
+    x + step * view.getInt32(offset, true),
+    y + step * view.getInt32(offset + 4, true),
+    z + step * view.getInt32(offset + 8, true),
   ];
+}
+
+function readOrientation(view: DataView, offset: number): PoseBlock['orientation'] {
+  const w = view.getInt32(offset, true);
+  const x = view.getInt32(offset + 4, true);
+  const y = view.getInt32(offset + 8, true);
+  const z = view.getInt32(offset + 12, true);
+  const length = Math.hypot(w, x, y, z);
+  return [w / length, x / length, y / length, z / length];
 }
 
 function needBytes(view: DataView, offset: number, count: number): void {
   const left = view.byteLength - offset;
   if (left < count) {
     throw new FrameError('truncated', `the frame ends early: ${left} bytes where ${count} are due`);
-  }
-}
-
-function blockBytes(block: FrameBlock): number {
-  switch (block.kind) {
-    case BodyKind.rigid:
-      return kBlockHeaderBytes + kPoseBytes;
-    case BodyKind.vat:
-      return kBlockHeaderBytes + kOffsetBytes;
-    default:
-      return kBlockHeaderBytes + block.positions.byteLength;
   }
 }

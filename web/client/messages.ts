@@ -167,7 +167,7 @@ export interface Methods {
   'frames.subscribe': Method<{ max_error?: number; every?: number }, InEffect>;
   'frames.unsubscribe': Method<Nothing, InEffect>;
   /** The tick is there while the client is in a session. */
-  'frames.ack': Method<{ sequence: number }, Partial<InEffect>>;
+  'frames.ack': Method<{ number: number }, Partial<InEffect>>;
   'state.query': Method<
     { bodies?: (string | number)[] },
     InEffect & { time: number; bodies: BodyState[] }

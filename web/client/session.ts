@@ -1,7 +1,7 @@
 import { ClockOffset } from './clock';
 import { Connection } from './connection';
 import type { ConnectionOptions, ConnectionState } from './connection';
-import { decodeFrame, FrameError } from './frame';
+import { FrameDecoder, FrameError } from './frame';
 import type { Frame } from './frame';
 import type { Event, MethodName, Params, Result, SessionDescription } from './messages';
 import { RequestError } from './requests';
@@ -32,6 +32,7 @@ export interface SessionOptions extends ConnectionOptions {
 export class Session {
   private readonly connection: Connection;
   private clock = new ClockOffset();
+  private decoder = new FrameDecoder();
   private clockTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
@@ -58,9 +59,9 @@ export class Session {
     return this.connection.request(method, params);
   }
 
-  /** Acknowledges the frame with this sequence and all before it; the server then sends more. */
-  acknowledge(sequence: number): void {
-    this.connection.notify('frames.ack', { sequence });
+  /** Acknowledges the frame with this number and all before it; the server then sends more. */
+  acknowledge(number: number): void {
+    this.connection.notify('frames.ack', { number });
   }
 
   private handleState(state: ConnectionState): void {
@@ -73,6 +74,7 @@ export class Session {
     try {
       const { session } = this.options;
       this.clock = new ClockOffset();
+      this.decoder = new FrameDecoder();
       await this.measureClock();
       const { description } = await this.request(
         'session.join',
@@ -111,7 +113,7 @@ export class Session {
 
   private handleFrame(bytes: ArrayBuffer): void {
     try {
-      this.handlers.onFrame?.(decodeFrame(bytes), bytes.byteLength);
+      this.handlers.onFrame?.(this.decoder.decode(bytes), bytes.byteLength);
     } catch (error) {
       if (!(error instanceof FrameError)) throw error;
       this.handlers.onFault?.(`a frame that cannot be read (${error.code}): ${error.message}`);

@@ -47,7 +47,7 @@ export class App {
   });
   private description: SessionDescription | undefined;
   private clockOffset: number | undefined;
-  private readonly newest = new NewestFrame((sequence) => this.stream.acknowledge(sequence));
+  private readonly newest = new NewestFrame((number) => this.stream.acknowledge(number));
 
   start(): void {
     this.stage.scene.add(this.world.group, this.marker.group);
@@ -182,7 +182,7 @@ export class App {
   private showFrame(frame: Frame): void {
     if (!this.world.show(frame)) return;
     this.stage.follow(this.world.bounds);
-    this.counters.showFrame(frame.header, this.clockOffset);
+    this.counters.showFrame(frame, this.clockOffset);
     this.canvas.dataset.tick = String(frame.header.tick);
     this.stage.invalidate();
   }

@@ -1,4 +1,4 @@
-import type { FrameHeader, SessionStatus } from '../../client/index';
+import type { Frame, SessionStatus } from '../../client/index';
 import { element } from './elements';
 import { formatBytes, formatCount, formatFactor, formatMilliseconds } from './format';
 import { formatSeconds } from './format';
@@ -42,10 +42,10 @@ export class Counters {
   }
 
   /** A frame is drawn; `clockOffset` is how far the server's clock is ahead of ours [s]. */
-  showFrame(header: FrameHeader, clockOffset: number | undefined): void {
+  showFrame({ header, dropped }: Frame, clockOffset: number | undefined): void {
     this.showTick(header.tick, header.time);
     this.showRate(header.realTimeFactor, header.slow);
-    write(this.dropped, header.dropped, formatCount(header.dropped));
+    write(this.dropped, dropped, formatCount(dropped));
     // Half a round trip of error can make a young frame seem to come from the future.
     this.age =
       clockOffset === undefined

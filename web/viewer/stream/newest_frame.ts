@@ -7,7 +7,7 @@ import type { Frame } from '../../client/index';
 export class NewestFrame {
   private frame: Frame | undefined;
 
-  constructor(private readonly acknowledge: (sequence: number) => void) {}
+  constructor(private readonly acknowledge: (number: number) => void) {}
 
   put(frame: Frame): void {
     this.frame = frame;
@@ -17,7 +17,7 @@ export class NewestFrame {
   take(): Frame | undefined {
     const frame = this.frame;
     this.frame = undefined;
-    if (frame) this.acknowledge(frame.header.sequence);
+    if (frame) this.acknowledge(frame.header.number);
     return frame;
   }
 

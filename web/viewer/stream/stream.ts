@@ -41,8 +41,8 @@ export class Stream {
     });
   };
 
-  acknowledge(sequence: number): void {
-    this.post({ type: 'acknowledge', sequence });
+  acknowledge(number: number): void {
+    this.post({ type: 'acknowledge', number });
   }
 
   private post(message: ToWorker): void {

@@ -66,7 +66,7 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
       void request(data.key, data.method, data.params);
       break;
     case 'acknowledge':
-      session?.acknowledge(data.sequence);
+      session?.acknowledge(data.number);
       break;
   }
 };

@@ -11,7 +11,7 @@ import type {
 export type ToWorker =
   | { type: 'open'; url: string; session: string | undefined }
   | { type: 'request'; key: number; method: MethodName; params: object }
-  | { type: 'acknowledge'; sequence: number };
+  | { type: 'acknowledge'; number: number };
 
 export type FromWorker =
   | { type: 'state'; state: ConnectionState }
