@@ -1,6 +1,7 @@
 #include "server/server_metrics.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "server/output/text.h"
 
@@ -59,6 +60,7 @@ void ServerMetrics::add_tick(const Tick& tick) {
       std::ranges::lower_bound(kTickBounds, tick.time.count(), {}, &TickBound::seconds);
   ++ticks_[static_cast<std::size_t>(bound - kTickBounds.begin())];
   tick_seconds_ += tick.time.count();
+  recent_ticks_.add(tick.time.count());
   substeps_ += tick.substeps;
   undone_substeps_ += tick.undone_substeps;
   for (const StageClock::Stage& stage : tick.stages) {
@@ -66,6 +68,11 @@ void ServerMetrics::add_tick(const Tick& tick) {
     total.calls += stage.calls;
     total.seconds += stage.seconds();
   }
+}
+
+void ServerMetrics::add_lateness(std::chrono::duration<double> lateness) {
+  const std::lock_guard lock(mutex_);
+  recent_lateness_.add(lateness.count());
 }
 
 void ServerMetrics::add_encoded_frame() {
@@ -78,6 +85,7 @@ std::string ServerMetrics::to_text(const Present& present) const {
   append_present(text, present);
   const std::lock_guard lock(mutex_);
   append_ticks(text);
+  append_recent_ticks(text);
   append_counter(text, "vat_substeps_total",
                  "Steps taken, parts of steps and undone ones included.", substeps_);
   append_counter(text, "vat_undone_substeps_total",
@@ -101,6 +109,20 @@ void ServerMetrics::append_ticks(std::string& text) const {
   append_sample(text, bucket, label("le", "+Inf"), count);
   append_sample(text, std::string(kName) + "_sum", "", tick_seconds_);
   append_sample(text, std::string(kName) + "_count", "", count);
+}
+
+void ServerMetrics::append_recent_ticks(std::string& text) const {
+  const auto append = [&](const char* name, const char* help, const RecentValues& values) {
+    append_head(text, name, "gauge", help);
+    for (const auto& [share, name_of_share] : {std::pair(0.5, "0.5"), std::pair(0.99, "0.99")}) {
+      append_sample(text, name, label("quantile", name_of_share), values.quantile(share));
+    }
+  };
+  append("vat_recent_tick_seconds", "Wall time of the steps of a tick, of the last 512 ticks.",
+         recent_ticks_);
+  append("vat_recent_tick_lateness_seconds",
+         "How long after its time a tick began, of the last 512 of playing sessions.",
+         recent_lateness_);
 }
 
 void ServerMetrics::append_stages(std::string& text) const {

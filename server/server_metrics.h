@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/support/instruction_set.h"
+#include "server/recent_values.h"
 #include "server/stage_clock.h"
 
 namespace vat {
@@ -25,6 +26,8 @@ class ServerMetrics {
     std::span<const StageClock::Stage> stages;
   };
   void add_tick(const Tick& tick);
+  /// How long after its time a tick of a playing session has begun.
+  void add_lateness(std::chrono::duration<double> lateness);
   void add_encoded_frame();
 
   /// What is so now.
@@ -56,11 +59,14 @@ class ServerMetrics {
     double seconds = 0;
   };
   void append_ticks(std::string& text) const;
+  void append_recent_ticks(std::string& text) const;
   void append_stages(std::string& text) const;
 
   mutable std::mutex mutex_;
   std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound, those above all last
   double tick_seconds_ = 0;
+  RecentValues recent_ticks_;
+  RecentValues recent_lateness_;
   std::uint64_t substeps_ = 0;
   std::uint64_t undone_substeps_ = 0;
   std::uint64_t encoded_frames_ = 0;

@@ -151,6 +151,7 @@ void WsEndpoint::start() {
 }
 
 void WsEndpoint::run() {
+  pthread_setname_np(pthread_self(), "vat-network");
   bool finished = false;
   while (!finished) finished = guarded("network", [this] { io_.run(); });
   forget_all();

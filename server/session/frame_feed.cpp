@@ -1,6 +1,5 @@
 #include "server/session/frame_feed.h"
 
-#include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 

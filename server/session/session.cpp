@@ -222,6 +222,7 @@ void Session::end_all_steps() {
 void Session::tick_turn() {
   const auto now = SteadyClock::now();
   if (!core_.playing() || now < clock_.due()) return;  // a wait that was overtaken by a command
+  core_.environment().metrics.add_lateness(now - clock_.due());
   run_tick(now, true);
   clock_.tick_done(SteadyClock::now());
   wait_for_tick();

@@ -6,6 +6,7 @@
 #include "tests/bench/accuracy.h"
 #include "tests/bench/compare.h"
 #include "tests/bench/document.h"
+#include "tests/bench/fanout.h"
 #include "tests/bench/instructions.h"
 #include "tests/bench/speed.h"
 #include "tests/bench/stability.h"
@@ -14,7 +15,7 @@
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app{"Speed, validation, accuracy and stability of the simulation", "vat bench"};
+  CLI::App app{"Speed, validation, accuracy and stability of the simulation, and many viewers", "vat bench"};
   // Not require_subcommand(1): that would hide which word is not a sub-command.
   app.require_subcommand(0, 1);
   app.callback([&app] {
@@ -27,6 +28,7 @@ int run(int argc, char** argv) {
   vat::bench::add_validate_command(app, exit_code);
   vat::bench::add_accuracy_command(app, exit_code);
   vat::bench::add_stability_command(app, exit_code);
+  vat::bench::add_fanout_command(app, exit_code);
   vat::bench::add_document_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -56,6 +56,21 @@ TEST(ServerMetrics, TicksAreCountedByTheirBounds) {
   EXPECT_THAT(metrics.to_text({}), HasSubstr("\nvat_undone_substeps_total 8\n"));
 }
 
+// Of 1000 ticks those of 489 to 1000 ms are the last 512.
+TEST(ServerMetrics, QuantilesAreThoseOfTheLastTicks) {
+  ServerMetrics metrics;
+  EXPECT_THAT(metrics.to_text({}), HasSubstr("\nvat_recent_tick_seconds{quantile=\"0.5\"} 0\n"));
+  for (int i = 1; i <= 1000; ++i) {
+    metrics.add_tick({i * 1ms, 1, 0, {}});
+    metrics.add_lateness(i * 2ms);
+  }
+  const std::string text = metrics.to_text({});
+  EXPECT_THAT(text, HasSubstr("# TYPE vat_recent_tick_seconds gauge\n"
+                              "vat_recent_tick_seconds{quantile=\"0.5\"} 0.744\n"
+                              "vat_recent_tick_seconds{quantile=\"0.99\"} 0.994\n"));
+  EXPECT_THAT(text, HasSubstr("\nvat_recent_tick_lateness_seconds{quantile=\"0.99\"} 1.988\n"));
+}
+
 TEST(ServerMetrics, StagesOfOneNameAreOne) {
   ServerMetrics metrics;
   const std::vector<StageClock::Stage> first = {{"walls", 3, 250ms}, {"kick", 6, 125ms}};

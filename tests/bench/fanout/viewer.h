@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace vat::bench {
+
+using LoadClock = std::chrono::steady_clock;
+
+enum class ViewerKind : std::uint8_t {
+  plain,     ///< reads all and acknowledges every frame
+  half,      ///< reads half of what frames at the full rate need
+  stalled,   ///< stops reading after some frames
+  restless,  ///< leaves after a second or so, and comes again
+};
+inline constexpr std::size_t kViewerKinds = 4;
+const char* name_of(ViewerKind kind);
+
+/// What viewers of a kind have seen in the measured time.
+struct Sightings {
+  std::uint64_t frames = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t joins = 0;
+  std::uint64_t closed = 0;         ///< by the server
+  std::vector<float> ages;          ///< [s] of each frame when its last byte was read
+  std::vector<float> first_frames;  ///< [s] from subscription to first frame
+};
+
+/// What all viewers of a process share.
+struct LoadSettings {
+  std::uint16_t port = 0;
+  double max_error = 0;              ///< [m] that each asks for
+  double half_bytes_per_second = 0;  ///< that `half` reads
+  std::string session = "s1";
+};
+
+/// A WebSocket of a viewer, as cheap as can be: it looks at the first bytes of frames only, throws
+/// the rest away in the system, and never waits.
+class Viewer {
+ public:
+  Viewer(ViewerKind kind, const LoadSettings& settings, std::uint32_t seed);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// Connects and asks for the upgrade, anew if it was connected. Throws std::runtime_error where
+  /// the system refuses.
+  void connect();
+  int socket() const { return socket_; }
+  /// Reads what has come. False where it wants no more for now.
+  bool read(Sightings& sightings);
+  /// Called often. True where it has a new socket or may read again.
+  bool look_at_clock(LoadClock::time_point now, Sightings& sightings);
+  /// Whether it has got a frame since it has connected.
+  bool has_frame() const { return has_frame_; }
+  ViewerKind kind() const { return kind_; }
+
+ private:
+  enum class Stage { closed, upgrading, open };
+  void reset();
+  void send_text(const std::string& text);
+  void send_all(const std::string& bytes);
+  void take(const char* bytes, std::size_t size, Sightings& sightings);
+  std::size_t take_reply(const char* bytes, std::size_t size);
+  std::size_t take_head(const char* bytes, std::size_t size);
+  void end_message(Sightings& sightings);
+  void end_frame(Sightings& sightings);
+  std::size_t readable_now(std::size_t wanted);
+  void lose(Sightings& sightings);
+
+  const ViewerKind kind_;
+  const LoadSettings& settings_;
+  std::mt19937 random_;
+  int socket_ = -1;
+  Stage stage_ = Stage::closed;
+  bool has_frame_ = false;
+  int frames_ = 0;  // since it has connected
+  LoadClock::time_point subscribed_;
+  LoadClock::time_point leaves_;
+
+  std::string reply_;                     // to the upgrade, so far
+  std::array<unsigned char, 14> head_{};  // of the message under way
+  std::size_t head_size_ = 0;
+  std::uint64_t left_ = 0;  // bytes of its payload that have not come
+  std::uint64_t size_ = 0;  // of its payload
+  int opcode_ = 0;
+  std::array<char, 128> start_{};  // of its payload
+  std::size_t start_size_ = 0;
+
+  double allowance_ = 0;  // [bytes] that a half-speed reader may read now
+  LoadClock::time_point allowed_;
+};
+
+}  // namespace vat::bench
