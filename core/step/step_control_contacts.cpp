@@ -213,7 +213,7 @@ Real rigid_step(const Search& search, const std::vector<ContactOutlook>& outlook
   RigidLoad stiffness;
   RigidLoad damping;
   for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
-    const ContactOutlook& own = outlooks[i];
+    const ContactOutlook& own = outlooks[i - search.model().free_count];
     if (own.is_empty()) continue;
     sum.add(own);
     const Mat3 cross = cross_matrix(search.at.position[i] - now.center_of_mass);
@@ -264,18 +264,24 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
                       reach,
                       model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
                       greatest_vat_speed(model)};
+  // Coupled liquid meets walls without springs.
+  const Index first = model.is_coupled && model.contact_reach <= 0 ? model.liquid_count : 0;
+  if (first == model.particle_count) return;
   find_inverse_masses(search, scratch.inverse_mass);
-  scratch.outlook.resize(model.particle_count);
-  for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
+  scratch.outlook.resize(model.particle_count - model.free_count);
+  for_blocks(f.runner, model.particle_count - first, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<Index>(k);
+      const Index i = first + static_cast<Index>(k);
       ContactOutlook outlook;
       if (model.contact_reach > 0) outlook = look_at_pairs(search, scratch.inverse_mass, i);
       if (!model.walls.empty()) {
         outlook.add(look_at_walls(search, scratch.inverse_mass[i], i));
       }
-      scratch.outlook[i] = outlook;
-      if (i >= model.free_count || model.inverse_mass[i] == 0 || outlook.is_empty()) continue;
+      if (i >= model.free_count) {
+        scratch.outlook[i - model.free_count] = outlook;
+        continue;
+      }
+      if (model.inverse_mass[i] == 0 || outlook.is_empty()) continue;
       particle_steps[i] = std::min(
           particle_steps[i],
           particle_step(model.scene.numerics, outlook, model.inverse_mass[i], bounds.own[i]));

@@ -31,7 +31,7 @@ inline constexpr Real kFullAmplitude = 0.01;
 
 /// Scratch of find_contact_steps().
 struct ContactScratch {
-  std::vector<ContactOutlook> outlook;  ///< by particle
+  std::vector<ContactOutlook> outlook;  ///< by rigid particle
   std::vector<Real> inverse_mass;       ///< of the motion that a force on the particle starts
 };
 
