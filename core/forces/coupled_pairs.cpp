@@ -19,16 +19,13 @@ bool has_central_viscosity(const Model& model) {
 }
 
 PairInputs pair_inputs(const StepContext& c) {
-  PairInputs inputs;
-  inputs.places = c.work.sources.places.data();
+  PairInputs inputs = c.work.sources.inputs();
   inputs.inverse_support = 1 / support_of(c.model);
-  inputs.first_mirrored = c.work.sources.first_mirrored();
   return inputs;
 }
 
 PairInputs force_inputs(const StepContext& c) {
   PairInputs inputs = pair_inputs(c);
-  inputs.motions = c.work.sources.motions.data();
   inputs.viscosity =
       c.model.liquids[c.model.material[0]]->central_viscosity * inputs.inverse_support;
   if (has_several_liquids(c.model)) {
@@ -140,8 +137,7 @@ PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& sou
   // Where there is no pressure, the weight beyond a wall adds none.
   const bool is_free = !c_.model.is_filled && source.pressure <= 0;
   if (!is_mirrored || is_free) return vat::motion_of(source.pressure, velocity);
-  const PairPlace& place = c_.work.sources.places[image.source];
-  const Vec3 position(place.x, place.y, place.z);
+  const Vec3 position = c_.work.sources.place(image.source);
   const bool is_first = is_same_liquid_ || image.source >= c_.work.sources.first_solid();
   const LiquidModel& liquid =
       liquid_of(c_.model, is_first ? 0 : c_.work.liquid.grid.order()[image.source]);

@@ -76,10 +76,9 @@ void add_viscous_image_forces(StepContext& c) {
       [&](const PairImage& image, const PairMotion& source) {
         const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
         if (image.source >= order.size() || !is_mirrored) return PairMotion{};
-        const PairPlace& p = work.sources.places[image.source];
         const Mirror mirror = image.mirror();
         const MirroredVelocity mirrored =
-            mirrored_velocity(*model.scene.vat, motion, mirror, {p.x, p.y, p.z});
+            mirrored_velocity(*model.scene.vat, motion, mirror, work.sources.place(image.source));
         const Vec3 velocity(source.vx, source.vy, source.vz);
         return vat::motion_of(mirrored.is_dragged ? 1 : source.pressure,
                               mirrored.factor.cwiseProduct(velocity) + mirrored.shift);

@@ -73,7 +73,17 @@ void compute_tait_density(StepContext& c) {
     if (cluster.has_mirrored && sum > 1) sum -= own_excess(c, motion, liquid_of(model, i), slot);
     work.density[i] = rest_density[material] * sum;
   };
-  work.liquid_clusters.for_each_sum<1>(c.runner, pair_inputs(c), table.density, set_density);
+  if (model.is_incompressible && !has_solids(model)) {
+    work.volume_slopes.resize(order.size());
+    const auto set_both = [&](const TargetCluster& cluster, Index slot, const Real* sums) {
+      set_density(cluster, slot, sums);
+      work.volume_slopes[slot] = {Eigen::Map<const Vec3>(sums + 1), sums[4]};
+    };
+    work.liquid_clusters.for_each_sum<kVolumeSums>(c.runner, pair_inputs(c), table.volume,
+                                                   set_both);
+  } else {
+    work.liquid_clusters.for_each_sum<1>(c.runner, pair_inputs(c), table.density, set_density);
+  }
   // One particle is enough for the guard to see; which clusters were cut off depends on threads.
   if (work.too_many_pairs) work.density[0] = std::numeric_limits<Real>::quiet_NaN();
   work.density_version = work.sources.version();

@@ -35,12 +35,13 @@ class Complementarity {
 
   void resize(std::size_t count);
 
-  /// From the present x >= 0 and its excess. `act(d)` and then `find_product(product)` set product
-  /// = A d. At the end no x is below 0, and where there were iterations the last to act was the x
-  /// found less the x at the start.
-  template <class Act, class FindProduct>
-  SolveReport solve(const SolveLimits& limits, TaskRunner* runner, Act&& act,
-                    FindProduct&& find_product) {
+  /// From the present x >= 0 and its excess. `system.act(d)` and then
+  /// `system.find_product(product)` set product = A d; `system.add(share)` adds that share of what
+  /// d did to what all of them have done, and `system.replace()` makes what d did all. At the end
+  /// no x is below 0; what was done is that of x before those were set to 0, less x at the start,
+  /// and the mean allows for it.
+  template <class System>
+  SolveReport solve(const SolveLimits& limits, TaskRunner* runner, System& system) {
     SolveReport report;
     bool is_new = true;
     keep_start(runner);
@@ -53,19 +54,22 @@ class Complementarity {
     // The last one is to close the solve.
     while (is_open() && report.iterations + 2 <= limits.most_iterations) {
       const Real slope = choose_direction(is_new, runner);
-      act(direction_);
-      find_product(product_);
+      system.act(direction_);
+      system.find_product(product_);
       ++report.iterations;
-      take_step(length_of_step(runner, slope), runner, report);
+      const Real length = length_of_step(runner, slope);
+      system.add(length);
+      take_step(length, runner, report);
       is_new = !is_open() || report.iterations + 2 > limits.most_iterations;
       if (!is_new) continue;
       const Real change = limits.row * clamp(runner);
-      act(direction_);
       if (report.mean + change <= limits.mean) {
         report.mean += change;
         break;
       }
-      find_product(product_);
+      system.act(direction_);
+      system.find_product(product_);
+      system.replace();
       ++report.iterations;
       find_excess(runner, report);
     }

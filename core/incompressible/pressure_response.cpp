@@ -16,7 +16,14 @@ Real gradient_factor(const Model& model, const LiquidModel& liquid) {
 }
 
 PairMotion turned(const PairImage& image, const PairMotion& source) {
-  return motion_of(source.pressure, image.turn({source.vx, source.vy, source.vz}));
+  return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
+}
+
+/// G / rho of the liquid that it is greatest of.
+Real greatest_mobility(const Model& model) {
+  const auto mobility = by_material(
+      model, [](const LiquidModel& liquid) { return liquid.slope_scale / liquid.rest_density; });
+  return std::ranges::max(mobility);
 }
 
 }  // namespace
@@ -31,12 +38,13 @@ PressureResponse::PressureResponse(const ForceModel& force_model, Configuration&
       order_(f_.work.liquid.grid.order()),
       solids_(f_.work.solids_in_liquid.grid.order()),
       has_solids_(has_solids(f_.model)),
-      solids_move_(solids_move && has_solids_) {
-  f_.work.pair_sums.resize(
-      std::max(f_.work.pair_sums.size(), kResponseSums * std::max(order_.size(), solids_.size())));
+      solids_move_(solids_move && has_solids_),
+      greatest_mobility_(greatest_mobility(f_.model)) {
   scratch_.liquid_motion.resize(order_.size());
+  f_.work.sources.make_room_for_motions();
   if (!has_solids_) return;
   weigh_solids();
+  find_slopes();
   scratch_.solid_motion.assign(solids_.size(), Vec3::Zero());
   scratch_.solid_force.resize(solids_.size());
   scratch_.rigid_force.resize(f_.model.rigid_bodies.size());
@@ -49,39 +57,48 @@ void PressureResponse::weigh_solids() {
   f_.work.sources.set_weights(context_, factors);
 }
 
-void PressureResponse::accelerate(std::span<const Real> pressure) {
-  f_.work.sources.set_motions(
-      f_.runner,
-      [&](std::size_t s) {
-        return PairMotion{pressure[s], 0, 0, 0};
-      },
-      [](std::size_t) { return PairMotion{}; },
-      [](const PairImage&, const PairMotion& source) { return source; });
-  accelerate_liquid();
-  if (solids_move_) push_solids();
+PairInputs PressureResponse::charged_inputs() const {
+  PairInputs inputs = f_.work.sources.charged_inputs();
+  inputs.inverse_support = pair_inputs(context_).inverse_support;
+  return inputs;
 }
 
-void PressureResponse::accelerate_liquid() {
-  Real* const sums = f_.work.pair_sums.data();
-  const PairInputs inputs = force_inputs(context_);
+void PressureResponse::set_liquid_motion(std::size_t slot, const Vec3& motion) {
+  scratch_.liquid_motion[slot] = motion;
+  const Vec3 weighted = f_.work.sources.weight(slot) * motion;
+  f_.work.sources.set_motion(slot, motion_of(0, weighted));
+}
+
+void PressureResponse::charge(std::span<const Real> pressure) {
+  f_.work.sources.set_charges(f_.runner, [&](std::size_t s) { return pressure[s]; });
+}
+
+void PressureResponse::accelerate(std::span<const Real> pressure) {
+  charge(pressure);
+  accelerate_liquid(pressure);
+  if (solids_move_) push_solids(pressure);
+}
+
+void PressureResponse::accelerate_liquid(std::span<const Real> pressure) {
   const auto factor = by_material(f_.model, [&](const LiquidModel& liquid) {
     return slope_factor(f_.model, liquid) / liquid.rest_density;
   });
-  f_.work.liquid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
-    sums_.pressure(in, chunk, sums);
-    for (const TargetCluster& cluster : chunk) {
-      for (Index s = cluster.begin; s < cluster.end; ++s) {
-        const Index i = order_[s];
-        const Real own = f_.model.inverse_mass[i] > 0 ? factor[f_.model.material[i]] : 0;
-        scratch_.liquid_motion[s] = own * Eigen::Map<const Vec3>(sums + 3 * std::size_t{s});
-      }
-    }
-  });
+  const auto set_acceleration = [&](const TargetCluster&, Index s, const Real* sums) {
+    const Index i = order_[s];
+    const Real own = f_.model.inverse_mass[i] > 0 ? factor[f_.model.material[i]] : 0;
+    const Vec3 sum = pressure[s] * f_.work.volume_slopes[s].gradient + Eigen::Map<const Vec3>(sums);
+    set_liquid_motion(s, -own * sum);
+  };
+  f_.work.liquid_clusters.for_each_sum<3>(f_.runner, charged_inputs(), sums_.gradient,
+                                          set_acceleration);
 }
 
 /// The forces on solid particles and bodies, and the accelerations of all solid particles.
-void PressureResponse::push_solids() {
-  set_slope_weights(context_);
+void PressureResponse::push_solids(std::span<const Real> pressure) {
+  if (has_several_liquids(f_.model)) {
+    set_slope_weights(context_);
+    charge(pressure);
+  }
   sum_solid_forces();
   if (has_several_liquids(f_.model)) weigh_solids();
   sum_rigid_forces();
@@ -94,19 +111,15 @@ void PressureResponse::push_solids() {
 
 void PressureResponse::sum_solid_forces() {
   const Model& model = f_.model;
-  Real* const sums = f_.work.pair_sums.data();
-  const Real factor = 2 * slope_factor(model, *model.liquids[model.material[0]]);
-  const PairInputs inputs = solid_force_inputs(context_);
-  f_.work.solid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
-    sums_.pressure(in, chunk, sums);
-    for (const TargetCluster& cluster : chunk) {
-      for (Index n = cluster.begin; n < cluster.end; ++n) {
-        const std::size_t s = n - in.first_target;
-        const Real volume = model.rest_volume[model.liquid_count + solids_[s]];
-        scratch_.solid_force[solids_[s]] = factor * volume * Eigen::Map<const Vec3>(sums + 3 * s);
-      }
-    }
-  });
+  const Real factor = -2 * slope_factor(model, *model.liquids[model.material[0]]);
+  const Index first = f_.work.sources.first_solid();
+  f_.work.solid_clusters.for_each_sum<3>(
+      f_.runner, charged_inputs(), sums_.gradient,
+      [&](const TargetCluster&, Index n, const Real* sums) {
+        const Index b = solids_[n - first];
+        const Real volume = model.rest_volume[model.liquid_count + b];
+        scratch_.solid_force[b] = factor * volume * Eigen::Map<const Vec3>(sums);
+      });
 }
 
 void PressureResponse::sum_rigid_forces() {
@@ -144,7 +157,7 @@ Vec3 PressureResponse::solid_acceleration(Index particle) const {
 void PressureResponse::see_velocities(const Vec3& wall_velocity) {
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      scratch_.liquid_motion[s] = at_.velocity[order_[s]] - wall_velocity;
+      set_liquid_motion(s, at_.velocity[order_[s]] - wall_velocity);
     }
   });
   if (!has_solids_) return;
@@ -163,44 +176,72 @@ void PressureResponse::compress(std::span<Real> product, std::span<const Real> s
 
 template <class Scale>
 void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
-  f_.work.sources.set_motions(
-      f_.runner, [&](std::size_t s) { return motion_of(0, scratch_.liquid_motion[s]); },
-      [&](std::size_t s) { return motion_of(0, scratch_.solid_motion[s]); }, turned);
-  const PairInputs inputs = force_inputs(context_);
+  PairSources& sources = f_.work.sources;
+  sources.set_other_motions(
+      f_.runner,
+      [&](std::size_t s) {
+        const Vec3 weighted = sources.weight(sources.first_solid() + s) * scratch_.solid_motion[s];
+        return motion_of(0, weighted);
+      },
+      turned);
   const auto factor = by_material(
       f_.model, [&](const LiquidModel& liquid) { return gradient_factor(f_.model, liquid); });
-  f_.work.liquid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
-    sums_.compression(in, chunk, rate.data());
-    for (const TargetCluster& cluster : chunk) {
-      for (Index s = cluster.begin; s < cluster.end; ++s) {
-        rate[s] *= factor[f_.model.material[order_[s]]] * scale(s);
+  f_.work.liquid_clusters.for_each_sum<1>(
+      f_.runner, pair_inputs(context_), sums_.divergence,
+      [&](const TargetCluster&, Index s, const Real* sum) {
+        const Real own = scratch_.liquid_motion[s].dot(f_.work.volume_slopes[s].gradient);
+        rate[s] = (own - *sum) * factor[f_.model.material[order_[s]]] * scale(s);
+      });
+}
+
+void PressureResponse::replace() {
+  has_whole_ = false;
+  add(1);
+}
+
+void PressureResponse::add(Real share) {
+  const bool is_first = !has_whole_;
+  const auto add_to = [&](std::vector<Vec3>& whole, const std::vector<Vec3>& part) {
+    whole.resize(part.size());
+    for_blocks(f_.runner, part.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        whole[k] = is_first ? Vec3(share * part[k]) : Vec3(whole[k] + share * part[k]);
       }
-    }
-  });
+    });
+  };
+  add_to(scratch_.liquid_whole, scratch_.liquid_motion);
+  has_whole_ = true;
+  if (!solids_move_) return;
+  add_to(scratch_.solid_force_whole, scratch_.solid_force);
+  add_to(scratch_.rigid_force_whole, scratch_.rigid_force);
+  add_to(scratch_.rigid_torque_whole, scratch_.rigid_torque);
 }
 
 void PressureResponse::kick(Real dt) {
+  if (!has_whole_) return;
   const Model& model = f_.model;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      at_.velocity[order_[s]] += dt * scratch_.liquid_motion[s];
+      at_.velocity[order_[s]] += dt * scratch_.liquid_whole[s];
     }
   });
   if (!solids_move_) return;
   for (Index i = model.liquid_count; i < model.free_count; ++i) {
-    at_.velocity[i] += (dt * model.inverse_mass[i]) * scratch_.solid_force[i - model.liquid_count];
+    at_.velocity[i] +=
+        (dt * model.inverse_mass[i]) * scratch_.solid_force_whole[i - model.liquid_count];
   }
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
-    at_.rigid[b].momentum += dt * scratch_.rigid_force[b];
-    at_.rigid[b].angular_momentum += dt * scratch_.rigid_torque[b];
+    at_.rigid[b].momentum += dt * scratch_.rigid_force_whole[b];
+    at_.rigid[b].angular_momentum += dt * scratch_.rigid_torque_whole[b];
     pose_rigid_body(model, model.rigid_bodies[b], at_.rigid[b], at_);
   }
 }
 
 void PressureResponse::shift(Real share) {
+  if (!has_whole_) return;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      at_.position[order_[s]] += share * scratch_.liquid_motion[s];
+      at_.position[order_[s]] += share * scratch_.liquid_whole[s];
     }
   });
 }
@@ -222,37 +263,46 @@ Real PressureResponse::mobility_of(Index particle) const {
                                   model.local_position[particle - model.free_count].squaredNorm();
 }
 
-/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with solids as
-/// mobile as each of them is by itself.
-void PressureResponse::find_diagonal(std::span<Real> diagonal) {
+/// With solids as mobile as each of them is by itself.
+void PressureResponse::find_slopes() {
   const Model& model = f_.model;
   f_.work.sources.set_motions(
       f_.runner,
       [&](std::size_t s) {
-        return PairMotion{mobility_of_liquid(order_[s]), 0, 0, 0};
+        return PairMotion{mobility_of_liquid(order_[s]) / greatest_mobility_, 0, 0, 0};
       },
       [&](std::size_t s) {
         return PairMotion{0, std::sqrt(mobility_of(model.liquid_count + solids_[s])), 0, 0};
       },
       [](const PairImage&, const PairMotion& source) { return source; });
-  Real* const all = f_.work.pair_sums.data();
-  const Real scale = reference_kernel(model).scale();
-  const PairInputs inputs = force_inputs(context_);
-  f_.work.liquid_clusters.for_each_chunk(f_.runner, inputs, [&](const PairInputs& in, auto chunk) {
-    sums_.response(in, chunk, all);
-    for (const TargetCluster& cluster : chunk) {
-      for (Index s = cluster.begin; s < cluster.end; ++s) {
-        const Index i = order_[s];
-        const LiquidModel& liquid = liquid_of(model, i);
-        const Real factor = gradient_factor(model, liquid);
-        const Real* const sums = all + kResponseSums * std::size_t{s};
-        const Real gradient2 = factor * factor * Eigen::Map<const Vec3>(sums).squaredNorm();
-        const Real squares = factor * factor * scale * sums[3];
-        const Real solids = factor * sums[4];
-        const Real volume = model.rest_volume[i];
-        diagonal[s] = volume * (mobility_of_liquid(i) * gradient2 + volume * squares) +
-                      volume * volume * liquid.slope_scale * solids * solids;
-      }
+  const Real scale = reference_kernel(model).scale() * greatest_mobility_;
+  f_.work.volume_slopes.resize(order_.size());
+  f_.work.liquid_clusters.for_each_sum<kResponseSums>(
+      f_.runner, pair_inputs(context_), sums_.response,
+      [&](const TargetCluster&, Index s, const Real* sums) {
+        const Real slope_scale = liquid_of(model, order_[s]).slope_scale;
+        const Real solids = slope_scale * sums[4] * sums[4];
+        f_.work.volume_slopes[s] = {Eigen::Map<const Vec3>(sums), sums[3] + solids / scale};
+      });
+}
+
+/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with the least
+/// density for all others.
+void PressureResponse::find_diagonal(std::span<Real> diagonal) {
+  const Model& model = f_.model;
+  const Real scale = reference_kernel(model).scale() * greatest_mobility_;
+  const auto factor = by_material(model, [&](const LiquidModel& liquid) {
+    const Real gradient = gradient_factor(model, liquid);
+    return gradient * gradient;
+  });
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index i = order_[s];
+      const Real volume = model.rest_volume[i];
+      const VolumeSlope& slope = f_.work.volume_slopes[s];
+      diagonal[s] =
+          volume * factor[model.material[i]] *
+          (mobility_of_liquid(i) * slope.gradient.squaredNorm() + volume * scale * slope.squares);
     }
   });
 }

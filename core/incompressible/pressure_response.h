@@ -10,11 +10,15 @@ namespace vat {
 /// Scratch of PressureResponse.
 struct ResponseScratch {
   std::vector<Vec3> liquid_motion;  ///< by liquid slot: velocity [m/s] or acceleration [m/s^2]
+  std::vector<Vec3> liquid_whole;   ///< the same, as the next, of all accelerations
   std::vector<Vec3> solid_motion;   ///< by solid slot, the same
   std::vector<Vec3> solid_force;    ///< by solid particle [N]
   std::vector<Vec3> rigid_force;    ///< by rigid body [N]
   std::vector<Vec3> rigid_torque;   ///< by rigid body, about its centre of mass [N m]
-  Forces unused;                    ///< a StepContext has some
+  std::vector<Vec3> solid_force_whole;
+  std::vector<Vec3> rigid_force_whole;
+  std::vector<Vec3> rigid_torque_whole;
+  Forces unused;  ///< a StepContext has some
 };
 
 /// What pressures do to a liquid and to the solids in it, in the places of one step, and what
@@ -33,7 +37,8 @@ struct ResponseScratch {
 /// weights and motions change.
 class PressureResponse {
  public:
-  /// `at` has the places that the workspace's pairs were found in; the solids move, or are held.
+  /// `at` has the places that the workspace's pairs and densities were found in; the solids move,
+  /// or are held.
   PressureResponse(const ForceModel& force_model, Configuration& at, ResponseScratch& scratch,
                    bool solids_move);
 
@@ -49,21 +54,32 @@ class PressureResponse {
   /// Bounds the diagonal of -V D M^-1 F, by slot.
   void find_diagonal(std::span<Real> diagonal);
 
-  /// Adds `dt` times the motion, which must be of accelerations, to the velocities.
+  /// Adds `share` of the present accelerations to the whole of them, which is none at first; or
+  /// makes them the whole.
+  void add(Real share);
+  void replace();
+
+  /// Adds `dt` times the whole of accelerations to the velocities.
   void kick(Real dt);
-  /// Adds `share` times the liquid's motion to its places.
+  /// Adds `share` times the whole of the liquid's to its places.
   void shift(Real share);
 
  private:
   /// With solids twice, which mirror the liquid.
   void weigh_solids();
-  void accelerate_liquid();
+  /// Of liquid slots, and as sources.
+  void set_liquid_motion(std::size_t slot, const Vec3& motion);
+  void charge(std::span<const Real> pressure);
+  PairInputs charged_inputs() const;
+  void accelerate_liquid(std::span<const Real> pressure);
   template <class Scale>
   void compress_to(std::span<Real> rate, Scale&& scale);
-  void push_solids();
+  void push_solids(std::span<const Real> pressure);
   void sum_solid_forces();
   void sum_rigid_forces();
   Vec3 solid_acceleration(Index particle) const;
+  /// Of the volumes, where densities come without.
+  void find_slopes();
   Real mobility_of_liquid(Index particle) const;
   Real mobility_of(Index particle) const;
 
@@ -76,6 +92,8 @@ class PressureResponse {
   const std::span<const Index> solids_;
   const bool has_solids_;
   const bool solids_move_;
+  bool has_whole_ = false;
+  const Real greatest_mobility_;  ///< of liquid
 };
 
 }  // namespace vat

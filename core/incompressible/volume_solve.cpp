@@ -35,11 +35,13 @@ Vec3 wall_velocity(const Model& model, Real time, Real dt) {
 class VolumeSolve {
  public:
   /// The workspace has cells, pairs and densities of the present places.
-  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, VolumeScratch& scratch)
+  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, bool solids_move,
+              VolumeScratch& scratch)
       : f_(f),
         now_(now),
         dt_(dt),
         s_(scratch),
+        response_(f, now, scratch.response, solids_move),
         problem_(scratch.problem),
         order_(f.work.liquid.grid.order()) {
     set_up();
@@ -49,6 +51,14 @@ class VolumeSolve {
   /// The number of iterations.
   int shift_places();
 
+  // What Complementarity asks for.
+  void act(std::span<const Real> change) { response_.accelerate(change); }
+  void find_product(std::span<Real> product) {
+    response_.compress(product, problem_.scale, -dt_ * dt_);
+  }
+  void add(Real share) { response_.add(share); }
+  void replace() { response_.replace(); }
+
  private:
   template <class F>
   void each_slot(F&& f) {
@@ -57,13 +67,14 @@ class VolumeSolve {
     });
   }
   void set_up();
-  /// The response's motion is then that by the change of x.
-  SolveReport solve(PressureResponse& response, Real mean, Real greatest);
+  /// The whole of the response's accelerations is then that by the change of x.
+  SolveReport solve(Real mean, Real greatest);
 
   const ForceModel& f_;
   Configuration& now_;
   const Real dt_;
   VolumeScratch& s_;
+  PressureResponse response_;
   Complementarity& problem_;
   const std::span<const Index> order_;
 };
@@ -71,7 +82,7 @@ class VolumeSolve {
 void VolumeSolve::set_up() {
   problem_.resize(order_.size());
   s_.relative_density.resize(order_.size());
-  PressureResponse(f_, now_, s_.response, true).find_diagonal(problem_.diagonal);
+  response_.find_diagonal(problem_.diagonal);
   each_slot([&](std::size_t s) {
     const Index i = order_[s];
     s_.relative_density[s] = f_.work.density[i] / liquid_of(f_.model, i).rest_density;
@@ -83,9 +94,8 @@ void VolumeSolve::set_up() {
 
 SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   const IncompressibleSolve& wanted = f_.model.scene.incompressible;
-  PressureResponse response(f_, now_, s_.response, true);
-  response.see_velocities(wall_velocity);
-  response.compress(problem_.excess);
+  response_.see_velocities(wall_velocity);
+  response_.compress(problem_.excess);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
     const Real excess = density - 1 - kLeftAlone * wanted.density_tolerance;
@@ -97,33 +107,30 @@ SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
     if (is_alone) problem_.excess[s] = std::min(problem_.excess[s], Real{0});
   });
   const Real tolerance = wanted.divergence_tolerance;
-  const SolveReport report = solve(response, tolerance, kGreatestDivergence * tolerance);
+  const SolveReport report = solve(tolerance, kGreatestDivergence * tolerance);
   if (report.iterations == 0) return report;
   each_slot([&](std::size_t s) {
     now_.pressure[order_[s]] = problem_.x[s] * s_.relative_density[s] * s_.relative_density[s];
   });
-  response.kick(dt_);
+  response_.kick(dt_);
   return report;
 }
 
 int VolumeSolve::shift_places() {
-  PressureResponse response(f_, now_, s_.response, false);
   each_slot([&](std::size_t s) {
     problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMostExpansion);
     problem_.x[s] = 0;
   });
   const IncompressibleSolve& wanted = f_.model.scene.incompressible;
   const Real tolerance = kLinearShare * wanted.density_tolerance;
-  const SolveReport report = solve(response, tolerance, kGreatestOverMean * tolerance);
-  if (report.iterations > 0) response.shift(dt_ * dt_);
+  const SolveReport report = solve(tolerance, kGreatestOverMean * tolerance);
+  if (report.iterations > 0) response_.shift(dt_ * dt_);
   return report.iterations;
 }
 
-SolveReport VolumeSolve::solve(PressureResponse& response, Real mean, Real greatest) {
+SolveReport VolumeSolve::solve(Real mean, Real greatest) {
   const SolveLimits limits{mean, greatest, f_.model.scene.incompressible.most_iterations, kRow};
-  return problem_.solve(
-      limits, f_.runner, [&](std::span<const Real> d) { response.accelerate(d); },
-      [&](std::span<Real> product) { response.compress(product, problem_.scale, -dt_ * dt_); });
+  return problem_.solve(limits, f_.runner, *this);
 }
 
 /// Puts back liquid that has passed a wall, before anything is found in places that a later step
@@ -162,7 +169,8 @@ void recall_pressure(StepContext& c) {
 
 SolveReport project_velocities(const ForceModel& f, Configuration& now, Real time, Real dt,
                                VolumeScratch& scratch) {
-  return VolumeSolve(f, now, dt, scratch).project_velocities(wall_velocity(f.model, time, dt));
+  return VolumeSolve(f, now, dt, true, scratch)
+      .project_velocities(wall_velocity(f.model, time, dt));
 }
 
 SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
@@ -180,7 +188,7 @@ SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
         report.mean <= tolerance && report.greatest <= kGreatestOverMean * tolerance;
     if (is_solved || round == kMostCorrections || f.work.too_many_pairs) return report;
     constexpr Real kUnit = 1;  // shifts take no time
-    report.iterations += VolumeSolve(f, now, kUnit, scratch).shift_places();
+    report.iterations += VolumeSolve(f, now, kUnit, false, scratch).shift_places();
   }
 }
 

@@ -25,6 +25,8 @@ class UniformGrid {
   std::span<const Index> cell_begin() const { return cell_begin_; }
   /// The corner of least coordinates of the box around all cells.
   const Vec3& origin() const { return origin_; }
+  /// That of greatest coordinates.
+  Vec3 end() const { return origin_ + Vec3(count_[0], count_[1], count_[2]) / inverse_cell_size_; }
 
   /// Calls f(begin, end) for runs of slots that together hold, each once, every point closer to
   /// `p` than `radius` (and others).

@@ -84,20 +84,21 @@ struct Offset {
   V x, y, z, square, q;
 };
 
-template <class T>
-HWY_INLINE Target<T> load_target(const PairInputs& in, const Frame& frame, Index i,
-                                 bool has_motion) {
-  using L = Lanes<T>;
-  const PairPlace& place = in.places[i];
+template <bool has_motion, class T>
+HWY_INLINE Target<T> load_target(const PairInputs& in, const Frame<T>& frame, Index i) {
+  const typename Lanes<T>::D d;
+  const auto& place = frame.place(in, i);
   Target<T> target;
-  target.x = L::set((place.x - frame.center[0]) * frame.scale[0]);
-  target.y = L::set((place.y - frame.center[1]) * frame.scale[1]);
-  target.z = L::set((place.z - frame.center[2]) * frame.scale[2]);
-  const PairMotion motion = has_motion ? in.motions[i] : PairMotion{};
-  target.pressure = L::set(motion.pressure);
-  target.vx = L::set(motion.vx);
-  target.vy = L::set(motion.vy);
-  target.vz = L::set(motion.vz);
+  target.x = hn::Set(d, frame.coordinate(place.x, 0));
+  target.y = hn::Set(d, frame.coordinate(place.y, 1));
+  target.z = hn::Set(d, frame.coordinate(place.z, 2));
+  if constexpr (has_motion) {
+    const auto& motion = frame.motion(in, i);
+    target.pressure = hn::Set(d, motion.pressure);
+    target.vx = hn::Set(d, motion.vx);
+    target.vy = hn::Set(d, motion.vy);
+    target.vz = hn::Set(d, motion.vz);
+  }
   return target;
 }
 
@@ -164,7 +165,8 @@ enum class Viscosity { none, same, not_of_images, differs };
 template <class T, class Kernel, Viscosity viscosity>
 struct ForceTerm {
   using V = typename Lanes<T>::V;
-  static constexpr TileParts kParts{.motion = true,
+  static constexpr TileParts kParts{.velocity = viscosity != Viscosity::none,
+                                    .pressure = true,
                                     .share = viscosity == Viscosity::not_of_images,
                                     .viscosity = viscosity == Viscosity::differs};
   static constexpr std::size_t kSums = 3;
@@ -193,7 +195,8 @@ struct ForceTerm {
 template <class T, class Kernel, bool differs>
 struct DragTerm {
   using V = typename Lanes<T>::V;
-  static constexpr TileParts kParts{.motion = true, .image_share = !differs, .viscosity = differs};
+  static constexpr TileParts kParts{
+      .velocity = true, .pressure = true, .image_share = !differs, .viscosity = differs};
   static constexpr std::size_t kSums = 3;
   V sums[kSums];
 
@@ -218,23 +221,56 @@ struct DragTerm {
 };
 
 template <class T, class Kernel>
-struct CompressionTerm {
+struct GradientTerm {
   using V = typename Lanes<T>::V;
-  static constexpr TileParts kParts{.motion = true};
+  static constexpr TileParts kParts{};
+  static constexpr std::size_t kSums = 3;
+  V sums[kSums];
+
+  HWY_INLINE void add(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
+    const Offset<T> at = offset_of(i, tile, k);
+    add_along(at, hn::Mul(load(tile.weight, k), Kernel::slope(typename Lanes<T>::D(), at.q)), sums);
+  }
+};
+
+template <class T, class Kernel>
+struct DivergenceTerm {
+  using V = typename Lanes<T>::V;
+  static constexpr TileParts kParts{.velocity = true};
   static constexpr std::size_t kSums = 1;
   V sums[kSums];
 
   HWY_INLINE void add(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
     const Offset<T> at = offset_of(i, tile, k);
-    const V slope = Kernel::slope(typename Lanes<T>::D(), at.q);
-    sums[0] = hn::MulAdd(hn::Mul(load(tile.weight, k), slope), approach(i, tile, k, at), sums[0]);
+    const V along = hn::MulAdd(load(tile.vx, k), at.x,
+                               hn::MulAdd(load(tile.vy, k), at.y, hn::Mul(load(tile.vz, k), at.z)));
+    sums[0] = hn::MulAdd(Kernel::slope(typename Lanes<T>::D(), at.q), along, sums[0]);
+  }
+};
+
+template <class T, class Kernel>
+struct VolumeTerm {
+  using V = typename Lanes<T>::V;
+  static constexpr TileParts kParts{};
+  static constexpr std::size_t kSums = kVolumeSums;
+  V sums[kSums];
+
+  HWY_INLINE void add(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
+    const typename Lanes<T>::D d;
+    const Offset<T> at = offset_of(i, tile, k);
+    const V weight = load(tile.weight, k);
+    sums[0] = hn::MulAdd(weight, Kernel::value(d, at.q), sums[0]);
+    const V slope = Kernel::slope(d, at.q);
+    const V gradient = hn::Mul(weight, slope);
+    add_along(at, gradient, sums + 1);
+    sums[4] = hn::MulAdd(hn::Mul(gradient, slope), hn::Mul(at.q, at.q), sums[4]);
   }
 };
 
 template <class T, class Kernel>
 struct ResponseTerm {
   using V = typename Lanes<T>::V;
-  static constexpr TileParts kParts{.motion = true};
+  static constexpr TileParts kParts{.velocity = true, .pressure = true};
   static constexpr std::size_t kSums = kResponseSums;
   V sums[kSums];
 
@@ -253,7 +289,7 @@ struct ResponseTerm {
 template <class T, class Kernel>
 struct MeanTerm {
   using V = typename Lanes<T>::V;
-  static constexpr TileParts kParts{.motion = true};
+  static constexpr TileParts kParts{.velocity = true, .pressure = true};
   static constexpr std::size_t kSums = kMeanSums;
   V sums[kSums];
 
@@ -290,14 +326,15 @@ template <class T, class Term>
 void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile, Real* sums,
                  std::size_t first = 0) {
   constexpr std::size_t kLanes = Lanes<T>::kCount;
-  const Frame frame(cluster, in.inverse_support);
+  const Frame<T> frame(cluster, in);
   const Index* const candidates = in.candidates + cluster.first_candidate;
   std::fill_n(sums, Term::kSums * cluster.size(), Real{0});
   for (std::size_t done = first; done < cluster.candidate_count; done += kTile) {
     const std::size_t count = std::min<std::size_t>(kTile, cluster.candidate_count - done);
     fill_tile<Term::kParts>(in, frame, candidates + done, count, tile);
     for (Index i = cluster.begin; i < cluster.end; ++i) {
-      Target<T> target = load_target<T>(in, frame, i, Term::kParts.motion);
+      Target<T> target =
+          load_target < Term::kParts.velocity || Term::kParts.pressure > (in, frame, i);
       target.viscosity = Lanes<T>::set(in.target_viscosities == nullptr
                                            ? in.viscosity
                                            : in.target_viscosities[i - in.first_target]);
@@ -361,7 +398,9 @@ struct Loops {
         &sum_clusters<T, ForceTerm<T, Kernel, Viscosity::none>>,
         &sum_forces<T, Kernel>,
         &sum_drags<T, Kernel>,
-        &sum_clusters<T, CompressionTerm<T, Kernel>>,
+        &sum_clusters<T, GradientTerm<T, Kernel>>,
+        &sum_clusters<T, DivergenceTerm<T, Kernel>>,
+        &sum_clusters<T, VolumeTerm<T, Kernel>>,
         &sum_clusters<T, ResponseTerm<T, Kernel>>,
         &sum_clusters<T, MeanTerm<T, Kernel>>,
     };

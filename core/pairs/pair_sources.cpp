@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/forces/weakly_compressible_pairs.h"
 #include "core/step/workspace.h"
@@ -69,6 +70,18 @@ void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, con
   });
 }
 
+/// Covers all sources: an image is as far outside a wall as its source is inside, within `reach`.
+PlaceGrid grid_around(const UniformGrid& liquid, const UniformGrid* solids, Real reach) {
+  Vec3 low = liquid.origin();
+  Vec3 high = liquid.end();
+  if (solids != nullptr) {
+    low = low.cwiseMin(solids->origin());
+    high = high.cwiseMax(solids->end());
+  }
+  const Real beside = 4 * reach;
+  return {low - Vec3::Constant(beside), (high - low).maxCoeff() + 2 * beside};
+}
+
 }  // namespace
 
 Mirror PairImage::mirror() const {
@@ -125,7 +138,8 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
   const ShowBox shown(c.model, motion, reach);
   found_.resize(block_count(count));
   for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
-    std::vector<PackedImage>& found = found_[begin / kBlockSize];
+    // Taken out, so that threads do not share the cache line of its size.
+    std::vector<PackedImage> found = std::move(found_[begin / kBlockSize]);
     found.clear();
     const auto add = [&](const PairImage& image) { add_closely(found, offsets_.pack(image)); };
     for (std::size_t s = begin; s < end; ++s) {
@@ -135,6 +149,7 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
       is_mirrored ? for_each_mirrored(c.model, motion, n, p, reach, add)
                   : for_each_shifted(c.model, n, p, reach, add);
     }
+    found_[begin / kBlockSize] = std::move(found);
   });
 }
 
@@ -167,7 +182,7 @@ void PairSources::set_places(const StepContext& c) {
   const auto set = [&](const CellSortedPoints& points, Index first) {
     for_blocks(c.runner, points.grid.order().size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
-        places[first + s] = {points.x[s], points.y[s], points.z[s], 0};
+        set_place(first + s, place_of(points, s));
       }
     });
   };
@@ -180,8 +195,7 @@ void PairSources::set_image_places(Images kind, TaskRunner* runner) {
   const std::span<const Index> order = group.grid.order();
   for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const Vec3& p = image_points_[order[s]];
-      places[group.first + s] = {p.x(), p.y(), p.z(), 0};
+      set_place(group.first + s, image_points_[order[s]]);
     }
   });
 }
@@ -196,30 +210,88 @@ void PairSources::set_weights(const StepContext& c, const WeightFactors& factors
       const bool is_solid = n >= solids_;
       const Index i = is_solid ? model.liquid_count + solids[n - solids_] : order[n];
       const Real factor = is_solid ? factors.solid : factors.liquid[model.material[i]];
-      places[n].weight = model.rest_volume[i] * scale * factor;
+      set_weight(n, model.rest_volume[i] * scale * factor);
     }
   });
   for (const ImageGroup& group : images_) {
     for_blocks(c.runner, group.count(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
-        places[group.first + s].weight = places[group.image(s).source].weight;
+        set_weight(group.first + s, weight(group.image(s).source));
       }
     });
   }
 }
 
-void PairSources::set_search_places(TaskRunner* runner) {
+void PairSources::make_room(std::size_t count) {
   constexpr std::size_t kMostLanes = 16;  // loads may reach beyond the last
+  const auto grow = [&](auto& column, std::size_t room) {
+    resize_closely(column, std::max(column.size(), room));
+  };
   for (std::vector<float>* column : {&search_.x, &search_.y, &search_.z}) {
-    resize_closely(*column, places.size() + kMostLanes);
+    grow(*column, count + kMostLanes);
   }
-  for_blocks(runner, count(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      search_.x[n] = static_cast<float>(places[n].x - search_.origin.x());
-      search_.y[n] = static_cast<float>(places[n].y - search_.origin.y());
-      search_.z[n] = static_cast<float>(places[n].z - search_.origin.z());
-    }
-  });
+  if (is_single_) {
+    grow(packed_places_, count + 1);
+  } else {
+    grow(places_, count + 1);
+  }
+}
+
+void PairSources::set_place(std::size_t n, const Vec3& p) {
+  search_.x[n] = static_cast<float>(p.x() - search_.origin.x());
+  search_.y[n] = static_cast<float>(p.y() - search_.origin.y());
+  search_.z[n] = static_cast<float>(p.z() - search_.origin.z());
+  if (is_single_) {
+    packed_places_[n] = {grid_.coordinate(p.x(), 0), grid_.coordinate(p.y(), 1),
+                         grid_.coordinate(p.z(), 2), 0};
+  } else {
+    places_[n] = {p.x(), p.y(), p.z(), 0};
+  }
+}
+
+/// Far from all that count, and finite in single precision.
+void PairSources::add_padding(Real reach) {
+  constexpr Real kFar = 1e6;
+  if (is_single_) {
+    packed_places_[count_] = {PlaceGrid::kFar, PlaceGrid::kFar, PlaceGrid::kFar, 0};
+  } else {
+    const Vec3 far = search_.origin - Vec3::Constant(kFar * reach);
+    places_[count_] = {far.x(), far.y(), far.z(), 0};
+  }
+}
+
+void PairSources::make_room_for_motions() {
+  if (is_single_) {
+    resize_closely(packed_motions_, count_ + 1);
+    packed_motions_[count_] = {};
+  } else {
+    resize_closely(motions_, count_ + 1);
+    motions_[count_] = {};
+  }
+}
+
+PairInputs PairSources::inputs() const {
+  PairInputs inputs;
+  inputs.grid = grid_;
+  inputs.first_mirrored = first_mirrored();
+  if (is_single_) {
+    inputs.packed_places = packed_places_.data();
+    inputs.packed_motions = packed_motions_.data();
+  } else {
+    inputs.places = places_.data();
+    inputs.motions = motions_.data();
+  }
+  return inputs;
+}
+
+PairInputs PairSources::charged_inputs() const {
+  PairInputs inputs = this->inputs();
+  if (is_single_) {
+    inputs.packed_places = packed_charges_.data();
+  } else {
+    inputs.places = charges_.data();
+  }
+  return inputs;
 }
 
 std::array<SourceGroup, 6> PairSources::groups(const UniformGrid& liquid,
@@ -247,10 +319,11 @@ void PairSources::build(const StepContext& c, Real reach) {
   const bool solid = has_solids(c.model);
   solids_ = static_cast<Index>(liquid.grid.order().size());
   images_begin_ = solids_ + (solid ? static_cast<Index>(solids.grid.order().size()) : 0);
+  is_single_ = c.model.scene.pair_precision == PairPrecision::single_precision;
+  search_.origin = liquid.grid.origin();
+  grid_ = grid_around(liquid.grid, solid ? &solids.grid : nullptr, reach);
   Index end = images_begin_;
-  // What there is of the last time is written over: only what is new is filled in twice.
-  const auto make_room = [&] { resize_closely(places, std::max<std::size_t>(places.size(), end)); };
-  make_room();
+  make_room(end);
   set_places(c);
   offsets_ = ImageOffsets(c.model, motion_of(c));
   for (const Images kind : kAllImages) {
@@ -264,17 +337,12 @@ void PairSources::build(const StepContext& c, Real reach) {
     find_images(c, reach, kind);
     join_images(c, kind);
     end += static_cast<Index>(images_[kind].count());
-    make_room();
+    make_room(end);
     set_image_places(kind, c.runner);
   }
-  resize_closely(places, end + 1);
+  count_ = end;
+  add_padding(reach);
   set_weights(c, {});
-  search_.origin = liquid.grid.origin();
-  set_search_places(c.runner);
-  // Far from all that count, and finite in single precision.
-  constexpr Real kFar = 1e6;
-  const Vec3 far = search_.origin - Vec3::Constant(kFar * reach);
-  places.back() = {far.x(), far.y(), far.z(), 0};
 }
 
 }  // namespace vat

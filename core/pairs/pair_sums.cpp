@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/support/check.h"
 
@@ -35,6 +36,11 @@ bool has_ssse3() {
 #endif
 
 }  // namespace
+
+PlaceGrid::PlaceGrid(const Vec3& corner, Real span)
+    : origin(corner),
+      unit(std::exp2(std::ceil(std::log2(span / kCount)))),
+      inverse_unit(1 / unit) {}
 
 const PairSums& pair_sums(InstructionSet set, PairPrecision precision, KernelId kernel) {
 #if HWY_ARCH_X86

@@ -20,6 +20,42 @@ struct alignas(32) PairMotion {
   Real pressure;
   Real vx, vy, vz;
 };
+
+/// The same for sums in single precision: places on the grid of a PlaceGrid.
+struct alignas(16) PackedPlace {
+  std::int32_t x, y, z;
+  float weight;
+};
+struct alignas(16) PackedMotion {
+  float pressure;
+  float vx, vy, vz;
+};
+
+/// A grid so fine that distances on it are as good as in single precision about a place nearby: a
+/// span of a hundred support radii has steps of 1e-7 of them, at most.
+struct PlaceGrid {
+  static constexpr std::int32_t kCount = 1 << 30;  ///< coordinates are in [0, kCount]
+  /// Of what is nowhere near a place.
+  static constexpr std::int32_t kFar = -kCount / 2;
+
+  Vec3 origin = Vec3::Zero();
+  Real unit = 1;  ///< [m]
+  Real inverse_unit = 1;
+
+  PlaceGrid() = default;
+  /// Covers `span` > 0 [m] from `origin` on along each axis; a power of two is its unit.
+  PlaceGrid(const Vec3& corner, Real span);
+
+  /// Beyond the grid, and of a NaN, that of its ends.
+  std::int32_t coordinate(Real x, int axis) const {
+    const Real c = (x - origin[axis]) * inverse_unit;
+    if (!(c > 0)) return 0;
+    return c < kCount ? static_cast<std::int32_t>(c + 0.5) : kCount;
+  }
+  Vec3 place(const PackedPlace& p) const {
+    return {origin.x() + unit * p.x, origin.y() + unit * p.y, origin.z() + unit * p.z};
+  }
+};
 /// How viscous a pair is where liquids differ: mu share / (own mu + resistance), mu of the target.
 struct PairViscosity {
   Real share;
@@ -44,8 +80,12 @@ struct TargetCluster {
 inline constexpr Index kMostTargets = 16;
 
 struct PairInputs {
-  const PairPlace* places = nullptr;    ///< by source, as the next two
+  // By source. Double precision reads the first two, single precision the next.
+  const PairPlace* places = nullptr;
   const PairMotion* motions = nullptr;  ///< null where none are read
+  const PackedPlace* packed_places = nullptr;
+  const PackedMotion* packed_motions = nullptr;  ///< null where none are read
+  PlaceGrid grid;                                ///< of packed places
   const PairViscosity* viscosities =
       nullptr;  ///< null: mu for all but mirror images, which have none
   const Real* target_viscosities = nullptr;  ///< mu by target; null: that of all
@@ -82,13 +122,18 @@ struct PairSums {
   /// first_mirrored on or, where viscosities are given, all, but only candidates of clusters that
   /// are or follow images of liquid; three numbers.
   Function drag;
-  /// sum_j a_j g v.x; one number.
-  Function compression;
+  /// sum_j a_j g x; three numbers.
+  Function gradient;
+  /// sum_j g v_j.x; one number.
+  Function divergence;
+  /// sum_j a_j w; sum_j a_j g x; sum_j a_j g^2 q^2; five numbers.
+  Function volume;
   /// sum_j a_j g x; sum_j a_j p_j g^2 q^2; sum_j a_j vx_j |g| q; five numbers.
   Function response;
   /// sum_j a_j w vx_j x; sum_j a_j w; sum_j a_j w p_j; five numbers.
   Function mean;
 };
+inline constexpr std::size_t kVolumeSums = 5;
 inline constexpr std::size_t kResponseSums = 5;
 inline constexpr std::size_t kMeanSums = 5;
 

@@ -22,7 +22,8 @@ constexpr std::size_t kTile = 512;
 
 /// The columns of a tile that a loop reads besides x, y, z and weight.
 struct TileParts {
-  bool motion = false;
+  bool velocity = false;
+  bool pressure = false;
   bool share = false;        ///< 0 of images, 1 of others
   bool image_share = false;  ///< 1 of images, 0 of others
   bool viscosity = false;
@@ -44,13 +45,38 @@ struct Tile {
 };
 
 /// About a cluster's centre, over the support radius.
-struct Frame {
-  alignas(32) Real center[4];
-  alignas(32) Real scale[4];
+template <class T>
+struct Frame;
 
-  Frame(const TargetCluster& cluster, Real inverse_support)
-      : center{cluster.center.x(), cluster.center.y(), cluster.center.z(), 0},
-        scale{inverse_support, inverse_support, inverse_support, 1} {}
+template <>
+struct Frame<double> {
+  Real center[3];
+  Real scale;
+
+  Frame(const TargetCluster& cluster, const PairInputs& in)
+      : center{cluster.center.x(), cluster.center.y(), cluster.center.z()},
+        scale(in.inverse_support) {}
+
+  static const PairPlace& place(const PairInputs& in, Index n) { return in.places[n]; }
+  static const PairMotion& motion(const PairInputs& in, Index n) { return in.motions[n]; }
+  double coordinate(Real x, int axis) const { return (x - center[axis]) * scale; }
+};
+
+template <>
+struct Frame<float> {
+  std::int32_t center[3];
+  float scale;
+
+  Frame(const TargetCluster& cluster, const PairInputs& in)
+      : center{in.grid.coordinate(cluster.center.x(), 0), in.grid.coordinate(cluster.center.y(), 1),
+               in.grid.coordinate(cluster.center.z(), 2)},
+        scale(static_cast<float>(in.grid.unit * in.inverse_support)) {}
+
+  static const PackedPlace& place(const PairInputs& in, Index n) { return in.packed_places[n]; }
+  static const PackedMotion& motion(const PairInputs& in, Index n) { return in.packed_motions[n]; }
+  float coordinate(std::int32_t x, int axis) const {
+    return static_cast<float>(x - center[axis]) * scale;
+  }
 };
 
 template <TileParts parts, class T>
@@ -77,20 +103,20 @@ HWY_INLINE void fill_viscosity(const PairInputs& in, const Index* candidates, st
 }
 
 template <TileParts parts, class T>
-HWY_INLINE void fill_tile(const PairInputs& in, const Frame& frame, const Index* candidates,
+HWY_INLINE void fill_tile(const PairInputs& in, const Frame<T>& frame, const Index* candidates,
                           std::size_t count, Tile<T>& tile) {
   for (std::size_t k = 0; k < count; ++k) {
-    const PairPlace& place = in.places[candidates[k]];
-    tile.x[k] = static_cast<T>((place.x - frame.center[0]) * frame.scale[0]);
-    tile.y[k] = static_cast<T>((place.y - frame.center[1]) * frame.scale[1]);
-    tile.z[k] = static_cast<T>((place.z - frame.center[2]) * frame.scale[2]);
-    tile.weight[k] = static_cast<T>(place.weight);
-    if constexpr (parts.motion) {
-      const PairMotion& motion = in.motions[candidates[k]];
-      tile.pressure[k] = static_cast<T>(motion.pressure);
-      tile.vx[k] = static_cast<T>(motion.vx);
-      tile.vy[k] = static_cast<T>(motion.vy);
-      tile.vz[k] = static_cast<T>(motion.vz);
+    const auto& place = frame.place(in, candidates[k]);
+    tile.x[k] = frame.coordinate(place.x, 0);
+    tile.y[k] = frame.coordinate(place.y, 1);
+    tile.z[k] = frame.coordinate(place.z, 2);
+    tile.weight[k] = place.weight;
+    if constexpr (parts.pressure) tile.pressure[k] = frame.motion(in, candidates[k]).pressure;
+    if constexpr (parts.velocity) {
+      const auto& motion = frame.motion(in, candidates[k]);
+      tile.vx[k] = motion.vx;
+      tile.vy[k] = motion.vy;
+      tile.vz[k] = motion.vz;
     }
   }
   fill_viscosity<parts>(in, candidates, count, tile);
@@ -98,72 +124,71 @@ HWY_INLINE void fill_tile(const PairInputs& in, const Frame& frame, const Index*
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// (record - center) * scale of four numbers, in single precision.
-HWY_INLINE hn::Vec128<float> to_single(const Real* record, const Real* center, const Real* scale) {
-#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
-  const hn::FixedTag<double, 4> d;
-  const hn::FixedTag<float, 4> f;
-  return hn::DemoteTo(
-      f, hn::Mul(hn::Sub(hn::Load(d, record), hn::Load(d, center)), hn::Load(d, scale)));
-#else
-  const hn::FixedTag<double, 2> d;
-  const hn::FixedTag<float, 2> f;
-  const hn::FixedTag<float, 4> whole;
-  const auto low = hn::Mul(hn::Sub(hn::Load(d, record), hn::Load(d, center)), hn::Load(d, scale));
-  const auto high =
-      hn::Mul(hn::Sub(hn::Load(d, record + 2), hn::Load(d, center + 2)), hn::Load(d, scale + 2));
-  return hn::Combine(whole, hn::DemoteTo(f, high), hn::DemoteTo(f, low));
-#endif
+using Floats = hn::ScalableTag<float>;
+using FloatVec = hn::Vec<Floats>;
+
+/// Records candidates[0], [4], ... of 16 bytes, one behind the other.
+template <std::size_t lanes, class Record>
+HWY_INLINE auto load_records(const Record* records, const Index* candidates) {
+  const hn::FixedTag<float, lanes> d;
+  if constexpr (lanes == 4) {
+    return hn::Load(d, reinterpret_cast<const float*>(records + candidates[0]));
+  } else {
+    return hn::Combine(d, load_records<lanes / 2>(records, candidates + lanes / 2),
+                       load_records<lanes / 2>(records, candidates));
+  }
 }
 
-HWY_INLINE hn::Vec128<float> to_single(const Real* record) {
-#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
-  const hn::FixedTag<double, 4> d;
-  return hn::DemoteTo(hn::FixedTag<float, 4>(), hn::Load(d, record));
-#else
-  const hn::FixedTag<double, 2> d;
-  const hn::FixedTag<float, 2> f;
-  return hn::Combine(hn::FixedTag<float, 4>(), hn::DemoteTo(f, hn::Load(d, record + 2)),
-                     hn::DemoteTo(f, hn::Load(d, record)));
-#endif
+/// The four columns of as many records as a vector has lanes.
+struct Columns {
+  FloatVec a, b, c, e;
+};
+template <class Record>
+HWY_INLINE Columns load_columns(const Record* records, const Index* candidates) {
+  constexpr std::size_t kLanes = hn::MaxLanes(Floats());
+  const Floats d;
+  const hn::Repartition<double, Floats> pairs;
+  const FloatVec r0 = load_records<kLanes>(records, candidates);
+  const FloatVec r1 = load_records<kLanes>(records, candidates + 1);
+  const FloatVec r2 = load_records<kLanes>(records, candidates + 2);
+  const FloatVec r3 = load_records<kLanes>(records, candidates + 3);
+  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1));
+  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
+  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3));
+  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
+  return {hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)),
+          hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23))};
 }
 
-/// The columns of four records.
-HWY_INLINE void store_columns(hn::Vec128<float> a, hn::Vec128<float> b, hn::Vec128<float> c,
-                              hn::Vec128<float> e, float* x, float* y, float* z, float* w) {
-  const hn::FixedTag<float, 4> f;
-  const auto ab_low = hn::InterleaveLower(f, a, b);
-  const auto ab_high = hn::InterleaveUpper(f, a, b);
-  const auto ce_low = hn::InterleaveLower(f, c, e);
-  const auto ce_high = hn::InterleaveUpper(f, c, e);
-  const hn::FixedTag<double, 2> pairs;
-  const auto lower = [&](hn::Vec128<float> p, hn::Vec128<float> q) HWY_ATTR {
-    return hn::BitCast(f, hn::InterleaveLower(pairs, hn::BitCast(pairs, p), hn::BitCast(pairs, q)));
-  };
-  const auto upper = [&](hn::Vec128<float> p, hn::Vec128<float> q) HWY_ATTR {
-    return hn::BitCast(f, hn::InterleaveUpper(pairs, hn::BitCast(pairs, p), hn::BitCast(pairs, q)));
-  };
-  hn::Store(lower(ab_low, ce_low), f, x);
-  hn::Store(upper(ab_low, ce_low), f, y);
-  hn::Store(lower(ab_high, ce_high), f, z);
-  hn::Store(upper(ab_high, ce_high), f, w);
-}
-
-/// `count`: a multiple of 4.
+/// `count`: a multiple of the lanes.
 template <TileParts parts>
-HWY_INLINE void fill_tile(const PairInputs& in, const Frame& frame, const Index* candidates,
+HWY_INLINE void fill_tile(const PairInputs& in, const Frame<float>& frame, const Index* candidates,
                           std::size_t count, Tile<float>& tile) {
-  const auto place = [&](std::size_t k) HWY_ATTR {
-    return to_single(&in.places[candidates[k]].x, frame.center, frame.scale);
+  const Floats d;
+  const hn::RebindToSigned<Floats> i;
+  const auto cx = hn::Set(i, frame.center[0]);
+  const auto cy = hn::Set(i, frame.center[1]);
+  const auto cz = hn::Set(i, frame.center[2]);
+  const FloatVec scale = hn::Set(d, frame.scale);
+  const auto coordinate = [&](FloatVec column, auto center) HWY_ATTR {
+    return hn::Mul(hn::ConvertTo(d, hn::Sub(hn::BitCast(i, column), center)), scale);
   };
-  const auto motion = [&](std::size_t k)
-                          HWY_ATTR { return to_single(&in.motions[candidates[k]].pressure); };
-  for (std::size_t k = 0; k < count; k += 4) {
-    store_columns(place(k), place(k + 1), place(k + 2), place(k + 3), tile.x + k, tile.y + k,
-                  tile.z + k, tile.weight + k);
-    if constexpr (parts.motion) {
-      store_columns(motion(k), motion(k + 1), motion(k + 2), motion(k + 3), tile.pressure + k,
-                    tile.vx + k, tile.vy + k, tile.vz + k);
+  for (std::size_t k = 0; k < count; k += hn::MaxLanes(d)) {
+    const Columns place = load_columns(in.packed_places, candidates + k);
+    hn::Store(coordinate(place.a, cx), d, tile.x + k);
+    hn::Store(coordinate(place.b, cy), d, tile.y + k);
+    hn::Store(coordinate(place.c, cz), d, tile.z + k);
+    hn::Store(place.e, d, tile.weight + k);
+    if constexpr (parts.pressure || parts.velocity) {
+      const Columns motion = load_columns(in.packed_motions, candidates + k);
+      if constexpr (parts.pressure) hn::Store(motion.a, d, tile.pressure + k);
+      if constexpr (parts.velocity) {
+        hn::Store(motion.b, d, tile.vx + k);
+        hn::Store(motion.c, d, tile.vy + k);
+        hn::Store(motion.e, d, tile.vz + k);
+      }
     }
   }
   fill_viscosity<parts>(in, candidates, count, tile);

@@ -124,6 +124,12 @@ struct DamperBlock {
   }
 };
 
+/// How s of a liquid particle changes with its own place, and with others'.
+struct VolumeSlope {
+  Vec3 gradient;  ///< sum_j a_j g x of PairSums
+  Real squares;   ///< sum_j a_j g^2 q^2
+};
+
 /// Scratch of force evaluations, kept from one to the next so that nothing is allocated in a steady
 /// step. Nothing here outlives an evaluation in meaning, but lists that tell when they are out of
 /// date.
@@ -136,6 +142,7 @@ struct Workspace {
   PairClusters solid_clusters;             ///< pairs of solids and liquid with its images
   std::uint64_t pairs_version = 0;         ///< of the sources that these were found among
   std::vector<Real> pair_sums;             ///< by target
+  std::vector<VolumeSlope> volume_slopes;  ///< by liquid slot, of an incompressible liquid
   std::vector<PairViscosity> viscosities;  ///< by source, where liquids differ
   std::vector<Real> target_viscosities;    ///< by target, the same
   // Of the gas, and of coupled liquids where a stage asks for them.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -22,6 +23,9 @@ constexpr Index kMirrored = 500;
 struct Pairs {
   std::vector<PairPlace> places;
   std::vector<PairMotion> motions;
+  PlaceGrid grid{{4, -1, -1}, 2};
+  std::vector<PackedPlace> packed_places;
+  std::vector<PackedMotion> packed_motions;
   std::vector<PairViscosity> viscosities;
   std::vector<Real> target_viscosities;
   std::vector<Index> candidates;
@@ -43,6 +47,7 @@ struct Pairs {
     motions.push_back({});
     viscosities.push_back({0, 0, 1});
     while (candidates.size() % 16 != 0) candidates.push_back(kSources);
+    pack();
     cluster.center = {5, 0, 0};
     cluster.end = kTargets;
     cluster.candidate_count = static_cast<Index>(candidates.size());
@@ -50,10 +55,25 @@ struct Pairs {
     cluster.has_mirrored = true;
   }
 
+  void pack() {
+    for (std::size_t n = 0; n <= kSources; ++n) {
+      const PairPlace& p = places[n];
+      const PairMotion& m = motions[n];
+      const auto single = [](Real value) { return static_cast<float>(value); };
+      packed_places.push_back({grid.coordinate(p.x, 0), grid.coordinate(p.y, 1),
+                               grid.coordinate(p.z, 2), single(p.weight)});
+      packed_motions.push_back({single(m.pressure), single(m.vx), single(m.vy), single(m.vz)});
+    }
+    packed_places.back() = {PlaceGrid::kFar, PlaceGrid::kFar, PlaceGrid::kFar, 0};
+  }
+
   PairInputs inputs(bool mixed) const {
     PairInputs in;
     in.places = places.data();
     in.motions = motions.data();
+    in.packed_places = packed_places.data();
+    in.packed_motions = packed_motions.data();
+    in.grid = grid;
     in.inverse_support = 1 / kSupport;
     in.viscosity = 0.8;
     in.first_mirrored = kMirrored;
@@ -206,12 +226,34 @@ TEST_P(PairSumsOf, DragIsThatOfImagesInWalls) {
   }
 }
 
-TEST_P(PairSumsOf, CompressionIsTheRateOfDensity) {
-  const Expected expected = add_up(pairs_, GetParam(), 1, [&](const Pair& p, auto add) {
-    add(0, pairs_.places[p.j].weight * p.g * p.v.dot(p.x));
+TEST_P(PairSumsOf, GradientIsThatOfWeights) {
+  const Expected expected = add_up(pairs_, GetParam(), 3, [&](const Pair& p, auto add) {
+    for (int a = 0; a < 3; ++a) add(a, pairs_.places[p.j].weight * p.g * p.x[a]);
   });
   for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.compression, false, expected, epsilon);
+    expect_sums(pairs_, table.gradient, false, expected, epsilon);
+  });
+}
+
+TEST_P(PairSumsOf, DivergenceIsThatOfMotions) {
+  const Expected expected = add_up(pairs_, GetParam(), 1, [&](const Pair& p, auto add) {
+    const PairMotion& m = pairs_.motions[p.j];
+    add(0, p.g * Vec3(m.vx, m.vy, m.vz).dot(p.x));
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.divergence, false, expected, epsilon);
+  });
+}
+
+TEST_P(PairSumsOf, VolumeHasDensityWithItsSlopes) {
+  const Expected expected = add_up(pairs_, GetParam(), kVolumeSums, [&](const Pair& p, auto add) {
+    const Real weight = pairs_.places[p.j].weight;
+    add(0, weight * p.w);
+    for (int a = 0; a < 3; ++a) add(1 + a, weight * p.g * p.x[a]);
+    add(4, weight * p.g * p.g * p.q * p.q);
+  });
+  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+    expect_sums(pairs_, table.volume, false, expected, epsilon);
   });
 }
 
@@ -239,6 +281,21 @@ TEST_P(PairSumsOf, MeanHasWeightsAndMoments) {
   });
 }
 
+TEST(PlaceGrid, RoundsToItsUnitAndKeepsToItself) {
+  const PlaceGrid grid({-3, 2, 5}, 7);
+  EXPECT_LE(grid.unit, 2 * 7.0 / PlaceGrid::kCount);
+  EXPECT_GE(grid.unit, 7.0 / PlaceGrid::kCount);
+  for (const Real x : {0.0, 0.1, 3.3, 6.999, 7.0}) {
+    const PackedPlace packed{grid.coordinate(x - 3, 0), grid.coordinate(x + 2, 1),
+                             grid.coordinate(x + 5, 2), 0};
+    const Vec3 error = grid.place(packed) - Vec3(x - 3, x + 2, x + 5);
+    EXPECT_LE(error.cwiseAbs().maxCoeff(), 0.51 * grid.unit);
+  }
+  EXPECT_EQ(grid.coordinate(-4, 0), 0);
+  EXPECT_EQ(grid.coordinate(1e300, 0), PlaceGrid::kCount);
+  EXPECT_EQ(grid.coordinate(std::numeric_limits<Real>::quiet_NaN(), 0), 0);
+}
+
 TEST(PairSums, OfTheBaselineAreTheSameBitsWithoutVectors) {
   const Pairs pairs;
   for (const PairPrecision precision :
@@ -246,9 +303,9 @@ TEST(PairSums, OfTheBaselineAreTheSameBitsWithoutVectors) {
     for (const KernelId kernel : {KernelId::wendland_c2, KernelId::cubic_spline}) {
       const PairSums& a = pair_sums(InstructionSet::baseline, precision, kernel);
       const PairSums& b = pair_sums_without_vectors(precision, kernel);
-      for (const auto function :
-           {&PairSums::density, &PairSums::pressure, &PairSums::force, &PairSums::drag,
-            &PairSums::compression, &PairSums::response, &PairSums::mean}) {
+      for (const auto function : {&PairSums::density, &PairSums::pressure, &PairSums::force,
+                                  &PairSums::drag, &PairSums::gradient, &PairSums::divergence,
+                                  &PairSums::volume, &PairSums::response, &PairSums::mean}) {
         for (const bool mixed : {false, true}) {
           std::vector<Real> with(kTargets * kMeanSums, 0);
           std::vector<Real> without = with;

@@ -55,12 +55,14 @@ void spoil(Column column, Columns& columns) {
       columns.work.solids_in_liquid = {};
       return;
     case Column::pair_clusters:
-      columns.work.sources.places.clear();
+      columns.work.sources = {};
       columns.work.liquid_clusters = {};
       columns.work.solid_clusters = {};
       return;
     case Column::pair_motion:
-      std::ranges::fill(columns.work.sources.motions, PairMotion{kNan, kNan, kNan, kNan});
+      for (std::size_t n = 0; n < columns.work.sources.motion_count(); ++n) {
+        columns.work.sources.set_motion(n, {kNan, kNan, kNan, kNan});
+      }
       return;
     case Column::liquid_pairs:
       for (PairBlock& block : columns.work.liquid_pairs) block.begin.fill(0);
@@ -135,13 +137,18 @@ std::vector<char> content(Column column, const Columns& columns) {
       return bytes_of(columns.work.solids_in_liquid.x);
     case Column::pair_clusters: {
       std::vector<Vec3> places;
-      for (const PairPlace& place : columns.work.sources.places) {
-        places.emplace_back(place.x, place.y, place.z);
+      for (std::size_t n = 0; n < columns.work.sources.count(); ++n) {
+        places.push_back(columns.work.sources.place(n));
       }
       return bytes_of(places);
     }
-    case Column::pair_motion:
-      return bytes_of(columns.work.sources.motions);
+    case Column::pair_motion: {
+      std::vector<PairMotion> motions;
+      for (std::size_t n = 0; n < columns.work.sources.motion_count(); ++n) {
+        motions.push_back(columns.work.sources.motion(n));
+      }
+      return bytes_of(motions);
+    }
     case Column::liquid_pairs: {
       std::vector<Index> ends;
       for (const PairBlock& block : columns.work.liquid_pairs) ends.push_back(block.begin[1]);
