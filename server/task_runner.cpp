@@ -195,8 +195,10 @@ void ThreadPoolRunner::help(std::size_t number) {
   pthread_setname_np(pthread_self(), kThreadName);
   bool has_slept = true;
   Clock::time_point end_of_patience;
-  while (!stopping_) {
+  while (true) {
+    // Before it looks whether to stop, or it could miss the call that says so, and wait for ever.
     const std::uint32_t seen = calls_;
+    if (stopping_) return;
     if (help_any(number, has_slept)) {
       has_slept = false;
       end_of_patience = Clock::now() + kPatience;

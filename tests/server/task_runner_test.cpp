@@ -74,6 +74,24 @@ TEST_P(TaskRunnerThreads, SeveralThrowingBlocksGiveOneException) {
   }
 }
 
+// Many at once, so that some helpers are late: one that missed the call to stop would never end.
+TEST(TaskRunner, StopsWhereHelpersHaveHardlyBegun) {
+  std::vector<std::thread> owners;
+  std::atomic<int> stopped = 0;
+  constexpr int kOwners = 6;
+  constexpr int kRunners = 2000;
+  for (int owner = 0; owner < kOwners; ++owner) {
+    owners.emplace_back([&] {
+      for (int k = 0; k < kRunners; ++k) {
+        const ThreadPoolRunner runner(7);
+        ++stopped;
+      }
+    });
+  }
+  for (std::thread& owner : owners) owner.join();
+  EXPECT_EQ(stopped, kOwners * kRunners);
+}
+
 TEST(TaskRunner, ZeroThreadsMeansTheCallerAlone) {
   ThreadPoolRunner runner(0);
   EXPECT_EQ(runner.thread_count(), 1U);
