@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,6 +21,8 @@ struct ServerLimits {
   std::size_t max_commands_in_flight = 256;               ///< of one client: not answered yet
   std::size_t max_bytes_in_flight = 8'000'000;            ///< of these commands' messages
   std::size_t max_grabs_per_client = 10;                  ///< one a finger
+  /// For the acknowledgement of a frame: a viewer that has stopped reading holds memory.
+  std::chrono::seconds frame_patience{30};
 };
 
 /// Fixed by PROTOCOL.md.
@@ -30,6 +33,7 @@ inline constexpr std::size_t kMaxFrameInterval = 100;  // [ticks]
 inline constexpr double kMinSpeedFactor = 0.05;        // simulated seconds per second
 inline constexpr double kMaxSpeedFactor = 4;           // the same
 inline constexpr std::uint32_t kFrameWindow = 3;       // frames sent and not acknowledged
+inline constexpr std::size_t kMaxFrameGroups = 8;      // frames that are made of one state
 inline constexpr std::size_t kMaxControlQueueBytes = 1024 * 1024;
 inline constexpr std::size_t kMaxLongMessages = 2;  // longer than that, in the control queue
 

@@ -75,9 +75,28 @@ void ServerMetrics::add_lateness(std::chrono::duration<double> lateness) {
   recent_lateness_.add(lateness.count());
 }
 
-void ServerMetrics::add_encoded_frame() {
+void ServerMetrics::add_encoded_frame(std::chrono::duration<double> time, bool is_key) {
   const std::lock_guard lock(mutex_);
   ++encoded_frames_;
+  encoded_keys_ += is_key ? 1 : 0;
+  encode_seconds_ += time.count();
+}
+
+void ServerMetrics::add_frame_groups(std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  ++shown_states_;
+  frame_groups_ += count;
+}
+
+void ServerMetrics::add_sent_frames(std::size_t count, std::size_t bytes_each) {
+  const std::lock_guard lock(mutex_);
+  sent_frames_ += count;
+  sent_bytes_ += count * bytes_each;
+}
+
+void ServerMetrics::add_missed_frames(std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  missed_frames_ += count;
 }
 
 std::string ServerMetrics::to_text(const Present& present) const {
@@ -91,8 +110,7 @@ std::string ServerMetrics::to_text(const Present& present) const {
   append_counter(text, "vat_undone_substeps_total",
                  "Steps that the guard has undone and repeated in shorter ones.", undone_substeps_);
   append_stages(text);
-  append_counter(text, "vat_frames_encoded_total",
-                 "Frames encoded, each for all who take it at one accuracy.", encoded_frames_);
+  append_frames(text);
   return text;
 }
 
@@ -109,6 +127,25 @@ void ServerMetrics::append_ticks(std::string& text) const {
   append_sample(text, bucket, label("le", "+Inf"), count);
   append_sample(text, std::string(kName) + "_sum", "", tick_seconds_);
   append_sample(text, std::string(kName) + "_count", "", count);
+}
+
+void ServerMetrics::append_frames(std::string& text) const {
+  append_counter(text, "vat_states_shown_total", "States of which frames were made or looked for.",
+                 shown_states_);
+  append_counter(text, "vat_frame_groups_total",
+                 "Groups of clients that such states had: those of one group share a frame.",
+                 frame_groups_);
+  append_counter(text, "vat_frames_encoded_total", "Frames encoded, each for all of a group.",
+                 encoded_frames_);
+  append_counter(text, "vat_key_frames_encoded_total", "Of them, those that build on no other.",
+                 encoded_keys_);
+  append_head(text, "vat_frame_encode_seconds_total", "counter", "Wall time of encoding.");
+  append_sample(text, "vat_frame_encode_seconds_total", "", encode_seconds_);
+  append_counter(text, "vat_frames_sent_total", "Frames sent, one a client.", sent_frames_);
+  append_counter(text, "vat_frame_bytes_sent_total", "Their bytes.", sent_bytes_);
+  append_counter(text, "vat_frames_missed_total",
+                 "Frames that were due to a client and not sent: it was not ready for them.",
+                 missed_frames_);
 }
 
 void ServerMetrics::append_recent_ticks(std::string& text) const {

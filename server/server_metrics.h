@@ -28,7 +28,12 @@ class ServerMetrics {
   void add_tick(const Tick& tick);
   /// How long after its time a tick of a playing session has begun.
   void add_lateness(std::chrono::duration<double> lateness);
-  void add_encoded_frame();
+  void add_encoded_frame(std::chrono::duration<double> time, bool is_key);
+  /// Frames that were made of one state.
+  void add_frame_groups(std::size_t count);
+  void add_sent_frames(std::size_t count, std::size_t bytes_each);
+  /// That were due to clients which were not ready or not served.
+  void add_missed_frames(std::size_t count);
 
   /// What is so now.
   struct Present {
@@ -61,6 +66,7 @@ class ServerMetrics {
   void append_ticks(std::string& text) const;
   void append_recent_ticks(std::string& text) const;
   void append_stages(std::string& text) const;
+  void append_frames(std::string& text) const;
 
   mutable std::mutex mutex_;
   std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound, those above all last
@@ -70,6 +76,13 @@ class ServerMetrics {
   std::uint64_t substeps_ = 0;
   std::uint64_t undone_substeps_ = 0;
   std::uint64_t encoded_frames_ = 0;
+  std::uint64_t encoded_keys_ = 0;
+  double encode_seconds_ = 0;
+  std::uint64_t shown_states_ = 0;
+  std::uint64_t frame_groups_ = 0;
+  std::uint64_t sent_frames_ = 0;
+  std::uint64_t sent_bytes_ = 0;
+  std::uint64_t missed_frames_ = 0;
   std::map<std::string_view, StageTotal> stages_;  // as many as there are names in the program
 };
 

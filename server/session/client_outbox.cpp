@@ -26,7 +26,12 @@ bool ControlQueue::over_limit() const {
 
 bool ControlQueue::holds_frame(std::size_t queued) {
   take(queued);
-  return std::ranges::any_of(waiting_, [](const Entry& entry) { return !entry.control; });
+  return std::ranges::any_of(
+      waiting_, [](const Entry& entry) { return !entry.control && !entry.has_arrived; });
+}
+
+void ControlQueue::frames_arrived() {
+  for (Entry& entry : waiting_) entry.has_arrived = !entry.control;
 }
 
 // The socket takes messages in order: those that still wait are the last ones.
@@ -58,8 +63,7 @@ std::uint64_t ClientOutbox::join() {
   const std::lock_guard lock(mutex_);
   membership_ += membership_ % 2 == 0 ? 1 : 2;
   is_subscribed_ = false;
-  last_sent_ = 0;  // another session counts its own
-  in_flight_.clear();
+  window_.clear();
   return membership_;
 }
 
@@ -79,11 +83,13 @@ void ClientOutbox::start_epoch(std::uint64_t membership, std::uint32_t epoch) {
   if (membership == membership_) epoch_ = epoch;
 }
 
-std::uint64_t ClientOutbox::subscribe(std::uint64_t membership, std::weak_ptr<FrameWaker> waker) {
+std::uint64_t ClientOutbox::subscribe(std::uint64_t membership, std::weak_ptr<FrameWaker> waker,
+                                      SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   if (membership != membership_) return 0;
   waker_ = std::move(waker);
   is_subscribed_ = true;
+  subscribed_at_ = now;
   return ++subscription_;
 }
 
@@ -92,34 +98,48 @@ void ClientOutbox::unsubscribe() {
   is_subscribed_ = false;
 }
 
-bool ClientOutbox::ready_for_frame(std::uint64_t subscription) {
+FrameChannel ClientOutbox::frame_channel(std::uint64_t subscription) {
   const std::lock_guard lock(mutex_);
-  if (closed_ || !is_subscribed_ || subscription != subscription_) return false;
-  wants_wake_ = !is_ready();
-  return !wants_wake_;
+  if (closed_ || !is_subscribed_ || subscription != subscription_) return {};
+  const bool is_ready =
+      window_.in_flight() < kFrameWindow && !queue_.holds_frame(connection_->queued_bytes());
+  wants_wake_ = !is_ready;
+  return {true, is_ready, window_.delays()};
 }
 
-void ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
-                              const SharedFrame& frame) {
+bool ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
+                              const SharedFrame& frame, SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
-  if (closed_ || !is_subscribed_ || subscription != subscription_ || epoch != epoch_) return;
-  last_sent_ = frame_number({reinterpret_cast<const std::uint8_t*>(frame->data()), frame->size()});
-  in_flight_.push_back(last_sent_);
+  if (closed_ || !is_subscribed_ || subscription != subscription_ || epoch != epoch_) return false;
+  window_.sent(frame_number({reinterpret_cast<const std::uint8_t*>(frame->data()), frame->size()}),
+               now);
   queue_.sent(frame->size(), false, connection_->queued_bytes());
   connection_->send_binary(frame);
+  return true;
 }
 
-bool ClientOutbox::acknowledge(std::uint32_t number) {
+bool ClientOutbox::acknowledge(std::uint32_t number, SteadyClock::time_point now) {
   std::shared_ptr<FrameWaker> waker;
+  bool was_sent = false;
   {
     const std::lock_guard lock(mutex_);
-    if (number == 0 || number > last_sent_) return false;
-    if (in_flight_.empty() || number < in_flight_.front()) return true;
-    while (!in_flight_.empty() && in_flight_.front() <= number) in_flight_.pop_front();
+    const std::size_t before = window_.in_flight();
+    was_sent = window_.acknowledge(number, now);
+    if (before > 0 && window_.in_flight() == 0) queue_.frames_arrived();
+    // Also by one of an earlier membership, whose frames may be what was waited for.
     if (std::exchange(wants_wake_, false) && is_subscribed_) waker = waker_.lock();
   }
   if (waker != nullptr) waker->wake(id());
-  return true;
+  return was_sent;
+}
+
+void ClientOutbox::close_if_silent(SteadyClock::time_point now, std::chrono::seconds patience) {
+  const std::lock_guard lock(mutex_);
+  const auto waits_since = window_.waits_since();
+  if (closed_ || !is_subscribed_ || !waits_since) return;
+  if (now - std::max(*waits_since, subscribed_at_) < patience) return;
+  close_as_too_slow("too slow: no frame was acknowledged for " + std::to_string(patience.count()) +
+                    " s");
 }
 
 bool ClientOutbox::begin_command(std::size_t bytes, std::size_t max_commands,
@@ -141,17 +161,15 @@ void ClientOutbox::send_control(std::string text) {
   if (closed_) return;
   queue_.sent(text.size(), true, connection_->queued_bytes());
   if (queue_.over_limit()) {
-    closed_ = true;
-    connection_->close(kTooSlow, "too slow: the control queue is full");
+    close_as_too_slow("too slow: the control queue is full");
     return;
   }
   connection_->send_text(std::move(text));
 }
 
-// A frame that was acknowledged has been taken, even if the transport has not said so yet.
-bool ClientOutbox::is_ready() {
-  if (in_flight_.empty()) return true;
-  return in_flight_.size() < kFrameWindow && !queue_.holds_frame(connection_->queued_bytes());
+void ClientOutbox::close_as_too_slow(std::string_view reason) {
+  closed_ = true;
+  connection_->close(kTooSlow, reason);
 }
 
 }  // namespace vat

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/net/transport.h"
+#include "server/session/frame_window.h"
 
 namespace vat {
 
@@ -25,11 +28,14 @@ class ControlQueue {
   bool over_limit() const;
   /// Whether some message that is not control waits, `queued` being what the socket has not taken.
   bool holds_frame(std::size_t queued);
+  /// The client has got all frames, even if the transport has not said so yet.
+  void frames_arrived();
 
  private:
   struct Entry {
     std::size_t bytes;
     bool control;
+    bool has_arrived = false;
   };
   void take(std::size_t queued);
   void count(const Entry& entry, bool adds);
@@ -38,6 +44,13 @@ class ControlQueue {
   std::size_t waiting_bytes_ = 0;
   std::size_t control_bytes_ = 0;
   std::size_t long_messages_ = 0;
+};
+
+/// The way of frames to a client at a moment.
+struct FrameChannel {
+  bool is_open = false;   ///< the subscription goes on
+  bool is_ready = false;  ///< for a frame
+  AckDelays delays;
 };
 
 /// Told that a client which was not ready for a frame may be so now.
@@ -67,15 +80,21 @@ class ClientOutbox {
   /// From now on frames are sent in this epoch only.
   void start_epoch(std::uint64_t membership, std::uint32_t epoch);
   /// Begins a subscription and ends the one before. 0 if the membership has ended.
-  std::uint64_t subscribe(std::uint64_t membership, std::weak_ptr<FrameWaker> waker);
+  std::uint64_t subscribe(std::uint64_t membership, std::weak_ptr<FrameWaker> waker,
+                          SteadyClock::time_point now);
   void unsubscribe();
 
-  /// Whether a frame may go out: fewer than three are not acknowledged, and the system has taken
-  /// those that were sent. If not, the waker is called once that may have changed.
-  bool ready_for_frame(std::uint64_t subscription);
-  void send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame);
+  /// A frame may go out where fewer than three are not acknowledged, and the system has taken those
+  /// that were sent. If not, the waker is called once that may have changed.
+  FrameChannel frame_channel(std::uint64_t subscription);
+  /// False where the subscription or the epoch has ended.
+  bool send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame,
+                  SteadyClock::time_point now);
   /// All frames up to this number; false if none so late was sent since the last join.
-  bool acknowledge(std::uint32_t number);
+  bool acknowledge(std::uint32_t number, SteadyClock::time_point now);
+  /// Closes the connection, told why, where a subscriber has acknowledged nothing for `patience`
+  /// since a frame was sent.
+  void close_if_silent(SteadyClock::time_point now, std::chrono::seconds patience);
 
   /// Counts a command in, unless the client would then have more than `max_commands` of them, or
   /// `max_bytes` of their messages, in flight.
@@ -85,7 +104,7 @@ class ClientOutbox {
  private:
   // All with the mutex held.
   void send_control(std::string text);
-  bool is_ready();
+  void close_as_too_slow(std::string_view reason);
 
   const std::shared_ptr<Connection> connection_;
   std::mutex mutex_;
@@ -99,8 +118,8 @@ class ClientOutbox {
   bool is_subscribed_ = false;
   std::weak_ptr<FrameWaker> waker_;
   bool wants_wake_ = false;
-  std::uint32_t last_sent_ = 0;          // number of a frame
-  std::deque<std::uint32_t> in_flight_;  // numbers, as they were sent
+  SteadyClock::time_point subscribed_at_{};
+  FrameWindow window_;
 };
 
 }  // namespace vat

@@ -1,20 +1,26 @@
 #include "server/session/frame_delivery.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "server/limits.h"
+#include "server/session/frame_groups.h"
 
 namespace vat {
 namespace {
 
-/// Whether a tick that `every` divides is the last one or lies after the one before it: states that
-/// were never published count too.
-bool turn_has_come(std::uint64_t every, std::uint64_t before, std::uint64_t tick) {
-  return tick / every > before / every;
+/// Turns after which what a viewer holds is not worth keeping: it gets a key frame.
+constexpr std::uint64_t kMostTurnsHeld = 16;
+
+/// So that even the slowest get one frame in a hundred ticks.
+unsigned most_stride(std::uint64_t every) {
+  return static_cast<unsigned>(std::clamp<std::uint64_t>(kMaxFrameInterval / every, 1, 4));
 }
 
 }  // namespace
 
 FrameDelivery::FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics)
-    : source_(vat, metrics) {}
+    : metrics_(metrics), source_(vat, metrics) {}
 
 void FrameDelivery::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
                         Subscription wish) {
@@ -22,7 +28,8 @@ void FrameDelivery::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subs
   Viewer viewer;
   viewer.outbox = std::move(outbox);
   viewer.subscription = subscription;
-  viewer.wish = wish;
+  viewer.pace = FramePace(most_stride(wish.every));
+  viewer.wish = std::move(wish);
   viewers_[client] = std::move(viewer);
 }
 
@@ -36,44 +43,121 @@ void FrameDelivery::set_vat(const std::optional<Vat>& vat) {
   has_state_ = false;
 }
 
-void FrameDelivery::publish(PublishedState state) {
+void FrameDelivery::publish(PublishedState state, SteadyClock::time_point now) {
+  made_.clear();
   note_turns(state);
-  source_.publish(std::move(state), viewers_.size());
-  for (auto& [client, viewer] : viewers_) serve(viewer);
+  source_.publish(std::move(state));
+  Groups groups;
+  for (auto& [client, viewer] : viewers_) {
+    gather(viewer, now, groups);
+    viewer.has_turn = false;
+  }
+  serve(groups, now);
+  metrics_.add_frame_groups(made_.size());
 }
 
-void FrameDelivery::retry(std::span<const ConnectionId> clients) {
+void FrameDelivery::retry(std::span<const ConnectionId> clients, SteadyClock::time_point now) {
   if (!has_state_) return;
+  Groups groups;
   for (const ConnectionId client : clients) {
     const auto viewer = viewers_.find(client);
-    if (viewer != viewers_.end()) serve(viewer->second);
+    if (viewer != viewers_.end()) gather(viewer->second, now, groups);
   }
+  serve(groups, now);
 }
 
 void FrameDelivery::note_turns(const PublishedState& state) {
   const bool is_new_epoch = !has_state_ || state.header.epoch != epoch_;
   for (auto& [client, viewer] : viewers_) {
     viewer.awaits_any |= is_new_epoch;
-    const bool is_due =
-        viewer.awaits_any || turn_has_come(viewer.wish.every, tick_, state.header.tick);
-    viewer.is_owed |= is_due;
+    viewer.has_turn = viewer.awaits_any || turn_has_come(viewer, state.header.tick);
+    viewer.is_due |= viewer.has_turn;
   }
   has_state_ = true;
   epoch_ = state.header.epoch;
   tick_ = state.header.tick;
 }
 
-void FrameDelivery::serve(Viewer& viewer) {
-  if (!viewer.is_owed) return;
-  const std::uint64_t content = source_.content(viewer.wish.max_error);
-  if (!viewer.awaits_any && viewer.shown == content) {
-    viewer.is_owed = false;
+/// Whether a tick that the viewer's period divides is the one of a new state or lies after the one
+/// before it: states that were never published count too. Viewers of one period have their turns
+/// together; one that is kept slow and has got a frame late leaves out the next.
+bool FrameDelivery::turn_has_come(const Viewer& viewer, std::uint64_t tick) const {
+  const std::uint64_t period = viewer.period();
+  if (viewer.pace.stride() > 1 && tick < viewer.sent_tick + period / 2) return false;
+  return tick / period > tick_ / period;
+}
+
+void FrameDelivery::gather(Viewer& viewer, SteadyClock::time_point now, Groups& groups) {
+  if (!viewer.is_due) return;
+  if (!viewer.awaits_any && viewer.shown == source_.number()) {
+    viewer.is_due = false;
     return;
   }
-  if (!viewer.outbox->ready_for_frame(viewer.subscription)) return;
-  viewer.outbox->send_frame(viewer.subscription, epoch_, source_.frame(viewer.wish.max_error));
-  viewer.shown = content;
-  viewer.awaits_any = viewer.is_owed = false;
+  if (source_.number() - viewer.shown > kMostTurnsHeld * viewer.period()) viewer.held = {};
+  const FrameChannel channel = viewer.outbox->frame_channel(viewer.subscription);
+  if (!channel.is_open) return;
+  if (viewer.has_turn) viewer.pace.frame_due(channel.is_ready, channel.delays, now);
+  if (!channel.is_ready) {
+    if (viewer.has_turn) metrics_.add_missed_frames(1);
+    return;
+  }
+  GroupKey key;
+  key.cut = FrameCut(viewer.wish, viewer.pace.coarseness(), viewer.pace.detail());
+  key.stride = static_cast<std::uint8_t>(viewer.period());
+  key.awaits_any = viewer.awaits_any;
+  key.first = viewer.held[0].get();
+  key.second = viewer.held[1].get();
+  groups[key].push_back(&viewer);
+}
+
+void FrameDelivery::serve(const Groups& groups, SteadyClock::time_point now) {
+  std::vector<GroupClaim> claims;
+  std::vector<Groups::const_iterator> entries;
+  for (auto group = groups.begin(); group != groups.end(); ++group) {
+    const auto& viewers = group->second;
+    const auto longest = std::ranges::max_element(viewers, {}, &Viewer::passed_over);
+    claims.push_back({viewers.size(), (*longest)->passed_over});
+    entries.push_back(group);
+  }
+  std::vector<bool> is_served(entries.size());
+  for (const std::size_t index : choose_groups(claims, kMaxFrameGroups)) {
+    const auto& [key, viewers] = *entries[index];
+    const Made* made = make(key, viewers.front()->held);
+    if (made == nullptr) continue;
+    is_served[index] = true;
+    std::size_t sent = 0;
+    for (Viewer* viewer : viewers) sent += hand_over(*viewer, *made, now) ? 1 : 0;
+    if (sent > 0) metrics_.add_sent_frames(sent, made->bytes->size());
+  }
+  for (std::size_t index = 0; index < entries.size(); ++index) {
+    if (is_served[index]) continue;
+    for (Viewer* viewer : entries[index]->second) ++viewer->passed_over;
+    metrics_.add_missed_frames(entries[index]->second.size());
+  }
+}
+
+/// Null where as many have been made of this state as may be.
+const FrameDelivery::Made* FrameDelivery::make(const GroupKey& key, const HeldFrames& held) {
+  if (const auto found = made_.find(key); found != made_.end()) return &found->second;
+  if (made_.size() >= kMaxFrameGroups) return nullptr;
+  Made made;
+  made.frame = source_.frame(key.cut);
+  if (key.awaits_any || held[0] == nullptr || !show_the_same(*held[0], *made.frame)) {
+    made.bytes = source_.encode(*made.frame, held, key.stride);
+  }
+  return &made_.emplace(key, std::move(made)).first->second;
+}
+
+bool FrameDelivery::hand_over(Viewer& viewer, const Made& made, SteadyClock::time_point now) {
+  viewer.is_due = false;
+  viewer.passed_over = 0;
+  viewer.shown = source_.number();
+  if (made.bytes == nullptr) return false;
+  if (!viewer.outbox->send_frame(viewer.subscription, epoch_, made.bytes, now)) return false;
+  viewer.awaits_any = false;
+  viewer.sent_tick = tick_;
+  viewer.held = {made.frame, std::exchange(viewer.held[0], nullptr)};
+  return true;
 }
 
 }  // namespace vat

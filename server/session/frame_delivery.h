@@ -7,14 +7,16 @@
 #include <vector>
 
 #include "server/session/client_outbox.h"
+#include "server/session/frame_pace.h"
 #include "server/session/frame_source.h"
 #include "server/session/subscription.h"
 
 namespace vat {
 
-/// Which viewer of a session gets which frame. Every viewer owes its frames to the states that are
-/// published: one whose turn it is gets the frame at once or, where it is not ready, a newer one as
-/// soon as it is. Used by one thread at a time.
+/// Which viewer of a session gets which frame. Who is due a frame gets it at once or, where it is
+/// not ready, a newer one as soon as it is. Viewers who are shown the same and hold the same frames
+/// are a group and share one encoding; of one state no more than kMaxFrameGroups are made, and who
+/// is passed over is due the next one. Used by one thread at a time.
 class FrameDelivery {
  public:
   FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics);
@@ -26,24 +28,53 @@ class FrameDelivery {
   void set_vat(const std::optional<Vat>& vat);
 
   /// A further state: goes to those whose turn it is and to those who have missed theirs.
-  void publish(PublishedState state);
+  void publish(PublishedState state, SteadyClock::time_point now);
   /// These may have become ready.
-  void retry(std::span<const ConnectionId> clients);
+  void retry(std::span<const ConnectionId> clients, SteadyClock::time_point now);
 
  private:
   struct Viewer {
     std::shared_ptr<ClientOutbox> outbox;
     std::uint64_t subscription = 0;
     Subscription wish;
+    FramePace pace;
     bool awaits_any = true;  ///< also a frame that shows nothing new
-    bool is_owed = false;    ///< its turn has come, and it has got nothing since
-    std::uint64_t shown = 0;
-  };
-  void note_turns(const PublishedState& state);
-  void serve(Viewer& viewer);
+    bool has_turn = false;   ///< with the last state
+    bool is_due = false;     ///< has had its turn, and got nothing since
+    HeldFrames held;
+    std::uint32_t shown = 0;      ///< number as of which it has seen all that there is
+    std::uint64_t sent_tick = 0;  ///< of the last frame
+    std::size_t passed_over = 0;  ///< times in a row
 
-  FrameSource source_;
+    std::uint64_t period() const { return wish.every * pace.stride(); }  ///< [ticks]
+  };
+  /// What the viewers of a group have in common: all that their frame's bytes depend on.
+  struct GroupKey {
+    FrameCut cut;
+    std::uint8_t stride = 1;
+    bool awaits_any = false;
+    const GridFrame* first = nullptr;
+    const GridFrame* second = nullptr;
+    auto operator<=>(const GroupKey&) const = default;
+  };
+  struct Made {
+    std::shared_ptr<const GridFrame> frame;
+    SharedFrame bytes;  // null: there is nothing new to see
+  };
+  using Groups = std::map<GroupKey, std::vector<Viewer*>>;
+
+  void note_turns(const PublishedState& state);
+  bool turn_has_come(const Viewer& viewer, std::uint64_t tick) const;
+  void gather(Viewer& viewer, SteadyClock::time_point now, Groups& groups);
+  void serve(const Groups& groups, SteadyClock::time_point now);
+  const Made* make(const GroupKey& key, const HeldFrames& held);
+  /// Whether it was sent.
+  bool hand_over(Viewer& viewer, const Made& made, SteadyClock::time_point now);
+
+  ServerMetrics& metrics_;
   std::map<ConnectionId, Viewer> viewers_;
+  FrameSource source_;
+  std::map<GroupKey, Made> made_;  // of the last state
   bool has_state_ = false;
   std::uint64_t tick_ = 0;   // of the last state
   std::uint32_t epoch_ = 0;  // the same

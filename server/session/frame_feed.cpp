@@ -88,9 +88,9 @@ void FrameFeed::carry_out(Mail mail) {
     }
   }
   if (mail.state) {
-    delivery_.publish(*std::move(mail.state));
+    delivery_.publish(*std::move(mail.state), SteadyClock::now());
   } else {
-    delivery_.retry(mail.woken);
+    delivery_.retry(mail.woken, SteadyClock::now());
   }
 }
 

@@ -1,9 +1,7 @@
 #include "server/session/frame_source.h"
 
 #include <algorithm>
-#include <memory>
-#include <utility>
-#include <vector>
+#include <chrono>
 
 namespace vat {
 namespace {
@@ -17,6 +15,35 @@ bool shows_the_same(const PublishedState& a, const PublishedState& b) {
 
 }  // namespace
 
+FrameCut::FrameCut(const Subscription& wish, unsigned coarseness, std::uint8_t detail)
+    : max_error_(wish.max_error),
+      coarseness_(coarseness),
+      attribute_errors_(wish.attribute_errors),
+      detail_(std::min(wish.selection.detail, detail)),
+      has_region_(wish.selection.region.has_value()) {
+  if (!has_region_) return;
+  const auto& [min, max] = *wish.selection.region;
+  region_ = {min.x(), min.y(), min.z(), max.x(), max.y(), max.z()};
+}
+
+FrameSelection FrameCut::selection() const {
+  FrameSelection selection;
+  selection.detail = detail_;
+  if (has_region_) {
+    selection.region =
+        FrameRegion{{region_[0], region_[1], region_[2]}, {region_[3], region_[4], region_[5]}};
+  }
+  return selection;
+}
+
+FrameCut FrameCut::of_all() const {
+  FrameCut all = *this;
+  all.detail_ = kFullDetail;
+  all.has_region_ = false;
+  all.region_ = {};
+  return all;
+}
+
 FrameSource::FrameSource(const std::optional<Vat>& vat, ServerMetrics& metrics)
     : metrics_(metrics), domain_(vat) {}
 
@@ -24,48 +51,50 @@ void FrameSource::set_vat(const std::optional<Vat>& vat) {
   domain_ = FrameDomain(vat);
 }
 
-void FrameSource::publish(PublishedState state, std::size_t watchers) {
-  if (publication_ == 0 || !shows_the_same(state, state_)) ++places_;
-  ++publication_;
+void FrameSource::publish(PublishedState state) {
+  const std::uint32_t number = state_.header.number;
+  const bool shows_more = number == 0 || !shows_the_same(state, state_);
   state_ = std::move(state);
+  state_.header.number = shows_more ? number + 1 : number;
   domain_.include(state_);
-  // Grids that nobody asks for any more go at last; who asks for one again gets one frame more.
-  if (encoded_.size() > watchers) encoded_.clear();
+  frames_.clear();
 }
 
-std::uint64_t FrameSource::content(double max_error) {
-  return find(max_error).content;
-}
-
-SharedFrame FrameSource::frame(double max_error) {
-  Encoded& encoded = find(max_error);
-  if (encoded.publication != publication_) encode(encoded);
-  return encoded.frame;
-}
-
-FrameSource::Encoded& FrameSource::find(double max_error) {
-  const FrameGrid grid = domain_.grid(max_error);
-  Encoded& encoded = encoded_[grid.quantum];  // the origin is the same for all
-  if (encoded.places != places_ || encoded.grid != grid) {
-    encoded.grid = grid;
-    encode(encoded);
+FrameScale FrameSource::scale(const FrameCut& cut) const {
+  FrameScale scale;
+  scale.grid = domain_.grid(cut.max_error());
+  // Of the finest grid too, which is finer than half of any error.
+  if (cut.coarseness() > 1) scale.grid = domain_.grid(cut.coarseness() * scale.grid.quantum / 2);
+  for (std::size_t a = 0; a < kFrameAttributes; ++a) {
+    scale.attribute_quanta[a] = 2 * cut.coarseness() * cut.attribute_errors()[a];
   }
-  return encoded;
+  return scale;
 }
 
-void FrameSource::encode(Encoded& encoded) {
-  GridFrame shown;
-  make_grid_frame(state_, {encoded.grid, {}}, shown);
-  shown.header.number = static_cast<std::uint32_t>(places_);
-  if (encoded.frame == nullptr || !show_the_same(encoded.shown, shown)) {
-    encoded.content = ++last_content_;
+std::shared_ptr<const GridFrame> FrameSource::frame(const FrameCut& cut) {
+  std::shared_ptr<const GridFrame>& known = frames_[cut];
+  if (known != nullptr) return known;
+  const std::shared_ptr<GridFrame> made = pool_.take();
+  if (cut.selection().is_all()) {
+    make_grid_frame(state_, scale(cut), *made);
+  } else {
+    select_particles(*frame(cut.of_all()), cut.selection(), *made);
   }
-  const auto bytes = encoder_.encode(shown, {});
-  encoded.frame = std::make_shared<const std::string>(bytes.begin(), bytes.end());
-  encoded.shown = std::move(shown);
-  encoded.places = places_;
-  encoded.publication = publication_;
-  metrics_.add_encoded_frame();
+  return frames_[cut] = made;
+}
+
+SharedFrame FrameSource::encode(const GridFrame& frame, const HeldFrames& held,
+                                std::uint8_t stride) {
+  const auto begin = std::chrono::steady_clock::now();
+  FrameReferences references;
+  if (held[0] != nullptr && can_refer(frame, *held[0])) {
+    references.first = held[0].get();
+    if (held[1] != nullptr && can_refer(*held[0], *held[1])) references.second = held[1].get();
+  }
+  const auto bytes = encoder_.encode(frame, references, stride);
+  auto shared = std::make_shared<const std::string>(bytes.begin(), bytes.end());
+  metrics_.add_encoded_frame(std::chrono::steady_clock::now() - begin, references.first == nullptr);
+  return shared;
 }
 
 }  // namespace vat

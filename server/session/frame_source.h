@@ -1,53 +1,78 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "protocol/frame_codec.h"
 #include "server/server_metrics.h"
 #include "server/session/client_outbox.h"
 #include "server/session/frame_domain.h"
+#include "server/session/grid_frame_pool.h"
+#include "server/session/subscription.h"
 
 namespace vat {
 
-/// The frames of a session, encoded once for all who take them at one accuracy, and not at all
-/// where nothing has moved. Used by one thread at a time.
+/// Frames as a client has got them, the newest first; null where there are none.
+using HeldFrames = std::array<std::shared_ptr<const GridFrame>, 2>;
+
+/// What of a state a viewer is shown, and in what steps. Viewers with equal cuts see the same.
+class FrameCut {
+ public:
+  FrameCut() = default;
+  /// `coarseness` times the errors that were asked for, and no more than `detail`.
+  FrameCut(const Subscription& wish, unsigned coarseness, std::uint8_t detail);
+
+  double max_error() const { return max_error_; }
+  double coarseness() const { return coarseness_; }
+  const ByAttribute<double>& attribute_errors() const { return attribute_errors_; }
+  FrameSelection selection() const;
+  /// The same of all particles.
+  FrameCut of_all() const;
+
+  auto operator<=>(const FrameCut&) const = default;
+
+ private:
+  double max_error_ = 0;
+  double coarseness_ = 1;
+  ByAttribute<double> attribute_errors_{};
+  std::uint8_t detail_ = kFullDetail;
+  bool has_region_ = false;
+  std::array<double, 6> region_{};
+};
+
+/// The frames of a session's states: quantised once for all who are shown the same, and encoded
+/// once for all of them who hold the same frames to build on. Used by one thread at a time.
 class FrameSource {
  public:
   FrameSource(const std::optional<Vat>& vat, ServerMetrics& metrics);
 
   /// The grids of another scene, or of the same from its start.
   void set_vat(const std::optional<Vat>& vat);
-  /// A further state, from which frames are made from now on; `watchers` bounds what is kept. It
-  /// gets the next number where it shows something new.
-  void publish(PublishedState state, std::size_t watchers);
+  /// A further state, of which frames are made from now on. It gets the next number where it shows
+  /// something new.
+  void publish(PublishedState state);
 
-  /// Names what a frame of this accuracy shows: two that differ only in when they were made, or by
-  /// less than their grid tells, show the same. Never 0.
-  std::uint64_t content(double max_error);
-  /// The frame of the last published state.
-  SharedFrame frame(double max_error);
+  std::uint32_t number() const { return state_.header.number; }
+  const FrameHeader& header() const { return state_.header; }
+  /// The state in a viewer's steps: of equal cuts the same frame, until the next state.
+  std::shared_ptr<const GridFrame> frame(const FrameCut& cut);
+  /// The bytes for who holds these frames, as far as one can build on them.
+  SharedFrame encode(const GridFrame& frame, const HeldFrames& held, std::uint8_t stride);
 
  private:
-  struct Encoded {
-    SharedFrame frame;
-    GridFrame shown;
-    FrameGrid grid;
-    std::uint64_t content = 0;
-    std::uint64_t places = 0;       // of the state that it was made of
-    std::uint64_t publication = 0;  // the same
-  };
-  Encoded& find(double max_error);
-  void encode(Encoded& encoded);
+  FrameScale scale(const FrameCut& cut) const;
 
   ServerMetrics& metrics_;
   FrameDomain domain_;
   PublishedState state_;
-  std::uint64_t places_ = 0;       // counts states that differ in more than time
-  std::uint64_t publication_ = 0;  // counts states
-  std::uint64_t last_content_ = 0;
   FrameEncoder encoder_;
-  std::map<double, Encoded> encoded_;  // by quantum
+  GridFramePool pool_;
+  std::map<FrameCut, std::shared_ptr<const GridFrame>> frames_;  // of the last state
 };
 
 }  // namespace vat

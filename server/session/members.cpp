@@ -49,6 +49,21 @@ bool Members::is_watched() const {
       members_, [](const auto& entry) { return entry.second.subscription.has_value(); });
 }
 
+ByAttribute<bool> Members::wanted_attributes() const {
+  ByAttribute<bool> wanted{};
+  for (const auto& [id, member] : members_) {
+    if (!member.subscription) continue;
+    for (std::size_t a = 0; a < kFrameAttributes; ++a) {
+      wanted[a] |= member.subscription->attribute_errors[a] > 0;
+    }
+  }
+  return wanted;
+}
+
+void Members::close_silent(SteadyClock::time_point now, std::chrono::seconds patience) {
+  for (auto& [id, member] : members_) member.outbox->close_if_silent(now, patience);
+}
+
 void Members::forget_grabs() {
   for (auto& [id, member] : members_) member.grabs.clear();
 }

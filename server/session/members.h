@@ -39,6 +39,9 @@ class Members {
   /// Whether a member has subscribed to the frame of this tick.
   bool is_watched(std::uint64_t tick) const;
   bool is_watched() const;
+  /// What the subscribers want to see of particles beside their places.
+  ByAttribute<bool> wanted_attributes() const;
+  void close_silent(SteadyClock::time_point now, std::chrono::seconds patience);
   void forget_grabs();
   void forget_grab(std::uint64_t grab);
   void forget_grabs_of(BodyId body);

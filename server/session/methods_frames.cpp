@@ -1,6 +1,8 @@
 // frames.*
 
+#include <array>
 #include <limits>
+#include <string_view>
 
 #include "core/limits.h"
 #include "server/session/method_table.h"
@@ -8,12 +10,50 @@
 namespace vat {
 namespace {
 
-SessionAction read_subscribe(ObjectReader& params, Errors&) {
+constexpr std::array<std::string_view, kFrameAttributes> kAttributeNames = {"speed", "density",
+                                                                            "pressure"};
+// A frame's whole steps reach a million quanta; finer ones than this are noise of the simulation.
+constexpr double kLeastAttributeError = 1e-6;  // [m/s], [kg/m^3], [Pa]
+constexpr double kMostAttributeError = 1e12;
+
+FrameRegion read_region(const Json& value, const std::string& path, Errors& errors) {
+  ObjectReader reader(value, path, errors);
+  const FrameRegion region{reader.vector("min", -kMaxLength, kMaxLength),
+                           reader.vector("max", -kMaxLength, kMaxLength)};
+  reader.refuse_unknown();
+  if ((region.max.array() < region.min.array()).any()) {
+    add_error(errors, "out_of_range", path + "/max", "must not be below min, on any axis");
+  }
+  return region;
+}
+
+ByAttribute<double> read_attributes(const Json& value, const std::string& path, Errors& errors) {
+  ObjectReader reader(value, path, errors);
+  ByAttribute<double> attribute_errors{};
+  for (std::size_t a = 0; a < kFrameAttributes; ++a) {
+    if (!reader.has(kAttributeNames[a])) continue;
+    attribute_errors[a] =
+        reader.real(kAttributeNames[a], kLeastAttributeError, kMostAttributeError);
+  }
+  reader.refuse_unknown();
+  return attribute_errors;
+}
+
+SessionAction read_subscribe(ObjectReader& params, Errors& errors) {
   Subscription subscription;
   subscription.max_error = params.real("max_error", 0, kMaxLength, 0.0);
   subscription.every = params.count("every", 1, kMaxFrameInterval, 1);
+  subscription.selection.detail =
+      static_cast<std::uint8_t>(params.count("detail", 0, kFullDetail, kFullDetail));
+  if (const Json* region = params.member("region")) {
+    subscription.selection.region = read_region(*region, params.path_of("region"), errors);
+  }
+  if (const Json* attributes = params.member("attributes")) {
+    subscription.attribute_errors =
+        read_attributes(*attributes, params.path_of("attributes"), errors);
+  }
   return [subscription](SessionCore& core, Member& member) -> ActionResult {
-    core.subscribe(member, subscription);
+    core.subscribe(member, subscription, SteadyClock::now());
     return Json::object();
   };
 }
@@ -30,7 +70,7 @@ ServerAction read_ack(ObjectReader& params, Errors&) {
   const auto number = static_cast<std::uint32_t>(
       params.count("number", 1, std::numeric_limits<std::uint32_t>::max()));
   return [number](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
-    if (!caller.client()->acknowledge(number)) {
+    if (!caller.client()->acknowledge(number, SteadyClock::now())) {
       return invalid_params({Error{"out_of_range", "/number", "must be of a frame that was sent"}});
     }
     Json reply = Json::object();

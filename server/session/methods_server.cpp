@@ -33,6 +33,8 @@ Json describe_limits(const ServerLimits& limits) {
       {"name_bytes", kMaxNameLength},
       {"ticks_per_step", kMaxTicksPerStep},
       {"frame_window", kFrameWindow},
+      {"frame_groups", kMaxFrameGroups},
+      {"frame_patience_seconds", limits.frame_patience.count()},
       {"control_queue_bytes", kMaxControlQueueBytes},
   };
 }

@@ -257,6 +257,7 @@ void Session::wait_for_tick() {
 void Session::status_turn() {
   wait_for_status();  // first, so that a fault does not end the statuses
   core_.announce_status();
+  core_.close_silent(SteadyClock::now());
 }
 
 void Session::wait_for_status() {

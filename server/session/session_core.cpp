@@ -82,8 +82,9 @@ Member& SessionCore::join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t me
   return members_.add(std::move(outbox), membership);
 }
 
-void SessionCore::subscribe(Member& member, const Subscription& subscription) {
-  const std::uint64_t number = member.outbox->subscribe(member.membership, frames_);
+void SessionCore::subscribe(Member& member, const Subscription& subscription,
+                            SteadyClock::time_point now) {
+  const std::uint64_t number = member.outbox->subscribe(member.membership, frames_, now);
   if (number == 0) return;  // it is about to leave
   member.subscription = subscription;
   frames_->add(member.outbox, number, subscription);
@@ -159,7 +160,7 @@ void SessionCore::publish_frame() {
 }
 
 PublishedState SessionCore::published() const {
-  PublishedState state = publish(run_.simulation());
+  PublishedState state = publish(run_.simulation(), members_.wanted_attributes());
   state.header.playing = playing_;
   state.header.slow = playing_ && rate_.slower_than(speed_);
   state.header.epoch = run_.epoch();
@@ -167,6 +168,10 @@ PublishedState SessionCore::published() const {
   state.header.published = wall_clock();
   state.header.real_time_factor = static_cast<float>(rate_.rate());
   return state;
+}
+
+void SessionCore::close_silent(SteadyClock::time_point now) {
+  members_.close_silent(now, environment_.limits.frame_patience);
 }
 
 Json SessionCore::status() const {

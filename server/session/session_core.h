@@ -57,7 +57,7 @@ class SessionCore {
   /// Frees the client's grabs.
   void leave(ConnectionId client);
   /// The member gets the present state at the next chance, and then those that it asks for.
-  void subscribe(Member& member, const Subscription& subscription);
+  void subscribe(Member& member, const Subscription& subscription, SteadyClock::time_point now);
   void unsubscribe(Member& member);
 
   /// Runs one tick; its frame is due then. False if the guard failed, which pauses the session.
@@ -67,6 +67,8 @@ class SessionCore {
   /// Tells what is due.
   void announce();
   void announce_status();
+  /// Ends the connections of members that have stopped reading.
+  void close_silent(SteadyClock::time_point now);
   /// True once after anything that ends the ticks of a control.step: another control command, a
   /// change of scene, a failed guard.
   bool take_interruption();

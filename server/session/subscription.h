@@ -2,12 +2,17 @@
 
 #include <cstdint>
 
+#include "protocol/grid_frame.h"
+
 namespace vat {
 
-/// The frames that a client asks for.
+/// The frames that a client asks for: the best that it gets.
 struct Subscription {
   double max_error = 0;     ///< [m]; 0: the finest grid
   std::uint64_t every = 1;  ///< [ticks]
+  FrameSelection selection;
+  /// [m/s], [kg/m^3], [Pa]; 0: without the attribute.
+  ByAttribute<double> attribute_errors{};
 };
 
 }  // namespace vat

@@ -43,17 +43,20 @@ class Outbox : public testing::Test {
     outbox.start_epoch(membership, kEpoch);
     subscribe();
   }
-  void subscribe() { subscription = outbox.subscribe(membership, waker); }
+  void subscribe() { subscription = outbox.subscribe(membership, waker, now); }
   /// Sends frames as long as it is ready for them.
   void offer(std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t number = first; number <= last; ++number) {
-      if (outbox.ready_for_frame(subscription)) send(number);
+      if (outbox.frame_channel(subscription).is_ready) send(number);
     }
   }
-  void send(std::uint32_t number) { outbox.send_frame(subscription, kEpoch, make_frame(number)); }
+  void send(std::uint32_t number) {
+    outbox.send_frame(subscription, kEpoch, make_frame(number), now);
+  }
   std::uint32_t last_number() const { return connection->frames().back().header.number; }
   std::size_t frame_count() const { return connection->frames().size(); }
 
+  SteadyClock::time_point now{std::chrono::hours(1)};
   const std::shared_ptr<FakeConnection> connection = std::make_shared<FakeConnection>(1);
   const std::shared_ptr<CountingWaker> waker = std::make_shared<CountingWaker>();
   ClientOutbox outbox{connection};
@@ -65,7 +68,7 @@ TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
   offer(1, 50);
   ASSERT_EQ(frame_count(), 3u);
   EXPECT_EQ(last_number(), 3u);
-  EXPECT_TRUE(outbox.acknowledge(1));
+  EXPECT_TRUE(outbox.acknowledge(1, now));
   offer(51, 60);
   ASSERT_EQ(frame_count(), 4u);
   EXPECT_EQ(last_number(), 51u);
@@ -73,35 +76,35 @@ TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
 
 TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
   offer(1, 3);
-  EXPECT_TRUE(outbox.acknowledge(1));
+  EXPECT_TRUE(outbox.acknowledge(1, now));
   EXPECT_EQ(waker->count, 0) << "none was missed";
   offer(4, 10);
-  EXPECT_TRUE(outbox.acknowledge(2));
-  EXPECT_TRUE(outbox.acknowledge(3));
+  EXPECT_TRUE(outbox.acknowledge(2, now));
+  EXPECT_TRUE(outbox.acknowledge(3, now));
   EXPECT_EQ(waker->count, 1);
   offer(11, 20);
   outbox.unsubscribe();
-  EXPECT_TRUE(outbox.acknowledge(5));
+  EXPECT_TRUE(outbox.acknowledge(5, now));
   EXPECT_EQ(waker->count, 1) << "it wants none any more";
 }
 
 TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
   offer(1, 3);
-  EXPECT_TRUE(outbox.acknowledge(3));
+  EXPECT_TRUE(outbox.acknowledge(3, now));
   offer(4, 10);
   EXPECT_EQ(frame_count(), 6u);
-  EXPECT_TRUE(outbox.acknowledge(2)) << "late, and of no effect";
+  EXPECT_TRUE(outbox.acknowledge(2, now)) << "late, and of no effect";
   offer(11, 12);
   EXPECT_EQ(frame_count(), 6u);
 }
 
 TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
-  EXPECT_FALSE(outbox.acknowledge(0));
-  EXPECT_FALSE(outbox.acknowledge(1));
+  EXPECT_FALSE(outbox.acknowledge(0, now));
+  EXPECT_FALSE(outbox.acknowledge(1, now));
   offer(1, 5);
-  EXPECT_FALSE(outbox.acknowledge(4));
-  EXPECT_FALSE(outbox.acknowledge(0xffffffff));
-  EXPECT_FALSE(outbox.ready_for_frame(subscription)) << "the window is still full";
+  EXPECT_FALSE(outbox.acknowledge(4, now));
+  EXPECT_FALSE(outbox.acknowledge(0xffffffff, now));
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready) << "the window is still full";
 }
 
 // What a peer that stops reading costs beyond the system's buffers.
@@ -117,16 +120,16 @@ TEST_F(Outbox, OneFrameAtMostWaitsForTheSocket) {
 TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
   connection->stall(true);
   outbox.send_event(membership, R"("event")");
-  EXPECT_TRUE(outbox.ready_for_frame(subscription));
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
 // The transport may be late to say that the socket has taken it.
 TEST_F(Outbox, WhatIsAcknowledgedWaitsNoLonger) {
   connection->stall(true);
   offer(1, 1);
-  EXPECT_FALSE(outbox.ready_for_frame(subscription));
-  EXPECT_TRUE(outbox.acknowledge(1));
-  EXPECT_TRUE(outbox.ready_for_frame(subscription));
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
+  EXPECT_TRUE(outbox.acknowledge(1, now));
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
 TEST_F(Outbox, FramesInFlightDoNotCountAfterAJoin) {
@@ -136,8 +139,8 @@ TEST_F(Outbox, FramesInFlightDoNotCountAfterAJoin) {
   offer(10, 12);
   ASSERT_EQ(frame_count(), 6u);
   EXPECT_EQ(last_number(), 12u);
-  EXPECT_FALSE(outbox.acknowledge(13));
-  EXPECT_TRUE(outbox.acknowledge(12));
+  EXPECT_FALSE(outbox.acknowledge(13, now));
+  EXPECT_TRUE(outbox.acknowledge(12, now));
 }
 
 TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
@@ -146,8 +149,8 @@ TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
   outbox.leave();
   outbox.send_event(old, R"("left")");
   send(5);
-  EXPECT_FALSE(outbox.ready_for_frame(subscription));
-  EXPECT_EQ(outbox.subscribe(old, waker), 0u);
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
+  EXPECT_EQ(outbox.subscribe(old, waker, now), 0u);
   EXPECT_EQ(frame_count(), 2u);
   membership = outbox.join();
   outbox.send_event(old, R"("late")");
@@ -161,16 +164,16 @@ TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
 TEST_F(Outbox, NothingOfAnEarlierSubscriptionOrEpochIsSent) {
   const std::uint64_t old = subscription;
   subscribe();
-  EXPECT_FALSE(outbox.ready_for_frame(old));
-  outbox.send_frame(old, kEpoch, make_frame(1));
+  EXPECT_FALSE(outbox.frame_channel(old).is_ready);
+  outbox.send_frame(old, kEpoch, make_frame(1), now);
   EXPECT_EQ(frame_count(), 0u);
   outbox.start_epoch(membership, kEpoch + 1);
   send(2);
   EXPECT_EQ(frame_count(), 0u);
-  outbox.send_frame(subscription, kEpoch + 1, make_frame(3));
+  outbox.send_frame(subscription, kEpoch + 1, make_frame(3), now);
   EXPECT_EQ(frame_count(), 1u);
   outbox.unsubscribe();
-  outbox.send_frame(subscription, kEpoch + 1, make_frame(4));
+  outbox.send_frame(subscription, kEpoch + 1, make_frame(4), now);
   EXPECT_EQ(frame_count(), 1u);
 }
 
@@ -199,7 +202,7 @@ TEST_F(Outbox, FramesDoNotCountForTheControlQueue) {
   state.bodies[0].id = 1;
   state.bodies[0].positions.assign(200'000, Vec3::Zero());
   const SharedFrame frame = make_frame(state);
-  outbox.send_frame(subscription, kEpoch, frame);
+  outbox.send_frame(subscription, kEpoch, frame, now);
   EXPECT_EQ(connection->queued(), frame->size());
   outbox.send("1");
   EXPECT_FALSE(connection->close_code().has_value());
@@ -223,6 +226,58 @@ TEST_F(Outbox, TwoMessagesMayBeLongerThanTheQueue) {
   outbox.send(make_text(kMaxControlQueueBytes + 1));
   EXPECT_FALSE(connection->close_code().has_value());
   outbox.send(make_text(kMaxControlQueueBytes + 1));
+  EXPECT_EQ(connection->close_code(), 4008);
+}
+
+// Joining again and again would otherwise send key frames without end.
+TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
+  connection->stall(true);
+  offer(1, 1);
+  membership = outbox.join();
+  outbox.start_epoch(membership, kEpoch);
+  subscribe();
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
+  connection->stall(false);
+  EXPECT_FALSE(outbox.acknowledge(1, now)) << "of the membership before";
+  EXPECT_EQ(waker->count, 1) << "but it tells that there may be room";
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
+}
+
+TEST_F(Outbox, WhoAcknowledgesNothingIsClosedOnceThePatienceIsOver) {
+  constexpr std::chrono::seconds kPatience(30);
+  offer(1, 1);
+  now += kPatience / 2;
+  offer(2, 2);
+  now += kPatience / 2 - std::chrono::milliseconds(1);
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value());
+  EXPECT_TRUE(outbox.acknowledge(1, now));
+  now += kPatience / 2;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value()) << "the second is no older than that";
+  now += std::chrono::milliseconds(1);
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_EQ(connection->close_code(), 4008);
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_open);
+}
+
+TEST_F(Outbox, SilenceIsAllowedWhereThereIsNothingToAcknowledge) {
+  constexpr std::chrono::seconds kPatience(30);
+  offer(1, 3);
+  EXPECT_TRUE(outbox.acknowledge(3, now));
+  now += 10 * kPatience;
+  outbox.close_if_silent(now, kPatience);
+  offer(4, 4);
+  outbox.unsubscribe();
+  now += 10 * kPatience;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value());
+  subscribe();
+  now += kPatience / 2;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value()) << "it has subscribed a moment ago";
+  now += kPatience;
+  outbox.close_if_silent(now, kPatience);
   EXPECT_EQ(connection->close_code(), 4008);
 }
 

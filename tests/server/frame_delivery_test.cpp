@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <random>
+
+#include "server/limits.h"
 #include "tests/server/fake_connection.h"
 
 namespace vat::test {
@@ -35,7 +39,7 @@ class FrameDeliveryTest : public testing::Test {
     viewer.outbox = std::make_shared<ClientOutbox>(viewer.connection);
     const std::uint64_t membership = viewer.outbox->join();
     viewer.outbox->start_epoch(membership, kEpoch);
-    delivery.add(viewer.outbox, viewer.outbox->subscribe(membership, wakes), wish);
+    delivery.add(viewer.outbox, viewer.outbox->subscribe(membership, wakes, now), wish);
     return viewer;
   }
   /// One in which something has moved since all others.
@@ -47,13 +51,24 @@ class FrameDeliveryTest : public testing::Test {
     state.bodies.resize(1);
     state.bodies[0].id = 1;
     state.bodies[0].positions = {{x, 0.5, 0.5}};
-    delivery.publish(std::move(state));
+    now += std::chrono::milliseconds(20);
+    delivery.publish(std::move(state), now);
   }
   void acknowledge_all(const TestViewer& viewer) {
-    EXPECT_TRUE(viewer.outbox->acknowledge(viewer.last().number));
-    delivery.retry(std::exchange(wakes->clients, {}));
+    EXPECT_TRUE(viewer.outbox->acknowledge(viewer.last().number, now));
+    delivery.retry(std::exchange(wakes->clients, {}), now);
   }
 
+  static Subscription every(std::uint64_t ticks) {
+    Subscription wish;
+    wish.every = ticks;
+    return wish;
+  }
+  bool counted(const std::string& sample) const {
+    return metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
+  }
+
+  SteadyClock::time_point now{std::chrono::hours(1)};
   ServerMetrics metrics;
   const std::shared_ptr<Wakes> wakes = std::make_shared<Wakes>();
   FrameDelivery delivery{Vat{Vec3::Zero(), Vec3::Ones(), true, {}}, metrics};
@@ -67,7 +82,7 @@ using Ticks = std::vector<std::uint64_t>;
 
 TEST_F(FrameDeliveryTest, AViewerGetsTheTicksThatItAskedFor) {
   const TestViewer all = add();
-  const TestViewer third = add({0, 3});
+  const TestViewer third = add(every(3));
   for (std::uint64_t tick = 1; tick <= 7; ++tick) {
     publish(tick);
     acknowledge_all(all);
@@ -79,7 +94,7 @@ TEST_F(FrameDeliveryTest, AViewerGetsTheTicksThatItAskedFor) {
 
 // The tick that it divides may never come here: a newer state has taken its place.
 TEST_F(FrameDeliveryTest, ATurnThatWasSkippedComesWithTheNextState) {
-  const TestViewer third = add({0, 3});
+  const TestViewer third = add(every(3));
   for (const std::uint64_t tick : {1, 2, 4, 5, 7, 8}) {
     publish(tick);
     acknowledge_all(third);
@@ -126,7 +141,7 @@ TEST_F(FrameDeliveryTest, WhoComesToAStateAtRestGetsIt) {
 }
 
 TEST_F(FrameDeliveryTest, AnEpochBeginsWithAFrameForAll) {
-  const TestViewer third = add({0, 3});
+  const TestViewer third = add(every(3));
   publish(4);
   acknowledge_all(third);
   delivery.set_vat({});
@@ -139,8 +154,124 @@ TEST_F(FrameDeliveryTest, WhoWasRemovedGetsNothing) {
   publish(1);
   delivery.remove(1);
   publish(2);
-  delivery.retry(std::vector<ConnectionId>{1, 7});
+  delivery.retry(std::vector<ConnectionId>{1, 7}, now);
   EXPECT_EQ(viewer.ticks(), (Ticks{1}));
+}
+
+TEST_F(FrameDeliveryTest, ViewersWhoHoldTheSameShareOneEncoding) {
+  std::vector<TestViewer> viewers;
+  for (int i = 0; i < 20; ++i) viewers.push_back(add());
+  publish(1);
+  publish(2);
+  EXPECT_TRUE(counted("vat_frames_encoded_total 2"));
+  const TestViewer late = add();
+  for (std::uint64_t tick = 3; tick <= 6; ++tick) {
+    for (const TestViewer& viewer : viewers) acknowledge_all(viewer);
+    publish(tick);
+  }
+  // Two for ticks 3 and 4, until the late one holds what the others hold.
+  EXPECT_TRUE(counted("vat_frames_encoded_total 8"));
+  EXPECT_TRUE(counted("vat_frames_sent_total " + std::to_string(20 * 6 + 3)));
+  EXPECT_EQ(late.ticks(), (Ticks{3, 4, 5}));
+}
+
+TEST_F(FrameDeliveryTest, ANewcomerToAStateAtRestSharesWhatComesNextSoon) {
+  const TestViewer first = add();
+  publish(1, 0.5);
+  const TestViewer second = add();
+  publish(5, 0.5);
+  for (std::uint64_t tick = 6; tick <= 8; ++tick) {
+    acknowledge_all(first);
+    acknowledge_all(second);
+    publish(tick);
+  }
+  EXPECT_EQ(second.ticks(), (Ticks{5, 6, 7, 8}));
+  EXPECT_TRUE(counted("vat_frames_encoded_total 7"));
+}
+
+// Twenty viewers, each with steps of its own. Eight places, four of them for those who wait
+// longest: a viewer is passed over at most five times in a row.
+TEST_F(FrameDeliveryTest, NobodyWaitsForEverWhereThereAreTooManyGroups) {
+  constexpr std::size_t kViewers = 20;
+  constexpr std::uint64_t kTicks = 100;
+  std::vector<TestViewer> viewers;
+  for (std::size_t i = 0; i < kViewers; ++i) {
+    Subscription wish;
+    wish.max_error = 1e-4 * static_cast<double>(i + 1);
+    viewers.push_back(add(wish));
+  }
+  for (std::uint64_t tick = 1; tick <= kTicks; ++tick) {
+    publish(tick, 0.01 * static_cast<double>(tick));
+    for (const TestViewer& viewer : viewers) {
+      if (!viewer.ticks().empty()) acknowledge_all(viewer);
+    }
+  }
+  for (const TestViewer& viewer : viewers) {
+    std::uint64_t last = 0;
+    for (const std::uint64_t tick : viewer.ticks()) {
+      EXPECT_LE(tick - last, 1 + kViewers / (kMaxFrameGroups / 2));
+      last = tick;
+    }
+    EXPECT_GE(last + kViewers / (kMaxFrameGroups / 2), kTicks);
+  }
+  EXPECT_TRUE(counted("vat_frames_encoded_total " + std::to_string(kTicks * kMaxFrameGroups)));
+}
+
+TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOthers) {
+  const TestViewer quick = add();
+  std::vector<TestViewer> slow = {add(), add(), add()};
+  std::vector<std::size_t> acknowledged(slow.size());
+  std::uint64_t tick = 0;
+  for (; tick < 400; ++tick) {
+    publish(tick);
+    acknowledge_all(quick);
+    // Each takes a frame in 60 ms, which is one in three ticks, and they do so at different times.
+    for (std::size_t i = 0; i < slow.size(); ++i) {
+      const auto frames = slow[i].connection->frames();
+      if (tick % 3 != i || acknowledged[i] >= frames.size()) continue;
+      EXPECT_TRUE(slow[i].outbox->acknowledge(frames[acknowledged[i]++].header.number, now));
+      delivery.retry(std::exchange(wakes->clients, {}), now);
+    }
+  }
+  for (const TestViewer& viewer : slow) {
+    std::size_t few = 0;
+    std::size_t together = 0;
+    for (const GridFrame& frame : viewer.connection->frames()) {
+      if (frame.header.stride < 4) continue;
+      ++few;
+      if (frame.header.tick % 4 == 0) ++together;
+    }
+    EXPECT_GT(few, 20U) << "a quarter of the rate is what each can keep up with";
+    EXPECT_GT(4 * together, 3 * few) << "but for those that come late before it does";
+  }
+  EXPECT_EQ(quick.last().stride, 1U);
+  EXPECT_EQ(quick.ticks().size(), 400U);
+}
+
+// Whatever is dropped, skipped, or joined late: each frame that comes is decoded from the ones
+// before it, and shows the state of its tick.
+TEST_F(FrameDeliveryTest, EveryPathThroughTheFramesShowsTheSame) {
+  std::mt19937 random(1);
+  std::vector<TestViewer> viewers;
+  std::map<std::uint64_t, std::vector<std::uint16_t>> shown;  // by tick, on the finest grid
+  for (std::uint64_t tick = 1; tick <= 300; ++tick) {
+    if (random() % 10 == 0) viewers.push_back(add(every(1 + random() % 3)));
+    publish(tick);
+    for (const TestViewer& viewer : viewers) {
+      if (random() % 3 > 0 && !viewer.ticks().empty()) acknowledge_all(viewer);
+    }
+  }
+  std::size_t frames = 0;
+  for (const TestViewer& viewer : viewers) {
+    for (const GridFrame& frame : viewer.connection->frames()) {
+      if (frame.scale.grid.quantum > 2e-5 || frame.detail != kFullDetail) continue;
+      const auto& positions = frame.blocks.at(0).positions;
+      const auto first = shown.emplace(frame.header.tick, positions).first;
+      EXPECT_EQ(positions, first->second) << "tick " << frame.header.tick;
+      ++frames;
+    }
+  }
+  EXPECT_GT(frames, 1000U);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ PublishedState make_state(double x = 0.5) {
   state.bodies.resize(2);
   state.bodies[0].id = 1;
   state.bodies[0].positions = {{x, 0.5, 0.5}, {0.2, 0.2, 0.2}};
+  state.bodies[0].attributes[0] = {1, 2};
   state.bodies[1].id = 2;
   state.bodies[1].kind = BodyKind::rigid;
   state.bodies[1].center_of_mass = {0.1, 0.2, 0.3};
@@ -21,21 +22,29 @@ PublishedState make_state(double x = 0.5) {
   return state;
 }
 
+Subscription wish(double max_error) {
+  Subscription wish;
+  wish.max_error = max_error;
+  return wish;
+}
+
+FrameCut cut(const Subscription& wish, unsigned coarseness = 1, std::uint8_t detail = kFullDetail) {
+  return {wish, coarseness, detail};
+}
+
+std::span<const std::uint8_t> bytes_of(const SharedFrame& frame) {
+  return {reinterpret_cast<const std::uint8_t*>(frame->data()), frame->size()};
+}
+
 class FrameSourceTest : public testing::Test {
  protected:
   /// The next tick, of a state that may have changed.
   void publish(PublishedState state) {
     state.header.tick = ++tick_;
-    source.publish(std::move(state), 2);
+    source.publish(std::move(state));
   }
-  std::uint64_t tick_of(double max_error) {
-    const std::string& bytes = *source.frame(max_error);
-    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-    return decode_key_frame({data, bytes.size()}).value().header.tick;
-  }
-  bool has_encoded(std::uint64_t frames) {
-    const std::string sample = "\nvat_frames_encoded_total " + std::to_string(frames) + '\n';
-    return metrics.to_text({}).find(sample) != std::string::npos;
+  std::shared_ptr<const GridFrame> frame(double max_error = kError) {
+    return source.frame(cut(wish(max_error)));
   }
 
   ServerMetrics metrics;
@@ -45,42 +54,27 @@ class FrameSourceTest : public testing::Test {
   std::uint64_t tick_ = 0;
 };
 
-TEST_F(FrameSourceTest, NothingIsEncodedUntilItIsAskedFor) {
+TEST_F(FrameSourceTest, OneFrameServesAllOfACut) {
   publish(make_state());
-  publish(make_state(0.6));
-  EXPECT_TRUE(has_encoded(0));
-  EXPECT_EQ(tick_of(kError), 2U);
-  EXPECT_TRUE(has_encoded(1));
+  EXPECT_EQ(frame(), frame());
+  EXPECT_NE(frame(), frame(2 * kError));
+  EXPECT_EQ(frame()->scale.grid.quantum, 2 * kError);
+  const auto first = frame();
+  publish(make_state());
+  EXPECT_NE(frame(), first) << "of another tick";
+  EXPECT_EQ(first->header.tick, 1U) << "who holds one keeps it as it was";
+  EXPECT_EQ(frame()->header.tick, 2U);
 }
 
-TEST_F(FrameSourceTest, OneEncodingServesAllOfAnAccuracy) {
+TEST_F(FrameSourceTest, OnlyWhatShowsSomethingNewHasANumberOfItsOwn) {
   publish(make_state());
-  EXPECT_EQ(source.frame(kError), source.frame(kError));
-  EXPECT_EQ(source.content(kError), source.content(kError));
-  EXPECT_NE(source.content(kError), source.content(2 * kError));
-  EXPECT_TRUE(has_encoded(2));
-}
-
-TEST_F(FrameSourceTest, AnUnchangedStateIsNotEncodedAgain) {
-  publish(make_state());
-  const std::uint64_t content = source.content(kError);
-  EXPECT_NE(content, 0U);
-  for (int i = 0; i < 10; ++i) {
-    publish(make_state());
-    EXPECT_EQ(source.content(kError), content);
-  }
-  EXPECT_TRUE(has_encoded(1));
-  EXPECT_EQ(tick_of(kError), 11U) << "but who wants one gets that of the present tick";
-  EXPECT_EQ(source.content(kError), content);
-}
-
-TEST_F(FrameSourceTest, WhatTheGridDoesNotTellIsNoChange) {
-  publish(make_state(0.5));
-  const std::uint64_t coarse = source.content(kError);
-  const std::uint64_t fine = source.content(kError / 10);
-  publish(make_state(0.5024));  // a quarter of the coarse grid's quantum from a position on it
-  EXPECT_EQ(source.content(kError), coarse);
-  EXPECT_NE(source.content(kError / 10), fine);
+  EXPECT_EQ(source.number(), 1U);
+  for (int i = 0; i < 10; ++i) publish(make_state());
+  EXPECT_EQ(source.number(), 1U);
+  EXPECT_EQ(frame()->header.number, 1U);
+  publish(make_state(0.5001));
+  EXPECT_EQ(source.number(), 2U);
+  EXPECT_EQ(frame()->header.number, 2U);
 }
 
 TEST_F(FrameSourceTest, EveryOtherDifferenceIsAChange) {
@@ -94,14 +88,15 @@ TEST_F(FrameSourceTest, EveryOtherDifferenceIsAChange) {
       changed([](PublishedState& s) {
         s.bodies[0].positions.push_back({0.3, 0.3, 0.3});
       }),
+      changed([](PublishedState& s) { s.bodies[0].attributes[0][1] = 3; }),
       changed([](PublishedState& s) { s.bodies[0].id = 7; }),
       changed([](PublishedState& s) { s.bodies[0].kind = BodyKind::deformable; }),
-      changed([](PublishedState& s) { s.bodies[1].center_of_mass[2] += 0.01; }),
+      changed([](PublishedState& s) { s.bodies[1].center_of_mass[2] += 1e-9; }),
       changed([](PublishedState& s) {
         s.bodies[1].orientation = {0, 1, 0, 0};
       }),
       changed([](PublishedState& s) { s.bodies.pop_back(); }),
-      changed([](PublishedState& s) { s.vat_offset.x() = 0.01; }),
+      changed([](PublishedState& s) { s.vat_offset.x() = 1e-9; }),
       changed([](PublishedState& s) { s.has_vat = false; }),
       changed([](PublishedState& s) { s.header.epoch = 2; }),
       changed([](PublishedState& s) { s.header.playing = true; }),
@@ -109,27 +104,73 @@ TEST_F(FrameSourceTest, EveryOtherDifferenceIsAChange) {
   };
   for (const PublishedState& state : states) {
     publish(make_state());
-    const std::uint64_t before = source.content(kError);
+    const std::uint32_t before = source.number();
     publish(state);
-    EXPECT_NE(source.content(kError), before);
+    EXPECT_EQ(source.number(), before + 1);
   }
 }
 
-TEST_F(FrameSourceTest, AnotherGridIsAChange) {
-  publish(make_state());
-  const std::uint64_t content = source.content(kError);
-  publish(make_state(-0.5));
-  publish(make_state());
-  EXPECT_NE(source.content(kError), content) << "the grid begins further out now";
+TEST_F(FrameSourceTest, WhatTheGridDoesNotTellIsNotShown) {
+  publish(make_state(0.5));
+  const auto coarse = frame();
+  const auto fine = frame(kError / 10);
+  publish(make_state(0.5024));  // a quarter of the coarse grid's quantum from a position on it
+  EXPECT_TRUE(show_the_same(*coarse, *frame()));
+  EXPECT_FALSE(show_the_same(*fine, *frame(kError / 10)));
 }
 
-// Two watchers are at most two accuracies; others are of the past.
-TEST_F(FrameSourceTest, ForgetsAccuraciesThatNobodyAsksFor) {
+TEST_F(FrameSourceTest, CoarserByWhatIsAskedFor) {
   publish(make_state());
-  const std::uint64_t content = source.content(kError);
-  for (int i = 2; i < 5; ++i) source.content(i * kError);
-  publish(make_state());
-  EXPECT_NE(source.content(kError), content);
+  EXPECT_EQ(source.frame(cut(wish(kError), 4))->scale.grid.quantum, 8 * kError);
+  const double finest = frame(0)->scale.grid.quantum;
+  EXPECT_EQ(source.frame(cut(wish(0), 2))->scale.grid.quantum, 2 * finest);
+  Subscription speeds = wish(kError);
+  speeds.attribute_errors[0] = 0.5;
+  const auto shown = source.frame(cut(speeds, 2));
+  EXPECT_EQ(shown->scale.attribute_quanta[0], 2);
+  EXPECT_EQ(shown->blocks[1].attributes[0], (std::vector<std::int32_t>{1, 1}));
+}
+
+TEST_F(FrameSourceTest, OnlyTheParticlesThatAreAskedFor) {
+  PublishedState state = make_state();
+  state.bodies[0].attributes = {};
+  state.bodies[0].positions.assign(1000, Vec3(0.5, 0.5, 0.5));
+  state.bodies[0].positions[7] = Vec3(0.1, 0.1, 0.1);
+  publish(state);
+  const auto count = [](const GridFrame& shown) { return shown.blocks[1].particle_count(); };
+  EXPECT_EQ(count(*frame()), 1000U);
+  EXPECT_NEAR(static_cast<double>(count(*source.frame(cut(wish(kError), 1, 1)))), 250, 100);
+  Subscription corner = wish(kError);
+  corner.selection.region = FrameRegion{Vec3::Zero(), Vec3(0.2, 0.2, 0.2)};
+  const auto part = source.frame(cut(corner));
+  EXPECT_EQ(part->blocks[1].numbers, std::vector<std::uint32_t>{7});
+  EXPECT_EQ(part->scale.grid, frame()->scale.grid);
+}
+
+TEST_F(FrameSourceTest, BuildsOnWhatIsHeldAsFarAsThatGoes) {
+  FrameDecoder decoder;
+  const auto show = [&](const HeldFrames& held) {
+    const SharedFrame bytes = source.encode(*frame(), held, 1);
+    const auto decoded = decoder.decode(bytes_of(bytes));
+    EXPECT_TRUE(decoded) << decoded.errors().front().code;
+    EXPECT_TRUE(show_the_same(*decoded.value(), *frame()));
+    return is_key_frame(bytes_of(bytes));
+  };
+  publish(make_state(0.3));
+  const auto first = frame();
+  EXPECT_TRUE(show({}));
+  publish(make_state(0.4));
+  const auto second = frame();
+  show({first, nullptr});
+  publish(make_state(0.5));
+  show({second, first});
+  publish(make_state(-2));
+  EXPECT_TRUE(show({second, first})) << "on another grid";
+  PublishedState next = make_state(-2);
+  const auto third = frame();
+  next.header.epoch = 2;
+  publish(next);
+  EXPECT_TRUE(show({third, second})) << "in another epoch";
 }
 
 }  // namespace

@@ -77,7 +77,6 @@ TEST(ServerMetrics, StagesOfOneNameAreOne) {
   const std::vector<StageClock::Stage> second = {{"kick", 1, 125ms}};
   metrics.add_tick({1ms, 3, 0, first});
   metrics.add_tick({1ms, 1, 0, second});
-  metrics.add_encoded_frame();
   const std::string text = metrics.to_text({});
   EXPECT_THAT(text, HasSubstr("# TYPE vat_stage_seconds_total counter\n"
                               "vat_stage_seconds_total{stage=\"kick\"} 0.25\n"
@@ -85,7 +84,25 @@ TEST(ServerMetrics, StagesOfOneNameAreOne) {
   EXPECT_THAT(text, HasSubstr("# TYPE vat_stage_calls_total counter\n"
                               "vat_stage_calls_total{stage=\"kick\"} 7\n"
                               "vat_stage_calls_total{stage=\"walls\"} 3\n"));
-  EXPECT_THAT(text, HasSubstr("\nvat_frames_encoded_total 1\n"));
+}
+
+TEST(ServerMetrics, FramesByWhatBecameOfThem) {
+  ServerMetrics metrics;
+  metrics.add_encoded_frame(250ms, true);
+  metrics.add_encoded_frame(125ms, false);
+  metrics.add_frame_groups(2);
+  metrics.add_frame_groups(0);
+  metrics.add_sent_frames(3, 1000);
+  metrics.add_sent_frames(1, 50);
+  metrics.add_missed_frames(4);
+  const std::string text = metrics.to_text({});
+  for (const char* sample :
+       {"\nvat_states_shown_total 2\n", "\nvat_frame_groups_total 2\n",
+        "\nvat_frames_encoded_total 2\n", "\nvat_key_frames_encoded_total 1\n",
+        "\nvat_frame_encode_seconds_total 0.375\n", "\nvat_frames_sent_total 4\n",
+        "\nvat_frame_bytes_sent_total 3050\n", "\nvat_frames_missed_total 4\n"}) {
+    EXPECT_THAT(text, HasSubstr(sample));
+  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Frames and events: who gets which, how old, and at whose cost.
 
+#include <cmath>
+
 #include "tests/server/session_fixture.h"
 
 namespace vat::test {
@@ -43,6 +45,45 @@ TEST_F(SessionFrames, AnErrorBoundIsKept) {
       EXPECT_NEAR(sent, positions[i][axis].get<double>(), 1e-3 * (1 + 1e-9));
     }
   }
+}
+
+TEST_F(SessionFrames, AttributesComeWhereTheyAreAskedFor) {
+  client->result("control.step", {{"ticks", 5}});
+  client->result("frames.subscribe", {{"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});
+  const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{2e-3, 1, 0}));
+  const GridBlock& pool = frame.blocks.at(1);
+  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
+  const Json& velocities = state.at("bodies").at(0).at("velocities");
+  ASSERT_EQ(pool.attributes[0].size(), velocities.size());
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    const double speed = std::hypot(velocities[i][0].get<double>(), velocities[i][1].get<double>(),
+                                    velocities[i][2].get<double>());
+    EXPECT_NEAR(2e-3 * pool.attributes[0][i], speed, 1e-3 + 1e-7) << "and a float's rounding";
+  }
+  EXPECT_EQ(pool.attributes[1].size(), velocities.size());
+  EXPECT_TRUE(pool.attributes[2].empty());
+}
+
+TEST_F(SessionFrames, OnlyTheParticlesThatAreAskedForCome) {
+  client->result("frames.subscribe", {{"detail", 1}});
+  const GridFrame few = client->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(few.detail, 1);
+  const GridBlock& pool = few.blocks.at(1);
+  ASSERT_GT(pool.particle_count(), 0U);
+  for (std::size_t i = 0; i < pool.particle_count(); ++i)
+    EXPECT_LE(detail_layer(pool.number(i)), 1);
+  client->result("frames.subscribe",
+                 {{"region", {{"min", {0, 0, 0}}, {"max", {0.45, 0.45, 0.23}}}}});
+  const GridFrame part = client->wait_frame([](const GridFrame& f) { return f.has_region; });
+  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
+  std::size_t inside = 0;
+  for (const Json& p : state.at("bodies").at(0).at("positions")) {
+    inside += p[0] <= 0.45 && p[1] <= 0.45 && p[2] <= 0.23 ? 1 : 0;
+  }
+  EXPECT_EQ(part.blocks.at(1).particle_count(), inside);
+  EXPECT_EQ(part.blocks.at(3).kind, GridBlock::Kind::rigid)
+      << "bodies of one pose are always there";
 }
 
 TEST_F(SessionFrames, OnlyEachSoManiethTickIsSent) {
@@ -173,6 +214,27 @@ TEST_F(SessionFrames, StatusesComeWithoutChangesToo) {
   EXPECT_EQ(status.at("time"), 0);
   EXPECT_EQ(status.at("speed"), 1);
   EXPECT_GT(status.at("particles"), 0);
+}
+
+class SessionPatience : public SessionTest {
+ protected:
+  static ServerLimits limits() {
+    ServerLimits limits;
+    limits.frame_patience = std::chrono::seconds(1);
+    return limits;
+  }
+  SessionPatience() : SessionTest(limits()) {}
+};
+
+// Also where nothing moves: a frame was sent, and nobody knows whether it came.
+TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
+  client->result("frames.subscribe");
+  client->wait_frame([](const GridFrame&) { return true; });
+  const auto silent = join();
+  silent->result("frames.subscribe");
+  silent->connection->wait_closed();
+  EXPECT_EQ(silent->connection->close_code(), 4008);
+  EXPECT_FALSE(client->connection->close_code().has_value());
 }
 
 }  // namespace

@@ -164,7 +164,16 @@ export interface Methods {
   >;
   'grab.move': Method<{ grab: number; target: Vector }, InEffect>;
   'grab.end': Method<{ grab: number }, InEffect>;
-  'frames.subscribe': Method<{ max_error?: number; every?: number }, InEffect>;
+  'frames.subscribe': Method<
+    {
+      max_error?: number;
+      every?: number;
+      detail?: number;
+      region?: { min: Vector; max: Vector };
+      attributes?: { speed?: number; density?: number; pressure?: number };
+    },
+    InEffect
+  >;
   'frames.unsubscribe': Method<Nothing, InEffect>;
   /** The tick is there while the client is in a session. */
   'frames.ack': Method<{ number: number }, Partial<InEffect>>;
