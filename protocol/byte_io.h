@@ -28,7 +28,7 @@ void store(std::span<std::uint8_t> bytes, std::size_t offset, T value) {
 /// Appends little-endian numbers.
 class ByteWriter {
  public:
-  explicit ByteWriter(std::size_t expected_size) { bytes_.reserve(expected_size); }
+  explicit ByteWriter(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
   template <class T>
   void put(T value) {
@@ -36,10 +36,9 @@ class ByteWriter {
     bytes_.resize(offset + sizeof(T));
     store<T>(bytes_, offset, value);
   }
-  std::vector<std::uint8_t> take() { return std::move(bytes_); }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t>& bytes_;
 };
 
 /// Reads little-endian numbers. Past the end it gives zeros and ended_early() stays true, so that a

@@ -1,4 +1,9 @@
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/block_coder.h"
 #include "protocol/byte_io.h"
+#include "protocol/frame_check.h"
 #include "protocol/frame_codec.h"
 #include "protocol/frame_layout.h"
 
@@ -7,49 +12,70 @@ namespace {
 
 using namespace frame_layout;
 
-void put_header(ByteWriter& out, const GridFrame& frame, std::uint8_t stride) {
+std::uint16_t distance(const GridFrame& frame, const GridFrame* reference) {
+  if (reference == nullptr) return 0;
+  return static_cast<std::uint16_t>(frame.header.number - reference->header.number);
+}
+
+void put_header(ByteWriter& out, const GridFrame& frame, const FrameReferences& references,
+                std::uint8_t stride) {
   const FrameHeader& header = frame.header;
   const int flags = (header.playing ? kPlayingFlag : 0) | (header.slow ? kSlowFlag : 0) |
                     (frame.detail << kDetailShift) | (frame.has_region ? kRegionFlag : 0);
   out.put(kMagic);
   out.put(kVersion);
-  out.put(kKeyFrame);
+  out.put(references.first == nullptr ? kKeyFrame : kDeltaFrame);
   out.put(static_cast<std::uint8_t>(flags));
   out.put(stride);
   out.put(header.epoch);
   out.put(header.number);
-  out.put(std::uint16_t{0});  // a key frame has no references
-  out.put(std::uint16_t{0});
-  out.put(std::uint32_t{0});
+  out.put(distance(frame, references.first));
+  out.put(distance(frame, references.second));
+  out.put(frame_check(frame));
   out.put(header.tick);
   out.put(header.time);
   out.put(header.published);
   out.put(header.real_time_factor);
+  if (references.first != nullptr) return;
   for (const double coordinate : frame.scale.grid.origin) out.put(coordinate);
   out.put(frame.scale.grid.quantum);
   for (const double quantum : frame.scale.attribute_quanta) out.put(quantum);
 }
 
-void put_block(ByteWriter& out, const GridBlock& block) {
-  out.put(block.body);
-  out.put(static_cast<std::uint8_t>(block.kind));
-  out.put(block.orientation_bits);
-  out.put(static_cast<std::uint16_t>(block.numbers.empty() ? 0 : 1));
-  out.put(static_cast<std::uint32_t>(block.particle_count()));
-  for (const std::uint32_t number : block.numbers) out.put(number);
-  for (const std::uint16_t coordinate : block.positions) out.put(coordinate);
-  for (const auto& column : block.attributes) {
-    for (const std::int32_t value : column) out.put(value);
+void write_key_blocks(const GridFrame& frame, SymbolWriter& writer, BlockScratch& scratch) {
+  writer.whole(static_cast<std::uint32_t>(frame.blocks.size()));
+  for (const GridBlock& block : frame.blocks) code_key_block(writer, frame.scale, block, scratch);
+}
+
+/// How far poses go on as they went, by the times of the references.
+std::int32_t turn_of(const GridFrame& frame, const FrameReferences& references) {
+  if (references.second == nullptr) return 0;
+  const double now = frame.header.time - references.first->header.time;
+  const double before = references.first->header.time - references.second->header.time;
+  if (!(before > 0)) return 0;
+  return static_cast<std::int32_t>(
+      std::clamp(std::round(256 * now / before), 0.0, kFactorOffset - 1.0));
+}
+
+void write_delta_blocks(const GridFrame& frame, const FrameReferences& references,
+                        SymbolWriter& writer, BlockScratch& scratch) {
+  const std::int32_t turn = code_factor(writer, turn_of(frame, references));
+  bool before = false;
+  for (std::size_t b = 0; b < frame.blocks.size(); ++b) {
+    const GridBlock& first = references.first->blocks[b];
+    const GridBlock* second =
+        references.second != nullptr ? &references.second->blocks[b] : nullptr;
+    before = writer.flag(!(frame.blocks[b] == first), kChangeChances[before ? 1 : 0]);
+    if (!before) continue;
+    code_delta_block(writer, frame.scale, first, second, turn, frame.blocks[b], scratch);
   }
-  if (block.has_particles()) return;
-  for (const std::int32_t value : block.place) out.put(value);
-  if (block.kind == GridBlock::Kind::vat) return;
-  for (const std::int32_t value : block.orientation) out.put(value);
 }
 
 }  // namespace
 
 struct FrameEncoder::Impl {
+  SymbolWriter writer;
+  BlockScratch scratch;
   std::vector<std::uint8_t> bytes;
 };
 
@@ -73,12 +99,18 @@ std::span<const std::uint8_t> FrameEncoder::encode(const GridFrame& frame,
   const auto& [first, second] = references;
   VAT_CHECK(first != nullptr ? can_refer(frame, *first) : second == nullptr);
   VAT_CHECK(second == nullptr || can_refer(*first, *second));
-  ByteWriter out(0);
-  put_header(out, frame, stride);
-  out.put(static_cast<std::uint32_t>(frame.blocks.size()));
-  for (const GridBlock& block : frame.blocks) put_block(out, block);
-  impl_->bytes = out.take();
-  return impl_->bytes;
+  Impl& own = *impl_;
+  own.bytes.clear();
+  ByteWriter out(own.bytes);
+  put_header(out, frame, references, stride);
+  own.writer.clear();
+  if (first == nullptr) {
+    write_key_blocks(frame, own.writer, own.scratch);
+  } else {
+    write_delta_blocks(frame, references, own.writer, own.scratch);
+  }
+  own.writer.finish(own.bytes);
+  return own.bytes;
 }
 
 std::uint32_t frame_number(std::span<const std::uint8_t> frame) {

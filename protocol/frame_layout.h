@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -24,11 +25,14 @@ inline constexpr std::size_t kNumberOffset = 12;
 inline constexpr std::size_t kHeaderSize = 52;
 inline constexpr std::size_t kScaleSize = 56;  // in key frames, after the header
 
+/// Out of 4096, that a block has changed: where the one before has not, and where it has.
+inline constexpr std::array<std::uint32_t, 2> kChangeChances{256, 3584};
+
 inline constexpr double kMaxGridCoordinate = 65535;
 inline constexpr std::int32_t kMaxAttribute = 1 << 20;
-inline constexpr std::int32_t kMaxPlace = 1 << 30;
+inline constexpr std::int32_t kMaxPlace = 1 << 28;
 inline constexpr std::uint8_t kLeastOrientationBits = 4;
-inline constexpr std::uint8_t kMostOrientationBits = 28;
+inline constexpr std::uint8_t kMostOrientationBits = 27;
 
 /// Whether blocks of this kind have the attribute in frames of this scale.
 inline bool has_attribute(GridBlock::Kind kind, const FrameScale& scale, std::size_t attribute) {

@@ -29,7 +29,10 @@ void place_particles(const PublishedState::Body& body, const FrameScale& scale, 
   const auto& [origin, quantum] = scale.grid;
   const std::size_t count = body.positions.size();
   VAT_CHECK(body.numbers.empty() || body.numbers.size() == count);
+  VAT_CHECK(std::ranges::adjacent_find(body.numbers, std::ranges::greater_equal{}) ==
+            body.numbers.end());
   block.numbers.assign(body.numbers.begin(), body.numbers.end());
+  drop_plain_numbers(count, block.numbers);
   block.positions.resize(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3& position = body.positions[i];
@@ -119,7 +122,7 @@ void select_from(const GridBlock& all, std::uint8_t detail, const GridRegion* re
       if (!all.attributes[a].empty()) part.attributes[a].push_back(all.attributes[a][i]);
     }
   }
-  if (all.numbers.empty() && part.particle_count() == all.particle_count()) part.numbers.clear();
+  drop_plain_numbers(part.particle_count(), part.numbers);
 }
 
 }  // namespace
@@ -130,6 +133,10 @@ FrameGrid make_frame_grid(const Vec3& min, const Vec3& max, double max_error) {
   const double widest = (max - min).maxCoeff();
   const double wanted = std::isfinite(max_error) ? 2 * max_error : 0;
   return {{min.x(), min.y(), min.z()}, std::max({wanted, widest / kMaxGridCoordinate, kFinest})};
+}
+
+void drop_plain_numbers(std::size_t count, std::vector<std::uint32_t>& numbers) {
+  if (!numbers.empty() && numbers.back() == count - 1) numbers.clear();
 }
 
 std::uint8_t detail_layer(std::uint32_t number) {

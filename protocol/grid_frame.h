@@ -86,6 +86,9 @@ struct GridFrame {
   std::vector<GridBlock> blocks;
 };
 
+/// Drops the numbers of so many particles where they are 0, 1, 2, ...: they rise.
+void drop_plain_numbers(std::size_t count, std::vector<std::uint32_t>& numbers);
+
 /// The state on a grid: every particle and attribute is off by half a quantum at most, and a rigid
 /// body's pose so that none of its particles is, per axis. What is outside the grid goes to its
 /// edge, and attributes beyond 2^20 quanta to that. Reuses the memory of `frame`.

@@ -6,13 +6,13 @@ namespace vat {
 namespace {
 
 TEST(ByteIo, IsLittleEndian) {
-  ByteWriter out(0);
+  std::vector<std::uint8_t> bytes;
+  ByteWriter out(bytes);
   out.put(std::uint8_t{0x01});
   out.put(std::uint16_t{0x2345});
   out.put(std::uint32_t{0x6789abcd});
   out.put(1.0F);
   out.put(-2.0);
-  const std::vector<std::uint8_t> bytes = out.take();
   EXPECT_EQ(bytes, (std::vector<std::uint8_t>{0x01, 0x45, 0x23, 0xcd, 0xab, 0x89, 0x67, 0, 0, 0x80,
                                               0x3f, 0, 0, 0, 0, 0, 0, 0, 0xc0}));
   ByteReader in(bytes);

@@ -11,7 +11,7 @@ const header = { origin: [0, 0, 0], quantum: 1 } as unknown as FrameHeader;
 function block(count: number): GridBlock {
   const positions = new Uint16Array(3 * count);
   for (let i = 0; i < count; ++i) positions[3 * i] = 10 * i;
-  return { kind: BodyKind.liquid, body: 1, positions };
+  return { kind: BodyKind.liquid, body: 1, positions, numbers: undefined, attributes: [] };
 }
 
 function liquid(particles: number): BodyView {

@@ -1,18 +1,23 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { FrameDecoder } from '../../web/client/index';
 
 const kFolder = fileURLToPath(new URL('../golden/frames', import.meta.url));
 
 export interface GoldenBlock {
   body: number;
   kind: 'liquid' | 'deformable' | 'rigid' | 'vat';
+  numbers?: number[];
   grid_positions?: number[];
-  position?: number[];
+  attributes?: number[][];
+  place?: number[];
   orientation?: number[];
+  orientation_bits?: number;
 }
 
-/** What a frame's bytes stand for, as the `.json` beside them says. */
+/** What a frame's bytes stand for once those before it are decoded, as the `.json` says. */
 export interface GoldenFrame {
+  after: string[];
   header: Record<string, number | boolean | number[]>;
   blocks: GoldenBlock[];
 }
@@ -20,6 +25,7 @@ export interface GoldenFrame {
 /** One entry of bad.json: a good frame, the damage done to it, the reason to refuse it. */
 export interface BadFrame {
   name: string;
+  after: string[];
   base: string;
   keep?: number;
   append?: string;
@@ -42,15 +48,21 @@ export function goldenFrame(name: string): GoldenFrame {
   return JSON.parse(readFileSync(`${kFolder}/${name}.json`, 'utf8')) as GoldenFrame;
 }
 
+/** One that has decoded these frames. */
+export function decoderAfter(names: string[]): FrameDecoder {
+  const decoder = new FrameDecoder();
+  for (const name of names) decoder.decode(goldenBytes(name));
+  return decoder;
+}
+
 export function badFrames(): BadFrame[] {
   return JSON.parse(readFileSync(`${kFolder}/bad.json`, 'utf8')) as BadFrame[];
 }
 
 export function damagedBytes({ base, keep, append = '', patch }: BadFrame): ArrayBuffer {
-  const whole = readFileSync(`${kFolder}/${base}`);
+  const whole = readFileSync(`${kFolder}/${base}.bin`);
   const bytes = Buffer.concat([whole.subarray(0, keep), Buffer.from(append, 'hex')]);
   if (patch) Buffer.from(patch.bytes, 'hex').copy(bytes, patch.offset);
-  if (bytes.equals(whole)) throw new Error('bad.json describes no damage');
   return toArrayBuffer(bytes);
 }
 

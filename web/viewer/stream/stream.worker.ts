@@ -36,10 +36,10 @@ function open(url: string, chosen: string | undefined): void {
 }
 
 function buffersOf(frame: Frame): ArrayBuffer[] {
-  const buffers = frame.blocks.flatMap((block) =>
-    'positions' in block ? [block.positions.buffer] : [],
+  const columns = frame.blocks.flatMap((block) =>
+    'positions' in block ? [block.positions, block.numbers, ...block.attributes] : [],
   );
-  return [...new Set(buffers)];
+  return columns.flatMap((column) => (column ? [column.buffer] : []));
 }
 
 async function request(key: number, method: MethodName, params: object): Promise<void> {

@@ -1,0 +1,21 @@
+export type FrameErrorCode =
+  | 'bad_magic'
+  | 'bad_version'
+  | 'bad_type'
+  | 'bad_header'
+  | 'bad_block'
+  | 'bad_check'
+  | 'missing_reference'
+  | 'truncated'
+  | 'extra_bytes';
+
+/** Why bytes are not a frame. */
+export class FrameError extends Error {
+  constructor(
+    readonly code: FrameErrorCode,
+    message: string,
+  ) {
+    super(message);
+    this.name = 'FrameError';
+  }
+}
