@@ -35,8 +35,7 @@ ByMaterial by_material(const Model& model, F&& f) {
 }
 
 inline const PairSums& pair_sums_of(const StepContext& c) {
-  return pair_sums(c.work.instructions, c.model.scene.pair_precision,
-                   reference_kernel(c.model).id());
+  return pair_sums(c.work.instructions, c.work.sources.precision(), reference_kernel(c.model).id());
 }
 
 /// Whether two materials among the liquid particles differ.

@@ -4,9 +4,12 @@
 
 namespace vat {
 
-/// The floating-point numbers in which core/pairs sums: about a cluster of particles, places and
-/// motions are exact to some 1e-7 or 1e-16 of their size. State and integration are double either
-/// way.
+/// The floating-point numbers in which core/pairs sums. In single precision motions are exact to
+/// some 1e-7 of their size, and places to 1e-9 of the span of all of them: where these are further
+/// apart than kMostSupports support radii, sums are in double precision. State and integration are
+/// double either way.
 enum class PairPrecision : std::uint8_t { single_precision, double_precision };
+
+inline constexpr double kMostSupports = 1024;
 
 }  // namespace vat

@@ -70,16 +70,16 @@ void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, con
   });
 }
 
-/// Covers all sources: an image is as far outside a wall as its source is inside, within `reach`.
-PlaceGrid grid_around(const UniformGrid& liquid, const UniformGrid* solids, Real reach) {
+/// Around all sources: an image is as far outside a wall as its source is inside, within `reach`.
+std::array<Vec3, 2> box_around(const UniformGrid& liquid, const UniformGrid* solids, Real reach) {
   Vec3 low = liquid.origin();
   Vec3 high = liquid.end();
   if (solids != nullptr) {
     low = low.cwiseMin(solids->origin());
     high = high.cwiseMax(solids->end());
   }
-  const Real beside = 4 * reach;
-  return {low - Vec3::Constant(beside), (high - low).maxCoeff() + 2 * beside};
+  const Vec3 beside = Vec3::Constant(4 * reach);
+  return {low - beside, high + beside};
 }
 
 }  // namespace
@@ -319,9 +319,12 @@ void PairSources::build(const StepContext& c, Real reach) {
   const bool solid = has_solids(c.model);
   solids_ = static_cast<Index>(liquid.grid.order().size());
   images_begin_ = solids_ + (solid ? static_cast<Index>(solids.grid.order().size()) : 0);
-  is_single_ = c.model.scene.pair_precision == PairPrecision::single_precision;
   search_.origin = liquid.grid.origin();
-  grid_ = grid_around(liquid.grid, solid ? &solids.grid : nullptr, reach);
+  const auto [low, high] = box_around(liquid.grid, solid ? &solids.grid : nullptr, reach);
+  const Real span = (high - low).maxCoeff();
+  grid_ = PlaceGrid(low, span);
+  is_single_ = c.model.scene.pair_precision == PairPrecision::single_precision &&
+               span <= kMostSupports * reach;
   Index end = images_begin_;
   make_room(end);
   set_places(c);

@@ -139,6 +139,10 @@ class PairSources {
     return {places_[n].x, places_[n].y, places_[n].z};
   }
 
+  /// In which sums are to be made: the scene's, or double where that asks for too much.
+  PairPrecision precision() const {
+    return is_single_ ? PairPrecision::single_precision : PairPrecision::double_precision;
+  }
   /// Without the padding.
   std::size_t count() const { return count_; }
   Index first_solid() const { return solids_; }

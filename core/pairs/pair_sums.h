@@ -31,8 +31,8 @@ struct alignas(16) PackedMotion {
   float vx, vy, vz;
 };
 
-/// A grid so fine that distances on it are as good as in single precision about a place nearby: a
-/// span of a hundred support radii has steps of 1e-7 of them, at most.
+/// A grid so fine that distances on it are as good as in single precision about a place nearby:
+/// over a span of a hundred support radii it rounds places by 1e-7 of them, at most.
 struct PlaceGrid {
   static constexpr std::int32_t kCount = 1 << 30;  ///< coordinates are in [0, kCount]
   /// Of what is nowhere near a place.

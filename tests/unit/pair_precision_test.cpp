@@ -1,0 +1,67 @@
+#include "core/pairs/pair_precision.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/force_probe.h"
+#include "tests/support/mixed_scenes.h"
+
+// What single precision is worth, and where double takes its place.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+/// A mixture, and one of its liquid blocks once more, `distance` away.
+Scene make_spread_mixture(PairPrecision precision, Real distance) {
+  Scene scene = make_wet_mixture(IntegratorId::velocity_verlet, PressureSolver::tait);
+  scene.pair_precision = precision;
+  BodyDescription stray = scene.bodies.front();
+  stray.name = "stray";
+  stray.position += Vec3(distance, 0, 0);
+  scene.bodies.push_back(stray);
+  return scene;
+}
+
+Real greatest_support(const ForceProbe& probe) {
+  Real support = 0;
+  for (const auto& liquid : probe.model().liquids) {
+    if (liquid) support = std::max(support, liquid->support_radius);
+  }
+  return support;
+}
+
+/// The greatest difference of forces by precision, over the greatest force.
+Real relative_difference(Real distance) {
+  const ForceProbe a(make_spread_mixture(PairPrecision::single_precision, distance));
+  const ForceProbe b(make_spread_mixture(PairPrecision::double_precision, distance));
+  Real greatest = 0;
+  Real difference = 0;
+  for (std::size_t i = 0; i < a.model().free_count; ++i) {
+    greatest = std::max(greatest, b.state().forces.particle[i].norm());
+    difference =
+        std::max(difference, (a.state().forces.particle[i] - b.state().forces.particle[i]).norm());
+  }
+  return difference / greatest;
+}
+
+TEST(PairPrecision, IsSingleOverAThousandSupports) {
+  const Real support = greatest_support(ForceProbe(make_spread_mixture({}, 1)));
+  // Rounded places change densities by some 1e-7 or 1e-6, and the forces are those of compressions
+  // by a thousandth or more.
+  EXPECT_GT(relative_difference(1), 0);
+  EXPECT_LT(relative_difference(1), 1e-4);
+  EXPECT_GT(relative_difference(900 * support), 0);
+  EXPECT_LT(relative_difference(900 * support), 1e-3);
+}
+
+TEST(PairPrecision, IsDoubleWhereParticlesAreFurtherApart) {
+  const Real support = greatest_support(ForceProbe(make_spread_mixture({}, 1)));
+  EXPECT_EQ(relative_difference(1100 * support), 0);
+  EXPECT_EQ(relative_difference(1e5 * support), 0);
+}
+
+}  // namespace
+}  // namespace vat
