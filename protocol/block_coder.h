@@ -18,6 +18,14 @@ namespace vat {
 struct BlockScratch {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
+  /// What a prediction left, and what was expected of it.
+  struct Left {
+    std::int32_t value;
+    std::uint8_t residual_class;
+    std::int8_t fraction;
+    std::uint8_t lane;
+  };
+
   CellOrder cells;
   Neighbourhood neighbours;
   // By particle of the first reference's block: its place in the second's, and in the frame's.
@@ -27,6 +35,7 @@ struct BlockScratch {
   std::vector<std::uint32_t> numbers;  ///< of those
   std::vector<Triple> mean_step;       ///< [eighths] by cell
   std::vector<std::array<std::int32_t, 4>> step_sums;  ///< by cell; the last counts
+  std::vector<Left> lefts;                             ///< that a writer has to write
   std::vector<Triple> sizes;  ///< [eighths] of the residuals of added particles
 };
 

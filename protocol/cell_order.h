@@ -35,7 +35,10 @@ class CellOrder {
   std::uint32_t layer() const { return layer_; }  ///< and to the one above it
 
  private:
-  bool find_box(std::span<const std::uint16_t> positions, int shift);
+  /// Of the box and the size of cells: false where there are too many.
+  bool divide(std::size_t particles, int shift);
+  /// The place of each particle's cell, and how many are in it; how many cells have some.
+  std::size_t count_cells(std::span<const std::uint16_t> positions, int shift);
   void list_cells();
 
   std::vector<std::uint32_t> order_;
@@ -45,7 +48,9 @@ class CellOrder {
   std::uint32_t row_ = 0;
   std::uint32_t layer_ = 0;
   std::uint32_t place_count_ = 0;
-  std::array<std::uint32_t, 3> least_{};
+  std::array<std::uint16_t, 3> box_min_{};
+  std::array<std::uint16_t, 3> box_max_{};
+  std::array<std::uint32_t, 3> least_{};  ///< of the cells
 };
 
 }  // namespace vat

@@ -39,6 +39,10 @@ void match(const GridBlock& from, const GridBlock& to, std::vector<std::uint32_t
   const std::size_t count = from.particle_count();
   const std::size_t end = to.particle_count();
   places.resize(count);
+  if (from.numbers == to.numbers && count == end) {
+    std::iota(places.begin(), places.end(), 0U);
+    return;
+  }
   std::size_t j = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t number = from.number(i);
@@ -182,6 +186,11 @@ void code_removed(Coder& coder, BlockScratch& scratch) {
 /// What stays as it was.
 void keep_unmoved(const GridBlock& first, const Parts& parts, const BlockScratch& scratch,
                   GridBlock& block) {
+  bool any = !parts.moves;
+  for (std::size_t a = 0; a < kFrameAttributes; ++a) {
+    any = any || (!block.attributes[a].empty() && !parts.changes[a]);
+  }
+  if (!any) return;
   for (std::size_t i = 0; i < scratch.new_place.size(); ++i) {
     const std::uint32_t place = scratch.new_place[i];
     if (place == kNone) continue;
@@ -193,6 +202,22 @@ void keep_unmoved(const GridBlock& first, const Parts& parts, const BlockScratch
       block.attributes[a][place] = first.attributes[a][i];
     }
   }
+}
+
+/// The block's particles, without their places and attributes. False as of merge_numbers().
+bool place_numbers(const GridBlock& first, const Parts& parts, const FrameScale& scale,
+                   GridBlock& block, BlockScratch& scratch) {
+  if (!parts.removes && parts.added == 0) {
+    scratch.added.clear();
+    block.numbers = first.numbers;
+    resize_columns(scale, first.particle_count(), block);
+    return true;
+  }
+  if (!merge_numbers(first, block, scratch)) return false;
+  const std::size_t count = block.numbers.size();
+  resize_columns(scale, count, block);
+  drop_plain_numbers(count, block.numbers);
+  return true;
 }
 
 template <class Coder>
@@ -216,9 +241,7 @@ void code_particle_changes(Coder& coder, const FrameScale& scale, const GridBloc
   code_numbers(coder, scratch.numbers, parts.added);
   if (!coder.is_sound()) return;
   if constexpr (Coder::kReads) {
-    if (!merge_numbers(first, block, scratch)) return coder.refuse();
-    resize_columns(scale, block.numbers.size(), block);
-    drop_plain_numbers(block.numbers.size(), block.numbers);
+    if (!place_numbers(first, parts, scale, block, scratch)) return coder.refuse();
     keep_unmoved(first, parts, scratch, block);
   }
   if (second != nullptr) match(first, *second, scratch.second_place);

@@ -37,19 +37,34 @@ struct Fit {
   std::int32_t b_alone() const { return factor(vy / vv); }
 };
 
-/// In place of a writer: counts what it would have to write, and chooses the tuning with which that
-/// costs the least.
+/// In place of a writer: keeps what is to be written, chooses the tuning with which that costs the
+/// least, and writes it.
 class TuningChoice {
  public:
   static constexpr bool kReads = false;
-  static constexpr Neighbourhood::Tuning kNeutral{0, residuals::kClasses};
+  /// With it no class lies outside the counted ones, and what is coded first has one of its own.
+  static constexpr Neighbourhood::Tuning kNeutral{3, residuals::kClasses};
 
-  std::int32_t residual(std::int32_t value, const Expectation& expected, std::uint32_t) {
+  explicit TuningChoice(std::vector<BlockScratch::Left>& lefts) : lefts_(lefts) { lefts.clear(); }
+
+  std::int32_t residual(std::int32_t value, const Expectation& expected, std::uint32_t lane) {
+    lefts_.push_back({value, static_cast<std::uint8_t>(expected.residual_class),
+                      static_cast<std::int8_t>(expected.fraction),
+                      static_cast<std::uint8_t>(lane)});
     const std::int32_t bin = std::min(std::abs(value), kBins - 1);
     ++counts_[expected.residual_class][static_cast<std::size_t>(bin)];
     return value;
   }
   void refuse() {}
+
+  void write(const Neighbourhood::Tuning& tuning, SymbolWriter& writer) const {
+    for (const BlockScratch::Left& left : lefts_) {
+      const std::uint32_t index = left.residual_class == residuals::kClasses
+                                      ? tuning.first_class
+                                      : shifted(left.residual_class, tuning.shift);
+      writer.residual(left.value, {index, left.fraction}, left.lane);
+    }
+  }
 
   Neighbourhood::Tuning best() const {
     Neighbourhood::Tuning best;
@@ -90,16 +105,20 @@ class TuningChoice {
     }
     return cost;
   }
-  double cost_of_shift(std::int32_t shift) const {
+  static std::uint32_t shifted(std::uint32_t residual_class, std::int32_t shift) {
     constexpr auto kLast = static_cast<std::int32_t>(residuals::kClasses) - 1;
+    const std::int32_t index = static_cast<std::int32_t>(residual_class) - kNeutral.shift + shift;
+    return static_cast<std::uint32_t>(std::clamp(index, 0, kLast));
+  }
+  double cost_of_shift(std::int32_t shift) const {
     double cost = 0;
-    for (std::int32_t c = 0; c <= kLast; ++c) {
-      cost += cost_of(counts_[static_cast<std::size_t>(c)],
-                      static_cast<std::uint32_t>(std::clamp(c + shift, 0, kLast)));
+    for (std::uint32_t c = 0; c < residuals::kClasses; ++c) {
+      cost += cost_of(counts_[c], shifted(c, shift));
     }
     return cost;
   }
 
+  std::vector<BlockScratch::Left>& lefts_;
   std::array<Counts, residuals::kClasses + 1> counts_{};
 };
 
@@ -184,7 +203,7 @@ void find_mean_steps(const GridBlock& first, const GridBlock* second, BlockScrat
         }
       }
     }
-    const std::int32_t inverse = inverses()[static_cast<std::size_t>(sum[3])];
+    const std::int32_t inverse = kInverse[static_cast<std::size_t>(sum[3])];
     for (std::size_t q = 0; q < 3; ++q) scratch.mean_step[c][q] = sum[q] * inverse >> 13;
   }
 }
@@ -280,6 +299,7 @@ void fit_factors(const GridBlock& block, AttributePrediction& prediction) {
 }
 
 constexpr std::array<bool, 3> kAll{true, true, true};
+constexpr auto kNothing = [](std::uint32_t, const Triple&) { return true; };
 
 }  // namespace
 
@@ -292,25 +312,28 @@ void code_positions(Coder& coder, const GridBlock& first, const GridBlock* secon
     const std::uint16_t* position = &block.positions[std::size_t{3} * place];
     return Triple{position[0], position[1], position[2]};
   };
-  Neighbourhood::Tuning tuning;
-  if constexpr (!Coder::kReads) {
-    fit_factors(block, prediction);
-    TuningChoice choice;
-    const auto pass = [](std::uint32_t, const Triple&) { return true; };
-    code_cells(choice, scratch, kAll, TuningChoice::kNeutral, prediction, value, pass);
-    tuning = choice.best();
-  }
-  prediction.common = code_factor(coder, prediction.common);
-  prediction.own = code_factor(coder, prediction.own);
-  code_tuning(coder, tuning);
-  if (!coder.is_sound()) return;
-  const auto store = [&](std::uint32_t place, const Triple& values) {
-    if (((values[0] | values[1] | values[2]) & ~0xffff) != 0) return false;
-    auto* position = &block.positions[std::size_t{3} * place];
-    for (std::size_t q = 0; q < 3; ++q) keep<Coder>(position[q], values[q]);
-    return true;
+  const auto code_header = [&](Neighbourhood::Tuning tuning) {
+    prediction.common = code_factor(coder, prediction.common);
+    prediction.own = code_factor(coder, prediction.own);
+    code_tuning(coder, tuning);
+    return tuning;
   };
-  code_cells(coder, scratch, kAll, tuning, prediction, value, store);
+  if constexpr (Coder::kReads) {
+    const Neighbourhood::Tuning tuning = code_header({});
+    if (!coder.is_sound()) return;
+    const auto store = [&](std::uint32_t place, const Triple& values) {
+      if (((values[0] | values[1] | values[2]) & ~0xffff) != 0) return false;
+      std::uint16_t* position = &block.positions[std::size_t{3} * place];
+      for (std::size_t q = 0; q < 3; ++q) position[q] = static_cast<std::uint16_t>(values[q]);
+      return true;
+    };
+    code_cells(coder, scratch, kAll, tuning, prediction, value, store);
+  } else {
+    fit_factors(block, prediction);
+    TuningChoice choice(scratch.lefts);
+    code_cells(choice, scratch, kAll, TuningChoice::kNeutral, prediction, value, kNothing);
+    choice.write(code_header(choice.best()), coder);
+  }
 }
 
 template <class Coder>
@@ -325,28 +348,31 @@ void code_attributes(Coder& coder, const GridBlock& first, const GridBlock* seco
     }
     return values;
   };
-  Neighbourhood::Tuning tuning;
-  if constexpr (!Coder::kReads) {
-    fit_factors(block, prediction);
-    TuningChoice choice;
-    const auto pass = [](std::uint32_t, const Triple&) { return true; };
-    code_cells(choice, scratch, moved, TuningChoice::kNeutral, prediction, value, pass);
-    tuning = choice.best();
-  }
-  for (std::size_t q = 0; q < 3; ++q) {
-    if (moved[q]) prediction.factors[q] = code_factor(coder, prediction.factors[q]);
-  }
-  code_tuning(coder, tuning);
-  if (!coder.is_sound()) return;
-  const auto store = [&](std::uint32_t place, const Triple& values) {
+  const auto code_header = [&](Neighbourhood::Tuning tuning) {
     for (std::size_t q = 0; q < 3; ++q) {
-      if (!moved[q]) continue;
-      if (std::abs(values[q]) > kMaxAttribute) return false;
-      keep<Coder>(block.attributes[q][place], values[q]);
+      if (moved[q]) prediction.factors[q] = code_factor(coder, prediction.factors[q]);
     }
-    return true;
+    code_tuning(coder, tuning);
+    return tuning;
   };
-  code_cells(coder, scratch, moved, tuning, prediction, value, store);
+  if constexpr (Coder::kReads) {
+    const Neighbourhood::Tuning tuning = code_header({});
+    if (!coder.is_sound()) return;
+    const auto store = [&](std::uint32_t place, const Triple& values) {
+      for (std::size_t q = 0; q < 3; ++q) {
+        if (!moved[q]) continue;
+        if (std::abs(values[q]) > kMaxAttribute) return false;
+        block.attributes[q][place] = values[q];
+      }
+      return true;
+    };
+    code_cells(coder, scratch, moved, tuning, prediction, value, store);
+  } else {
+    fit_factors(block, prediction);
+    TuningChoice choice(scratch.lefts);
+    code_cells(choice, scratch, moved, TuningChoice::kNeutral, prediction, value, kNothing);
+    choice.write(code_header(choice.best()), coder);
+  }
 }
 
 template void code_positions(SymbolWriter&, const GridBlock&, const GridBlock*, const GridBlock&,

@@ -18,7 +18,11 @@ using Triple = std::array<std::int32_t, 3>;
 
 inline constexpr std::size_t kInverses = 2048;
 /// 65536 / n, rounded down.
-const std::array<std::int32_t, kInverses>& inverses();
+inline constexpr std::array<std::int32_t, kInverses> kInverse = [] {
+  std::array<std::int32_t, kInverses> all{};
+  for (std::size_t n = 1; n < kInverses; ++n) all[n] = 65536 / static_cast<std::int32_t>(n);
+  return all;
+}();
 
 /// The class for residuals of which the mean magnitude is `size` / 2048.
 inline std::int32_t class_of_size(std::int32_t size) {
@@ -83,7 +87,7 @@ inline void Neighbourhood::expect(const Triple& predictions, Triple& wholes,
   constexpr std::int32_t kMostClass = static_cast<std::int32_t>(residuals::kClasses) - 1;
   const bool is_first = own_.count + before_.count == 0;
   const auto weight = static_cast<std::size_t>(4 * own_.count + before_.count + 1);
-  const std::int32_t inverse = inverses()[weight];
+  const std::int32_t inverse = kInverse[weight];
   Triple size;
   for (std::size_t q = 0; q < 3; ++q) size[q] = 4 * own_.size[q] + before_.size[q] + 8;
   const std::int32_t all = size[0] + size[1] + size[2];

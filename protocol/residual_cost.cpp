@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -9,16 +10,15 @@ namespace {
 constexpr std::int32_t kListed = 64;
 
 float cost_in(std::uint32_t residual_class, std::int32_t residual) {
-  const auto [index, low_bits] = residuals::class_of(residual_class);
-  const residuals::Table& table = residuals::tables()[index][0];
+  const auto [table, low_bits] = residuals::class_of(residual_class);
+  const std::uint32_t index = residuals::Tables::index(table, false);
+  const std::int32_t radius = residuals::kAllTables.radius[index];
   const std::int32_t high = residual >> low_bits;
-  const bool escapes = high > table.radius;
-  const std::uint32_t symbol =
-      escapes ? table.escape() : static_cast<std::uint32_t>(high + table.radius);
-  const int frequency = table.start[symbol + 1] - table.start[symbol];
-  const float bits = 12 - std::log2(static_cast<float>(frequency)) + static_cast<float>(low_bits);
-  if (!escapes) return bits;
-  return bits + 7 + std::log2(static_cast<float>(high - table.radius));
+  const std::int32_t symbol = std::min(high, radius + 1) + radius;
+  const std::uint32_t range = residuals::kAllTables.range[index][static_cast<std::size_t>(symbol)];
+  const float bits = 12 - std::log2(static_cast<float>(range >> 16)) + static_cast<float>(low_bits);
+  if (high <= radius) return bits;
+  return bits + 7 + std::log2(static_cast<float>(high - radius));
 }
 
 }  // namespace

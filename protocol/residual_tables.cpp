@@ -1,7 +1,6 @@
 #include "protocol/residual_tables.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace vat::residuals {
 namespace {
@@ -24,47 +23,49 @@ constexpr std::array<int, kTables> kRadius{2, 2, 2, 2, 2, 2, 2, 3,  3,  3,  3,  
 constexpr std::array<std::int32_t, kPlaces> kMiddle{1, 3};  // [eighths]
 
 /// The part of 65536 that lies below `eighths` in a distribution around zero.
-std::int32_t part_below(std::int32_t eighths, std::int32_t steepness) {
-  const std::int32_t steps = std::abs(eighths) * steepness;
+constexpr std::int32_t part_below(std::int32_t eighths, std::int32_t steepness) {
+  const std::int32_t steps = (eighths < 0 ? -eighths : eighths) * steepness;
   const auto index = static_cast<std::size_t>(std::min(steps >> 8, 80));
   const std::int32_t rest = (kLogistic[index + 1] - kLogistic[index]) * (steps & 255) >> 8;
   const std::int32_t part = kLogistic[index] + rest;
   return eighths < 0 ? 65536 - part : part;
 }
 
-Table make_table(std::size_t t, std::size_t place) {
-  Table table;
-  const int radius = kRadius[t];
+constexpr void fill_table(std::size_t table, std::size_t place, std::size_t index, Tables& all) {
+  const int radius = kRadius[table];
   const int symbols = 2 * radius + 2;
   const auto below = [&](int residual) {
-    return part_below(8 * residual - 4 - kMiddle[place], kSteepness[t]);
+    return part_below(8 * residual - 4 - kMiddle[place], kSteepness[table]);
   };
   // Every symbol has one of 4096, and its part of the others.
-  const auto spare = static_cast<std::int32_t>(rans::kScale) - symbols;
-  table.radius = radius;
+  const auto start = [&](int k) {
+    if (k == symbols) return static_cast<std::int32_t>(rans::kScale);
+    const auto spare = static_cast<std::int32_t>(rans::kScale) - symbols;
+    return k + ((below(k - radius) - below(-radius)) * spare >> 16);
+  };
+  all.radius[index] = radius;
   for (int k = 0; k < symbols; ++k) {
-    const std::int32_t part = below(k - radius) - below(-radius);
-    table.start[static_cast<std::size_t>(k)] = static_cast<std::uint16_t>(k + (part * spare >> 16));
+    const auto begin = static_cast<std::uint32_t>(start(k));
+    const auto end = static_cast<std::uint32_t>(start(k + 1));
+    all.range[index][static_cast<std::size_t>(k)] = begin | (end - begin) << 16;
+    for (std::uint32_t slot = begin; slot < end; ++slot) {
+      all.symbol[index][slot] = static_cast<std::uint8_t>(k);
+    }
   }
-  table.start[static_cast<std::size_t>(symbols)] = rans::kScale;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(symbols); ++k) {
-    std::fill(table.symbol.begin() + table.start[k], table.symbol.begin() + table.start[k + 1],
-              static_cast<std::uint8_t>(k));
+}
+
+constexpr Tables make_tables() {
+  Tables all;
+  for (std::uint32_t table = 0; table < kTables; ++table) {
+    for (std::uint32_t place = 0; place < kPlaces; ++place) {
+      fill_table(table, place, Tables::index(table, place == 1), all);
+    }
   }
-  return table;
+  return all;
 }
 
 }  // namespace
 
-const std::array<std::array<Table, kPlaces>, kTables>& tables() {
-  static const auto kAll = [] {
-    std::array<std::array<Table, kPlaces>, kTables> all;
-    for (std::size_t t = 0; t < kTables; ++t) {
-      for (std::size_t place = 0; place < kPlaces; ++place) all[t][place] = make_table(t, place);
-    }
-    return all;
-  }();
-  return kAll;
-}
+constinit const Tables kAllTables = make_tables();
 
 }  // namespace vat::residuals

@@ -12,22 +12,26 @@ namespace vat::residuals {
 
 inline constexpr std::uint32_t kTables = 24;   // scales, a fourth of an octave apart
 inline constexpr std::uint32_t kClasses = 68;  // and those that send low bits as they are
-inline constexpr std::size_t kPlaces = 2;      // of the distribution's middle
+inline constexpr std::uint32_t kPlaces = 2;    // of the distribution's middle
 inline constexpr int kMostRadius = 18;
 /// From this class on no residual has a probability above a half.
 inline constexpr std::uint32_t kLeastKeyClass = 14;
 
-/// Of residuals from -radius to radius, and an escape behind them.
-struct Table {
-  int radius = 0;
-  std::array<std::uint8_t, rans::kScale> symbol{};  ///< by slot
-  std::array<std::uint16_t, 2 * kMostRadius + 3> start{};
+/// Of residuals from -radius to radius, and an escape behind them, which is symbol 2 radius + 1: by
+/// table and by place, where the middle is one eighth above the prediction, or three.
+struct Tables {
+  static constexpr std::uint32_t kCount = kTables * kPlaces;
+  static constexpr std::uint32_t kMostSymbols = 2 * kMostRadius + 2;
 
-  std::uint32_t escape() const { return static_cast<std::uint32_t>(2 * radius + 1); }
+  std::array<std::int32_t, kCount> radius{};
+  std::array<std::array<std::uint32_t, kMostSymbols>, kCount> range{};  ///< start, 2^16 frequency
+  std::array<std::array<std::uint8_t, rans::kScale>, kCount> symbol{};  ///< by slot
+
+  static constexpr std::uint32_t index(std::uint32_t table, bool is_far) {
+    return kPlaces * table + (is_far ? 1 : 0);
+  }
 };
-
-/// By table, and by place: the middle is one eighth above the prediction, or three.
-const std::array<std::array<Table, kPlaces>, kTables>& tables();
+extern const Tables kAllTables;
 
 /// A class of residuals: a table for what is left of one without its low bits.
 struct Class {

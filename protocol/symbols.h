@@ -17,6 +17,10 @@ struct Expectation {
   std::int32_t fraction = 0;  ///< [eighths] of the prediction above its whole part, -4 to 3
 };
 
+constexpr bool is_far(const Expectation& expected) {
+  return expected.fraction >= 2 || expected.fraction <= -2;
+}
+
 class SymbolWriter {
  public:
   static constexpr bool kReads = false;
@@ -45,17 +49,17 @@ class SymbolWriter {
     return value;
   }
   std::int32_t residual(std::int32_t value, const Expectation& expected, std::uint32_t lane) {
-    const auto [table_index, low_bits] = residuals::class_of(expected.residual_class);
-    const residuals::Table& table =
-        residuals::tables()[table_index][std::abs(expected.fraction) >= 2 ? 1 : 0];
+    const auto [table, low_bits] = residuals::class_of(expected.residual_class);
+    const std::uint32_t index = residuals::Tables::index(table, is_far(expected));
+    const std::int32_t radius = residuals::kAllTables.radius[index];
     const std::int32_t turned = expected.fraction < 0 ? -value : value;
     const std::int32_t high = turned >> low_bits;
-    if (std::abs(high) <= table.radius) {
-      put(table, static_cast<std::uint32_t>(high + table.radius), lane);
+    if (std::abs(high) <= radius) {
+      put(index, static_cast<std::uint32_t>(high + radius), lane);
     } else {
-      put(table, table.escape(), lane);
+      put(index, static_cast<std::uint32_t>(2 * radius + 1), lane);
       bits(high < 0 ? 1 : 0, 1, lane);
-      whole(static_cast<std::uint32_t>(std::abs(high) - table.radius - 1), lane);
+      whole(static_cast<std::uint32_t>(std::abs(high) - radius - 1), lane);
     }
     bits(static_cast<std::uint32_t>(turned) & ((1U << low_bits) - 1), low_bits, lane);
     return value;
@@ -66,9 +70,9 @@ class SymbolWriter {
   bool may_hold(std::uint32_t) const { return true; }
 
  private:
-  void put(const residuals::Table& table, std::uint32_t symbol, std::uint32_t lane) {
-    const std::uint32_t start = table.start[symbol];
-    coder_.put(lane, start, table.start[symbol + 1] - start);
+  void put(std::uint32_t index, std::uint32_t symbol, std::uint32_t lane) {
+    const std::uint32_t range = residuals::kAllTables.range[index][symbol];
+    coder_.put(lane, range & 0xffff, range >> 16);
   }
 
   rans::Encoder coder_;
@@ -112,16 +116,19 @@ class SymbolReader {
     return value | 1U << (length - 1);
   }
   std::int32_t residual(std::int32_t, const Expectation& expected, std::uint32_t lane) {
-    const auto [table_index, low_bits] = residuals::class_of(expected.residual_class);
-    const residuals::Table& table =
-        residuals::tables()[table_index][std::abs(expected.fraction) >= 2 ? 1 : 0];
-    const std::uint32_t symbol = table.symbol[coder_.slot(lane)];
-    const std::uint32_t start = table.start[symbol];
-    coder_.take(lane, start, table.start[symbol + 1] - start);
-    std::int32_t value = static_cast<std::int32_t>(symbol) - table.radius;
-    if (symbol == table.escape()) value = escaped(table.radius, low_bits, lane);
-    if (low_bits > 0)
+    const auto [table, low_bits] = residuals::class_of(expected.residual_class);
+    const std::uint32_t index = residuals::Tables::index(table, is_far(expected));
+    const std::uint32_t symbol = residuals::kAllTables.symbol[index][coder_.slot(lane)];
+    const std::uint32_t range = residuals::kAllTables.range[index][symbol];
+    coder_.take(lane, range & 0xffff, range >> 16);
+    const std::int32_t radius = residuals::kAllTables.radius[index];
+    std::int32_t value = static_cast<std::int32_t>(symbol) - radius;
+    if (value > radius) [[unlikely]] {
+      value = escaped(radius, low_bits, lane);
+    }
+    if (low_bits > 0) {
       value = value * (1 << low_bits) + static_cast<std::int32_t>(bits(0, low_bits, lane));
+    }
     return expected.fraction < 0 ? -value : value;
   }
 

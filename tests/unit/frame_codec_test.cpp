@@ -61,22 +61,27 @@ TEST(Rans, GivesBackWhatWasPut) {
 // off by more than its symbol's own 4096th, what these take from all, and the rounding of the
 // table's steps.
 TEST(ResidualTables, AreLogistic) {
-  for (std::size_t t = 0; t < residuals::kTables; ++t) {
+  for (std::uint32_t t = 0; t < residuals::kTables; ++t) {
     const double scale = 0.045 * std::pow(2, static_cast<double>(t) / 4);
-    for (std::size_t place = 0; place < residuals::kPlaces; ++place) {
-      const residuals::Table& table = residuals::tables()[t][place];
+    for (std::uint32_t place = 0; place < residuals::kPlaces; ++place) {
+      const auto index = residuals::Tables::index(t, place == 1);
+      const int radius = residuals::kAllTables.radius[index];
       const double middle = place == 0 ? 0.125 : 0.375;
-      EXPECT_EQ(table.start[0], 0);
-      EXPECT_EQ(table.start[table.escape() + 1], rans::kScale);
-      for (int r = -table.radius; r <= table.radius; ++r) {
+      std::uint32_t start = 0;
+      for (int r = -radius; r <= radius + 1; ++r) {
+        const std::uint32_t range =
+            residuals::kAllTables.range[index][static_cast<std::size_t>(r + radius)];
+        const std::uint32_t frequency = range >> 16;
+        ASSERT_EQ(range & 0xffff, start);
+        ASSERT_GE(frequency, 1U);
+        start += frequency;
+        if (r > radius) continue;  // the escape has what is left
         const auto below = [&](double x) { return 1 / (1 + std::exp((middle - x) / scale)); };
-        const double part = below(r + 0.5) - below(r - 0.5);
-        const auto k = static_cast<std::size_t>(r + table.radius);
-        const int frequency = table.start[k + 1] - table.start[k];
-        ASSERT_GE(frequency, 1);
-        EXPECT_NEAR(frequency, 4096 * part, 2 + 4096 * part * (2 * table.radius + 2) / 4096 + 8)
-            << t << ' ' << place << ' ' << r;
+        const double cases = 4096 * (below(r + 0.5) - below(r - 0.5));
+        const double taken = cases * (2 * radius + 2) / 4096;
+        EXPECT_NEAR(frequency, cases, 2 + taken + 8) << t << ' ' << place << ' ' << r;
       }
+      EXPECT_EQ(start, rans::kScale);
     }
   }
 }
