@@ -52,7 +52,9 @@ class TuningChoice {
                       static_cast<std::int8_t>(expected.fraction),
                       static_cast<std::uint8_t>(lane)});
     const std::int32_t bin = std::min(std::abs(value), kBins - 1);
-    ++counts_[expected.residual_class][static_cast<std::size_t>(bin)];
+    Counts& counts = counts_[expected.residual_class];
+    ++counts.bins[static_cast<std::size_t>(bin)];
+    counts.end = std::max(counts.end, bin + 1);
     return value;
   }
   void refuse() {}
@@ -82,7 +84,11 @@ class TuningChoice {
 
  private:
   static constexpr std::int32_t kBins = 64;
-  using Counts = std::array<std::uint32_t, kBins>;
+  /// How many residuals there are of a magnitude; none from `end` on.
+  struct Counts {
+    std::array<std::uint32_t, kBins> bins{};
+    std::int32_t end = 0;
+  };
 
   template <class Cost>
   static std::uint32_t cheapest(std::uint32_t count, Cost cost) {
@@ -98,10 +104,9 @@ class TuningChoice {
   }
   static double cost_of(const Counts& counts, std::uint32_t residual_class) {
     double cost = 0;
-    for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-      if (counts[bin] == 0) continue;
-      const float one = residual_cost(residual_class, static_cast<std::int32_t>(bin));
-      cost += counts[bin] * static_cast<double>(one);
+    for (std::int32_t bin = 0; bin < counts.end; ++bin) {
+      const std::uint32_t count = counts.bins[static_cast<std::size_t>(bin)];
+      if (count > 0) cost += count * static_cast<double>(residual_cost(residual_class, bin));
     }
     return cost;
   }

@@ -4,6 +4,7 @@
 
 #include "server/cli/command.h"
 #include "tests/bench/accuracy.h"
+#include "tests/bench/codec.h"
 #include "tests/bench/compare.h"
 #include "tests/bench/document.h"
 #include "tests/bench/fanout.h"
@@ -28,6 +29,7 @@ int run(int argc, char** argv) {
   vat::bench::add_validate_command(app, exit_code);
   vat::bench::add_accuracy_command(app, exit_code);
   vat::bench::add_stability_command(app, exit_code);
+  vat::bench::add_codec_command(app, exit_code);
   vat::bench::add_fanout_command(app, exit_code);
   vat::bench::add_document_command(app, exit_code);
   try {

@@ -234,7 +234,9 @@ export class ParticleChanges {
             (wholes[q] as number) +
             symbols.residual(classes[q] as number, fractions[q] as number, q);
         }
-        const [x = 0, y = 0, z = 0] = values;
+        const x = values[0] as number;
+        const y = values[1] as number;
+        const z = values[2] as number;
         if (((x | y | z) & ~0xffff) !== 0) badBlock('a position is outside the grid');
         now[3 * place] = x;
         now[3 * place + 1] = y;
