@@ -81,6 +81,15 @@ std::optional<Fault> Simulation::Impl::find_step_fault(Real dt) const {
   return local.find_fast(*model, state.now, dt, bounds);
 }
 
+namespace {
+
+Index number_of(const ModelBody& body, Index particle) {
+  const bool is_plain = !body.sample || body.sample->numbers.empty();
+  return is_plain ? particle : body.sample->numbers[particle];
+}
+
+}  // namespace
+
 std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
                                                          const ForceModel& force_model, Real start,
                                                          Real whole, AdvanceReport& report) {
@@ -94,7 +103,7 @@ std::optional<GuardEvent> Simulation::Impl::take_step_in(std::uint32_t pieces,
       return GuardEvent{fault->cause,
                         start + (piece + 1) * dt,
                         model->bodies[fault->body].id,
-                        fault->particle,
+                        number_of(model->bodies[fault->body], fault->particle),
                         dt,
                         true};
     }

@@ -59,7 +59,7 @@ struct GuardEvent {
   Cause cause;
   Real time;  ///< [s] end of the failed step, or part of one
   BodyId body;
-  Index particle;  ///< within the body
+  Index particle;  ///< its number within the body, see BodyView
   Real step;       ///< [s] length of the failed step, or part of one
   bool recovered;  ///< false: no number of parts helped, and the simulation should pause
 };

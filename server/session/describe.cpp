@@ -67,6 +67,8 @@ Json describe_state(const BodyView& body) {
       {"positions", to_json(body.positions)},
       {"velocities", to_json(body.velocities)},
   };
+  if (!body.numbers.empty())
+    state["numbers"] = std::vector(body.numbers.begin(), body.numbers.end());
   if (body.pose) {
     state["center_of_mass"] = to_json(body.pose->center_of_mass);
     state["orientation"] = to_json(body.pose->orientation);

@@ -1,6 +1,8 @@
 // grab.*: a grab belongs to the client that started it
 
+#include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "core/limits.h"
 #include "server/session/method_table.h"
@@ -18,12 +20,23 @@ std::uint64_t read_grab_id(ObjectReader& params) {
   return params.count("grab", 0, kMaxGrabId);
 }
 
-ActionResult start(SessionCore& core, Member& member, BodyId body, Index particle,
+/// The index of the particle that has this number; one that no particle has, if there is none.
+Index index_of(const Simulation& simulation, BodyId id, Index number) {
+  const std::optional<BodyView> body = simulation.find_body(id);
+  if (!body || body->numbers.empty()) return number;
+  const auto found = std::ranges::lower_bound(body->numbers, number);
+  const bool is_there = found != body->numbers.end() && *found == number;
+  return static_cast<Index>(is_there ? found - body->numbers.begin() : body->positions.size());
+}
+
+ActionResult start(SessionCore& core, Member& member, BodyId body, Index number,
                    const Vec3& target) {
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
   if (member.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
   const std::uint64_t grab = core.next_grab();
-  const Status started = core.run().simulation().grab_start(grab, body, particle, target);
+  Simulation& simulation = core.run().simulation();
+  const Index particle = index_of(simulation, body, number);
+  const Status started = simulation.grab_start(grab, body, particle, target);
   if (!started) {
     if (started.errors().front().code != "limit_reached") return refused(started.errors());
     return limit_reached("grabs_per_session", kMaxGrabs);

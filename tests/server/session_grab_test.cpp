@@ -46,6 +46,30 @@ TEST_F(SessionGrabs, HoldMoveAndEnd) {
   EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "it has ended";
 }
 
+// Of the pool a corner is drained at the first tick; the others keep their numbers.
+TEST_F(SessionGrabs, NameAParticleByItsNumber) {
+  Json scene = Json::parse(mixed_scene_text());
+  scene["drains"] = Json::parse(R"([{"name": "hole", "min": [0, 0, 0], "max": [0.5, 0.5, 0.5]}])");
+  client->result("scene.load", {{"scene", scene}});
+  client->result("control.step");
+  const Json state = client->result("state.query", {{"bodies", {"pool"}}}).at("bodies").at(0);
+  const auto numbers = state.at("numbers").get<std::vector<std::uint32_t>>();
+  ASSERT_EQ(numbers.size(), state.at("positions").size());
+  ASSERT_GT(numbers.back(), numbers.size() - 1) << "some are gone";
+  std::uint32_t gone = 0;
+  while (numbers[gone] == gone) ++gone;
+  const Json params = {{"body", state.at("body")}, {"particle", gone}, {"target", kTarget}};
+  EXPECT_EQ(client->error("grab.start", params).at("data").at("path"), "/particle");
+  Json last = params;
+  last["particle"] = numbers.back();
+  client->result("grab.start", last);
+  const double before = state.at("positions").back().at(2);
+  client->result("control.step", {{"ticks", 30}});
+  const Json after = client->result("state.query", {{"bodies", {"pool"}}}).at("bodies").at(0);
+  ASSERT_EQ(after.at("numbers").back(), numbers.back());
+  EXPECT_GT(after.at("positions").back().at(2), before + 0.05) << "it is pulled up";
+}
+
 TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
   const auto other = join();
   const std::uint64_t grab = start(*client);

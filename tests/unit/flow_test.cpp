@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "core/limits.h"
@@ -171,6 +172,39 @@ TEST(Flow, KeepsTheBooks) {
     ASSERT_NEAR(now.bodies[0].mass, 0.125 * static_cast<Real>(pool_size(simulation)), 1e-9);
   }
   EXPECT_GT(simulation.diagnostics().drained_particles, 300U);
+}
+
+// What has come and not gone keeps its number, and what comes gets the next.
+TEST(Flow, ParticlesHaveNumbersOfTheirOwn) {
+  Scene scene = make_flow_scene();
+  scene.drains = {make_floor_drain()};
+  Simulation simulation = make_simulation(scene);
+  const auto places = [&] {
+    const BodyView pool = simulation.bodies()[0];
+    std::map<Index, Vec3> result;
+    for (Index i = 0; i < pool.positions.size(); ++i) {
+      result[pool.numbers.empty() ? i : pool.numbers[i]] = pool.positions[i];
+    }
+    EXPECT_EQ(result.size(), pool.positions.size());
+    return result;
+  };
+  std::map<Index, Vec3> before = places();
+  for (int tick = 0; tick < 150; ++tick) {
+    ASSERT_TRUE(simulation.advance(10).events.empty());
+    const std::map<Index, Vec3> now = places();
+    const Index ever = static_cast<Index>(kStart + simulation.diagnostics().emitted_particles);
+    ASSERT_TRUE(now.empty() || now.rbegin()->first < ever);
+    for (const auto& [number, place] : now) {
+      const auto known = before.find(number);
+      if (known == before.end()) {
+        ASSERT_TRUE(before.empty() || number > before.rbegin()->first) << tick;
+        continue;
+      }
+      ASSERT_LT((place - known->second).norm(), 10 * kStep * 6) << "at most 6 m/s";
+    }
+    before = now;
+  }
+  EXPECT_FALSE(simulation.bodies()[0].numbers.empty());
 }
 
 TEST(Flow, DrainsAWholeBody) {

@@ -39,9 +39,18 @@ describe('BodyView', () => {
       expect(view.count).toBe(count);
       if (count > 0) {
         expect(pickAt(view, count - 1)).toBe(count - 1);
-        expect(view.positionOf(count - 1).x).toBe(10 * (count - 1));
+        expect(view.positionOf(count - 1)?.x).toBe(10 * (count - 1));
       }
       expect(pickAt(view, count)).toBeUndefined();
     }
+  });
+
+  it('names particles by their numbers, where some are missing', () => {
+    const view = liquid(4);
+    view.showGrid({ ...block(3), numbers: Uint32Array.of(1, 4, 9) }, header);
+    expect(pickAt(view, 2)).toBe(9);
+    expect(view.positionOf(4)?.x).toBe(10);
+    expect(view.positionOf(2)).toBeUndefined();
+    expect(view.positionOf(10)).toBeUndefined();
   });
 });

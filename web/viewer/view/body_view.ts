@@ -48,6 +48,8 @@ function squares(centers: InstancedBufferAttribute): InstancedBufferGeometry {
 export class BodyView {
   readonly group = new Group();
   private centers: InstancedBufferAttribute;
+  /** Of the particles, rising; undefined: 0, 1, 2, ... */
+  private numbers: Uint32Array | undefined;
   private readonly geometry: InstancedBufferGeometry;
   private readonly materials: ShaderMaterial[] = [];
 
@@ -80,6 +82,7 @@ export class BodyView {
   /** Takes the block's positions as they are where their number stays: no copy is made. */
   showGrid(block: GridBlock, { origin, quantum }: FrameHeader): void {
     const { positions } = block;
+    this.numbers = block.numbers;
     this.count = positions.length / 3;
     if (positions.length === this.centers.array.length) this.centers.array = positions;
     else if (positions.length < this.centers.array.length) this.centers.array.set(positions);
@@ -96,7 +99,7 @@ export class BodyView {
     this.shown();
   }
 
-  /** The particle that the ray meets first, its distance in metres. */
+  /** The particle that the ray meets first, by its number, and its distance in metres. */
   pick(ray: Ray): Hit | undefined {
     if (!this.group.visible) return undefined;
     const scale = this.group.matrix.getMaxScaleOnAxis();
@@ -104,7 +107,9 @@ export class BodyView {
     local.direction.normalize();
     const places = this.centers.array.subarray(0, 3 * this.count);
     const hit = nearestSphere(local, places, this.description.radius / scale);
-    return hit && { particle: hit.particle, distance: hit.distance * scale };
+    if (!hit) return undefined;
+    const particle = this.numbers?.[hit.particle] ?? hit.particle;
+    return { particle, distance: hit.distance * scale };
   }
 
   /** Graphics buffers keep their length: a longer one takes the place of the old, with room. */
@@ -116,17 +121,20 @@ export class BodyView {
     this.geometry.setAttribute('center', this.centers);
   }
 
-  /** World position of a particle. */
-  positionOf(particle: number): Vector3 {
-    return new Vector3()
-      .fromArray(this.centers.array, 3 * particle)
-      .applyMatrix4(this.group.matrix);
+  /** World position of the particle with this number; undefined where it is not shown. */
+  positionOf(particle: number): Vector3 | undefined {
+    const place = this.numbers ? placeIn(this.numbers, particle) : particle;
+    return place !== undefined && place < this.count ? this.positionAt(place) : undefined;
+  }
+
+  private positionAt(place: number): Vector3 {
+    return new Vector3().fromArray(this.centers.array, 3 * place).applyMatrix4(this.group.matrix);
   }
 
   /** Makes the box hold all particles. */
   expand(box: Box3): void {
     if (!this.group.visible) return;
-    for (let i = 0; i < this.count; ++i) box.expandByPoint(this.positionOf(i));
+    for (let i = 0; i < this.count; ++i) box.expandByPoint(this.positionAt(i));
     box.expandByScalar(this.description.radius);
   }
 
@@ -160,6 +168,18 @@ export class BodyView {
     this.group.matrixWorldNeedsUpdate = true;
     this.group.visible = true;
   }
+}
+
+/** Where a value is in rising ones. */
+function placeIn(values: Uint32Array, value: number): number | undefined {
+  let low = 0;
+  let high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((values[middle] as number) < value) low = middle + 1;
+    else high = middle;
+  }
+  return values[low] === value ? low : undefined;
 }
 
 export function isGrid(block: { kind: number }): block is GridBlock {

@@ -72,9 +72,10 @@ export class World {
     let distance = Infinity;
     for (const [body, view] of this.bodies) {
       const hit = view.pick(ray);
-      if (!hit || hit.distance >= distance) continue;
+      const position = hit && view.positionOf(hit.particle);
+      if (!position || hit.distance >= distance) continue;
       distance = hit.distance;
-      nearest = { body, particle: hit.particle, position: view.positionOf(hit.particle) };
+      nearest = { body, particle: hit.particle, position };
     }
     return nearest;
   }
@@ -82,8 +83,8 @@ export class World {
   /** Where a particle is now and its radius; undefined once it or its body is gone. */
   particle(body: number, particle: number): { position: Vector3; radius: number } | undefined {
     const view = this.bodies.get(body);
-    if (!view || particle >= view.count) return undefined;
-    return { position: view.positionOf(particle), radius: view.description.radius };
+    const position = view?.positionOf(particle);
+    return view && position && { position, radius: view.description.radius };
   }
 
   paint(look: Theme): void {
