@@ -143,6 +143,29 @@ describe('while it is in', () => {
     expect(frames).toHaveLength(1);
   });
 
+  it('asks for no frames while nobody watches', async () => {
+    session.open();
+    const socket = await enter();
+    session.watch(false);
+    session.watch(false);
+    expect(socket.methods.slice(3)).toEqual(['frames.unsubscribe']);
+    await socket.answer('frames.unsubscribe', { result: { tick: 1 } });
+    session.watch(true);
+    expect(socket.methods.slice(3)).toEqual(['frames.unsubscribe', 'frames.subscribe']);
+  });
+
+  it('enters without a subscription where nobody watches, and subscribes later', async () => {
+    session.watch(false);
+    session.open();
+    const socket = FakeSocket.newest;
+    socket.accept();
+    await socket.answer('server.info', { result: { time: 1050 } });
+    await socket.answer('session.join', { result: { description: kDescription } });
+    expect(socket.methods).toEqual(['server.info', 'session.join']);
+    session.watch(true);
+    expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
+  });
+
   it('measures the clock again and again', async () => {
     session.open();
     const socket = await enter();

@@ -34,6 +34,8 @@ export class Session {
   private clock = new ClockOffset();
   private decoder = new FrameDecoder();
   private clockTimer: ReturnType<typeof setTimeout> | undefined;
+  private hasJoined = false;
+  private isWatched = true;
 
   constructor(
     private readonly options: SessionOptions,
@@ -64,13 +66,29 @@ export class Session {
     this.connection.notify('frames.ack', { number });
   }
 
+  /**
+   * Whether frames are wanted. A client that draws nothing for long has to say so: the server closes
+   * one that acknowledges nothing.
+   */
+  watch(wanted: boolean): void {
+    if (wanted === this.isWatched) return;
+    this.isWatched = wanted;
+    if (!this.hasJoined) return;
+    const request = wanted
+      ? this.request('frames.subscribe', {})
+      : this.request('frames.unsubscribe', {});
+    request.catch((error: unknown) => this.restart(error));
+  }
+
   private handleState(state: ConnectionState): void {
     clearTimeout(this.clockTimer);
+    this.hasJoined = false;
     this.handlers.onState?.(state);
     if (state.name === 'open') void this.enter();
   }
 
   private async enter(): Promise<void> {
+    this.hasJoined = false;
     try {
       const { session } = this.options;
       this.clock = new ClockOffset();
@@ -81,7 +99,8 @@ export class Session {
         session === undefined ? {} : { session },
       );
       this.handlers.onDescription?.(description);
-      await this.request('frames.subscribe', {});
+      this.hasJoined = true;
+      if (this.isWatched) await this.request('frames.subscribe', {});
     } catch (error) {
       this.restart(error);
     }

@@ -54,6 +54,9 @@ export class App {
     this.paint();
     this.watchContext();
     this.darkness.addEventListener('change', () => this.paint());
+    // Hidden pages are not drawn.
+    document.addEventListener('visibilitychange', () => this.stream.watch(!document.hidden));
+    this.stream.watch(!document.hidden);
     this.stream.open();
   }
 

@@ -45,6 +45,11 @@ export class Stream {
     this.post({ type: 'acknowledge', number });
   }
 
+  /** Whether frames are wanted; they are from the start. */
+  watch(wanted: boolean): void {
+    this.post({ type: 'watch', wanted });
+  }
+
   private post(message: ToWorker): void {
     this.worker.postMessage(message);
   }

@@ -5,6 +5,7 @@ import { now } from './clock';
 import type { FromWorker, Refusal, ToWorker } from './wire';
 
 let session: Session | undefined;
+let isWatched = true;
 
 function post(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
@@ -32,6 +33,7 @@ function open(url: string, chosen: string | undefined): void {
       onFault: (message) => post({ type: 'fault', message }),
     },
   );
+  session.watch(isWatched);
   session.open();
 }
 
@@ -67,6 +69,10 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
       break;
     case 'acknowledge':
       session?.acknowledge(data.number);
+      break;
+    case 'watch':
+      isWatched = data.wanted;
+      session?.watch(isWatched);
       break;
   }
 };

@@ -11,7 +11,8 @@ import type {
 export type ToWorker =
   | { type: 'open'; url: string; session: string | undefined }
   | { type: 'request'; key: number; method: MethodName; params: object }
-  | { type: 'acknowledge'; number: number };
+  | { type: 'acknowledge'; number: number }
+  | { type: 'watch'; wanted: boolean };
 
 export type FromWorker =
   | { type: 'state'; state: ConnectionState }
