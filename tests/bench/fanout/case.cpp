@@ -16,6 +16,8 @@ constexpr std::size_t kViewersPerProcess = 1000;
 constexpr std::size_t kDefaultConnections = 1024;  // of the server
 constexpr double kFullRate = 30;                   // frames a second, as the scene's ticks
 constexpr auto kSettling = std::chrono::seconds(3);
+constexpr std::size_t kTickViewers = 200;
+constexpr double kTickTurn = 512 / kFullRate + 1;  // [s] in which all recent ticks are of the turn
 
 void sleep(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
@@ -120,6 +122,54 @@ FanoutResult summarise(const Sightings& seen, std::size_t viewers, double second
 
 }  // namespace
 
+namespace {
+
+void read_ticks(const Served& server, FanoutResult& result) {
+  const auto metrics = server.metrics();
+  result.tick_median = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.5\"}");
+  result.tick_99 = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.99\"}");
+  result.lateness_99 = metric(metrics, "vat_recent_tick_lateness_seconds{quantile=\"0.99\"}");
+}
+
+double median_of(const std::vector<FanoutResult>& turns, double FanoutResult::*value) {
+  std::vector<float> values;
+  for (const FanoutResult& turn : turns) values.push_back(static_cast<float>(turn.*value));
+  return quantile(values, 0.5);
+}
+
+FanoutResult median_turn(std::vector<FanoutResult> turns) {
+  FanoutResult result = turns.front();
+  result.tick_median = median_of(turns, &FanoutResult::tick_median);
+  result.tick_99 = median_of(turns, &FanoutResult::tick_99);
+  result.lateness_99 = median_of(turns, &FanoutResult::lateness_99);
+  return result;
+}
+
+}  // namespace
+
+std::vector<FanoutResult> run_ticks(const FanoutSettings& settings) {
+  const std::size_t rounds = settings.seconds < 10 ? 1 : 5;
+  const Served server(settings.program, {"--scene", settings.scene, "--log-level", "error"});
+  const LoadSettings load_settings{server.port(), settings.max_error, 0, "s1"};
+  std::vector<FanoutResult> alone;
+  std::vector<FanoutResult> watched;
+  std::this_thread::sleep_for(kSettling);
+  for (std::size_t round = 0; round < rounds; ++round) {
+    FanoutResult result;
+    result.name = kTickCase;
+    result.endpoints = 1;
+    sleep(kTickTurn);
+    read_ticks(server, result);
+    alone.push_back(result);
+    const auto load = start_load(load_settings, {kTickViewers, 0, 0, 0});
+    result.viewers = kTickViewers;
+    sleep(kTickTurn);
+    read_ticks(server, result);
+    watched.push_back(result);
+  }
+  return {median_turn(alone), median_turn(watched)};
+}
+
 const std::vector<FanoutCase>& fanout_cases() {
   static const std::vector<FanoutCase> kCases = {
       {"viewers-1", {1, 0, 0, 0}, 1},        {"viewers-200", {200, 0, 0, 0}, 1},
@@ -148,7 +198,6 @@ std::vector<FanoutResult> run_fanout(const FanoutCase& one, const FanoutSettings
   const std::uint64_t resident = server.resident_bytes();
   const LoadSightings seen = end_load(load);
   const double seconds = std::chrono::duration<double>(LoadClock::now() - begin).count();
-  const auto metrics = server.metrics();
 
   std::vector<FanoutResult> results;
   for (std::size_t kind = 0; kind < kViewerKinds; ++kind) {
@@ -160,9 +209,7 @@ std::vector<FanoutResult> run_fanout(const FanoutCase& one, const FanoutSettings
     result.delivery_per_viewer = delivery / seconds / static_cast<double>(count_all(one.viewers));
     result.processor = processor / seconds;
     result.resident_megabytes = static_cast<double>(resident) / 1e6;
-    result.tick_median = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.5\"}");
-    result.tick_99 = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.99\"}");
-    result.lateness_99 = metric(metrics, "vat_recent_tick_lateness_seconds{quantile=\"0.99\"}");
+    read_ticks(server, result);
     results.push_back(std::move(result));
   }
   return results;
