@@ -148,7 +148,8 @@ std::vector<Target> targets_of(const Results& results) {
   add_bits(results, "pool-settled", {64}, "bits per particle", 3.2, targets);
   add_bits(results, "pool-asleep", {64}, "bits per particle", 0.1, targets);
   add_rate(results, "figure-2", 600, targets);
-  add_rate(results, "figure-2-at-rest", 25, targets);
+  add_rate(results, "figure-2-settled", 25, targets);
+  add_rate(results, "figure-2-asleep", 25, targets);
   return targets;
 }
 

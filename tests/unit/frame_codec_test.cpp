@@ -7,6 +7,7 @@
 
 #include "protocol/rans.h"
 #include "protocol/residual_tables.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/frame_codec_cases.h"
 
 namespace vat {
@@ -263,6 +264,30 @@ TEST_P(Walk, EndsInTheServersIntegers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Walk, testing::Range(0, 8));
+
+// Once every frame that is kept, on both sides, has the size that the stream needs.
+TEST(FrameCodec, ASteadyStreamAllocatesNothing) {
+  World world(500);
+  std::array<GridFrame, 3> frames;
+  for (GridFrame& frame : frames) {
+    world.advance(1);
+    frame = on_grid(world.state(), scale_with_attributes());
+  }
+  FrameEncoder encoder;
+  FrameDecoder decoder;
+  const auto send = [&](std::uint32_t number) {
+    GridFrame& frame = frames[number % 3];
+    frame.header.number = number;
+    FrameReferences references;
+    if (number > 1) references.first = &frames[(number - 1) % 3];
+    if (number > 2) references.second = &frames[(number - 2) % 3];
+    return decoder.decode(encoder.encode(frame, references)).ok();
+  };
+  for (std::uint32_t number = 1; number <= 60; ++number) ASSERT_TRUE(send(number));
+  const std::size_t before = test::allocation_count();
+  for (std::uint32_t number = 61; number <= 120; ++number) ASSERT_TRUE(send(number));
+  EXPECT_EQ(test::allocation_count(), before);
+}
 
 TEST(FrameCodec, SmoothMotionCostsLittle) {
   World world(4000, 9);

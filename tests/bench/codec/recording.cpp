@@ -32,7 +32,7 @@ Scene catalogue_scene(const std::string& name) {
 }
 
 /// The paper's Figure 2 with its vat at its place, so that all comes to rest.
-Scene figure_2_at_rest() {
+Scene figure_2_in_a_still_vat() {
   Scene scene = catalogue_scene("sliding-vat-liquid");
   scene.vat->motion.reset();
   return scene;
@@ -55,6 +55,9 @@ std::vector<CodecScene> codec_scenes(bool quick) {
                     look};
   asleep.scene.sleeping = Sleeping{};
   asleep.rests = true;
+  CodecScene figure_2_asleep{"figure-2-asleep", figure_2_in_a_still_vat(), kPaperSpacing, 12, look};
+  figure_2_asleep.scene.sleeping = Sleeping{};
+  figure_2_asleep.rests = true;
   return {
       dam_break_of("dam-break-10k", quick ? 12 : 22, PressureSolver::tait, run),
       dam_break_of("dam-break-30k", quick ? 14 : 31, PressureSolver::tait, run),
@@ -64,7 +67,8 @@ std::vector<CodecScene> codec_scenes(bool quick) {
       std::move(asleep),
       {"figure-1", catalogue_scene("sliding-vat-solids"), kPaperSpacing, 0, run},
       {"figure-2", catalogue_scene("sliding-vat-liquid"), kPaperSpacing, 0, run},
-      {"figure-2-at-rest", figure_2_at_rest(), kPaperSpacing, quick ? Real{8} : 20, look},
+      {"figure-2-settled", figure_2_in_a_still_vat(), kPaperSpacing, quick ? Real{8} : 40, look},
+      std::move(figure_2_asleep),
   };
 }
 
