@@ -42,6 +42,9 @@ class Caller {
     return {};
   }
 
+  /// Whether somebody reads the answer.
+  bool wants_answer() const { return id_.has_value(); }
+
   void answer(const RpcResult& result) {
     uncount();  // first: the client may send the next command as soon as it has the answer
     if (id_) client_->send(write_reply(*id_, result));

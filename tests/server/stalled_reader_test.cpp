@@ -1,0 +1,77 @@
+// What a viewer that stops reading costs, over a real socket.
+
+#include <random>
+#include <thread>
+
+#include "protocol/frame_codec.h"
+#include "server/limits.h"
+#include "server/session/frame_delivery.h"
+#include "tests/server/transport_fixture.h"
+
+namespace vat::test {
+namespace {
+
+class NoWaker final : public FrameWaker {
+ public:
+  void wake(ConnectionId) override {}
+};
+
+/// Particles anywhere, anew in each state: nothing of it can be foretold, so frames are large.
+PublishedState make_state(std::uint64_t tick, std::mt19937& random) {
+  constexpr std::size_t kParticles = 60'000;
+  std::uniform_real_distribution<double> place(0, 1);
+  PublishedState state;
+  state.header.epoch = 1;
+  state.header.tick = tick;
+  state.bodies.resize(1);
+  state.bodies[0].id = 1;
+  state.bodies[0].positions.resize(kParticles);
+  for (Vec3& position : state.bodies[0].positions) {
+    position = Vec3(place(random), place(random), place(random));
+  }
+  return state;
+}
+
+class StalledReader : public TransportTest {};
+
+TEST_F(StalledReader, OneFrameAtMostWaitsOutsideTheSystem) {
+  start();
+  WsClient client(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  const auto connection = recorder.connection(1);
+  const auto outbox = std::make_shared<ClientOutbox>(connection);
+  const std::uint64_t membership = outbox->join();
+  outbox->start_epoch(membership, 1);
+  ServerMetrics metrics;
+  FrameDelivery delivery(Vat{Vec3::Zero(), Vec3::Ones(), true, {}}, metrics);
+  const auto waker = std::make_shared<NoWaker>();
+  auto now = SteadyClock::now();
+  delivery.add(outbox, outbox->subscribe(membership, waker, now), {});
+
+  std::mt19937 random(1);
+  std::size_t most_queued = 0;
+  for (std::uint64_t tick = 1; tick <= 50; ++tick) {
+    delivery.publish(make_state(tick, random), now += std::chrono::milliseconds(20));
+    most_queued = std::max(most_queued, connection->queued_bytes());
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const std::string frame = client.read_message().payload;
+  EXPECT_GT(frame.size(), 200'000U) << "larger than what the system takes";
+  EXPECT_GT(most_queued, 0U);
+  EXPECT_LT(most_queued, frame.size() + frame.size() / 2) << "one frame, of about this size";
+  // It reads again, and finds no more than what was in flight.
+  std::size_t frames = 1;
+  client.send_text("done");
+  ASSERT_TRUE(recorder.wait([&] { return recorder.received.size() == 1; }));
+  while (connection->queued_bytes() > 0) {
+    client.read_message();
+    ++frames;
+  }
+  EXPECT_LE(frames, kFrameWindow);
+
+  outbox->close_if_silent(now + std::chrono::seconds(31), std::chrono::seconds(30));
+  EXPECT_EQ(client.read_close(), 4008);
+}
+
+}  // namespace
+}  // namespace vat::test
