@@ -54,7 +54,7 @@ constexpr void fill_table(std::size_t table, std::size_t place, std::size_t inde
   }
 }
 
-constexpr Tables make_tables() {
+constexpr Tables make_tables() noexcept {
   Tables all;
   for (std::uint32_t table = 0; table < kTables; ++table) {
     for (std::uint32_t place = 0; place < kPlaces; ++place) {
@@ -66,6 +66,6 @@ constexpr Tables make_tables() {
 
 }  // namespace
 
-constinit const Tables kAllTables = make_tables();
+const Tables kAllTables = make_tables();
 
 }  // namespace vat::residuals
