@@ -1,8 +1,9 @@
 import type { BlockData } from './block_data';
 import { kAttributes } from './block_data';
+import { badBlock } from './frame_error';
 import { classOfSize } from './neighbourhood';
 import { kClasses, kLeastKeyClass } from './residual_tables';
-import { badBlock } from './symbols';
+import { kGrowth } from './room';
 import type { SymbolReader } from './symbols';
 
 const kFirstClass = kClasses - 1;
@@ -12,7 +13,7 @@ export const kMostAttribute = 1 << 20;
 
 /** Particles that come: protocol/PROTOCOL.md, "Particles that come". Keeps its memory. */
 export class AddedParticles {
-  /** Their places in the block, and their numbers. */
+  /** Their places in the block, and their numbers; the first `count` count. */
   places = new Uint32Array(0);
   numbers = new Uint32Array(0);
   count = 0;
@@ -22,7 +23,7 @@ export class AddedParticles {
   reserve(count: number): void {
     this.count = count;
     if (this.places.length >= count) return;
-    const room = Math.ceil(1.5 * count);
+    const room = Math.ceil(kGrowth * count);
     this.places = new Uint32Array(room);
     this.numbers = new Uint32Array(room);
     this.sizes = new Int32Array(3 * room);

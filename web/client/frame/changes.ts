@@ -2,14 +2,16 @@ import { AddedParticles, kMostAttribute } from './added';
 import type { BlockData } from './block_data';
 import { kAttributes } from './block_data';
 import { CellOrder } from './cell_order';
-import { kInverses, Neighbourhood } from './neighbourhood';
-import { badBlock } from './symbols';
+import { badBlock } from './frame_error';
+import { KeptParticles, kNone } from './kept_particles';
+import type { Matched } from './kept_particles';
+import { Motion } from './motion';
+import { Neighbourhood } from './neighbourhood';
+import { fitted } from './room';
 import type { SymbolReader } from './symbols';
 
-const kNone = 0xffffffff;
 const kEven = 2048;
-const kMostStep = 8191;
-const kMostCounted = 63;
+const kOnGrid = { lanes: [true, true, true], least: 0, span: 65535 };
 
 export function readFactor(symbols: SymbolReader): number {
   return symbols.bits(11) - 1024;
@@ -20,85 +22,80 @@ export class ParticleChanges {
   readonly added = new AddedParticles();
   private readonly cells = new CellOrder();
   private readonly neighbours = new Neighbourhood();
-  /** By particle of the first reference: its place in the second, and in the new block. */
+  private readonly motion = new Motion();
+  private readonly kept = new KeptParticles();
+  /** As in Matched. */
   private secondPlaces = new Uint32Array(0);
   private newPlaces = new Uint32Array(0);
-  /** By cell: sums of steps and their count; and the mean step around it [eighths]. */
-  private stepSums = new Int32Array(0);
-  private meanSteps = new Int32Array(0);
-  private readonly moved: boolean[] = [false, false, false];
-  private readonly predictions = new Int32Array(3);
-  private readonly values = new Int32Array(3);
+  private numbers = new Uint32Array(0);
+  private readonly moved = [false, false, false];
   private readonly factors = [0, 0, 0];
 
-  read(
-    symbols: SymbolReader,
-    first: BlockData,
-    second: BlockData | undefined,
-    block: BlockData,
-  ): void {
-    this.reserve(first.count);
+  constructor(private readonly symbols: SymbolReader) {}
+
+  read(first: BlockData, second: BlockData | undefined, block: BlockData): void {
+    const { symbols, moved, kept } = this;
     const removes = symbols.flag(kEven);
     const added = symbols.whole();
     if (!symbols.mayHold(added)) badBlock('it has too few bytes for its particles');
     const moves = symbols.flag(kEven);
-    const { moved } = this;
     for (let q = 0; q < kAttributes; ++q) {
       moved[q] = block.hasAttribute[q] === true && symbols.flag(kEven);
     }
-    if (removes || moves || moved.includes(true)) this.readOrder(symbols, first);
-    for (let i = 0; i < first.count; ++i) this.newPlaces[i] = i;
-    if (removes) this.readRemoved(symbols);
+    if (removes || moves || moved.includes(true)) this.readOrder(first);
+    this.keepAll(first.count);
+    if (removes) this.readRemoved();
     this.added.reserve(added);
     this.added.readNumbers(symbols, this.added.numbers);
-    this.mergeNumbers(first, block);
+    if (removes || added > 0) this.mergeNumbers(first, block);
+    else block.resizeLike(first);
     this.keepUnmoved(first, block, moves);
     if (second) this.match(first, second);
-    if (moves) this.readPositions(symbols, first, second, block);
-    if (moved.includes(true)) this.readAttributes(symbols, first, second, block);
+    const { cells, secondPlaces, newPlaces } = this;
+    const matched: Matched = { first, second, cells, secondPlaces, newPlaces };
+    kept.reserve(first.count);
+    if (moves) this.readPositions(matched, block);
+    if (moved.includes(true)) this.readAttributes(matched, block);
     this.added.read(symbols, block);
   }
 
-  private reserve(count: number): void {
-    if (this.newPlaces.length >= count) return;
-    const room = Math.ceil(1.5 * count);
-    this.newPlaces = new Uint32Array(room);
-    this.secondPlaces = new Uint32Array(room);
-    this.stepSums = new Int32Array(4 * (room + 1));
-    this.meanSteps = new Int32Array(3 * (room + 1));
+  private keepAll(count: number): void {
+    const places = fitted(Uint32Array, this.newPlaces, count);
+    for (let i = 0; i < count; ++i) places[i] = i;
+    this.newPlaces = places;
   }
 
-  private readOrder(symbols: SymbolReader, first: BlockData): void {
-    const shift = symbols.bits(4);
+  private readOrder(first: BlockData): void {
+    const shift = this.symbols.bits(4);
     if (!this.cells.sort(first.positions, first.count, shift)) badBlock('its cells are too small');
   }
 
-  private readRemoved(symbols: SymbolReader): void {
-    const chances = [symbols.bits(12), symbols.bits(12)];
-    if (chances.includes(0)) badBlock('nothing has a chance to go');
-    const { cells, newPlaces } = this;
-    const [afterKept = 0, afterGone = 0] = chances;
+  private readRemoved(): void {
+    const { symbols, cells, newPlaces } = this;
+    const afterKept = symbols.bits(12);
+    const afterGone = symbols.bits(12);
+    if (afterKept === 0 || afterGone === 0) badBlock('nothing has a chance to go');
+    const count = cells.cellCount === 0 ? 0 : cells.begins[cells.cellCount + 1]!;
     let before = false;
-    const count = cells.cellCount === 0 ? 0 : (cells.begins[cells.cellCount + 1] as number);
     for (let k = 0; k < count; ++k) {
       before = symbols.flag(before ? afterGone : afterKept);
-      if (before) newPlaces[cells.order[k] as number] = kNone;
+      if (before) newPlaces[cells.order[k]!] = kNone;
     }
   }
 
   /** Finds the places of those that stay and of those that come, by their numbers. */
   private mergeNumbers(first: BlockData, block: BlockData): void {
     const { newPlaces, added } = this;
+    this.numbers = fitted(Uint32Array, this.numbers, first.count + added.count);
+    const { numbers } = this;
     let place = 0;
     let next = 0;
-    block.resizeNumbers(first.count + added.count);
-    const { numbers } = block;
     for (let i = 0; i < first.count; ++i) {
       if (newPlaces[i] === kNone) continue;
       const number = first.number(i);
-      while (next < added.count && (added.numbers[next] as number) < number) {
+      while (next < added.count && added.numbers[next]! < number) {
         added.places[next] = place;
-        numbers[place++] = added.numbers[next++] as number;
+        numbers[place++] = added.numbers[next++]!;
       }
       if (next < added.count && added.numbers[next] === number) {
         badBlock('what comes is there already');
@@ -108,196 +105,98 @@ export class ParticleChanges {
     }
     while (next < added.count) {
       added.places[next] = place;
-      numbers[place++] = added.numbers[next++] as number;
+      numbers[place++] = added.numbers[next++]!;
     }
-    block.resize(place);
-    block.isNumbered = place > 0 && numbers[place - 1] !== place - 1;
+    block.resize(place, numbers);
   }
 
   private keepUnmoved(first: BlockData, block: BlockData, moves: boolean): void {
     const { newPlaces, moved } = this;
-    for (let i = 0; i < first.count; ++i) {
-      const place = newPlaces[i] as number;
-      if (place === kNone) continue;
-      if (!moves) {
-        for (let q = 0; q < 3; ++q) {
-          block.positions[3 * place + q] = first.positions[3 * i + q] as number;
-        }
+    if (!moves) {
+      for (let i = 0; i < first.count; ++i) {
+        const place = newPlaces[i]!;
+        if (place === kNone) continue;
+        for (let q = 0; q < 3; ++q) block.positions[3 * place + q] = first.positions[3 * i + q]!;
       }
-      for (let q = 0; q < kAttributes; ++q) {
-        if (!block.hasAttribute[q] || moved[q]) continue;
-        block.attribute(q)[place] = first.attribute(q)[i] as number;
+    }
+    for (let q = 0; q < kAttributes; ++q) {
+      if (!block.hasAttribute[q] || moved[q]) continue;
+      const [from, to] = [first.attribute(q), block.attribute(q)];
+      for (let i = 0; i < first.count; ++i) {
+        const place = newPlaces[i]!;
+        if (place !== kNone) to[place] = from[i]!;
       }
     }
   }
 
   private match(first: BlockData, second: BlockData): void {
+    this.secondPlaces = fitted(Uint32Array, this.secondPlaces, first.count);
+    const { secondPlaces } = this;
     let j = 0;
     for (let i = 0; i < first.count; ++i) {
       const number = first.number(i);
       if (!second.isNumbered) j = Math.min(number, second.count);
-      else while (j < second.count && (second.numbers[j] as number) < number) ++j;
-      this.secondPlaces[i] = j < second.count && second.number(j) === number ? j : kNone;
+      else while (j < second.count && second.numbers[j]! < number) ++j;
+      secondPlaces[i] = j < second.count && second.number(j) === number ? j : kNone;
     }
   }
 
-  private findMeanSteps(first: BlockData, second: BlockData | undefined): void {
-    const { cells, stepSums, meanSteps } = this;
-    const count = cells.cellCount;
-    meanSteps.fill(0, 0, 3 * (count + 1));
-    if (!second) return;
-    stepSums.fill(0, 0, 4 * (count + 1));
-    for (let c = 1; c <= count; ++c) this.sumSteps(c, first.positions, second.positions);
-    const { row, layer, numbers } = cells;
-    for (let c = 1; c <= count; ++c) {
-      const corner = (cells.places[c] as number) - layer - row - 1;
-      let x = 0;
-      let y = 0;
-      let z = 0;
-      let n = 0;
-      for (let up = 0; up < 3; ++up) {
-        for (let along = 0; along < 3; ++along) {
-          const line = corner + up * layer + along * row;
-          for (let place = line; place < line + 3; ++place) {
-            const at = 4 * (numbers[place] as number);
-            x += stepSums[at] as number;
-            y += stepSums[at + 1] as number;
-            z += stepSums[at + 2] as number;
-            n += stepSums[at + 3] as number;
-          }
-        }
-      }
-      const inverse = kInverses[n] as number;
-      meanSteps[3 * c] = (x * inverse) >> 13;
-      meanSteps[3 * c + 1] = (y * inverse) >> 13;
-      meanSteps[3 * c + 2] = (z * inverse) >> 13;
-    }
-  }
-
-  private sumSteps(cell: number, first: Uint16Array, second: Uint16Array): void {
-    const { begins, order } = this.cells;
-    const begin = begins[cell] as number;
-    const end = Math.min(begins[cell + 1] as number, begin + kMostCounted);
-    let x = 0;
-    let y = 0;
-    let z = 0;
-    let n = 0;
-    for (let k = begin; k < end; ++k) {
-      const i = order[k] as number;
-      const j = this.secondPlaces[i] as number;
-      if (j === kNone) continue;
-      x += bounded((first[3 * i] as number) - (second[3 * j] as number));
-      y += bounded((first[3 * i + 1] as number) - (second[3 * j + 1] as number));
-      z += bounded((first[3 * i + 2] as number) - (second[3 * j + 2] as number));
-      ++n;
-    }
-    const at = 4 * cell;
-    this.stepSums[at] = x;
-    this.stepSums[at + 1] = y;
-    this.stepSums[at + 2] = z;
-    this.stepSums[at + 3] = n;
-  }
-
-  private readPositions(
-    symbols: SymbolReader,
-    first: BlockData,
-    second: BlockData | undefined,
-    block: BlockData,
-  ): void {
-    this.findMeanSteps(first, second);
+  private readPositions(matched: Matched, block: BlockData): void {
+    const { symbols, cells, kept } = this;
     const common = readFactor(symbols);
     const own = readFactor(symbols);
-    this.readTuning(symbols);
-    const { cells, neighbours, newPlaces, secondPlaces, meanSteps, predictions, values } = this;
-    const { order, begins, cellCount } = cells;
-    const { wholes, fractions, classes } = neighbours;
-    const before = first.positions;
-    const now = block.positions;
-    for (let c = 1; c <= cellCount; ++c) {
-      neighbours.enter(cells, cells.places[c] as number);
-      const end = begins[c + 1] as number;
-      for (let k = begins[c] as number; k < end; ++k) {
-        const i = order[k] as number;
-        const place = newPlaces[i] as number;
-        if (place === kNone) continue;
-        const j = second ? (secondPlaces[i] as number) : kNone;
-        for (let q = 0; q < 3; ++q) {
-          const here = before[3 * i + q] as number;
-          const mean = meanSteps[3 * c + q] as number;
-          const beyond =
-            second && j !== kNone ? 8 * (here - (second.positions[3 * j + q] as number)) - mean : 0;
-          predictions[q] = 8 * here + ((common * mean + own * beyond + 128) >> 8);
-        }
-        neighbours.expect(predictions);
-        for (let q = 0; q < 3; ++q) {
-          values[q] =
-            (wholes[q] as number) +
-            symbols.residual(classes[q] as number, fractions[q] as number, q);
-        }
-        const x = values[0] as number;
-        const y = values[1] as number;
-        const z = values[2] as number;
-        if (((x | y | z) & ~0xffff) !== 0) badBlock('a position is outside the grid');
-        now[3 * place] = x;
-        now[3 * place + 1] = y;
-        now[3 * place + 2] = z;
-        neighbours.learn(predictions, values);
-      }
-      neighbours.leave(c);
+    this.motion.predict(matched, kept, common, own);
+    const { ends, values, targets } = kept;
+    this.neighbours.read(symbols, cells, ends, values, kOnGrid);
+    const { positions } = block;
+    const count = cells.cellCount === 0 ? 0 : ends[cells.cellCount]!;
+    for (let k = 0, at = 0; k < count; ++k, at += 3) {
+      const to = 3 * targets[k]!;
+      positions[to] = values[at]!;
+      positions[to + 1] = values[at + 1]!;
+      positions[to + 2] = values[at + 2]!;
     }
   }
 
-  private readAttributes(
-    symbols: SymbolReader,
-    first: BlockData,
-    second: BlockData | undefined,
-    block: BlockData,
-  ): void {
-    const { cells, neighbours, newPlaces, secondPlaces, moved, predictions, values, factors } =
-      this;
+  private readAttributes(matched: Matched, block: BlockData): void {
+    const { symbols, cells, kept, moved, factors } = this;
     for (let q = 0; q < kAttributes; ++q) factors[q] = moved[q] ? readFactor(symbols) : 0;
-    this.readTuning(symbols);
-    const { wholes, fractions, classes } = neighbours;
-    for (let c = 1; c <= cells.cellCount; ++c) {
-      neighbours.enter(cells, cells.places[c] as number);
-      for (let k = cells.begins[c] as number; k < (cells.begins[c + 1] as number); ++k) {
-        const i = cells.order[k] as number;
-        const place = newPlaces[i] as number;
-        if (place === kNone) continue;
-        const j = second ? (secondPlaces[i] as number) : kNone;
-        for (let q = 0; q < kAttributes; ++q) {
-          predictions[q] = 0;
-          if (!moved[q]) continue;
-          const here = first.attribute(q)[i] as number;
-          const step = second && j !== kNone ? here - (second.attribute(q)[j] as number) : 0;
-          predictions[q] = 8 * here + Math.floor((8 * (factors[q] ?? 0) * step + 128) / 256);
-        }
-        neighbours.expect(predictions);
-        for (let q = 0; q < kAttributes; ++q) {
-          values[q] = wholes[q] as number;
-          if (!moved[q]) continue;
-          values[q] =
-            (wholes[q] as number) +
-            symbols.residual(classes[q] as number, fractions[q] as number, q);
-        }
-        for (let q = 0; q < kAttributes; ++q) {
-          if (!moved[q]) continue;
-          const value = values[q] as number;
-          if (Math.abs(value) > kMostAttribute) badBlock('an attribute is too large');
-          block.attribute(q)[place] = value;
-        }
-        neighbours.learn(predictions, values);
-      }
-      neighbours.leave(c);
+    const count = this.predictAttributes(matched);
+    const { ends, values, targets } = kept;
+    const wanted = { lanes: moved, least: -kMostAttribute, span: 2 * kMostAttribute };
+    this.neighbours.read(symbols, cells, ends, values, wanted);
+    for (let q = 0; q < kAttributes; ++q) {
+      if (!moved[q]) continue;
+      const column = block.attribute(q);
+      for (let k = 0; k < count; ++k) column[targets[k]!] = values[3 * k + q]!;
     }
   }
 
-  private readTuning(symbols: SymbolReader): void {
-    const shift = symbols.bits(3) - 4;
-    this.neighbours.start(this.cells.cellCount, shift, symbols.residualClass());
+  /** Of how many particles. */
+  private predictAttributes(matched: Matched): number {
+    const { ends, values, targets } = this.kept;
+    const { second, secondPlaces, newPlaces } = matched;
+    const { cellCount, begins, order } = this.cells;
+    let count = 0;
+    for (let c = 1; c <= cellCount; ++c) {
+      for (let k = begins[c]!; k < begins[c + 1]!; ++k) {
+        const i = order[k]!;
+        const place = newPlaces[i]!;
+        if (place === kNone) continue;
+        const j = second ? secondPlaces[i]! : kNone;
+        for (let q = 0; q < kAttributes; ++q) {
+          values[3 * count + q] = this.moved[q] ? this.attributeAhead(matched, q, i, j) : 0;
+        }
+        targets[count++] = place;
+      }
+      ends[c] = count;
+    }
+    return count;
   }
-}
 
-function bounded(step: number): number {
-  return step > kMostStep ? kMostStep : step < -kMostStep ? -kMostStep : step;
+  private attributeAhead({ first, second }: Matched, q: number, i: number, j: number): number {
+    const here = first.attribute(q)[i]!;
+    const step = second && j !== kNone ? here - second.attribute(q)[j]! : 0;
+    return 8 * here + Math.floor((8 * this.factors[q]! * step + 128) / 256);
+  }
 }

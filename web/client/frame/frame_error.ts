@@ -19,3 +19,7 @@ export class FrameError extends Error {
     this.name = 'FrameError';
   }
 }
+
+export function badBlock(reason: string): never {
+  throw new FrameError('bad_block', `a block is wrong: ${reason}`);
+}

@@ -27,9 +27,6 @@ export const kRadius = [
 ];
 const kMiddle = [1, 3];
 
-/** Room for the starts of one table: its symbols, and the end. */
-export const kStarts = 40;
-
 function partBelow(eighths: number, steepness: number): number {
   const steps = Math.abs(eighths) * steepness;
   const index = Math.min(steps >> 8, 80);
@@ -38,29 +35,64 @@ function partBelow(eighths: number, steepness: number): number {
   return eighths < 0 ? 65536 - part : part;
 }
 
-/** By table and place: the symbol of each slot, and where each symbol starts. */
-function makeTables(): { symbols: Uint8Array; starts: Uint16Array } {
-  const symbols = new Uint8Array(2 * kTables * kScale);
-  const starts = new Uint16Array(2 * kTables * kStarts);
-  for (let t = 0; t < kTables; ++t) {
-    for (let place = 0; place < 2; ++place) {
-      const radius = kRadius[t] ?? 0;
-      const count = 2 * radius + 2;
-      const first = (2 * t + place) * kStarts;
-      const below = (residual: number) =>
-        partBelow(8 * residual - 4 - (kMiddle[place] ?? 0), kSteepness[t] ?? 0);
-      for (let k = 0; k < count; ++k) {
-        const part = below(k - radius) - below(-radius);
-        starts[first + k] = k + ((part * (kScale - count)) >> 16);
-      }
-      starts[first + count] = kScale;
-      const slots = (2 * t + place) * kScale;
-      for (let k = 0; k < count; ++k) {
-        symbols.fill(k, slots + (starts[first + k] ?? 0), slots + (starts[first + k + 1] ?? 0));
-      }
+/** First low bits, then the table and the place in it: what `kCases` has for a prediction. */
+const kPlaces = 2;
+export const kTableBits = 8;
+const kSymbolRoomBits = 6;
+/** Stands for what lies beyond the table. */
+export const kEscape = 127;
+const kValueBits = 24;
+
+/** By class and fraction, 8 of them from -4 on: low bits << 8 | table and place. */
+export const kCases = Uint16Array.from({ length: 8 * kClasses }, (_, k) => {
+  const c = k >> 3;
+  const lowBits = c < kTables ? 0 : 1 + ((c - kTables) >> 2);
+  const table = c < kTables ? c : kTables - 4 + ((c - kTables) & 3);
+  const place = Math.abs((k & 7) - 4) >= 2 ? 1 : 0;
+  return (lowBits << kTableBits) | (kPlaces * table + place);
+});
+
+/**
+ * By table and place: the symbol of each slot; and for each symbol what it stands for, its
+ * frequency less 1 and where it starts, in 8, 12 and 12 bits.
+ */
+function makeTables(): { symbols: Uint8Array; ranges: Int32Array } {
+  const symbols = new Uint8Array(kPlaces * kTables * kScale);
+  const ranges = new Int32Array((kPlaces * kTables) << kSymbolRoomBits);
+  for (let index = 0; index < kPlaces * kTables; ++index) {
+    const radius = kRadius[index >> 1] ?? 0;
+    const count = 2 * radius + 2;
+    const below = (residual: number) =>
+      partBelow(8 * residual - 4 - (kMiddle[index & 1] ?? 0), kSteepness[index >> 1] ?? 0);
+    const startOf = (k: number) =>
+      k === count ? kScale : k + (((below(k - radius) - below(-radius)) * (kScale - count)) >> 16);
+    for (let k = 0; k < count; ++k) {
+      const [start, end] = [startOf(k), startOf(k + 1)];
+      const value = k === count - 1 ? kEscape : k - radius;
+      ranges[(index << kSymbolRoomBits) | k] =
+        (value << kValueBits) | ((end - start - 1) << 12) | start;
+      symbols.fill(k, kScale * index + start, kScale * index + end);
     }
   }
-  return { symbols, starts };
+  return { symbols, ranges };
 }
 
-export const { symbols: kSymbols, starts: kSymbolStarts } = makeTables();
+const { symbols: kSymbols, ranges: kRanges } = makeTables();
+
+// Short, to be compiled in place.
+
+/** The range that a lane in this state is in. */
+export function rangeOf(index: number, state: number): number {
+  return kRanges[(index << kSymbolRoomBits) | kSymbols[(index << 12) | (state & 4095)]!]!;
+}
+
+/** The residual that a range stands for, or kEscape. */
+export function valueOf(range: number): number {
+  return range >> kValueBits;
+}
+
+/** The lane's state behind the range, before it is filled up. */
+export function advance(state: number, range: number): number {
+  const frequency = ((range >> 12) & 4095) + 1;
+  return (Math.imul(frequency, state >> 12) + (state & 4095) - (range & 4095)) | 0;
+}

@@ -1,15 +1,26 @@
-import { kClasses, kRadius, kStarts, kSymbols, kSymbolStarts, kTables } from './residual_tables';
-import { FrameError } from './frame_error';
+import { badBlock, FrameError } from './frame_error';
+import {
+  advance,
+  kCases,
+  kClasses,
+  kEscape,
+  kRadius,
+  kTableBits,
+  rangeOf,
+  valueOf,
+} from './residual_tables';
 
-const kLeastState = 1 << 15;
+export const kLeastState = 1 << 15;
 const kMostResidualBits = 30;
+const kTableMask = (1 << kTableBits) - 1;
 
 /** The entropy decoder of protocol/PROTOCOL.md, "Symbols". */
 export class SymbolReader {
-  private bytes: Uint8Array = new Uint8Array(0);
-  private next = 0;
+  /** Where the next word is read, and from what. */
+  next = 0;
+  bytes: Uint8Array = new Uint8Array(0);
+  readonly states = new Int32Array(3);
   private most = 0;
-  private readonly states = new Int32Array(3);
 
   /** The symbols begin at `offset`. */
   start(bytes: Uint8Array, offset: number): void {
@@ -41,16 +52,19 @@ export class SymbolReader {
 
   bits(count: number, lane = 0): number {
     if (count === 0) return 0;
-    const value = ((this.states[lane] ?? 0) & 4095) >> (12 - count);
-    this.take(lane, value << (12 - count), 4096 >> count);
-    return value;
+    const state = this.states[lane]!;
+    const rest = 12 - count;
+    this.fill(lane, ((state >> 12) << rest) | (state & ((1 << rest) - 1)));
+    return (state & 4095) >> rest;
   }
 
   /** True in `chances` of 4096 cases. */
   flag(chances: number): boolean {
-    const value = ((this.states[0] ?? 0) & 4095) < chances;
-    if (value) this.take(0, 0, chances);
-    else this.take(0, chances, 4096 - chances);
+    const state = this.states[0]!;
+    const slot = state & 4095;
+    const value = slot < chances;
+    const frequency = value ? chances : 4096 - chances;
+    this.fill(0, Math.imul(frequency, state >> 12) + slot - (value ? 0 : chances));
     return value;
   }
 
@@ -72,26 +86,20 @@ export class SymbolReader {
 
   /** What a prediction left; it was `fraction` eighths above its whole part. */
   residual(residualClass: number, fraction: number, lane: number): number {
-    let table = residualClass;
-    let lowBits = 0;
-    if (residualClass >= kTables) {
-      table = kTables - 4 + ((residualClass - kTables) & 3);
-      lowBits = 1 + ((residualClass - kTables) >> 2);
-    }
-    const index = 2 * table + (fraction >= 2 || fraction <= -2 ? 1 : 0);
-    const state = this.states[lane] as number;
-    const slot = state & 4095;
-    const symbol = kSymbols[(index << 12) | slot] as number;
-    const at = index * kStarts + symbol;
-    const start = kSymbolStarts[at] as number;
-    const frequency = (kSymbolStarts[at + 1] as number) - start;
-    const after = frequency * (state >> 12) + slot - start;
-    this.states[lane] = after < kLeastState ? (after << 16) | this.word() : after;
-    const radius = kRadius[table] as number;
-    let value = symbol - radius;
-    if (value > radius) value = this.escaped(radius, lowBits, lane);
-    if (lowBits > 0) value = (value << lowBits) + this.bits(lowBits, lane);
+    const kind = kCases[(residualClass << 3) | (fraction + 4)]!;
+    const range = rangeOf(kind & kTableMask, this.states[lane]!);
+    this.fill(lane, advance(this.states[lane]!, range));
+    let value = valueOf(range);
+    if (kind > kTableMask || value === kEscape) value = this.completed(kind, value, lane);
     return fraction < 0 ? -value : value;
+  }
+
+  /** The residual of which the table gave `value`, with what lies beyond, and its low bits. */
+  completed(kind: number, value: number, lane: number): number {
+    if (this.next > this.bytes.length) endsEarly();
+    const lowBits = kind >> kTableBits;
+    if (value === kEscape) value = this.escaped(kRadius[(kind & kTableMask) >> 1]!, lowBits, lane);
+    return lowBits > 0 ? (value << lowBits) + this.bits(lowBits, lane) : value;
   }
 
   residualClass(): number {
@@ -107,22 +115,18 @@ export class SymbolReader {
     return isNegative ? -(radius + 1 + beyond) : radius + 1 + beyond;
   }
 
-  private take(lane: number, start: number, frequency: number): void {
-    const state = this.states[lane] as number;
-    const after = frequency * (state >> 12) + (state & 4095) - start;
-    this.states[lane] = after < kLeastState ? (after << 16) | this.word() : after;
+  private fill(lane: number, state: number): void {
+    this.states[lane] = state < kLeastState ? (state << 16) | this.word() : state;
   }
 
   private word(): number {
-    const at = this.next;
-    if (at + 2 > this.bytes.length) {
-      throw new FrameError('truncated', 'the frame ends early: in its symbols');
-    }
-    this.next = at + 2;
-    return (this.bytes[at] as number) | ((this.bytes[at + 1] as number) << 8);
+    const { bytes, next } = this;
+    if (next + 2 > bytes.length) endsEarly();
+    this.next = next + 2;
+    return bytes[next]! | (bytes[next + 1]! << 8);
   }
 }
 
-export function badBlock(reason: string): never {
-  throw new FrameError('bad_block', `a block is wrong: ${reason}`);
+export function endsEarly(): never {
+  throw new FrameError('truncated', 'the frame ends in its symbols');
 }

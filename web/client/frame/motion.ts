@@ -1,0 +1,178 @@
+import { kNone } from './kept_particles';
+import type { KeptParticles, Matched } from './kept_particles';
+import { kInverses } from './neighbourhood';
+import { kGrowth } from './room';
+
+const kMostStep = 8191;
+const kMostCounted = 63;
+/** In place of a step that is not known. */
+const kNoStep = 1 << 30;
+
+/** Predicts positions: protocol/PROTOCOL.md, "Positions". Keeps its memory. */
+export class Motion {
+  /** Steps since the second reference, three of each particle that stays. */
+  private steps = new Int32Array(0);
+  /** By cell: sums of steps and their count; and the mean step around it [eighths]. */
+  private sums = new Int32Array(0);
+  private means = new Int32Array(0);
+  /** The sums of three columns of nine cells, along x. */
+  private readonly columns = new Int32Array(12);
+
+  predict(matched: Matched, kept: KeptParticles, common: number, own: number): void {
+    this.reserve(matched.first.count);
+    this.gather(matched, kept);
+    if (matched.second) this.findMeans(matched);
+    else this.means.fill(0, 0, 3 * (matched.cells.cellCount + 1));
+    this.extrapolate(matched, kept, common, own);
+  }
+
+  private reserve(count: number): void {
+    if (this.steps.length >= 3 * count) return;
+    const room = Math.ceil(kGrowth * count);
+    this.steps = new Int32Array(3 * room);
+    this.sums = new Int32Array(4 * (room + 1));
+    this.means = new Int32Array(3 * (room + 1));
+  }
+
+  /** Notes where particles are and have come from, and sums up the steps of each cell. */
+  private gather(
+    { first, second, cells, secondPlaces, newPlaces }: Matched,
+    { ends, targets, values }: KeptParticles,
+  ): void {
+    const { steps, sums } = this;
+    const { order, begins, cellCount } = cells;
+    const now = first.positions;
+    const earlier = second ? second.positions : now;
+    let count = 0;
+    for (let c = 1; c <= cellCount; ++c) {
+      const begin = begins[c]!;
+      const end = begins[c + 1]!;
+      let sx = 0;
+      let sy = 0;
+      let sz = 0;
+      let n = 0;
+      for (let k = begin; k < end; ++k) {
+        const i = order[k]!;
+        const x = now[3 * i]!;
+        const y = now[3 * i + 1]!;
+        const z = now[3 * i + 2]!;
+        let dx = kNoStep;
+        let dy = 0;
+        let dz = 0;
+        const j = second ? secondPlaces[i]! : kNone;
+        if (j !== kNone) {
+          dx = x - earlier[3 * j]!;
+          dy = y - earlier[3 * j + 1]!;
+          dz = z - earlier[3 * j + 2]!;
+          if (k - begin < kMostCounted) {
+            sx += bounded(dx);
+            sy += bounded(dy);
+            sz += bounded(dz);
+            ++n;
+          }
+        }
+        const place = newPlaces[i]!;
+        if (place === kNone) continue;
+        targets[count] = place;
+        const at = 3 * count++;
+        put(values, at, x, y, z);
+        put(steps, at, dx, dy, dz);
+      }
+      ends[c] = count;
+      put(sums, 4 * c, sx, sy, sz);
+      sums[4 * c + 3] = n;
+    }
+  }
+
+  /** Cells follow one another along x: of the 27 around each, 18 are known from the one before. */
+  private findMeans({ cells: { places, cellCount, numbers, row, layer } }: Matched): void {
+    const { columns, means } = this;
+    let [low, middle, high] = [0, 4, 8];
+    let last = -1;
+    for (let c = 1; c <= cellCount; ++c) {
+      const place = places[c]!;
+      if (place === last + 1) {
+        const free = low;
+        low = middle;
+        middle = high;
+        high = free;
+      } else {
+        this.sumColumn(numbers, place - 1, row, layer, low);
+        this.sumColumn(numbers, place, row, layer, middle);
+      }
+      this.sumColumn(numbers, place + 1, row, layer, high);
+      last = place;
+      const n = columns[low + 3]! + columns[middle + 3]! + columns[high + 3]!;
+      const inverse = kInverses[n]!;
+      for (let q = 0; q < 3; ++q) {
+        const sum = columns[low + q]! + columns[middle + q]! + columns[high + q]!;
+        means[3 * c + q] = (sum * inverse) >> 13;
+      }
+    }
+  }
+
+  /** The nine cells with the same x as this place and next to it. */
+  private sumColumn(numbers: Uint32Array, place: number, row: number, layer: number, to: number) {
+    const { sums, columns } = this;
+    let x = 0;
+    let y = 0;
+    let z = 0;
+    let n = 0;
+    for (let up = place - layer; up <= place + layer; up += layer) {
+      for (let along = up - row; along <= up + row; along += row) {
+        const at = numbers[along]! << 2;
+        x += sums[at]!;
+        y += sums[at + 1]!;
+        z += sums[at + 2]!;
+        n += sums[at + 3]!;
+      }
+    }
+    put(columns, to, x, y, z);
+    columns[to + 3] = n;
+  }
+
+  private extrapolate(
+    { cells }: Matched,
+    { ends, values }: KeptParticles,
+    common: number,
+    own: number,
+  ): void {
+    const { steps, means } = this;
+    let at = 0;
+    for (let c = 1; c <= cells.cellCount; ++c) {
+      const mx = means[3 * c]!;
+      const my = means[3 * c + 1]!;
+      const mz = means[3 * c + 2]!;
+      const end = 3 * ends[c]!;
+      for (; at < end; at += 3) {
+        let bx = 0;
+        let by = 0;
+        let bz = 0;
+        if (steps[at] !== kNoStep) {
+          bx = (steps[at]! << 3) - mx;
+          by = (steps[at + 1]! << 3) - my;
+          bz = (steps[at + 2]! << 3) - mz;
+        }
+        values[at] = (values[at]! << 3) + ahead(common, mx, own, bx);
+        values[at + 1] = (values[at + 1]! << 3) + ahead(common, my, own, by);
+        values[at + 2] = (values[at + 2]! << 3) + ahead(common, mz, own, bz);
+      }
+    }
+  }
+}
+
+// Short, to be compiled in place.
+
+function ahead(common: number, mean: number, own: number, beyond: number): number {
+  return (Math.imul(common, mean) + Math.imul(own, beyond) + 128) >> 8;
+}
+
+function put(array: Int32Array, at: number, x: number, y: number, z: number): void {
+  array[at] = x;
+  array[at + 1] = y;
+  array[at + 2] = z;
+}
+
+function bounded(step: number): number {
+  return step > kMostStep ? kMostStep : step < -kMostStep ? -kMostStep : step;
+}
