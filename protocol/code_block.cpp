@@ -110,13 +110,13 @@ struct Parts {
   bool needs_order() const { return removes || moves || changes[0] || changes[1] || changes[2]; }
 };
 
-template <std::size_t N, class T>
+template <std::size_t quantities, class T>
 bool has_moved(const std::vector<T>& before, const std::vector<T>& now,
                const std::vector<std::uint32_t>& new_place) {
   for (std::size_t i = 0; i < new_place.size(); ++i) {
     if (new_place[i] == kNone) continue;
-    for (std::size_t q = 0; q < N; ++q) {
-      if (before[N * i + q] != now[N * new_place[i] + q]) return true;
+    for (std::size_t q = 0; q < quantities; ++q) {
+      if (before[quantities * i + q] != now[quantities * new_place[i] + q]) return true;
     }
   }
   return false;

@@ -33,14 +33,15 @@ bool is_near_unit(const GridBlock& block) {
   return square >= 0.75 * one && square <= 1.25 * one;
 }
 
-template <std::size_t N>
-using Numbers = std::array<std::int32_t, N>;
+template <std::size_t count>
+using Numbers = std::array<std::int32_t, count>;
 
 /// first + turn * (first - second), in 256ths.
-template <std::size_t N>
-Numbers<N> extrapolated(const Numbers<N>& first, const Numbers<N>& second, std::int64_t turn) {
-  Numbers<N> result;
-  for (std::size_t c = 0; c < N; ++c) {
+template <std::size_t count>
+Numbers<count> extrapolated(const Numbers<count>& first, const Numbers<count>& second,
+                            std::int64_t turn) {
+  Numbers<count> result;
+  for (std::size_t c = 0; c < count; ++c) {
     const std::int64_t step = std::int64_t{first[c]} - second[c];
     const std::int64_t value = first[c] + ((turn * step + 128) >> 8);
     result[c] = static_cast<std::int32_t>(std::clamp<std::int64_t>(value, -kMaxPlace, kMaxPlace));
@@ -48,13 +49,13 @@ Numbers<N> extrapolated(const Numbers<N>& first, const Numbers<N>& second, std::
   return result;
 }
 
-template <std::size_t N>
-std::uint32_t cheapest_class(const Numbers<N>& values, const Numbers<N>& predicted) {
+template <std::size_t count>
+std::uint32_t cheapest_class(const Numbers<count>& values, const Numbers<count>& predicted) {
   std::uint32_t best = 0;
   float least = 0;
   for (std::uint32_t index = 0; index < residuals::kClasses; ++index) {
     float cost = 0;
-    for (std::size_t c = 0; c < N; ++c) cost += residual_cost(index, values[c] - predicted[c]);
+    for (std::size_t c = 0; c < count; ++c) cost += residual_cost(index, values[c] - predicted[c]);
     if (index > 0 && cost >= least) continue;
     best = index;
     least = cost;
@@ -62,13 +63,13 @@ std::uint32_t cheapest_class(const Numbers<N>& values, const Numbers<N>& predict
   return best;
 }
 
-template <class Coder, class Values, std::size_t N>
-void code_numbers_near(Coder& coder, const Numbers<N>& predicted, Values& values) {
+template <class Coder, class Values, std::size_t count>
+void code_numbers_near(Coder& coder, const Numbers<count>& predicted, Values& values) {
   std::uint32_t index = 0;
   if constexpr (!Coder::kReads) index = cheapest_class(values, predicted);
   index = coder.bits(index, kClassBits);
   if (index >= residuals::kClasses) return coder.refuse();
-  for (std::size_t c = 0; c < N; ++c) {
+  for (std::size_t c = 0; c < count; ++c) {
     const auto lane = static_cast<std::uint32_t>(c % rans::kLanes);
     const std::int32_t left = coder.residual(values[c] - predicted[c], {index, 0}, lane);
     if (std::abs(predicted[c] + left) > kMaxPlace) return coder.refuse();

@@ -27,7 +27,7 @@ inline constexpr std::array<std::int32_t, kInverses> kInverse = [] {
 /// The class for residuals of which the mean magnitude is `size` / 2048.
 inline std::int32_t class_of_size(std::int32_t size) {
   const auto s = static_cast<std::uint32_t>(std::max(size, 64));
-  const int octave = std::bit_width(s) - 7;
+  const int octave = static_cast<int>(std::bit_width(s)) - 7;
   return 4 * octave + static_cast<int>(s >> (octave + 4) & 3) - 3;
 }
 
@@ -86,8 +86,8 @@ inline void Neighbourhood::expect(const Triple& predictions, Triple& wholes,
                                   std::array<Expectation, 3>& expected) const {
   constexpr std::int32_t kMostClass = static_cast<std::int32_t>(residuals::kClasses) - 1;
   const bool is_first = own_.count + before_.count == 0;
-  const auto weight = static_cast<std::size_t>(4 * own_.count + before_.count + 1);
-  const std::int32_t inverse = kInverse[weight];
+  const std::int32_t weight = 4 * own_.count + before_.count + 1;
+  const std::int32_t inverse = kInverse[static_cast<std::size_t>(weight)];
   Triple size;
   for (std::size_t q = 0; q < 3; ++q) size[q] = 4 * own_.size[q] + before_.size[q] + 8;
   const std::int32_t all = size[0] + size[1] + size[2];

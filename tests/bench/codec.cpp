@@ -91,9 +91,10 @@ Table to_table(const std::vector<PeerRow>& rows) {
   Table table{{"case", "greatest error [spacings]", "codec", "what", "bits per particle",
                "encode [ns]", "decode [ns]"},
               {}};
-  for (const auto& [scene, share, r] : rows) {
+  for (const PeerRow& row : rows) {
+    const PeerResult& r = row.result;
     const auto there = [&](Real value) { return r.is_built_in ? value : kAbsent; };
-    table.rows.push_back({scene, error_name(share), r.name, r.what, there(r.bits),
+    table.rows.push_back({row.scene, error_name(row.share), r.name, r.what, there(r.bits),
                           there(r.encode / kNanosecond), there(r.decode / kNanosecond)});
   }
   return table;

@@ -32,11 +32,14 @@ class World {
   explicit World(std::uint32_t particles = 64, std::uint32_t seed = 1) : chance_(seed) {
     const auto edge = static_cast<std::uint32_t>(std::ceil(std::cbrt(particles)));
     for (std::uint32_t i = 0; i < particles; ++i) {
-      const Vec3 cell(i % edge, i / edge % edge, i / (edge * edge));
+      const std::uint32_t row = i / edge;
+      const std::uint32_t layer = row / edge;
+      const Vec3 cell(i % edge, row % edge, layer);
       add_drop(Vec3(0.2, 0.2, 0.1) + 0.05 * cell);
     }
     for (std::uint32_t i = 0; i < 12; ++i) {
-      jelly_.push_back({{1.2 + 0.1 * (i % 3), 0.5 + 0.1 * (i / 3), 0.75}, {0.3, 0, 0.1}, i});
+      const std::uint32_t row = i / 3;
+      jelly_.push_back({{1.2 + 0.1 * (i % 3), 0.5 + 0.1 * row, 0.75}, {0.3, 0, 0.1}, i});
     }
   }
 
@@ -69,7 +72,7 @@ class World {
     state.header.playing = true;
     state.header.epoch = 2;
     state.header.number = static_cast<std::uint32_t>(10 + frame_);
-    state.header.tick = static_cast<std::uint64_t>(70 + 2 * frame_);
+    state.header.tick = 70 + 2 * static_cast<std::uint64_t>(frame_);
     state.header.time = frame_ / 30.0;
     state.header.published = 1.7e9 + frame_ / 32.0;
     state.header.real_time_factor = 0.75F;
@@ -168,7 +171,7 @@ inline Stream moving_stream() {
   const FrameScale scale = plain_scale();
   Stream stream;
   const auto show = [&](const char* name, std::optional<std::size_t> first,
-                        std::optional<std::size_t> second, FrameSelection selection = {}) {
+                        std::optional<std::size_t> second, const FrameSelection& selection = {}) {
     stream.push_back({name, part_of(on_grid(world.state(), scale), selection), first, second});
   };
   show("v2-key", {}, {});

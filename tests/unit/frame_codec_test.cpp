@@ -70,8 +70,9 @@ TEST(ResidualTables, AreLogistic) {
       const double middle = place == 0 ? 0.125 : 0.375;
       std::uint32_t start = 0;
       for (int r = -radius; r <= radius + 1; ++r) {
+        const int symbol = r + radius;
         const std::uint32_t range =
-            residuals::kAllTables.range[index][static_cast<std::size_t>(r + radius)];
+            residuals::kAllTables.range[index][static_cast<std::size_t>(symbol)];
         const std::uint32_t frequency = range >> 16;
         ASSERT_EQ(range & 0xffff, start);
         ASSERT_GE(frequency, 1U);

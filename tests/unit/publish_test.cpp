@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "protocol/grid_frame.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+/// A block of water that falls, and a ball.
+Simulation make_falling() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.001);
+  scene.materials = {make_liquid("water", 1000, {.stiffness = 100, .support_radius = 0.2}),
+                     make_material("wood", 600)};
+  BodyDescription water;
+  water.name = "water";
+  water.kind = BodyKind::liquid;
+  water.material = "water";
+  water.spacing = 0.1;
+  water.shape = BoxShape{{0.5, 0.5, 0.5}, {0.4, 0.4, 0.4}};
+  water.velocity = {3, 0, 4};
+  BodyDescription ball = make_body("ball", BodyKind::rigid, "wood",
+                                   make_particles(make_lattice(3, 3, 3, 0.1), 0.1), 0.05);
+  ball.position = {2, 2, 2};
+  scene.bodies = {water, ball};
+  return make_simulation(scene);
+}
+
+TEST(Publish, CopiesAttributesOnlyWhereTheyAreWanted) {
+  const Simulation simulation = make_falling();
+  const PublishedState plain = publish(simulation);
+  for (const auto& column : plain.bodies[0].attributes) EXPECT_TRUE(column.empty());
+  const PublishedState pressures = publish(simulation, {false, false, true});
+  EXPECT_TRUE(pressures.bodies[0].attributes[0].empty());
+  EXPECT_EQ(pressures.bodies[0].attributes[2].size(), 64U);
+  EXPECT_TRUE(pressures.bodies[1].attributes[2].empty()) << "a ball has none";
+}
+
+// Half a quantum, and the rounding of a float32.
+TEST(Publish, AttributesAreWithinTheirErrors) {
+  const Simulation simulation = make_falling();
+  const ByAttribute<double> errors{0.003, 0.5, 20};
+  FrameScale scale{make_frame_grid({0, 0, 0}, {3, 3, 3}, 0.001), {}};
+  for (std::size_t a = 0; a < kFrameAttributes; ++a) scale.attribute_quanta[a] = 2 * errors[a];
+  GridFrame frame;
+  make_grid_frame(publish(simulation, {true, true, true}), scale, frame);
+  const LiquidFields fields = simulation.liquid_fields(simulation.bodies()[0].id).value();
+  const auto& columns = frame.blocks[0].attributes;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const ByAttribute<double> exact{simulation.bodies()[0].velocities[i].norm(), fields.density[i],
+                                    fields.pressure[i]};
+    for (std::size_t a = 0; a < kFrameAttributes; ++a) {
+      const double sent = scale.attribute_quanta[a] * columns[a][i];
+      EXPECT_NEAR(sent, exact[a], errors[a] + std::abs(exact[a]) * 1e-7);
+    }
+  }
+  EXPECT_EQ(columns[0][0], std::lround(5 / 0.006)) << "it begins with 5 m/s";
+}
+
+TEST(Publish, ARigidBodysRadiusReachesItsFarthestParticle) {
+  const PublishedState state = publish(make_falling());
+  EXPECT_NEAR(state.bodies[1].bounding_radius, 0.1 * std::sqrt(3), 1e-12);
+}
+
+}  // namespace
+}  // namespace vat
