@@ -30,13 +30,13 @@ constexpr std::size_t kOtherFiles = 64;  // open files of a load process beside 
 constexpr const char* kScene = R"({
   "format": "vat.scene/1", "name": "fanout", "title": "Sloshing",
   "materials": [{"name": "water", "density": 1000,
-    "liquid": {"stiffness": 400, "viscosity": 0.1, "support_radius": 0.18,
+    "liquid": {"stiffness": 400, "viscosity": 0.1, "support_radius": 0.17,
                "artificial_viscosity": 0.1}}],
   "vat": {"min": [0, 0, 0], "max": [4, 2, 2.5], "lid": true,
           "motion": {"type": "slide", "axis": [1, 0, 0], "stroke": 0.5, "period": 2}},
   "numerics": {"integrator": "velocity_verlet", "step": 0.004761904761904762,
                "tick": 0.03333333333333333},
-  "bodies": [{"name": "water", "kind": "liquid", "material": "water", "spacing": 0.09,
+  "bodies": [{"name": "water", "kind": "liquid", "material": "water", "spacing": 0.085,
     "shape": {"type": "box", "center": [1.1, 1, 0.8], "size": [2.2, 2, 1.5]}}]})";
 
 Table to_table(const std::vector<FanoutResult>& results) {

@@ -190,7 +190,7 @@ std::size_t Viewer::take_reply(const char* bytes, std::size_t size) {
     send_text(R"({"jsonrpc":"2.0","method":"session.join","params":{"session":")" +
               settings_.session + "\"}}");
     send_text(R"({"jsonrpc":"2.0","method":"frames.subscribe","params":{"max_error":)" +
-              std::to_string(settings_.max_error) + R"(,"attributes":{"speed":1e-4}}})");
+              std::to_string(settings_.max_error) + R"(,"attributes":{"speed":1e-5}}})");
     return i + 1;
   }
   return size;
