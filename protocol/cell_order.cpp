@@ -79,11 +79,15 @@ bool CellOrder::sort(std::span<const std::uint16_t> positions, int shift) {
   find_box(positions, box_min_, box_max_);
   if (!divide(count, shift)) return false;
   count_cells(positions, shift);
+  fill_order();
+  return true;
+}
+
+void CellOrder::fill_order() {
   list_cells();
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < order_.size(); ++i) {
     order_[cells_[numbers_[places_[i]]].end++] = static_cast<std::uint32_t>(i);
   }
-  return true;
 }
 
 void CellOrder::list_cells() {
@@ -101,18 +105,26 @@ void CellOrder::list_cells() {
   }
 }
 
-int CellOrder::choose_shift(std::span<const std::uint16_t> positions) {
+int CellOrder::sort(std::span<const std::uint16_t> positions) {
   constexpr std::size_t kMostInCell = 12;
   constexpr int kCoarsest = 15;
   const std::size_t count = positions.size() / 3;
+  cells_.assign(1, {});
+  order_.resize(count);
   if (count == 0) return kCoarsest;
   find_box(positions, box_min_, box_max_);
   int shift = kCoarsest;
   while (shift > 0 && divide(count, shift - 1)) {
     --shift;
     if (count > kMostInCell * std::size_t{place_count_}) continue;  // they cannot be enough
-    if (count <= kMostInCell * count_cells(positions, shift)) break;
+    if (count > kMostInCell * count_cells(positions, shift)) continue;
+    fill_order();
+    return shift;
   }
+  // Smaller cells would be too many, or there are none.
+  divide(count, shift);
+  count_cells(positions, shift);
+  fill_order();
   return shift;
 }
 

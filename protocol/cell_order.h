@@ -22,8 +22,8 @@ class CellOrder {
   /// Cells of 2^shift steps along each axis; of three coordinates each. False, and nothing is
   /// known, where the box of all cells would be too large for so few particles.
   bool sort(std::span<const std::uint16_t> positions, int shift);
-  /// The shift with which a cell holds about eight particles.
-  int choose_shift(std::span<const std::uint16_t> positions);
+  /// The same with the shift, which it gives, with which a cell holds about eight particles.
+  int sort(std::span<const std::uint16_t> positions);
 
   std::span<const std::uint32_t> order() const { return order_; }
   /// Those that hold particles, in their order; before them one without, number 0, that stands for
@@ -40,6 +40,7 @@ class CellOrder {
   /// The place of each particle's cell, and how many are in it; how many cells have some.
   std::size_t count_cells(std::span<const std::uint16_t> positions, int shift);
   void list_cells();
+  void fill_order();
 
   std::vector<std::uint32_t> order_;
   std::vector<Cell> cells_;

@@ -148,12 +148,12 @@ void code_parts(Coder& coder, const FrameScale& scale, GridBlock::Kind kind, Par
 /// The cells of the first reference, in the order of which the rest is coded.
 template <class Coder>
 void code_order(Coder& coder, const GridBlock& first, BlockScratch& scratch) {
-  std::uint32_t shift = 0;
-  if constexpr (!Coder::kReads) {
-    shift = static_cast<std::uint32_t>(scratch.cells.choose_shift(first.positions));
+  if constexpr (Coder::kReads) {
+    const auto shift = static_cast<int>(coder.bits(0, kGridShiftBits));
+    if (!scratch.cells.sort(first.positions, shift)) coder.refuse();
+  } else {
+    coder.bits(static_cast<std::uint32_t>(scratch.cells.sort(first.positions)), kGridShiftBits);
   }
-  shift = coder.bits(shift, kGridShiftBits);
-  if (!scratch.cells.sort(first.positions, static_cast<int>(shift))) coder.refuse();
 }
 
 /// Which particles have gone, by whether the one before has.
