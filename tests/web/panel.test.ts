@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { GuardEvent, SessionDescription } from '../../web/client/index';
 import * as format from '../../web/viewer/panel/format';
+import { qualityInWords } from '../../web/viewer/panel/quality';
 import { FrameMeter } from '../../web/viewer/panel/frame_meter';
 import { describeGuard } from '../../web/viewer/panel/notices';
 import { sliderSpeed } from '../../web/viewer/panel/playback';
@@ -27,6 +28,26 @@ describe('numbers in words', () => {
     expect(format.formatMilliseconds(0.0126)).toBe('13 ms');
     expect(format.formatFactor(0.999)).toBe('1.00 ×');
   });
+});
+
+it.each([
+  [{ stride: 1, quantum: 0.002, detail: 3, region: false }, 'every frame, to 1 mm'],
+  [
+    { stride: 2, quantum: 3.25e-4, detail: 2, region: false },
+    'every 2nd frame, to 0.16 mm, half of the particles',
+  ],
+  [
+    { stride: 3, quantum: 1.23e-4, detail: 1, region: true },
+    'every 3rd frame, to 62 µm, a quarter of the particles, of a region',
+  ],
+  [
+    { stride: 4, quantum: 1, detail: 0, region: false },
+    'every 4th frame, to 500 mm, an eighth of the particles',
+  ],
+  [{ stride: 11, quantum: 1, detail: 3, region: false }, 'every 11th frame, to 500 mm'],
+  [{ stride: 21, quantum: 1, detail: 3, region: false }, 'every 21st frame, to 500 mm'],
+])('what frames show, in words: %o', (header, words) => {
+  expect(qualityInWords(header)).toBe(words);
 });
 
 describe('FrameMeter', () => {

@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
-import { Session } from '../../web/client/index';
+import { emptyFrame, Session } from '../../web/client/index';
 import type { Frame, SessionDescription } from '../../web/client/index';
 import { FakeSocket } from './fake_socket';
 import { goldenBytes } from './golden';
@@ -14,7 +14,7 @@ let faults: string[];
 let seconds: number;
 let session: Session;
 
-function newSession(chosen?: string): Session {
+function newSession(chosen?: string, frameFor?: () => Frame): Session {
   return new Session(
     {
       url: 'ws://server/ws',
@@ -31,6 +31,7 @@ function newSession(chosen?: string): Session {
       onFrame: (frame, bytes) => frames.push({ frame, bytes }),
       onClockOffset: (offset) => offsets.push(offset),
       onFault: (message) => faults.push(message),
+      ...(frameFor && { frameFor }),
     },
   );
 }
@@ -134,13 +135,52 @@ describe('while it is in', () => {
     expect(socket.sent.at(-1)).not.toHaveProperty('id');
   });
 
-  it('reports a frame that cannot be read and goes on', async () => {
+  it('reports a frame that cannot be read, asks for a key frame and goes on', async () => {
     session.open();
     const socket = await enter();
     socket.receive(new ArrayBuffer(10));
     expect(faults).toEqual([expect.stringContaining('(truncated)')]);
+    expect(socket.methods.slice(3)).toEqual(['frames.subscribe']);
     socket.receive(goldenBytes('v2-empty'));
     expect(frames).toHaveLength(1);
+  });
+
+  it('names the frame that is missing, once, and takes the next key frame', async () => {
+    session.open();
+    const socket = await enter();
+    socket.receive(goldenBytes('v2-delta-one'));
+    expect(faults).toEqual([expect.stringMatching(/missing_reference.*frame 10 is not there/)]);
+    socket.receive(goldenBytes('v2-delta-two'));
+    expect(faults).toHaveLength(1);
+    const acknowledged = { method: 'frames.ack' }; // or the server's window would stay full
+    expect(socket.sent.slice(3)).toMatchObject([
+      { ...acknowledged, params: { number: 12 } },
+      { method: 'frames.subscribe' },
+      { ...acknowledged, params: { number: 13 } },
+    ]);
+    socket.receive(goldenBytes('v2-key'));
+    socket.receive(goldenBytes('v2-delta-one'));
+    expect(frames.map(({ frame }) => frame.header.number)).toEqual([10, 12]);
+    socket.receive(goldenBytes('v2-dropped')); // builds on others than these
+    expect(faults).toHaveLength(2);
+  });
+
+  it('begins again on a new line where the key frame cannot be read either', async () => {
+    session.open();
+    const socket = await enter();
+    socket.receive(new ArrayBuffer(10));
+    socket.receive(new ArrayBuffer(10));
+    expect(states.at(-1)).toBe('waiting');
+  });
+
+  it('decodes to the frame that it is given', async () => {
+    const given = emptyFrame();
+    session = newSession(undefined, () => given);
+    session.open();
+    const socket = await enter();
+    socket.receive(goldenBytes('v2-key'));
+    expect(frames.map(({ frame }) => frame)).toEqual([given]);
+    expect(given.header.number).toBe(10);
   });
 
   it('asks for no frames while nobody watches', async () => {

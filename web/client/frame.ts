@@ -11,6 +11,7 @@ export { FrameError } from './frame/frame_error';
 export type { FrameErrorCode } from './frame/frame_error';
 export { emptyFrame } from './frame/frame_output';
 export type { Frame, FrameBlock, GridBlock, PoseBlock, VatBlock } from './frame/frame_output';
+export { frameNumber } from './frame/header';
 export type { FrameHeader, FrameScale } from './frame/header';
 
 /** Decodes the frames of one connection in their order: protocol/PROTOCOL.md, "Frames". */
@@ -20,12 +21,27 @@ export class FrameDecoder {
   private readonly blocks = new FrameBlocks(this.symbols);
   private last = 0;
   private dropped = 0;
+  private isWaiting = false;
+
+  /** A frame was refused, so that those which build on it will be, up to the next key frame. */
+  get needsKey(): boolean {
+    return this.isWaiting;
+  }
 
   /**
    * Decodes to `into`, of which all is overwritten and all memory that suffices is used again.
    * @throws FrameError with the first reason why this is no frame; it then changes nothing.
    */
   decode(buffer: ArrayBuffer, into: Frame = emptyFrame()): Frame {
+    const wasWaiting = this.isWaiting;
+    this.isWaiting = true;
+    const isKey = this.read(buffer, into);
+    this.isWaiting = wasWaiting && !isKey;
+    return into;
+  }
+
+  /** Whether it is a key frame. */
+  private read(buffer: ArrayBuffer, into: Frame): boolean {
     const header = new HeaderBytes(buffer);
     const { isKey, number, epoch } = header;
     const [back1, back2] = header.distances;
@@ -48,7 +64,7 @@ export class FrameDecoder {
     header.write(into.header, frame.scale);
     into.dropped = this.dropped;
     writeBlocks(frame, into);
-    return into;
+    return isKey;
   }
 
   private countDropped(number: number, stride: number): void {

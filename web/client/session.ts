@@ -1,7 +1,7 @@
 import { ClockOffset } from './clock';
 import { Connection } from './connection';
 import type { ConnectionOptions, ConnectionState } from './connection';
-import { FrameDecoder, FrameError } from './frame';
+import { FrameDecoder, FrameError, frameNumber } from './frame';
 import type { Frame } from './frame';
 import type { Event, MethodName, Params, Result, SessionDescription } from './messages';
 import { RequestError } from './requests';
@@ -13,6 +13,8 @@ export interface SessionHandlers {
   onEvent?(event: Event): void;
   /** A decoded frame and its size. Answer with `acknowledge` once it is taken. */
   onFrame?(frame: Frame, bytes: number): void;
+  /** What the next frame is decoded to: one that is not in use any more. By default a new one. */
+  frameFor?(): Frame;
   /** Seconds that the server's clock is ahead of `now`. */
   onClockOffset?(seconds: number): void;
   /** Something that a user should hear of; the session goes on. */
@@ -131,11 +133,28 @@ export class Session {
   }
 
   private handleFrame(bytes: ArrayBuffer): void {
+    const wasWaiting = this.decoder.needsKey;
+    let frame: Frame;
     try {
-      this.handlers.onFrame?.(this.decoder.decode(bytes), bytes.byteLength);
+      frame = this.decoder.decode(bytes, this.handlers.frameFor?.());
     } catch (error) {
       if (!(error instanceof FrameError)) throw error;
-      this.handlers.onFault?.(`a frame that cannot be read (${error.code}): ${error.message}`);
+      this.refuse(bytes, error, wasWaiting);
+      return;
+    }
+    this.handlers.onFrame?.(frame, bytes.byteLength);
+  }
+
+  /** Frames to come may build on what is refused: a new subscription begins with a key frame. */
+  private refuse(bytes: ArrayBuffer, error: FrameError, wasWaiting: boolean): void {
+    const number = frameNumber(bytes);
+    if (number !== undefined) this.acknowledge(number); // or it would wait for that
+    if (wasWaiting && error.code === 'missing_reference') return; // the key frame is on its way
+    const words = `a frame that cannot be read (${error.code}): ${error.message}`;
+    this.handlers.onFault?.(words);
+    if (wasWaiting) this.connection.restart(words);
+    else if (this.hasJoined && this.isWatched) {
+      this.request('frames.subscribe', {}).catch((failure: unknown) => this.restart(failure));
     }
   }
 }

@@ -47,7 +47,7 @@ export class App {
   });
   private description: SessionDescription | undefined;
   private clockOffset: number | undefined;
-  private readonly newest = new NewestFrame((number) => this.stream.acknowledge(number));
+  private readonly newest = new NewestFrame(this.stream);
 
   start(): void {
     this.stage.scene.add(this.world.group, this.marker.group);
@@ -131,7 +131,7 @@ export class App {
     // A view that the user has chosen is kept while the scene stays.
     if (description.scene !== this.description?.scene) this.stage.reframe();
     this.description = description;
-    this.newest.take(); // of what was there before
+    this.newest.skip(); // what was there before
     this.world.describe(description);
     this.scenes.describe(description);
     this.playback.showPlaying(description.playing);
@@ -183,7 +183,12 @@ export class App {
   }
 
   private showFrame(frame: Frame): void {
-    if (!this.world.show(frame)) return;
+    if (!this.world.show(frame)) {
+      this.stream.reuse(frame);
+      return;
+    }
+    this.newest.use(frame);
+    this.connection.showFrame(frame.header);
     this.stage.follow(this.world.bounds);
     this.counters.showFrame(frame, this.clockOffset);
     this.canvas.dataset.tick = String(frame.header.tick);

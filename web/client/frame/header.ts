@@ -34,6 +34,12 @@ const kMagic = 0x46544156; // "VATF", little-endian
 const kVersion = 2;
 const kKnownFlags = 31;
 
+/** As the header says, also of a frame that is refused; undefined where it has no header. */
+export function frameNumber(buffer: ArrayBuffer): number | undefined {
+  if (buffer.byteLength < HeaderBytes.kBytes) return undefined;
+  return new DataView(buffer).getUint32(12, true);
+}
+
 /** The bytes of a header as far as all frames have it, and of a key frame's scale behind it. */
 export class HeaderBytes {
   static readonly kBytes = 52;

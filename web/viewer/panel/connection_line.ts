@@ -1,5 +1,8 @@
-import type { ConnectionState } from '../../client/index';
+import type { ConnectionState, FrameHeader } from '../../client/index';
 import { element, onPress } from './elements';
+import { rateInWords } from './quality';
+
+const kConnected = 'Connected';
 
 /** The connection's state in words, and a button with a count-down to the next attempt. */
 export class ConnectionLine {
@@ -20,6 +23,12 @@ export class ConnectionLine {
     if (state.name === 'waiting') this.countDown(state.retryMs);
   }
 
+  /** Says where this viewer does not get all frames: the line, or what draws here, is too slow. */
+  showFrame({ stride }: FrameHeader): void {
+    const text = stride === 1 ? kConnected : `${kConnected}, but slow: ${rateInWords(stride)}`;
+    if (this.text.textContent !== text) this.text.textContent = text;
+  }
+
   /** On the button: a text that is read out must not change every second. */
   private countDown(retryMs: number): void {
     const end = performance.now() + retryMs;
@@ -37,7 +46,7 @@ function words(state: ConnectionState): string {
     case 'connecting':
       return 'Connecting …';
     case 'open':
-      return 'Connected';
+      return kConnected;
     case 'waiting':
       return `Not connected: ${state.reason}`;
     case 'closed':

@@ -3,6 +3,7 @@ import { element } from './elements';
 import { formatBytes, formatCount, formatFactor, formatMilliseconds } from './format';
 import { formatSeconds } from './format';
 import { FrameMeter } from './frame_meter';
+import { qualityInWords } from './quality';
 
 /** Figures that change with every frame are written this often, so that they can be read. */
 const kReadableMs = 250;
@@ -27,6 +28,7 @@ export class Counters {
   private readonly byteRate = field('byte-rate');
   private readonly frameAge = field('frame-age');
   private readonly dropped = field('dropped');
+  private readonly quality = field('quality');
   private readonly meter = new FrameMeter();
   private age: number | undefined;
   private lastBytes = 0;
@@ -46,6 +48,7 @@ export class Counters {
     this.showTick(header.tick, header.time);
     this.showRate(header.realTimeFactor, header.slow);
     write(this.dropped, dropped, formatCount(dropped));
+    this.quality.textContent = qualityInWords(header);
     // Half a round trip of error can make a young frame seem to come from the future.
     this.age =
       clockOffset === undefined

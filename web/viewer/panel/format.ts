@@ -27,3 +27,10 @@ export function formatBytes(bytes: number): string {
 export function formatMilliseconds(seconds: number): string {
   return `${Math.round(1000 * seconds)} ms`;
 }
+
+/** A small length [m], with two digits. */
+export function formatLength(metres: number): string {
+  const millimetres = 1000 * metres;
+  if (millimetres >= 0.1) return `${Number(millimetres.toPrecision(2))} mm`;
+  return `${Number((1000 * millimetres).toPrecision(2))} µm`;
+}

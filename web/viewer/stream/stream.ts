@@ -1,5 +1,5 @@
 import { RequestError } from '../../client/index';
-import type { MethodName, Params, Result } from '../../client/index';
+import type { Frame, MethodName, Params, Result } from '../../client/index';
 import type { FromWorker, ToWorker } from './wire';
 
 /** What the worker reports by itself; replies to requests come as promises instead. */
@@ -45,13 +45,18 @@ export class Stream {
     this.post({ type: 'acknowledge', number });
   }
 
+  /** Gives back the memory of a frame, whose columns are gone with that. */
+  reuse({ storage }: Frame): void {
+    this.post({ type: 'reuse', storage }, [storage]);
+  }
+
   /** Whether frames are wanted; they are from the start. */
   watch(wanted: boolean): void {
     this.post({ type: 'watch', wanted });
   }
 
-  private post(message: ToWorker): void {
-    this.worker.postMessage(message);
+  private post(message: ToWorker, transfer: Transferable[] = []): void {
+    this.worker.postMessage(message, transfer);
   }
 
   private handle(message: FromWorker): void {

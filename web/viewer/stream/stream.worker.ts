@@ -1,11 +1,13 @@
 /** Holds the connection and decodes frames, so that the page's thread only draws. */
-import { RequestError, Session } from '../../client/index';
+import { emptyFrame, RequestError, Session } from '../../client/index';
 import type { Frame, MethodName, Params } from '../../client/index';
 import { now } from './clock';
 import type { FromWorker, Refusal, ToWorker } from './wire';
 
 let session: Session | undefined;
 let isWatched = true;
+const frame = emptyFrame();
+const spare: ArrayBuffer[] = [];
 
 function post(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
@@ -28,7 +30,8 @@ function open(url: string, chosen: string | undefined): void {
       onState: (state) => post({ type: 'state', state }),
       onDescription: (description) => post({ type: 'description', description }),
       onEvent: (event) => post({ type: 'event', event }),
-      onFrame: (frame, bytes) => post({ type: 'frame', frame, bytes }, buffersOf(frame)),
+      onFrame: (frame, bytes) => post({ type: 'frame', frame, bytes }, [frame.storage]),
+      frameFor,
       onClockOffset: (offset) => post({ type: 'clock', offset }),
       onFault: (message) => post({ type: 'fault', message }),
     },
@@ -37,11 +40,10 @@ function open(url: string, chosen: string | undefined): void {
   session.open();
 }
 
-function buffersOf(frame: Frame): ArrayBuffer[] {
-  const columns = frame.blocks.flatMap((block) =>
-    'positions' in block ? [block.positions, block.numbers, ...block.attributes] : [],
-  );
-  return columns.flatMap((column) => (column ? [column.buffer] : []));
+/** The memory of a frame goes to the page and comes back: see ToWorker, `reuse`. */
+function frameFor(): Frame {
+  if (frame.storage.byteLength === 0) frame.storage = spare.pop() ?? frame.storage;
+  return frame;
 }
 
 async function request(key: number, method: MethodName, params: object): Promise<void> {
@@ -69,6 +71,9 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
       break;
     case 'acknowledge':
       session?.acknowledge(data.number);
+      break;
+    case 'reuse':
+      spare.push(data.storage);
       break;
     case 'watch':
       isWatched = data.wanted;

@@ -12,6 +12,8 @@ export type ToWorker =
   | { type: 'open'; url: string; session: string | undefined }
   | { type: 'request'; key: number; method: MethodName; params: object }
   | { type: 'acknowledge'; number: number }
+  /** Of a frame that is shown no more; it is transferred, like that of each frame. */
+  | { type: 'reuse'; storage: ArrayBuffer }
   | { type: 'watch'; wanted: boolean };
 
 export type FromWorker =

@@ -52,6 +52,8 @@ export class BodyView {
   private numbers: Uint32Array | undefined;
   private readonly geometry: InstancedBufferGeometry;
   private readonly materials: ShaderMaterial[] = [];
+  /** Takes positions that do not fill the graphics buffer; as long as that. */
+  private copies: Uint16Array | undefined;
 
   constructor(
     readonly description: BodyDescription,
@@ -79,13 +81,17 @@ export class BodyView {
     this.geometry.instanceCount = count;
   }
 
-  /** Takes the block's positions as they are where their number stays: no copy is made. */
+  /**
+   * Shows the block's positions as they are where their number stays: no copy is made, and they and
+   * their numbers must stay as they are until the next call.
+   */
   showGrid(block: GridBlock, { origin, quantum }: FrameHeader): void {
     const { positions } = block;
     this.numbers = block.numbers;
     this.count = positions.length / 3;
-    if (positions.length === this.centers.array.length) this.centers.array = positions;
-    else if (positions.length < this.centers.array.length) this.centers.array.set(positions);
+    const room = this.centers.array.length;
+    if (positions.length === room) this.centers.array = positions;
+    else if (positions.length < room) this.copy(positions, room);
     else this.grow(positions);
     this.centers.needsUpdate = true;
     this.group.matrix.makeScale(quantum, quantum, quantum).setPosition(...origin);
@@ -112,12 +118,18 @@ export class BodyView {
     return { particle, distance: hit.distance * scale };
   }
 
+  private copy(positions: Uint16Array, room: number): void {
+    this.copies ??= new Uint16Array(room);
+    this.copies.set(positions);
+    this.centers.array = this.copies;
+  }
+
   /** Graphics buffers keep their length: a longer one takes the place of the old, with room. */
   private grow(positions: Uint16Array): void {
-    const room = new Uint16Array(3 * Math.ceil(kGrowth * (positions.length / 3)));
-    room.set(positions);
+    this.copies = new Uint16Array(3 * Math.ceil(kGrowth * (positions.length / 3)));
+    this.copies.set(positions);
     this.geometry.dispose(); // frees the old buffer
-    this.centers = new InstancedBufferAttribute(room, 3);
+    this.centers = new InstancedBufferAttribute(this.copies, 3);
     this.geometry.setAttribute('center', this.centers);
   }
 

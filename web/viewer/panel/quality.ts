@@ -1,0 +1,33 @@
+import type { FrameHeader } from '../../client/index';
+import { formatLength } from './format';
+
+const kParts = [
+  'an eighth of the particles',
+  'a quarter of the particles',
+  'half of the particles',
+];
+
+/** Which of the session's frames a viewer gets. */
+export function rateInWords(stride: number): string {
+  return stride === 1 ? 'every frame' : `every ${ordinal(stride)} frame`;
+}
+
+/** What frames show of the session's state: how often, how exactly, how much. */
+export function qualityInWords({
+  stride,
+  quantum,
+  detail,
+  region,
+}: Pick<FrameHeader, 'stride' | 'quantum' | 'detail' | 'region'>): string {
+  const parts = [rateInWords(stride), `to ${formatLength(quantum / 2)}`];
+  const part = kParts[detail];
+  if (part) parts.push(part);
+  if (region) parts.push('of a region');
+  return parts.join(', ');
+}
+
+function ordinal(count: number): string {
+  const isTeen = Math.floor(count / 10) % 10 === 1;
+  const ending = isTeen ? undefined : ['th', 'st', 'nd', 'rd'][count % 10];
+  return `${count}${ending ?? 'th'}`;
+}
