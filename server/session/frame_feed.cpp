@@ -31,7 +31,10 @@ FrameFeed::FrameFeed(std::string session, const std::optional<Vat>& vat, ServerM
 
 void FrameFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
                     Subscription wish) {
-  put([&] { mail_.changes.emplace_back(Added{std::move(outbox), subscription, wish}); });
+  put([&] {
+    mail_.changes.emplace_back(Added{std::move(outbox), subscription, wish});
+    mail_.state.reset();  // it may lack attributes that are wanted now; a newer one follows
+  });
 }
 
 void FrameFeed::remove(ConnectionId client) {
