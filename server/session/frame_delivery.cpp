@@ -70,7 +70,7 @@ void FrameDelivery::note_turns(const PublishedState& state) {
   const bool is_new_epoch = !has_state_ || state.header.epoch != epoch_;
   for (auto& [client, viewer] : viewers_) {
     viewer.awaits_any |= is_new_epoch;
-    viewer.has_turn = viewer.awaits_any || turn_has_come(viewer, state.header.tick);
+    viewer.has_turn = viewer.awaits_any || turn_has_come(viewer, state);
     viewer.is_due |= viewer.has_turn;
   }
   has_state_ = true;
@@ -80,8 +80,11 @@ void FrameDelivery::note_turns(const PublishedState& state) {
 
 /// Whether a tick that the viewer's period divides is the one of a new state or lies after the one
 /// before it: states that were never published count too. Viewers of one period have their turns
-/// together; one that is kept slow and has got a frame late leaves out the next.
-bool FrameDelivery::turn_has_come(const Viewer& viewer, std::uint64_t tick) const {
+/// together; one that is kept slow and has got a frame late leaves out the next. What stands still
+/// is seen by all, those kept slow included: nothing newer may come.
+bool FrameDelivery::turn_has_come(const Viewer& viewer, const PublishedState& state) const {
+  const std::uint64_t tick = state.header.tick;
+  if (!state.header.playing) return tick / viewer.wish.every > viewer.sent_tick / viewer.wish.every;
   const std::uint64_t period = viewer.period();
   if (viewer.pace.stride() > 1 && tick < viewer.sent_tick + period / 2) return false;
   return tick / period > tick_ / period;

@@ -64,7 +64,7 @@ class FrameDelivery {
   using Groups = std::map<GroupKey, std::vector<Viewer*>>;
 
   void note_turns(const PublishedState& state);
-  bool turn_has_come(const Viewer& viewer, std::uint64_t tick) const;
+  bool turn_has_come(const Viewer& viewer, const PublishedState& state) const;
   void gather(Viewer& viewer, SteadyClock::time_point now, Groups& groups);
   void serve(const Groups& groups, SteadyClock::time_point now);
   const Made* make(const GroupKey& key, const HeldFrames& held);

@@ -31,6 +31,7 @@ void SessionCore::set_playing(bool playing) {
   interrupt();
   status_due_ = true;
   if (playing != playing_) rate_ = {};
+  if (playing_ && !playing) frame_due_ = true;  // for those who have not got the last state
   playing_ = playing;
 }
 

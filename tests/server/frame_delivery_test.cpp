@@ -44,8 +44,9 @@ class FrameDeliveryTest : public testing::Test {
   }
   /// One in which something has moved since all others.
   void publish(std::uint64_t tick) { publish(tick, 1e-3 * static_cast<double>(++states_)); }
-  void publish(std::uint64_t tick, double x) {
+  void publish(std::uint64_t tick, double x, bool playing = true) {
     PublishedState state;
+    state.header.playing = playing;
     state.header.epoch = kEpoch;
     state.header.tick = tick;
     state.bodies.resize(1);
@@ -247,6 +248,24 @@ TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOther
   }
   EXPECT_EQ(quick.last().stride, 1U);
   EXPECT_EQ(quick.ticks().size(), 400U);
+}
+
+TEST_F(FrameDeliveryTest, WhoIsKeptSlowSeesTheStateAtWhichTheSessionPauses) {
+  const TestViewer slow = add();
+  std::uint64_t tick = 1;
+  for (; slow.connection->frames().empty() || slow.last().stride < 4; ++tick) {
+    ASSERT_LT(tick, 1000U);
+    publish(tick);
+    if (tick % 12 == 0) acknowledge_all(slow);
+  }
+  for (acknowledge_all(slow); tick % 4 != 2; ++tick) {
+    publish(tick);
+    acknowledge_all(slow);
+  }
+  publish(tick, 0.9);
+  EXPECT_LT(slow.last().tick, tick) << "it is not its turn";
+  publish(tick, 0.9, false);
+  EXPECT_EQ(slow.last().tick, tick);
 }
 
 // Whatever is dropped, skipped, or joined late: each frame that comes is decoded from the ones
