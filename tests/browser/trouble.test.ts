@@ -91,6 +91,8 @@ it('shows what the server refuses', async () => {
 it('leaves keys to the picker while a scene is picked, and takes them elsewhere', async () => {
   const page = await open();
   observer = await Observer.join(server.url);
+  await observer.request('scene.load', { scene: 'dam-break' }); // one that does not come to rest
+  await page.untilScene('dam-break');
   await page.untilTick(1);
   await observer.request('control.pause', {});
   const tick = await observer.tick();
