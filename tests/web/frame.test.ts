@@ -1,5 +1,5 @@
-import { describe, expect, it } from 'vitest';
-import { BodyKind, FrameDecoder, FrameError } from '../../web/client/index';
+import { describe, expect, it, vi } from 'vitest';
+import { BodyKind, emptyFrame, FrameDecoder, FrameError } from '../../web/client/index';
 import type { Frame, FrameBlock, FrameHeader } from '../../web/client/index';
 import {
   badFrames,
@@ -104,4 +104,31 @@ it('counts the frames that were left out', () => {
   expect(decoder.decode(goldenBytes('v2-delta-one')).dropped).toBe(1); // 12
   expect(decoder.decode(goldenBytes('v2-delta-two')).dropped).toBe(1); // 13
   expect(decoder.decode(goldenBytes('v2-dropped')).dropped).toBe(2); // 17, every second one
+});
+
+it('uses its memory again, and that of the frame which it is given', () => {
+  const decoder = new FrameDecoder();
+  const frame = emptyFrame();
+  const bytes = ['v2-key', 'v2-delta-one', 'v2-delta-two'].map(goldenBytes);
+  const cycle = () => bytes.forEach((buffer) => decoder.decode(buffer, frame));
+  for (let i = 0; i < 17; ++i) cycle(); // each place of the ring has had each frame
+  const { storage, blocks } = frame;
+  let made = 0;
+  for (const type of [ArrayBuffer, Uint16Array, Uint32Array, Int32Array]) {
+    const construct = (target: typeof type, given: unknown[]): object => {
+      if (typeof given[0] === 'number') ++made; // what is not a view of memory that is there
+      return Reflect.construct(target, given) as object;
+    };
+    vi.stubGlobal(type.name, new Proxy(type, { construct }));
+  }
+  try {
+    for (let i = 0; i < 100; ++i) cycle();
+  } finally {
+    vi.unstubAllGlobals();
+  }
+  expect(made).toBe(0);
+  expect(frame.storage).toBe(storage);
+  expect(frame.blocks).toBe(blocks);
+  for (const block of blocks)
+    if ('positions' in block) expect(block.positions.buffer).toBe(storage);
 });
