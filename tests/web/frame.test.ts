@@ -106,6 +106,18 @@ it('counts the frames that were left out', () => {
   expect(decoder.decode(goldenBytes('v2-dropped')).dropped).toBe(2); // 17, every second one
 });
 
+it('finds a reference before the numbers began again', () => {
+  const numbered = (name: string, number: number): ArrayBuffer => {
+    const bytes = goldenBytes(name);
+    new DataView(bytes).setUint32(12, number, true);
+    return bytes;
+  };
+  const decoder = new FrameDecoder();
+  decoder.decode(numbered('v2-key', 0xffffffff));
+  const frame = decoder.decode(numbered('v2-delta-one', 1)); // two further on
+  expect(frame.header.number).toBe(1);
+});
+
 it('uses its memory again, and that of the frame which it is given', () => {
   const decoder = new FrameDecoder();
   const frame = emptyFrame();

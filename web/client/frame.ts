@@ -46,8 +46,8 @@ export class FrameDecoder {
     const { isKey, number, epoch } = header;
     const [back1, back2] = header.distances;
     const scale = isKey ? header.readScale() : undefined;
-    const first = isKey ? undefined : this.ring.find(number - back1, epoch);
-    const second = back2 === 0 ? undefined : this.ring.find(number - back2, epoch);
+    const first = isKey ? undefined : this.ring.find((number - back1) >>> 0, epoch);
+    const second = back2 === 0 ? undefined : this.ring.find((number - back2) >>> 0, epoch);
     const frame = this.ring.free;
     frame.number = number;
     frame.epoch = epoch;

@@ -17,6 +17,12 @@ export function readFactor(symbols: SymbolReader): number {
   return symbols.bits(11) - 1024;
 }
 
+function readChance(symbols: SymbolReader): number {
+  const chance = symbols.bits(12);
+  if (chance === 0) badBlock('nothing has a chance to go');
+  return chance;
+}
+
 /** What has changed of a body's particles: protocol/PROTOCOL.md, "Particles". Keeps its memory. */
 export class ParticleChanges {
   readonly added = new AddedParticles();
@@ -72,9 +78,8 @@ export class ParticleChanges {
 
   private readRemoved(): void {
     const { symbols, cells, newPlaces } = this;
-    const afterKept = symbols.bits(12);
-    const afterGone = symbols.bits(12);
-    if (afterKept === 0 || afterGone === 0) badBlock('nothing has a chance to go');
+    const afterKept = readChance(symbols);
+    const afterGone = readChance(symbols);
     const count = cells.cellCount === 0 ? 0 : cells.begins[cells.cellCount + 1]!;
     let before = false;
     for (let k = 0; k < count; ++k) {
