@@ -4,7 +4,7 @@ import type { Frame, SessionDescription } from '../../web/client/index';
 import { FakeSocket } from './fake_socket';
 import { goldenBytes } from './golden';
 
-const kDescription = { session: 's1', epoch: 2, scene: 'pool' };
+const kDescription = { session: 's1', epoch: 2, scene: 'pool', bodies: [] as object[] };
 
 let descriptions: SessionDescription[];
 let frames: { frame: Frame; bytes: number }[];
@@ -14,7 +14,7 @@ let faults: string[];
 let seconds: number;
 let session: Session;
 
-function newSession(chosen?: string, frameFor?: () => Frame): Session {
+function newSession(chosen?: string, frameFor?: () => Frame, errorInRadii?: number): Session {
   return new Session(
     {
       url: 'ws://server/ws',
@@ -24,6 +24,7 @@ function newSession(chosen?: string, frameFor?: () => Frame): Session {
       timeoutMs: 1000,
       clockPeriodMs: 5000,
       retryDelayMs: () => 100,
+      ...(errorInRadii !== undefined && { errorInRadii }),
     },
     {
       onState: ({ name }) => states.push(name),
@@ -59,6 +60,34 @@ async function enter(): Promise<FakeSocket> {
   await socket.answer('frames.subscribe', { result: { tick: 0 } });
   return socket;
 }
+
+describe('the error of positions', () => {
+  const kBody = { body: 1, name: 'a', kind: 'liquid', material: 'water', particles: 1 } as const;
+  const described = (...radii: number[]): typeof kDescription => ({
+    ...kDescription,
+    bodies: radii.map((radius) => ({ ...kBody, radius })),
+  });
+
+  it('is a share of the least radius, and asked for again where that changes', async () => {
+    session = newSession(undefined, undefined, 0.5);
+    session.open();
+    const socket = FakeSocket.newest;
+    socket.accept();
+    await socket.answer('server.info', { result: { time: 1050 } });
+    await socket.answer('session.join', { result: { description: described(0.4, 0.2) } });
+    const subscriptions = () =>
+      socket.sent.flatMap((m) => (m.method === 'frames.subscribe' ? [m.params] : []));
+    expect(subscriptions()).toEqual([{ max_error: 0.1 }]);
+    await socket.answer('frames.subscribe', { result: { tick: 0 } });
+    const tell = (description: typeof kDescription) =>
+      socket.receiveJson({ method: 'session.description', params: description });
+    tell(described(0.2, 0.3));
+    expect(subscriptions()).toHaveLength(1);
+    tell(described(0.6));
+    tell(described());
+    expect(subscriptions().slice(1)).toEqual([{ max_error: 0.3 }, undefined]);
+  });
+});
 
 describe('entering', () => {
   it('measures the clock, joins and subscribes', async () => {

@@ -28,6 +28,11 @@ export interface SessionOptions extends ConnectionOptions {
   now: () => number;
   /** Time between two round trips that measure the clock and prove that the line lives. */
   clockPeriodMs?: number;
+  /**
+   * The greatest error of a position over the radius of the scene's smallest particles; by default
+   * as little as the server can give.
+   */
+  errorInRadii?: number;
 }
 
 /** One client in a session: joins, subscribes, and does so again after a break. */
@@ -38,6 +43,8 @@ export class Session {
   private clockTimer: ReturnType<typeof setTimeout> | undefined;
   private hasJoined = false;
   private isWatched = true;
+  /** What was subscribed to, or is to be [m]; undefined: as little as can be had. */
+  private maxError: number | undefined;
 
   constructor(
     private readonly options: SessionOptions,
@@ -76,10 +83,30 @@ export class Session {
     if (wanted === this.isWatched) return;
     this.isWatched = wanted;
     if (!this.hasJoined) return;
-    const request = wanted
-      ? this.request('frames.subscribe', {})
-      : this.request('frames.unsubscribe', {});
+    const request = wanted ? this.subscribe() : this.request('frames.unsubscribe', {});
     request.catch((error: unknown) => this.restart(error));
+  }
+
+  private async subscribe(): Promise<void> {
+    await this.request(
+      'frames.subscribe',
+      this.maxError === undefined ? {} : { max_error: this.maxError },
+    );
+  }
+
+  private subscribeAgain(): void {
+    if (!this.hasJoined || !this.isWatched) return;
+    this.subscribe().catch((error: unknown) => this.restart(error));
+  }
+
+  private describe(description: SessionDescription): void {
+    this.handlers.onDescription?.(description);
+    const { errorInRadii } = this.options;
+    const radius = Math.min(...description.bodies.map((body) => body.radius));
+    const isKnown = errorInRadii !== undefined && Number.isFinite(radius) && radius > 0;
+    const before = this.maxError;
+    this.maxError = isKnown ? errorInRadii * radius : undefined;
+    if (this.maxError !== before) this.subscribeAgain();
   }
 
   private handleState(state: ConnectionState): void {
@@ -100,9 +127,9 @@ export class Session {
         'session.join',
         session === undefined ? {} : { session },
       );
-      this.handlers.onDescription?.(description);
+      this.describe(description);
       this.hasJoined = true;
-      if (this.isWatched) await this.request('frames.subscribe', {});
+      if (this.isWatched) await this.subscribe();
     } catch (error) {
       this.restart(error);
     }
@@ -127,7 +154,7 @@ export class Session {
   }
 
   private handleEvent(event: Event): void {
-    if (event.event === 'session.description') this.handlers.onDescription?.(event.params);
+    if (event.event === 'session.description') this.describe(event.params);
     else this.handlers.onEvent?.(event);
     if (event.event === 'session.closed') void this.enter(); // the server may have another one
   }
@@ -153,8 +180,6 @@ export class Session {
     const words = `a frame that cannot be read (${error.code}): ${error.message}`;
     this.handlers.onFault?.(words);
     if (wasWaiting) this.connection.restart(words);
-    else if (this.hasJoined && this.isWatched) {
-      this.request('frames.subscribe', {}).catch((failure: unknown) => this.restart(failure));
-    }
+    else this.subscribeAgain();
   }
 }

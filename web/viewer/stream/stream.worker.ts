@@ -4,6 +4,9 @@ import type { Frame, MethodName, Params } from '../../client/index';
 import { now } from './clock';
 import type { FromWorker, Refusal, ToWorker } from './wire';
 
+/** A sixty-fourth of the distance between particles: less cannot be seen. */
+const kErrorInRadii = 1 / 32;
+
 let session: Session | undefined;
 let isWatched = true;
 const frame = emptyFrame();
@@ -25,7 +28,7 @@ async function probe(): Promise<boolean> {
 function open(url: string, chosen: string | undefined): void {
   session?.close();
   session = new Session(
-    { url, session: chosen, socket: WebSocket, now, probe },
+    { url, session: chosen, socket: WebSocket, now, probe, errorInRadii: kErrorInRadii },
     {
       onState: (state) => post({ type: 'state', state }),
       onDescription: (description) => post({ type: 'description', description }),
