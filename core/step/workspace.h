@@ -141,7 +141,6 @@ struct Workspace {
   PairClusters liquid_clusters;            ///< pairs of liquid and all sources
   PairClusters solid_clusters;             ///< pairs of solids and liquid with its images
   std::uint64_t pairs_version = 0;         ///< of the sources that these were found among
-  std::vector<Real> pair_sums;             ///< by target
   std::vector<VolumeSlope> volume_slopes;  ///< by liquid slot, of an incompressible liquid
   std::vector<PairViscosity> viscosities;  ///< by source, where liquids differ
   std::vector<Real> target_viscosities;    ///< by target, the same
