@@ -6,6 +6,7 @@
 #include <string_view>
 #include <variant>
 
+#include "server/session/method_rules.h"
 #include "server/session/session_directory.h"
 
 namespace vat {
@@ -22,7 +23,7 @@ struct Method {
   using ForSession = SessionAction (*)(ObjectReader& params, Errors& errors);
   std::string_view name;
   std::variant<ForServer, ForSession> read;
-  bool takes_scene = false;  ///< its messages may be long
+  MethodRules rules{};  ///< the row of method_rules()
 };
 
 std::span<const Method> server_methods();

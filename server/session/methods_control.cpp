@@ -61,9 +61,9 @@ SessionAction read_set_speed(ObjectReader& params, Errors&) {
 }
 
 constexpr Method kMethods[] = {
-    {"scene.load", read_load, true}, {"control.play", read_play},
-    {"control.pause", read_pause},   {"control.step", read_step},
-    {"control.reset", read_reset},   {"control.set_speed", read_set_speed},
+    {"scene.load", read_load},     {"control.play", read_play},
+    {"control.pause", read_pause}, {"control.step", read_step},
+    {"control.reset", read_reset}, {"control.set_speed", read_set_speed},
 };
 
 }  // namespace

@@ -65,9 +65,8 @@ ServerAction read_close(ObjectReader& params, Errors&) {
 }
 
 constexpr Method kMethods[] = {
-    {"session.create", read_create, true}, {"session.list", read_list},
-    {"session.join", read_join},           {"session.leave", read_leave},
-    {"session.close", read_close},
+    {"session.create", read_create}, {"session.list", read_list},   {"session.join", read_join},
+    {"session.leave", read_leave},   {"session.close", read_close},
 };
 
 }  // namespace

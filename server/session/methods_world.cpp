@@ -109,7 +109,7 @@ SessionAction read_apply_force(ObjectReader& params, Errors&) {
 }
 
 constexpr Method kMethods[] = {
-    {"world.add_body", read_add_body, true}, {"world.remove_body", read_remove_body},
+    {"world.add_body", read_add_body},       {"world.remove_body", read_remove_body},
     {"world.melt_body", read_melt_body},     {"world.set_emitter", read_set_emitter},
     {"world.set_gravity", read_set_gravity}, {"world.set_interface", read_set_interface},
     {"world.apply_force", read_apply_force},

@@ -67,7 +67,7 @@ class SessionServer::Impl {
   std::optional<RpcResult> call(Caller& caller, const RpcRequest& request, std::size_t bytes) {
     const Method* method = find_method(request.method);
     if (method == nullptr) return method_not_found(request.method);
-    if (!method->takes_scene && bytes > limits().max_message_bytes) {
+    if (method->rules.message_class != MessageClass::scene && bytes > limits().max_message_bytes) {
       return limit_reached("message_bytes", limits().max_message_bytes);
     }
     if (auto error =
