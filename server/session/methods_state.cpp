@@ -48,7 +48,7 @@ ActionResult query(const Simulation& simulation, const std::optional<std::vector
   } else {
     for (std::size_t i = 0; i < keys->size(); ++i) {
       const auto body = find_body(simulation, (*keys)[i]);
-      if (!body) return no_such_body("there is no body as in " + pointer_to("/bodies", i));
+      if (!body) return no_such_body("no body has this id or name", pointer_to("/bodies", i));
       bodies.push_back(describe_state(*body));
     }
   }

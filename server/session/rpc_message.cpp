@@ -20,9 +20,11 @@ Json to_json(const Error& error) {
 }
 
 Json to_json(const RpcError& error) {
+  const ErrorRow& row = error_row(error.kind);
   Json data = error.data;
-  data["kind"] = error.kind;
-  return {{"code", error.code}, {"message", error.message}, {"data", std::move(data)}};
+  data["kind"] = row.name;
+  data["hint"] = row.hint;
+  return {{"code", row.code}, {"message", error.message}, {"data", std::move(data)}};
 }
 
 std::string to_text(const Json& message) {
@@ -33,15 +35,15 @@ std::string to_text(const Json& message) {
 }  // namespace
 
 RpcError parse_failed(const Error& error) {
-  return {-32700, "parse_error", error.message, {{"reason", error.code}}};
+  return {ErrorKind::parse_error, error.message, {{"reason", error.code}}};
 }
 
 RpcError invalid_request(std::string message) {
-  return {-32600, "invalid_request", std::move(message)};
+  return {ErrorKind::invalid_request, std::move(message)};
 }
 
 RpcError method_not_found(std::string_view method) {
-  return {-32601, "method_not_found", "there is no method " + printable(method)};
+  return {ErrorKind::method_not_found, "there is no method " + printable(method)};
 }
 
 RpcError invalid_params(const Errors& errors) {
@@ -51,44 +53,47 @@ RpcError invalid_params(const Errors& errors) {
   const Error& first = errors.front();
   const std::string message =
       first.path.empty() ? first.message : first.path + ": " + first.message;
-  return {-32602, "invalid_params", message, {{"path", first.path}, {"errors", std::move(list)}}};
+  return {ErrorKind::invalid_params, message, {{"path", first.path}, {"errors", std::move(list)}}};
 }
 
 RpcError internal_error() {
-  return {-32603, "internal_error", "a fault of the server; see its log"};
+  return {ErrorKind::internal_error, "a fault of the server; see its log"};
 }
 
 RpcError not_joined() {
-  return {1001, "not_joined", "this method needs a joined session"};
+  return {ErrorKind::not_joined, "this method needs a joined session"};
 }
 
-RpcError no_such_session(std::string_view session) {
-  return {1002, "no_such_session", "there is no session " + printable(session)};
+RpcError no_such_session(std::string_view session, std::string_view path) {
+  RpcError error{ErrorKind::no_such_session, "there is no session " + printable(session)};
+  if (!path.empty()) error.data["path"] = path;
+  return error;
 }
 
-RpcError no_such_body(std::string message) {
-  return {1003, "no_such_body", std::move(message)};
+RpcError no_such_body(std::string message, const std::string& path) {
+  return {ErrorKind::no_such_body, std::move(message), {{"path", path}}};
 }
 
 RpcError no_such_scene(std::string_view scene) {
-  return {1004, "no_such_scene", "the catalogue has no scene " + printable(scene)};
+  return {ErrorKind::no_such_scene,
+          "the catalogue has no scene " + printable(scene),
+          {{"path", "/scene"}}};
 }
 
 RpcError limit_reached(std::string_view limit, std::size_t maximum) {
-  return {1005,
-          "limit_reached",
+  return {ErrorKind::limit_reached,
           "at most " + std::to_string(maximum) + " " + std::string(limit),
           {{"limit", limit}, {"maximum", maximum}}};
 }
 
 RpcError not_allowed(std::string message) {
-  return {1006, "not_allowed", std::move(message)};
+  return {ErrorKind::not_allowed, std::move(message)};
 }
 
 RpcError refused(const Errors& errors) {
   VAT_CHECK(!errors.empty());
   const Error& first = errors.front();
-  if (first.code == "no_such_body") return no_such_body(first.message);
+  if (first.code == "no_such_body") return no_such_body(first.message, first.path);
   return invalid_params(errors);
 }
 

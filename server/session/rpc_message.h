@@ -7,20 +7,21 @@
 #include <variant>
 
 #include "protocol/json_reader.h"
+#include "server/session/error_table.h"
 
 /// JSON-RPC 2.0 messages and the errors of PROTOCOL.md.
 namespace vat {
 
-/// A reply's error. `data` is what stands beside its `kind`.
+/// A reply's error. `data` is what stands beside its `kind` and `hint`: a parameter that is at fault
+/// by `path`, a pointer into `params`.
 struct RpcError {
-  int code = 0;
-  std::string kind;
-  std::string message;
+  ErrorKind kind;
+  std::string message;  ///< for people
   Json data = Json::object();
 };
 
-// The rows of PROTOCOL.md's table of errors. `message` is for people; the names of methods,
-// sessions and scenes may be passed as the client gave them, and are made printable.
+// Errors of the kinds of error_rows(). The names of methods, sessions and scenes may be passed as
+// the client gave them, and are made printable.
 
 /// `error` is parse_json()'s: its code becomes `data.reason`.
 RpcError parse_failed(const Error& error);
@@ -31,8 +32,9 @@ RpcError invalid_params(const Errors& errors);
 /// A fault of this program; what it was belongs in the log, not in the reply.
 RpcError internal_error();
 RpcError not_joined();
-RpcError no_such_session(std::string_view session);
-RpcError no_such_body(std::string message);
+/// Without a path: the session has ended under a command.
+RpcError no_such_session(std::string_view session, std::string_view path = {});
+RpcError no_such_body(std::string message, const std::string& path);
 RpcError no_such_scene(std::string_view scene);
 /// `limit` is the name in server.info's `limits`, `maximum` its value.
 RpcError limit_reached(std::string_view limit, std::size_t maximum);

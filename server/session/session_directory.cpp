@@ -127,7 +127,7 @@ std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const
 std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::optional<SessionId>& id) {
   const std::lock_guard lock(mutex_);
   const auto session = id ? find_session(*id) : sessions_.begin();
-  if (session == sessions_.end()) return no_such_session(id ? *id : "at all");
+  if (session == sessions_.end()) return no_such_session(id ? *id : "at all", "/session");
   const auto found = clients_.find(caller.client()->id());
   if (found == clients_.end()) return not_allowed("the connection is closed");
   Client& client = found->second;
@@ -162,7 +162,7 @@ std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId&
                                                 const std::string& reason) {
   const std::lock_guard lock(mutex_);
   const auto session = find_session(id);
-  if (session == sessions_.end()) return no_such_session(id);
+  if (session == sessions_.end()) return no_such_session(id, "/session");
   close_session(session, reason, std::move(caller));
   return {};
 }

@@ -19,7 +19,9 @@ Errors to_errors(const RpcError& error) {
       errors.push_back({entry.at("code"), entry.at("path"), entry.at("message")});
     }
   }
-  if (errors.empty()) errors.push_back({error.kind, "", error.message});
+  if (errors.empty()) {
+    errors.push_back({std::string(error_row(error.kind).name), "", error.message});
+  }
   return errors;
 }
 

@@ -147,28 +147,34 @@ TEST_F(BadParameters, AreReportedAllAtOnce) {
 TEST_F(BadParameters, WhatIsNotThereHasAnErrorOfItsOwn) {
   const Json before = observe();
   const Json target = {0, 0, 0};
-  const std::vector<std::tuple<std::string, Json, int, std::string>> cases = {
-      {"session.join", {{"session", "s2"}}, 1002, "no_such_session"},
-      {"session.join", {{"session", ""}}, 1002, "no_such_session"},
-      {"session.join", {{"session", "s01"}}, 1002, "no_such_session"},
-      {"session.close", {{"session", "s2"}}, 1002, "no_such_session"},
-      {"world.remove_body", {{"body", 0}}, 1003, "no_such_body"},
-      {"world.remove_body", {{"body", 4}}, 1003, "no_such_body"},
-      {"world.melt_body", {{"body", 4}, {"material", "water"}}, 1003, "no_such_body"},
+  const std::vector<std::tuple<std::string, Json, int, std::string, std::string>> cases = {
+      {"session.join", {{"session", "s2"}}, 1002, "no_such_session", "/session"},
+      {"session.join", {{"session", ""}}, 1002, "no_such_session", "/session"},
+      {"session.join", {{"session", "s01"}}, 1002, "no_such_session", "/session"},
+      {"session.close", {{"session", "s2"}}, 1002, "no_such_session", "/session"},
+      {"world.remove_body", {{"body", 0}}, 1003, "no_such_body", "/body"},
+      {"world.remove_body", {{"body", 4}}, 1003, "no_such_body", "/body"},
+      {"world.melt_body", {{"body", 4}, {"material", "water"}}, 1003, "no_such_body", "/body"},
       {"world.apply_force",
        {{"body", 9}, {"force", {0, 0, 1}}, {"duration", 1}},
        1003,
-       "no_such_body"},
-      {"grab.start", {{"body", 9}, {"particle", 0}, {"target", target}}, 1003, "no_such_body"},
-      {"state.query", {{"bodies", {"ball", "brick"}}}, 1003, "no_such_body"},
-      {"state.query", {{"bodies", {9}}}, 1003, "no_such_body"},
-      {"session.create", {{"name", "n"}, {"scene", "nowhere"}}, 1004, "no_such_scene"},
-      {"scene.load", {{"scene", "../mixed"}}, 1004, "no_such_scene"},
+       "no_such_body",
+       "/body"},
+      {"grab.start",
+       {{"body", 9}, {"particle", 0}, {"target", target}},
+       1003,
+       "no_such_body",
+       "/body"},
+      {"state.query", {{"bodies", {"ball", "brick"}}}, 1003, "no_such_body", "/bodies/1"},
+      {"state.query", {{"bodies", {9}}}, 1003, "no_such_body", "/bodies/0"},
+      {"session.create", {{"name", "n"}, {"scene", "nowhere"}}, 1004, "no_such_scene", "/scene"},
+      {"scene.load", {{"scene", "../mixed"}}, 1004, "no_such_scene", "/scene"},
   };
-  for (const auto& [method, params, code, kind] : cases) {
+  for (const auto& [method, params, code, kind, path] : cases) {
     const Json error = client->error(method, params);
     EXPECT_EQ(error.at("code"), code) << method << params;
     EXPECT_EQ(error.at("data").at("kind"), kind);
+    EXPECT_EQ(error.at("data").at("path"), path) << method << params;
     EXPECT_EQ(observe(), before);
   }
 }

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace vat {
+
+/// The kinds of errors that a reply can carry.
+enum class ErrorKind : std::uint8_t {
+  parse_error,
+  invalid_request,
+  method_not_found,
+  invalid_params,
+  internal_error,
+  not_joined,
+  no_such_session,
+  no_such_body,
+  no_such_scene,
+  limit_reached,
+  not_allowed
+};
+
+/// What holds for all errors of a kind. Codes and names are stable: a new error gets a new kind.
+struct ErrorRow {
+  ErrorKind kind;
+  int code;               ///< the reply's `code`
+  std::string_view name;  ///< its `data.kind`
+  std::string_view hint;  ///< its `data.hint`: what to do, a sentence
+};
+
+/// One row for each kind, in their order: the table of errors in PROTOCOL.md.
+std::span<const ErrorRow> error_rows();
+const ErrorRow& error_row(ErrorKind kind);
+
+}  // namespace vat
