@@ -13,11 +13,14 @@ LAYERS = {
     "protocol/": (("core/", "protocol/"), ("nlohmann/", "tiny_obj_loader.h")),
     "server/": (
         ("core/", "protocol/", "server/"),
-        ("CLI/", "Eigen/", "boost/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/"),
+        ("CLI/", "Eigen/", "boost/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/",
+         "fcntl.h", "sqlite3.h", "zstd.h"),
     ),
 }
 NOT_IN_CORE = {"chrono", "ctime", "iostream", "fstream", "filesystem", "random", "thread"}
-ONLY_IN = {"websocketpp/": "server/net/"}
+ONLY_IN = {
+    "websocketpp/": "server/net/", "sqlite3.h": "server/storage/", "zstd.h": "server/storage/",
+}
 
 # Whatever lets the order of operations depend on threads, addresses or chance.
 NOT_DETERMINISTIC = re.compile(

@@ -1,0 +1,136 @@
+#include "server/storage/checkpoint_store.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+
+#include "server/storage/compression.h"
+#include "server/storage/schema.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint32_t kApplication = 0x76617463;  // "vatc"
+
+constexpr const char* kSteps[] = {R"(
+CREATE TABLE checkpoints (
+  number INTEGER PRIMARY KEY,
+  session INTEGER NOT NULL,
+  position INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  fields TEXT NOT NULL,
+  state BLOB NOT NULL
+) STRICT;
+CREATE INDEX checkpoints_of_session ON checkpoints (session, position, sequence);
+)"};
+
+constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;  // of 200 000 particles a third
+
+/// The one that leaves the smallest gap, the oldest of several; never the newest, and the oldest
+/// only where there are but two.
+std::size_t find_needless(const std::vector<CheckpointPlace>& places) {
+  std::size_t needless = 0;
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+    const std::uint64_t gap = places[i + 1].position - places[i - 1].position;
+    if (gap >= least) continue;
+    least = gap;
+    needless = i;
+  }
+  return needless;
+}
+
+}  // namespace
+
+CheckpointStore::CheckpointStore(const std::string& path, std::size_t session_bytes)
+    : session_bytes_(session_bytes),
+      database_(open_database(path, {kApplication, kSteps})),
+      mover_(path, Database::Mode::create) {
+  mover_.use_log();
+}
+
+std::size_t CheckpointStore::write(const Checkpoint& checkpoint) {
+  const std::vector<std::byte> state = compress(checkpoint.state);
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(database_);
+  database_
+      .prepare(
+          "INSERT INTO checkpoints (session, position, sequence, fields, state)"
+          " VALUES (?, ?, ?, ?, ?)")
+      .bind(0, checkpoint.session)
+      .bind(1, checkpoint.position)
+      .bind(2, checkpoint.sequence)
+      .bind(3, std::string_view(checkpoint.fields))
+      .bind(4, std::span<const std::byte>(state))
+      .run();
+  thin(checkpoint.session);
+  transaction.commit();
+  return state.size();
+}
+
+std::vector<CheckpointPlace> CheckpointStore::places(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  return places_locked(session);
+}
+
+std::vector<CheckpointPlace> CheckpointStore::places_locked(std::uint64_t session) {
+  std::vector<CheckpointPlace> places;
+  Statement query = database_.prepare(
+      "SELECT number, position, sequence, length(state) FROM checkpoints WHERE session = ?"
+      " ORDER BY position, sequence, number");
+  query.bind(0, session);
+  while (query.step()) {
+    places.push_back(
+        {query.count(0), query.count(1), query.count(2), static_cast<std::size_t>(query.count(3))});
+  }
+  return places;
+}
+
+void CheckpointStore::thin(std::uint64_t session) {
+  std::vector<CheckpointPlace> places = places_locked(session);
+  const auto add = [](std::size_t sum, const CheckpointPlace& place) { return sum + place.bytes; };
+  std::size_t bytes = std::accumulate(places.begin(), places.end(), std::size_t{0}, add);
+  while (bytes > session_bytes_ && places.size() > 1) {
+    const std::size_t needless = find_needless(places);
+    remove_row(places[needless].row);
+    bytes -= places[needless].bytes;
+    places.erase(places.begin() + static_cast<std::ptrdiff_t>(needless));
+  }
+}
+
+void CheckpointStore::remove_row(std::uint64_t row) {
+  database_.prepare("DELETE FROM checkpoints WHERE number = ?").bind(0, row).run();
+}
+
+std::optional<Checkpoint> CheckpointStore::read(const CheckpointPlace& place) {
+  Checkpoint checkpoint;
+  std::vector<std::byte> compressed;
+  {
+    const std::lock_guard lock(mutex_);
+    Statement query = database_.prepare(
+        "SELECT session, position, sequence, fields, state FROM checkpoints WHERE number = ?");
+    query.bind(0, place.row);
+    if (!query.step()) return {};
+    checkpoint = {query.count(0), query.count(1), query.count(2), std::string(query.text(3)), {}};
+    const std::span<const std::byte> bytes = query.bytes(4);
+    compressed.assign(bytes.begin(), bytes.end());
+  }
+  checkpoint.state = decompress(compressed, kMaxStateBytes);
+  return checkpoint;
+}
+
+void CheckpointStore::keep_only(const std::vector<std::uint64_t>& sessions) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::uint64_t> gone;
+  Statement query = database_.prepare("SELECT DISTINCT session FROM checkpoints");
+  while (query.step()) {
+    const std::uint64_t session = query.count(0);
+    if (std::ranges::find(sessions, session) == sessions.end()) gone.push_back(session);
+  }
+  for (const std::uint64_t session : gone) {
+    database_.prepare("DELETE FROM checkpoints WHERE session = ?").bind(0, session).run();
+  }
+}
+
+}  // namespace vat

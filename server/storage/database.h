@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "server/storage/storage_error.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace vat {
+
+class Statement;
+
+/// One connection to an SQLite database; used by one thread at a time. Everything here throws
+/// StorageError.
+class Database {
+ public:
+  enum class Mode {
+    create,  ///< read and write; made where there is none
+    look     ///< the file stays as it is, whatever happens
+  };
+
+  Database(const std::string& path, Mode mode);
+
+  const std::string& path() const { return path_; }
+
+  /// Statements without results.
+  void execute(const char* sql);
+  Statement prepare(std::string_view sql);
+  /// The only number of a query's only row.
+  std::int64_t number(std::string_view sql);
+  std::int64_t last_row() const;
+  /// Ends a transaction, if there is one, without effect.
+  void roll_back() noexcept;
+
+  /// Writes go to a log beside the file, which survives the end of the process at any moment, and
+  /// from there to the file only by move_log().
+  void use_log();
+  /// Moves what the log holds into the file, as far as no reader needs it there, while others may
+  /// write. Where `wait`, writers wait, and the log begins anew. Returns the bytes of the log.
+  std::size_t move_log(bool wait);
+
+ private:
+  friend class Statement;
+  struct Close {
+    void operator()(sqlite3* connection) const;
+  };
+  std::string path_;
+  std::unique_ptr<sqlite3, Close> connection_;
+};
+
+/// A prepared statement, used again and again. Parameters and columns count from 0; texts and bytes
+/// that are bound must live until the statement has run.
+class Statement {
+ public:
+  Statement(Database& database, std::string_view sql);
+
+  Statement& bind(int parameter, std::int64_t value);
+  Statement& bind(int parameter, std::uint64_t value);  ///< at most 2^63 - 1
+  Statement& bind(int parameter, double value);
+  Statement& bind(int parameter, std::string_view text);
+  Statement& bind(int parameter, std::span<const std::byte> bytes);
+
+  /// Runs to the next row; false at the end, when it is ready to be bound and run anew.
+  bool step();
+  /// Runs a statement that gives no rows.
+  void run();
+
+  // Of the present row.
+  std::int64_t integer(int column) const;
+  std::uint64_t count(int column) const { return static_cast<std::uint64_t>(integer(column)); }
+  double real(int column) const;
+  bool is_null(int column) const;
+  /// Valid until the next step.
+  std::string_view text(int column) const;
+  std::span<const std::byte> bytes(int column) const;
+
+  /// Ends a query before its last row.
+  void reset();
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  void check(int code);
+  Database* database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+/// What is written between construction and commit() is kept as a whole or not at all.
+class Transaction {
+ public:
+  explicit Transaction(Database& database);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Database& database_;
+  bool open_ = true;
+};
+
+}  // namespace vat

@@ -1,0 +1,242 @@
+#include "server/storage/session_store.h"
+
+#include <bit>
+#include <limits>
+
+#include "server/storage/schema.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint32_t kApplication = 0x76617473;  // "vats"
+
+constexpr const char* kSteps[] = {R"(
+CREATE TABLE sessions (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  name TEXT NOT NULL,
+  instruction_set TEXT NOT NULL,
+  settings TEXT NOT NULL,
+  closed INTEGER NOT NULL DEFAULT 0,
+  reached INTEGER NOT NULL DEFAULT 0,
+  position INTEGER,
+  tick INTEGER,
+  sequence INTEGER,
+  hash INTEGER,
+  epoch INTEGER,
+  playing INTEGER,
+  speed REAL
+) STRICT;
+CREATE TABLE log (
+  session INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  position INTEGER NOT NULL,
+  tick INTEGER NOT NULL,
+  participant INTEGER NOT NULL,
+  method TEXT NOT NULL,
+  params TEXT NOT NULL,
+  PRIMARY KEY (session, sequence)
+) STRICT, WITHOUT ROWID;
+)"};
+
+constexpr const char* kInsertEntry =
+    "INSERT INTO log (session, sequence, position, tick, participant, method, params)"
+    " VALUES (?, ?, ?, ?, ?, ?, ?)";
+constexpr const char* kWriteBeat =
+    "UPDATE sessions SET position = ?, tick = ?, sequence = ?, hash = ?, epoch = ?, playing = ?,"
+    " speed = ?, reached = max(reached, ?1) WHERE number = ?";
+constexpr const char* kWriteReached =
+    "UPDATE sessions SET reached = max(reached, ?) WHERE number = ?";
+constexpr std::size_t kEntriesAtOnce = 500;  // read or removed while commands wait
+
+std::optional<SessionBeat> to_beat(const Statement& row, int column) {
+  if (row.is_null(column)) return {};
+  SessionBeat beat;
+  beat.position = row.count(column);
+  beat.tick = row.count(column + 1);
+  beat.sequence = row.count(column + 2);
+  beat.hash = std::bit_cast<std::uint64_t>(row.integer(column + 3));
+  beat.epoch = static_cast<std::uint32_t>(row.integer(column + 4));
+  beat.playing = row.integer(column + 5) != 0;
+  beat.speed = row.real(column + 6);
+  return beat;
+}
+
+LogEntry to_entry(const Statement& row) {
+  return {row.count(0),
+          row.count(1),
+          row.count(2),
+          row.count(3),
+          std::string(row.text(4)),
+          std::string(row.text(5))};
+}
+
+constexpr const char* kSelectEntries =
+    "SELECT sequence, position, tick, participant, method, params FROM log";
+
+}  // namespace
+
+SessionStore::SessionStore(const std::string& path)
+    : database_(open_database(path, {kApplication, kSteps})),
+      mover_(path, Database::Mode::create),
+      insert_entry_(database_, kInsertEntry),
+      write_beat_(database_, kWriteBeat),
+      write_reached_(database_, kWriteReached) {
+  mover_.use_log();
+}
+
+std::uint64_t SessionStore::create(const StoredSession& session, const LogEntry& first) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(database_);
+  database_.prepare("INSERT INTO sessions (name, instruction_set, settings) VALUES (?, ?, ?)")
+      .bind(0, session.name)
+      .bind(1, session.instruction_set)
+      .bind(2, session.settings)
+      .run();
+  const auto number = static_cast<std::uint64_t>(database_.last_row());
+  insert(number, first);
+  transaction.commit();
+  return number;
+}
+
+std::vector<StoredSession> SessionStore::sessions() {
+  const std::lock_guard lock(mutex_);
+  std::vector<StoredSession> sessions;
+  Statement query = database_.prepare(
+      "SELECT number, name, instruction_set, settings, reached,"
+      " position, tick, sequence, hash, epoch, playing, speed"
+      " FROM sessions WHERE closed = 0 ORDER BY number");
+  while (query.step()) {
+    sessions.push_back({query.count(0), std::string(query.text(1)), std::string(query.text(2)),
+                        std::string(query.text(3)), query.count(4), to_beat(query, 5)});
+  }
+  return sessions;
+}
+
+void SessionStore::rename(std::uint64_t session, const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  database_.prepare("UPDATE sessions SET name = ? WHERE number = ?")
+      .bind(0, name)
+      .bind(1, session)
+      .run();
+}
+
+void SessionStore::configure(std::uint64_t session, const std::string& settings) {
+  const std::lock_guard lock(mutex_);
+  database_.prepare("UPDATE sessions SET settings = ? WHERE number = ?")
+      .bind(0, settings)
+      .bind(1, session)
+      .run();
+}
+
+void SessionStore::close(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  database_.prepare("UPDATE sessions SET closed = 1 WHERE number = ?").bind(0, session).run();
+}
+
+void SessionStore::remove_closed() {
+  std::vector<std::uint64_t> closed;
+  {
+    const std::lock_guard lock(mutex_);
+    Statement query = database_.prepare("SELECT number FROM sessions WHERE closed = 1");
+    while (query.step()) closed.push_back(query.count(0));
+  }
+  for (const std::uint64_t session : closed) {
+    trim(session, std::numeric_limits<std::int64_t>::max(), 0);
+    const std::lock_guard lock(mutex_);
+    database_.prepare("DELETE FROM sessions WHERE number = ?").bind(0, session).run();
+  }
+}
+
+void SessionStore::insert(std::uint64_t session, const LogEntry& entry) {
+  insert_entry_.bind(0, session)
+      .bind(1, entry.sequence)
+      .bind(2, entry.position)
+      .bind(3, entry.tick)
+      .bind(4, entry.participant)
+      .bind(5, std::string_view(entry.method))
+      .bind(6, std::string_view(entry.params))
+      .run();
+}
+
+void SessionStore::append(std::uint64_t session, std::span<const LogEntry> entries) {
+  const std::lock_guard lock(mutex_);
+  if (entries.size() == 1) {  // a transaction by itself
+    insert(session, entries.front());
+    return;
+  }
+  Transaction transaction(database_);
+  for (const LogEntry& entry : entries) insert(session, entry);
+  transaction.commit();
+}
+
+std::vector<LogEntry> SessionStore::read(std::uint64_t session, std::uint64_t after) {
+  const std::lock_guard lock(mutex_);
+  std::vector<LogEntry> entries;
+  Statement query =
+      database_.prepare(std::string(kSelectEntries) +
+                        " WHERE session = ? AND sequence > ? ORDER BY sequence LIMIT ?");
+  query.bind(0, session).bind(1, after).bind(2, std::uint64_t{kEntriesAtOnce});
+  while (query.step()) entries.push_back(to_entry(query));
+  return entries;
+}
+
+std::optional<LogEntry> SessionStore::find(std::uint64_t session, std::uint64_t sequence) {
+  const std::lock_guard lock(mutex_);
+  Statement query =
+      database_.prepare(std::string(kSelectEntries) + " WHERE session = ? AND sequence = ?");
+  query.bind(0, session).bind(1, sequence);
+  if (!query.step()) return {};
+  return to_entry(query);
+}
+
+std::size_t SessionStore::log_bytes(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  Statement query = database_.prepare(
+      "SELECT coalesce(sum(length(CAST(params AS BLOB))), 0) FROM log WHERE session = ?");
+  query.bind(0, session);
+  return query.step() ? static_cast<std::size_t>(query.count(0)) : 0;
+}
+
+void SessionStore::trim(std::uint64_t session, std::uint64_t last, std::uint64_t kept) {
+  while (trim_some(session, last, kept)) {
+  }
+}
+
+bool SessionStore::trim_some(std::uint64_t session, std::uint64_t last, std::uint64_t kept) {
+  const std::lock_guard lock(mutex_);
+  database_
+      .prepare(
+          "DELETE FROM log WHERE session = ?1 AND sequence IN (SELECT sequence FROM log"
+          " WHERE session = ?1 AND sequence <= ?2 AND sequence <> ?3 LIMIT ?4)")
+      .bind(0, session)
+      .bind(1, last)
+      .bind(2, kept)
+      .bind(3, std::uint64_t{kEntriesAtOnce})
+      .run();
+  return database_.number("SELECT changes()") > 0;
+}
+
+void SessionStore::beat(std::uint64_t session, const SessionBeat& beat) {
+  const std::lock_guard lock(mutex_);
+  write_beat_.bind(0, beat.position)
+      .bind(1, beat.tick)
+      .bind(2, beat.sequence)
+      .bind(3, std::bit_cast<std::int64_t>(beat.hash))
+      .bind(4, std::int64_t{beat.epoch})
+      .bind(5, std::int64_t{beat.playing})
+      .bind(6, beat.speed)
+      .bind(7, session)
+      .run();
+}
+
+void SessionStore::reach(std::uint64_t session, std::uint64_t position) {
+  const std::lock_guard lock(mutex_);
+  write_reached_.bind(0, position).bind(1, session).run();
+}
+
+void SessionStore::limit_pages(std::size_t pages) {
+  const std::lock_guard lock(mutex_);
+  database_.number("PRAGMA max_page_count = " + std::to_string(pages));
+}
+
+}  // namespace vat

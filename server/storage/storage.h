@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "server/storage/checkpoint_store.h"
+#include "server/storage/data_folder.h"
+#include "server/storage/session_store.h"
+
+namespace vat {
+
+/// All that a server keeps in its data folder, and a thread for what may take its time: writing
+/// checkpoints, removing what is closed, and moving what was written into its place in the files,
+/// with the waiting for the disk that belongs to it. Nobody else waits for the disk.
+class Storage {
+ public:
+  struct Limits {
+    std::size_t checkpoint_bytes = std::size_t{64} << 20;  ///< of one session
+    std::size_t log_bytes = std::size_t{64} << 20;         ///< of one session's commands
+  };
+
+  /// Opens the folder, or makes it. Throws StorageError.
+  Storage(const std::string& folder, const Limits& limits);
+  /// Ends what was posted first.
+  ~Storage();
+  Storage(const Storage&) = delete;
+  Storage& operator=(const Storage&) = delete;
+
+  const std::string& folder() const { return folder_.path(); }
+  const Limits& limits() const { return limits_; }
+  SessionStore& sessions() { return sessions_; }
+  CheckpointStore& checkpoints() { return checkpoints_; }
+
+  /// Runs a task on the thread, in the order of the calls; what it throws is logged.
+  void post(std::function<void()> task);
+  /// Frees what closed sessions take.
+  void remove_closed();
+  /// How often something could not be written.
+  std::uint64_t failures() const { return failures_; }
+  void count_failure() { ++failures_; }
+
+ private:
+  void run(const std::function<void()>& task);
+  void move_logs();
+  void wait_to_move();
+
+  const DataFolder folder_;
+  const Limits limits_;
+  SessionStore sessions_;
+  CheckpointStore checkpoints_;
+  std::atomic<std::uint64_t> failures_ = 0;
+  boost::asio::thread_pool thread_{1};
+  boost::asio::steady_timer move_timer_{thread_};
+};
+
+}  // namespace vat

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "server/storage/checkpoint_store.h"
+#include "server/storage/compression.h"
+#include "server/storage/data_folder.h"
+#include "server/storage/storage.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat {
+namespace {
+
+/// Bytes that do not shrink.
+std::vector<std::byte> noise(std::size_t count) {
+  std::vector<std::byte> bytes(count);
+  std::uint32_t x = 1;
+  for (std::byte& b : bytes) {
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^= x << 5;
+    b = static_cast<std::byte>(x >> 24);
+  }
+  return bytes;
+}
+
+Checkpoint checkpoint(std::uint64_t session, std::uint64_t position, std::size_t bytes) {
+  return {session, position, position + 1, R"({"playing":true})", noise(bytes)};
+}
+
+std::vector<std::uint64_t> positions(CheckpointStore& store, std::uint64_t session) {
+  std::vector<std::uint64_t> positions;
+  for (const CheckpointPlace& place : store.places(session)) positions.push_back(place.position);
+  return positions;
+}
+
+class StorageCheckpoints : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+  const std::string path = folder.file("checkpoints.db");
+};
+
+TEST_F(StorageCheckpoints, ComeBackAsTheyWere) {
+  const Checkpoint written = checkpoint(7, 100, 5000);
+  CheckpointStore(path, 1 << 20).write(written);
+  CheckpointStore store(path, 1 << 20);
+  ASSERT_EQ(store.places(7).size(), 1U);
+  EXPECT_EQ(store.places(7)[0].sequence, 101U);
+  const auto read = store.read(store.places(7)[0]);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->session, 7U);
+  EXPECT_EQ(read->position, 100U);
+  EXPECT_EQ(read->fields, written.fields);
+  EXPECT_EQ(read->state, written.state);
+  EXPECT_TRUE(store.places(8).empty());
+}
+
+TEST_F(StorageCheckpoints, BeyondTheirBytesTheyAreThinnedEvenly) {
+  CheckpointStore store(path, 10 * 1000 + 500);
+  for (std::uint64_t position = 0; position <= 64; ++position) {
+    store.write(checkpoint(1, position, 1000));
+  }
+  const std::vector<std::uint64_t> kept = positions(store, 1);
+  ASSERT_GE(kept.size(), 9U);  // each takes some bytes more than 1000
+  ASSERT_LE(kept.size(), 10U);
+  EXPECT_EQ(kept.front(), 0U);
+  EXPECT_EQ(kept.back(), 64U);
+  // Of ten with the least gaps merged first none is wider than twice what an even share would be,
+  // doubled: intervals are powers of two.
+  for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_LE(kept[i] - kept[i - 1], 4U * 64 / 9);
+}
+
+TEST_F(StorageCheckpoints, TheNewestStaysHoweverLargeItIs) {
+  CheckpointStore store(path, 100);
+  store.write(checkpoint(1, 5, 1000));
+  store.write(checkpoint(2, 1, 50));
+  store.write(checkpoint(1, 9, 1000));
+  EXPECT_EQ(positions(store, 1), std::vector<std::uint64_t>{9});
+  EXPECT_EQ(positions(store, 2), std::vector<std::uint64_t>{1});
+}
+
+TEST_F(StorageCheckpoints, ThoseOfOtherSessionsCanGo) {
+  CheckpointStore store(path, 1 << 20);
+  for (std::uint64_t session = 1; session <= 3; ++session) store.write(checkpoint(session, 1, 10));
+  store.keep_only({2});
+  EXPECT_TRUE(store.places(1).empty());
+  EXPECT_EQ(store.places(2).size(), 1U);
+  EXPECT_TRUE(store.places(3).empty());
+}
+
+TEST_F(StorageCheckpoints, ADamagedOneIsToldByItsKind) {
+  CheckpointStore store(path, 1 << 20);
+  store.write(checkpoint(1, 1, 1000));
+  Database database(path, Database::Mode::create);
+  database.execute("UPDATE checkpoints SET state = CAST(substr(state, 1, 900) AS BLOB)");
+  try {
+    store.read(store.places(1).at(0));
+    ADD_FAILURE() << "it was read";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(error.kind(), StorageError::Kind::corrupt);
+  }
+}
+
+TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
+  std::vector<std::byte> bytes = noise(3000);
+  bytes.resize(10'000);
+  std::vector<std::byte> frame = compress(bytes);
+  EXPECT_LT(frame.size(), 4000U);
+  EXPECT_EQ(decompress(frame, 10'000), bytes);
+  EXPECT_THROW(decompress(frame, 9'999), StorageError);
+  EXPECT_THROW(decompress(std::span(frame).first(frame.size() - 1), 10'000), StorageError);
+  for (const std::size_t at : {std::size_t{1}, frame.size() / 2, frame.size() - 1}) {
+    frame[at] ^= std::byte{1};
+    EXPECT_THROW(decompress(frame, 10'000), StorageError) << at;
+    frame[at] ^= std::byte{1};
+  }
+  EXPECT_TRUE(decompress(compress({}), 0).empty());
+}
+
+TEST(StorageFolder, IsOneServersAtATime) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("data");
+  {
+    const DataFolder first(path);
+    try {
+      const DataFolder second(path);
+      ADD_FAILURE() << "both have it";
+    } catch (const StorageError& error) {
+      EXPECT_EQ(error.kind(), StorageError::Kind::locked);
+    }
+  }
+  const DataFolder third(path);
+}
+
+TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
+  try {
+    const DataFolder folder("/proc/vat");  // nobody may, root neither
+    ADD_FAILURE() << "it was made";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(error.kind(), StorageError::Kind::read_only);
+  }
+}
+
+TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
+  const test::TemporaryFolder folder;
+  std::uint64_t kept = 0;
+  {
+    Storage storage(folder.file("data"), {});
+    const LogEntry first{1, 0, 0, 0, "scene.load", "{}"};
+    const StoredSession session{0, "name", "avx2", "{}", 0, {}};
+    const std::uint64_t closed = storage.sessions().create(session, first);
+    kept = storage.sessions().create(session, first);
+    storage.checkpoints().write(checkpoint(closed, 1, 10));
+    storage.checkpoints().write(checkpoint(kept, 1, 10));
+    storage.sessions().close(closed);
+    storage.remove_closed();
+  }
+  Storage storage(folder.file("data"), {});
+  EXPECT_TRUE(storage.sessions().read(1, 0).empty());
+  EXPECT_TRUE(storage.checkpoints().places(1).empty());
+  EXPECT_EQ(storage.sessions().read(kept, 0).size(), 1U);
+  EXPECT_EQ(storage.checkpoints().places(kept).size(), 1U);
+}
+
+TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
+  const test::TemporaryFolder folder;
+  bool ran = false;
+  {
+    Storage storage(folder.file("data"), {});
+    storage.post([] { throw StorageError(StorageError::Kind::full, "the disk is full"); });
+    storage.post([&] { ran = storage.failures() == 1; });
+  }
+  EXPECT_TRUE(ran);
+}
+
+}  // namespace
+}  // namespace vat
