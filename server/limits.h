@@ -23,6 +23,8 @@ struct ServerLimits {
   std::size_t max_grabs_per_client = 10;                  ///< one a finger
   /// For the acknowledgement of a frame: a viewer that has stopped reading holds memory.
   std::chrono::seconds frame_patience{30};
+  /// In which a participant whose connection has ended can be resumed by another one.
+  std::chrono::milliseconds resume_time{30'000};
 };
 
 /// Fixed by PROTOCOL.md.
@@ -35,6 +37,7 @@ inline constexpr double kMaxSpeedFactor = 4;           // the same
 inline constexpr std::uint32_t kFrameWindow = 3;       // frames sent and not acknowledged
 inline constexpr std::size_t kMaxFrameGroups = 8;      // frames that are made of one state
 inline constexpr std::size_t kMaxControlQueueBytes = 1024 * 1024;
+inline constexpr std::size_t kMaxTokenBytes = 256;     // of what a client shows to be let in
 inline constexpr std::size_t kMaxLongMessages = 2;  // longer than that, in the control queue
 
 }  // namespace vat

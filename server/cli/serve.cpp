@@ -8,6 +8,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +38,7 @@ namespace asio = boost::asio;
 constexpr std::size_t kMaxThreads = 256;
 constexpr std::size_t kMaxEndpoints = 64;
 constexpr std::size_t kMostConnections = 100'000;
+constexpr double kMostResumeSeconds = 3600;
 /// Open files beside the connections: refused ones, HTTP requests, the log, the threads' own.
 constexpr std::size_t kOtherFiles = 512;
 
@@ -53,6 +56,7 @@ struct Options {
   std::size_t threads = 0;
   std::size_t endpoints = 1;
   ServerLimits limits;
+  double resume_seconds = 30;
   InstructionSet instructions = best_instruction_set();
   std::string log_level = "info";
 };
@@ -120,6 +124,8 @@ int serve(const Options& options, const Catalogue& catalogue, const Scene& scene
   settings.version = VAT_VERSION;
   settings.threads = options.threads;
   settings.limits = options.limits;
+  settings.limits.resume_time =
+      std::chrono::milliseconds(std::llround(1000 * options.resume_seconds));
   settings.instructions = options.instructions;
   spdlog::info("instruction set: {}", to_string(settings.instructions));
   SessionServer sessions(catalogue, settings);
@@ -188,6 +194,11 @@ void add_options(CLI::App& command, Options& options) {
   command
       .add_option("--max-clients", options.limits.max_clients_per_session, "Clients of one session")
       ->check(CLI::Range(std::size_t{1}, kMostConnections))
+      ->capture_default_str();
+  command
+      .add_option("--resume-seconds", options.resume_seconds,
+                  "Time in which a participant whose connection has ended can be resumed")
+      ->check(CLI::Range(0.0, kMostResumeSeconds))
       ->capture_default_str();
   add_isa_option(command, options.instructions);
   command.add_option("--log-level", options.log_level, "What to log")

@@ -54,6 +54,17 @@ void ControlQueue::count(const Entry& entry, bool adds) {
 ClientOutbox::ClientOutbox(std::shared_ptr<Connection> connection)
     : connection_(std::move(connection)) {}
 
+void ClientOutbox::close(std::uint16_t code, std::string_view reason) {
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  connection_->close(code, reason);
+}
+
+bool ClientOutbox::is_closed() {
+  const std::lock_guard lock(mutex_);
+  return closed_;
+}
+
 void ClientOutbox::send(std::string text) {
   const std::lock_guard lock(mutex_);
   send_control(std::move(text));

@@ -70,6 +70,9 @@ class ClientOutbox {
   explicit ClientOutbox(std::shared_ptr<Connection> connection);
 
   ConnectionId id() const { return connection_->id(); }
+  /// Ends the connection with a code of PROTOCOL.md; nothing is sent or read any more.
+  void close(std::uint16_t code, std::string_view reason);
+  bool is_closed();
   /// Sends, whatever the membership is: replies.
   void send(std::string text);
 

@@ -19,18 +19,18 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
 SessionAction read_load(ObjectReader& params, Errors&) {
   const Json* scene = params.member("scene", true);
   if (scene == nullptr) return {};
-  return [scene = *scene](SessionCore& core, Member&) { return load_scene(core, scene); };
+  return [scene = *scene](SessionCore& core, Participant&) { return load_scene(core, scene); };
 }
 
 SessionAction read_play(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Member&) -> ActionResult {
+  return [](SessionCore& core, Participant&) -> ActionResult {
     core.set_playing(true);
     return Json::object();
   };
 }
 
 SessionAction read_pause(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Member&) -> ActionResult {
+  return [](SessionCore& core, Participant&) -> ActionResult {
     core.set_playing(false);
     return Json::object();
   };
@@ -38,7 +38,7 @@ SessionAction read_pause(ObjectReader&, Errors&) {
 
 SessionAction read_step(ObjectReader& params, Errors&) {
   const std::uint64_t ticks = params.count("ticks", 1, kMaxTicksPerStep, 1);
-  return [ticks](SessionCore& core, Member&) -> ActionResult {
+  return [ticks](SessionCore& core, Participant&) -> ActionResult {
     // Where it stands already, steps of other clients go on.
     if (core.playing()) core.set_playing(false);
     return RunTicks{ticks};
@@ -46,7 +46,7 @@ SessionAction read_step(ObjectReader& params, Errors&) {
 }
 
 SessionAction read_reset(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Member&) -> ActionResult {
+  return [](SessionCore& core, Participant&) -> ActionResult {
     core.reset();
     return Json::object();
   };
@@ -54,7 +54,7 @@ SessionAction read_reset(ObjectReader&, Errors&) {
 
 SessionAction read_set_speed(ObjectReader& params, Errors&) {
   const double speed = params.real("speed", kMinSpeedFactor, kMaxSpeedFactor);
-  return [speed](SessionCore& core, Member&) -> ActionResult {
+  return [speed](SessionCore& core, Participant&) -> ActionResult {
     core.set_speed(speed);
     return Json::object();
   };

@@ -52,15 +52,15 @@ SessionAction read_subscribe(ObjectReader& params, Errors& errors) {
     subscription.attribute_errors =
         read_attributes(*attributes, params.path_of("attributes"), errors);
   }
-  return [subscription](SessionCore& core, Member& member) -> ActionResult {
-    core.subscribe(member, subscription, SteadyClock::now());
+  return [subscription](SessionCore& core, Participant& participant) -> ActionResult {
+    core.subscribe(participant, subscription, SteadyClock::now());
     return Json::object();
   };
 }
 
 SessionAction read_unsubscribe(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Member& member) -> ActionResult {
-    core.unsubscribe(member);
+  return [](SessionCore& core, Participant& participant) -> ActionResult {
+    core.unsubscribe(participant);
     return Json::object();
   };
 }

@@ -29,10 +29,10 @@ Index index_of(const Simulation& simulation, BodyId id, Index number) {
   return static_cast<Index>(is_there ? found - body->numbers.begin() : body->positions.size());
 }
 
-ActionResult start(SessionCore& core, Member& member, BodyId body, Index number,
+ActionResult start(SessionCore& core, Participant& participant, BodyId body, Index number,
                    const Vec3& target) {
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
-  if (member.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
+  if (participant.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
   const std::uint64_t grab = core.next_grab();
   Simulation& simulation = core.run().simulation();
   const Index particle = index_of(simulation, body, number);
@@ -41,17 +41,18 @@ ActionResult start(SessionCore& core, Member& member, BodyId body, Index number,
     if (started.errors().front().code != "limit_reached") return refused(started.errors());
     return limit_reached("grabs_per_session", kMaxGrabs);
   }
-  member.grabs.emplace(grab, body);
+  participant.grabs.emplace(grab, body);
   return Json{{"grab", grab}};
 }
 
-/// Why the member may not use the grab, if so.
-std::optional<RpcError> refuse_grab(SessionCore& core, const Member& member, std::uint64_t grab) {
-  if (member.grabs.contains(grab)) return {};
-  if (core.members().holder_of(grab) != nullptr) {
-    return not_allowed("the grab belongs to another client");
+/// Why the participant may not use the grab, if so.
+std::optional<RpcError> refuse_grab(SessionCore& core, const Participant& participant,
+                                    std::uint64_t grab) {
+  if (participant.grabs.contains(grab)) return {};
+  if (core.participants().holder_of(grab) != nullptr) {
+    return not_allowed("the grab belongs to another participant");
   }
-  return invalid_params({Error{"no_such_grab", "/grab", "must be a grab of this client"}});
+  return invalid_params({Error{"no_such_grab", "/grab", "must be a grab of this participant"}});
 }
 
 SessionAction read_start(ObjectReader& params, Errors&) {
@@ -60,16 +61,16 @@ SessionAction read_start(ObjectReader& params, Errors&) {
   const auto particle =
       static_cast<Index>(params.count("particle", 0, std::numeric_limits<Index>::max()));
   const Vec3 target = read_target(params);
-  return [body, particle, target](SessionCore& core, Member& member) {
-    return start(core, member, body, particle, target);
+  return [body, particle, target](SessionCore& core, Participant& participant) {
+    return start(core, participant, body, particle, target);
   };
 }
 
 SessionAction read_move(ObjectReader& params, Errors&) {
   const std::uint64_t grab = read_grab_id(params);
   const Vec3 target = read_target(params);
-  return [grab, target](SessionCore& core, Member& member) -> ActionResult {
-    if (auto error = refuse_grab(core, member, grab)) return *std::move(error);
+  return [grab, target](SessionCore& core, Participant& participant) -> ActionResult {
+    if (auto error = refuse_grab(core, participant, grab)) return *std::move(error);
     const Status moved = core.run().simulation().grab_move(grab, target);
     if (!moved) return refused(moved.errors());
     return Json::object();
@@ -78,11 +79,11 @@ SessionAction read_move(ObjectReader& params, Errors&) {
 
 SessionAction read_end(ObjectReader& params, Errors&) {
   const std::uint64_t grab = read_grab_id(params);
-  return [grab](SessionCore& core, Member& member) -> ActionResult {
-    if (auto error = refuse_grab(core, member, grab)) return *std::move(error);
+  return [grab](SessionCore& core, Participant& participant) -> ActionResult {
+    if (auto error = refuse_grab(core, participant, grab)) return *std::move(error);
     const Status ended = core.run().simulation().grab_end(grab);
     if (!ended) return refused(ended.errors());
-    member.grabs.erase(grab);
+    participant.grabs.erase(grab);
     return Json::object();
   };
 }

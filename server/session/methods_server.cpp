@@ -35,6 +35,7 @@ Json describe_limits(const ServerLimits& limits) {
       {"frame_window", kFrameWindow},
       {"frame_groups", kMaxFrameGroups},
       {"frame_patience_seconds", limits.frame_patience.count()},
+      {"resume_seconds", std::chrono::duration<double>(limits.resume_time).count()},
       {"control_queue_bytes", kMaxControlQueueBytes},
   };
 }

@@ -2,6 +2,7 @@
 
 #include "core/limits.h"
 #include "server/session/method_table.h"
+#include "server/session/person_name.h"
 
 namespace vat {
 namespace {
@@ -43,11 +44,14 @@ ServerAction read_list(ObjectReader&, Errors&) {
   return [](SessionDirectory& directory, Caller&) { return list_sessions(directory); };
 }
 
-ServerAction read_join(ObjectReader& params, Errors&) {
+ServerAction read_join(ObjectReader& params, Errors& errors) {
   std::optional<SessionId> session;
   if (params.has("session")) session = read_session_id(params);
-  return [session](SessionDirectory& directory, Caller& caller) {
-    return to_answer(directory.join(caller, session));
+  Entrant entrant;
+  if (params.has("name")) entrant.name = read_person_name(params, "name", errors);
+  if (params.has("resume")) entrant.resume = params.text("resume", kMaxTokenBytes);
+  return [session, entrant](SessionDirectory& directory, Caller& caller) {
+    return to_answer(directory.join(caller, session, entrant));
   };
 }
 

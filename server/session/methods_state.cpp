@@ -60,11 +60,11 @@ SessionAction read_query(ObjectReader& params, Errors& errors) {
   if (const Json* list = params.array("bodies", kMaxBodies)) {
     keys = read_keys(*list, params.path_of("bodies"), errors);
   }
-  return [keys](SessionCore& core, Member&) { return query(core.run().simulation(), keys); };
+  return [keys](SessionCore& core, Participant&) { return query(core.run().simulation(), keys); };
 }
 
 SessionAction read_hash(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Member&) -> ActionResult {
+  return [](SessionCore& core, Participant&) -> ActionResult {
     const Simulation& simulation = core.run().simulation();
     return Json{{"hash", describe_hash(simulation.state_hash())},
                 {"instruction_set", to_string(simulation.instruction_set())},
@@ -85,7 +85,7 @@ Json describe_stages(const std::vector<StageClock::Stage>& stages) {
 }
 
 SessionAction read_stats(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Member&) -> ActionResult {
+  return [](SessionCore& core, Participant&) -> ActionResult {
     const Simulation& simulation = core.run().simulation();
     const TickProfile::Totals& totals = core.run().profile().totals();
     return Json{{"instruction_set", to_string(simulation.instruction_set())},

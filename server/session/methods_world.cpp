@@ -32,15 +32,15 @@ ActionResult add_body(SessionCore& core, const Json& value) {
 SessionAction read_add_body(ObjectReader& params, Errors&) {
   const Json* body = params.member("body", true);
   if (body == nullptr) return {};
-  return [body = *body](SessionCore& core, Member&) { return add_body(core, body); };
+  return [body = *body](SessionCore& core, Participant&) { return add_body(core, body); };
 }
 
 SessionAction read_remove_body(ObjectReader& params, Errors&) {
   const BodyId body = read_body_id(params);
-  return [body](SessionCore& core, Member&) -> ActionResult {
+  return [body](SessionCore& core, Participant&) -> ActionResult {
     const Status removed = core.run().simulation().remove_body(body);
     if (!removed) return refused(removed.errors());
-    core.members().forget_grabs_of(body);
+    core.participants().forget_grabs_of(body);
     core.bodies_changed();
     return Json::object();
   };
@@ -49,10 +49,10 @@ SessionAction read_remove_body(ObjectReader& params, Errors&) {
 SessionAction read_melt_body(ObjectReader& params, Errors&) {
   const BodyId body = read_body_id(params);
   std::string material = params.text("material", kMaxNameLength);
-  return [body, material = std::move(material)](SessionCore& core, Member&) -> ActionResult {
+  return [body, material = std::move(material)](SessionCore& core, Participant&) -> ActionResult {
     const Status melted = core.run().simulation().melt_body(body, material);
     if (!melted) return refused(melted.errors());
-    core.members().forget_grabs_of(body);
+    core.participants().forget_grabs_of(body);
     core.bodies_changed();
     return Json::object();
   };
@@ -61,7 +61,7 @@ SessionAction read_melt_body(ObjectReader& params, Errors&) {
 SessionAction read_set_emitter(ObjectReader& params, Errors&) {
   std::string emitter = params.text("emitter", kMaxNameLength);
   const bool open = params.boolean("open");
-  return [emitter = std::move(emitter), open](SessionCore& core, Member&) -> ActionResult {
+  return [emitter = std::move(emitter), open](SessionCore& core, Participant&) -> ActionResult {
     const Status set = core.run().simulation().set_emitter(emitter, open);
     if (!set) return refused(set.errors());
     return Json::object();
@@ -70,7 +70,7 @@ SessionAction read_set_emitter(ObjectReader& params, Errors&) {
 
 SessionAction read_set_gravity(ObjectReader& params, Errors&) {
   const Vec3 gravity = params.vector("gravity", kAnyMin, kAnyMax);
-  return [gravity](SessionCore& core, Member&) -> ActionResult {
+  return [gravity](SessionCore& core, Participant&) -> ActionResult {
     const Status set = core.run().simulation().set_gravity(gravity);
     if (!set) return refused(set.errors());
     core.description_changed();
@@ -89,7 +89,7 @@ ActionResult set_interface(SessionCore& core, const Json& value) {
 SessionAction read_set_interface(ObjectReader& params, Errors&) {
   const Json* interface = params.member("interface", true);
   if (interface == nullptr) return {};
-  return [interface = *interface](SessionCore& core, Member&) {
+  return [interface = *interface](SessionCore& core, Participant&) {
     return set_interface(core, interface);
   };
 }
@@ -98,7 +98,7 @@ SessionAction read_apply_force(ObjectReader& params, Errors&) {
   const BodyId body = read_body_id(params);
   const Vec3 force = params.vector("force", kAnyMin, kAnyMax);
   const Real duration = params.real("duration", kAnyMin, kAnyMax);
-  return [body, force, duration](SessionCore& core, Member&) -> ActionResult {
+  return [body, force, duration](SessionCore& core, Participant&) -> ActionResult {
     const Status applied = core.run().simulation().apply_force(body, force, duration);
     if (applied) return Json::object();
     if (applied.errors().front().code == "limit_reached") {

@@ -40,8 +40,12 @@ void Session::close(std::optional<Caller> caller) {
   schedule(&Session::close_turn);
 }
 
-void Session::join(Caller caller, std::uint64_t membership) {
-  put({std::move(caller), Join{membership}});
+void Session::join(Caller caller, std::uint64_t membership, Entrant entrant) {
+  put({std::move(caller), Join{membership, std::move(entrant)}});
+}
+
+void Session::disconnect(Caller caller) {
+  put({std::move(caller), Disconnect{}});
 }
 
 void Session::leave(Caller caller) {
@@ -131,35 +135,57 @@ void Session::carry_out(Item item) {
     carry_out_leave(std::move(item.caller));
     return;
   }
+  if (std::holds_alternative<Disconnect>(item.task)) {
+    carry_out_disconnect(item.caller);
+    return;
+  }
   if (const auto job = find_step(item.caller.client()->id()); job != steps_.end()) {
     job->deferred.push_back(std::move(item));
   } else if (const auto* join = std::get_if<Join>(&item.task)) {
-    carry_out_join(std::move(item.caller), join->membership);
+    carry_out_join(std::move(item.caller), *join);
   } else {
     carry_out_action(std::move(item.caller), std::get<SessionAction>(item.task));
   }
 }
 
-void Session::carry_out_join(Caller caller, std::uint64_t membership) {
-  core_.join(caller.client(), membership);
-  caller.answer(
-      Json{{"tick", core_.run().tick()}, {"session", id_}, {"description", core_.description()}});
+void Session::carry_out_join(Caller caller, const Join& join) {
+  const Entry entry =
+      core_.join(caller.client(), join.membership, join.entrant, SteadyClock::now());
+  caller.answer(Json{{"tick", core_.run().tick()},
+                     {"session", id_},
+                     {"participant", entry.participant.number},
+                     {"name", entry.participant.name},
+                     {"role", to_string(entry.participant.role)},
+                     {"resume", entry.resume},
+                     {"resumed", entry.resumed},
+                     {"description", core_.description()}});
 }
 
 void Session::carry_out_leave(Caller caller) {
   const ConnectionId client = caller.client()->id();
-  for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
-  core_.leave(client);
+  end_steps_of(client);
+  if (const Participant* participant = core_.participants().find_client(client)) {
+    core_.leave(participant->number);
+  }
   caller.answer(Json{{"tick", core_.run().tick()}});
 }
 
+void Session::carry_out_disconnect(const Caller& caller) {
+  end_steps_of(caller.client()->id());
+  core_.disconnect(caller.client()->id(), SteadyClock::now());
+}
+
+void Session::end_steps_of(ConnectionId client) {
+  for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
+}
+
 void Session::carry_out_action(Caller caller, const SessionAction& action) {
-  Member* member = core_.members().find(caller.client()->id());
-  if (member == nullptr) {
+  Participant* participant = core_.participants().find_client(caller.client()->id());
+  if (participant == nullptr) {
     caller.answer(not_joined());
     return;
   }
-  ActionResult result = act(*member, action);
+  ActionResult result = act(*participant, action);
   if (core_.take_interruption()) end_all_steps();
   update_summary();  // before the answer: who has it finds in session.list what was done
   if (const auto* run = std::get_if<RunTicks>(&result)) {
@@ -174,9 +200,9 @@ void Session::carry_out_action(Caller caller, const SessionAction& action) {
   }
 }
 
-ActionResult Session::act(Member& member, const SessionAction& action) {
+ActionResult Session::act(Participant& participant, const SessionAction& action) {
   try {
-    return action(core_, member);
+    return action(core_, participant);
   } catch (const std::exception& error) {
     spdlog::error("session {}: a command failed: {}", id_, error.what());
     return internal_error();
@@ -256,6 +282,7 @@ void Session::wait_for_tick() {
 
 void Session::status_turn() {
   wait_for_status();  // first, so that a fault does not end the statuses
+  core_.end_absences(SteadyClock::now());
   core_.announce_status();
   core_.close_silent(SteadyClock::now());
 }

@@ -37,8 +37,10 @@ class Session : public std::enable_shared_from_this<Session> {
   /// no_such_session, and then the caller, if there is one, with the tick that was the last.
   void close(std::optional<Caller> caller);
 
-  /// Answered with the description.
-  void join(Caller caller, std::uint64_t membership);
+  /// Answered with who it is then, and the description.
+  void join(Caller caller, std::uint64_t membership, Entrant entrant);
+  /// The caller's connection has ended; its participant may be resumed for a while.
+  void disconnect(Caller caller);
   void leave(Caller caller);
   void post(Caller caller, SessionAction action);
 
@@ -48,11 +50,13 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   struct Join {
     std::uint64_t membership;
+    Entrant entrant;
   };
   struct Leave {};
+  struct Disconnect {};
   struct Item {
     Caller caller;
-    std::variant<Join, Leave, SessionAction> task;
+    std::variant<Join, Leave, Disconnect, SessionAction> task;
   };
   /// A control.step under way. The later commands of its client wait for its end.
   struct StepJob {
@@ -71,10 +75,12 @@ class Session : public std::enable_shared_from_this<Session> {
   void inbox_turn();
   bool take_item(std::optional<Item>& item);
   void carry_out(Item item);
-  void carry_out_join(Caller caller, std::uint64_t membership);
+  void carry_out_join(Caller caller, const Join& join);
   void carry_out_leave(Caller caller);
+  void carry_out_disconnect(const Caller& caller);
+  void end_steps_of(ConnectionId client);
   void carry_out_action(Caller caller, const SessionAction& action);
-  ActionResult act(Member& member, const SessionAction& action);
+  ActionResult act(Participant& participant, const SessionAction& action);
 
   void step_turn();
   std::deque<StepJob>::iterator find_step(ConnectionId client);

@@ -11,6 +11,8 @@
 namespace vat {
 namespace {
 
+constexpr std::uint16_t kReplaced = 4010;
+
 double wall_clock() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration<double>(now).count();
@@ -43,7 +45,7 @@ void SessionCore::set_speed(double speed) {
 
 void SessionCore::load(Simulation simulation) {
   run_.load(std::move(simulation));
-  members_.forget_grabs();
+  participants_.forget_grabs();
   interrupt();
   rate_ = {};
   frames_->set_vat(run_.simulation().scene().vat);
@@ -52,7 +54,7 @@ void SessionCore::load(Simulation simulation) {
 
 void SessionCore::reset() {
   run_.reset();
-  members_.forget_grabs();
+  participants_.forget_grabs();
   interrupt();
   frames_->set_vat(run_.simulation().scene().vat);
   start_epoch();
@@ -65,7 +67,7 @@ void SessionCore::bodies_changed() {
 
 void SessionCore::start_epoch() {
   description_due_ = status_due_ = frame_due_ = true;
-  members_.start_epoch(run_.epoch());
+  participants_.start_epoch(run_.epoch());
 }
 
 void SessionCore::interrupt() {
@@ -76,39 +78,91 @@ bool SessionCore::take_interruption() {
   return std::exchange(interrupted_, false);
 }
 
-Member& SessionCore::join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t membership) {
-  leave(outbox->id());
+Entry SessionCore::join(const std::shared_ptr<ClientOutbox>& outbox, std::uint64_t membership,
+                        const Entrant& entrant, SteadyClock::time_point now) {
   status_due_ = true;
+  Participant* resumed =
+      entrant.resume ? participants_.find_resume(hash_of_token(*entrant.resume)) : nullptr;
+  const Participant* before = participants_.find_client(outbox->id());
+  if (before != nullptr && before != resumed) leave(before->number);
+  Participant& participant =
+      resumed != nullptr ? *resumed : participants_.add(entrant.name, entrant.role);
+  if (participant.is_here()) release_connection(participant, outbox->id());
+  participants_.connect(participant, outbox, membership);
   outbox->start_epoch(membership, run_.epoch());
-  return members_.add(std::move(outbox), membership);
+  if (resumed != nullptr) {
+    if (participant.subscription) subscribe(participant, *participant.subscription, now);
+    return {participant, *entrant.resume, true};
+  }
+  if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);
+  std::string token = make_token();
+  participant.resume = hash_of_token(token);
+  return {participant, std::move(token)};
 }
 
-void SessionCore::subscribe(Member& member, const Subscription& subscription,
+void SessionCore::release_connection(const Participant& participant, ConnectionId next) {
+  const std::shared_ptr<ClientOutbox>& outbox = participant.outbox;
+  if (participant.subscription) frames_->remove(outbox->id());
+  if (outbox->id() != next) outbox->close(kReplaced, "replaced by a resumed connection");
+}
+
+void SessionCore::subscribe(Participant& participant, const Subscription& subscription,
                             SteadyClock::time_point now) {
-  const std::uint64_t number = member.outbox->subscribe(member.membership, frames_, now);
+  const std::uint64_t number = participant.outbox->subscribe(participant.membership, frames_, now);
   if (number == 0) return;  // it is about to leave
-  member.subscription = subscription;
-  frames_->add(member.outbox, number, subscription);
+  participant.subscription = subscription;
+  frames_->add(participant.outbox, number, subscription);
   frame_due_ = true;
 }
 
-void SessionCore::unsubscribe(Member& member) {
-  if (!member.subscription) return;
-  member.subscription.reset();
-  member.outbox->unsubscribe();
-  frames_->remove(member.outbox->id());
+void SessionCore::unsubscribe(Participant& participant) {
+  if (!participant.subscription) return;
+  participant.subscription.reset();
+  participant.outbox->unsubscribe();
+  frames_->remove(participant.outbox->id());
 }
 
-void SessionCore::leave(ConnectionId client) {
-  const Member* member = members_.find(client);
-  if (member == nullptr) return;
-  for (const auto& [grab, body] : member->grabs) {
+void SessionCore::disconnect(ConnectionId client, SteadyClock::time_point now) {
+  Participant* participant = participants_.find_client(client);
+  if (participant == nullptr) return;
+  if (participant->subscription) frames_->remove(client);
+  participants_.disconnect(*participant);
+  participant->away_since = now;
+  status_due_ = true;
+  bound_absences();
+}
+
+void SessionCore::leave(ParticipantNumber number) {
+  const Participant* participant = participants_.find(number);
+  if (participant == nullptr) return;
+  for (const auto& [grab, body] : participant->grabs) {
     const Status ended = run_.simulation().grab_end(grab);
     if (!ended) spdlog::warn("session {}: grab {} was gone already", id_, grab);
   }
-  if (member->subscription) frames_->remove(client);
-  members_.remove(client);
+  if (participant->is_here() && participant->subscription) {
+    frames_->remove(participant->outbox->id());
+  }
+  participants_.remove(number);
   status_due_ = true;
+}
+
+void SessionCore::end_absences(SteadyClock::time_point now) {
+  std::vector<ParticipantNumber> gone;
+  for (const auto& [number, participant] : participants_.all()) {
+    if (!participant.is_away()) continue;
+    if (now - *participant.away_since >= environment_.limits.resume_time) gone.push_back(number);
+  }
+  for (const ParticipantNumber number : gone) leave(number);
+}
+
+void SessionCore::bound_absences() {
+  if (participants_.away() <= environment_.limits.max_clients_per_session) return;
+  const Participant* first = nullptr;
+  for (const auto& [number, participant] : participants_.all()) {
+    if (!participant.is_away()) continue;
+    if (first == nullptr || participant.away_since < first->away_since) first = &participant;
+  }
+  leave(first->number);
 }
 
 bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
@@ -119,7 +173,7 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
     set_playing(false);
     return false;
   }
-  for (const std::uint64_t grab : report.ended_grabs) members_.forget_grab(grab);
+  for (const std::uint64_t grab : report.ended_grabs) participants_.forget_grab(grab);
   if (report.bodies_changed) bodies_changed();
   if (timed) rate_.tick_done(now, run_.tick_seconds());
   return true;
@@ -127,19 +181,19 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
 
 void SessionCore::tell_guard(const AdvanceReport& report) {
   for (const GuardEvent& event : report.events) {
-    members_.send_event(write_event("session.guard", describe_guard(event, run_.tick())));
+    participants_.send_event(write_event("session.guard", describe_guard(event, run_.tick())));
   }
 }
 
 void SessionCore::tell_description() {
   if (!description_due_) return;
-  members_.send_event(write_event("session.description", description()));
+  participants_.send_event(write_event("session.description", description()));
   description_due_ = false;  // what fails stays due
 }
 
 void SessionCore::publish_tick() {
   tell_description();  // a tick may begin an epoch
-  if (frame_due_ || members_.is_watched(run_.tick())) publish_frame();
+  if (frame_due_ || participants_.is_watched(run_.tick())) publish_frame();
 }
 
 void SessionCore::announce() {
@@ -152,16 +206,17 @@ void SessionCore::announce() {
 }
 
 void SessionCore::announce_status() {
-  if (members_.size() > 0) members_.send_event(write_event("session.status", status()));
+  if (participants_.connected() > 0)
+    participants_.send_event(write_event("session.status", status()));
 }
 
 void SessionCore::publish_frame() {
   frame_due_ = false;
-  if (members_.is_watched()) frames_->publish(published());
+  if (participants_.is_watched()) frames_->publish(published());
 }
 
 PublishedState SessionCore::published() const {
-  PublishedState state = publish(run_.simulation(), members_.wanted_attributes());
+  PublishedState state = publish(run_.simulation(), participants_.wanted_attributes());
   state.header.playing = playing_;
   state.header.slow = playing_ && rate_.slower_than(speed_);
   state.header.epoch = run_.epoch();
@@ -172,7 +227,7 @@ PublishedState SessionCore::published() const {
 }
 
 void SessionCore::close_silent(SteadyClock::time_point now) {
-  members_.close_silent(now, environment_.limits.frame_patience);
+  participants_.close_silent(now, environment_.limits.frame_patience);
 }
 
 Json SessionCore::status() const {
@@ -182,7 +237,7 @@ Json SessionCore::status() const {
       {"playing", playing_},
       {"speed", speed_},
       {"real_time_factor", rate_.rate()},
-      {"clients", members_.size()},
+      {"clients", participants_.connected()},
       {"particles", run_.simulation().particle_count()},
   };
 }
@@ -206,7 +261,7 @@ Json SessionCore::description() const {
 }
 
 SessionSummary SessionCore::summary() const {
-  return {name_,       run_.simulation().scene().name,    members_.size(), playing_,
+  return {name_,       run_.simulation().scene().name,    participants_.connected(), playing_,
           run_.tick(), run_.simulation().particle_count()};
 }
 

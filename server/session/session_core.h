@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "server/session/frame_feed.h"
-#include "server/session/members.h"
+#include "server/session/participants.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
 #include "server/session/session_run.h"
@@ -26,11 +26,25 @@ struct SessionSummary {
   std::size_t particles = 0;
 };
 
+/// Who asks to take part.
+struct Entrant {
+  std::string name;                   ///< empty: one is made up
+  Role role = Role::controller;       ///< of a further participant
+  std::optional<std::string> resume;  ///< the token of the participant to be resumed
+};
+
+/// What a connection is told of itself when it comes in.
+struct Entry {
+  const Participant& participant;
+  std::string resume;  ///< the token by which another connection takes the participant over
+  bool resumed = false;
+};
+
 /// All that a session is but its threads: what is simulated, who takes part, and what they are
 /// told. Used by one thread at a time; its clock is given, but for the profile's.
 ///
-/// Commands change it and note what has to be told; announce() then tells all members, so that many
-/// commands at once make one description, one status and one frame.
+/// Commands change it and note what has to be told; announce() then tells all who are here, so that
+/// many commands at once make one description, one status and one frame.
 class SessionCore {
  public:
   SessionCore(std::string id, std::string name, Simulation simulation,
@@ -39,7 +53,7 @@ class SessionCore {
   const SessionEnvironment& environment() const { return environment_; }
   SessionRun& run() { return run_; }
   const SessionRun& run() const { return run_; }
-  Members& members() { return members_; }
+  Participants& participants() { return participants_; }
 
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
@@ -53,12 +67,20 @@ class SessionCore {
   void description_changed() { description_due_ = true; }
   std::uint64_t next_grab() { return ++last_grab_; }
 
-  Member& join(std::shared_ptr<ClientOutbox> outbox, std::uint64_t membership);
-  /// Frees the client's grabs.
-  void leave(ConnectionId client);
-  /// The member gets the present state at the next chance, and then those that it asks for.
-  void subscribe(Member& member, const Subscription& subscription, SteadyClock::time_point now);
-  void unsubscribe(Member& member);
+  /// A connection comes in, as a further participant or as the one that it resumes, whose other
+  /// connection, if it has one, is closed. Ends what the connection was in the session before.
+  Entry join(const std::shared_ptr<ClientOutbox>& outbox, std::uint64_t membership,
+             const Entrant& entrant, SteadyClock::time_point now);
+  /// The participant of the connection, if there is one, may be resumed for a while.
+  void disconnect(ConnectionId client, SteadyClock::time_point now);
+  /// Ends the participant's grabs, and the participant.
+  void leave(ParticipantNumber number);
+  /// Those who have been away for too long leave.
+  void end_absences(SteadyClock::time_point now);
+  /// The participant gets the present state at the next chance, and then those that it asks for.
+  void subscribe(Participant& participant, const Subscription& subscription,
+                 SteadyClock::time_point now);
+  void unsubscribe(Participant& participant);
 
   /// Runs one tick; its frame is due then. False if the guard failed, which pauses the session.
   /// The rate is measured where `timed`: ticks of control.step keep no pace.
@@ -67,7 +89,7 @@ class SessionCore {
   /// Tells what is due.
   void announce();
   void announce_status();
-  /// Ends the connections of members that have stopped reading.
+  /// Ends the connections of participants that have stopped reading.
   void close_silent(SteadyClock::time_point now);
   /// True once after anything that ends the ticks of a control.step: another control command, a
   /// change of scene, a failed guard.
@@ -84,12 +106,15 @@ class SessionCore {
   void start_epoch();
   void publish_frame();
   PublishedState published() const;
+  void release_connection(const Participant& participant, ConnectionId next);
+  /// So that those who come and go at once do not grow without bound.
+  void bound_absences();
 
   const std::string id_;
   const std::string name_;
   const SessionEnvironment& environment_;
   SessionRun run_;
-  Members members_;
+  Participants participants_;
   const std::shared_ptr<FrameFeed> frames_;
   RateMeter rate_;
   bool playing_ = true;
@@ -109,7 +134,7 @@ struct RunTicks {
 /// A command's reply; a result gets its `tick` afterwards.
 using ActionResult = std::variant<Json, RpcError, RunTicks>;
 
-/// A command, its parameters read; run on the session's strand for a member of it.
-using SessionAction = std::function<ActionResult(SessionCore&, Member&)>;
+/// A command, its parameters read; run on the session's strand for a participant of it.
+using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
 
 }  // namespace vat

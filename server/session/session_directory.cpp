@@ -50,14 +50,17 @@ void SessionDirectory::disconnect(ConnectionId id) {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(id);
   if (client == clients_.end()) return;
-  leave_session(client->second, Caller(client->second.outbox, {}));
+  Client& gone = client->second;
+  gone.outbox->leave();
+  if (gone.session != 0) sessions_.at(gone.session)->disconnect(Caller(gone.outbox, {}));
   clients_.erase(client);
 }
 
 std::shared_ptr<ClientOutbox> SessionDirectory::find_client(ConnectionId id) const {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(id);
-  return client == clients_.end() ? nullptr : client->second.outbox;
+  if (client == clients_.end() || client->second.outbox->is_closed()) return nullptr;
+  return client->second.outbox;
 }
 
 std::optional<RpcError> SessionDirectory::refuse_session() const {
@@ -124,7 +127,8 @@ std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const
   return list;
 }
 
-std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::optional<SessionId>& id) {
+std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::optional<SessionId>& id,
+                                               Entrant entrant) {
   const std::lock_guard lock(mutex_);
   const auto session = id ? find_session(*id) : sessions_.begin();
   if (session == sessions_.end()) return no_such_session(id ? *id : "at all", "/session");
@@ -138,7 +142,7 @@ std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::option
   }
   if (client.session != session->first) leave_session(client, Caller(client.outbox, {}));
   client.session = session->first;
-  session->second->join(std::move(caller), client.outbox->join());
+  session->second->join(std::move(caller), client.outbox->join(), std::move(entrant));
   return {};
 }
 

@@ -30,7 +30,7 @@ class SessionDirectory {
   /// False if there are too many already.
   bool connect(std::shared_ptr<Connection> connection);
   void disconnect(ConnectionId id);
-  /// Null if it is not connected.
+  /// Null if it is not connected, or is being closed.
   std::shared_ptr<ClientOutbox> find_client(ConnectionId id) const;
 
   std::variant<SessionId, RpcError> create(std::string name, const Scene& scene);
@@ -40,7 +40,7 @@ class SessionDirectory {
 
   std::vector<std::pair<SessionId, SessionSummary>> list() const;
   /// Answered by the session, or by the error that is returned. Without an id: the first session.
-  std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id);
+  std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id, Entrant entrant);
   std::optional<RpcError> leave(Caller& caller);
   /// Hands the action to the session that the caller is in.
   std::optional<RpcError> post(Caller& caller, SessionAction action);

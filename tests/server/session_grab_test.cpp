@@ -87,17 +87,16 @@ TEST_F(SessionGrabs, HaveIdsOfTheirOwn) {
   EXPECT_NE(start(*client), start(*other));
 }
 
-TEST_F(SessionGrabs, EndWhenTheirClientDisconnects) {
+TEST_F(SessionGrabs, StayWhileTheirClientIsAway) {
   auto other = join();
-  start(*other);
+  const std::uint64_t grab = start(*other);
   client->result("control.step", {{"ticks", 5}});
   other->disconnect();
   client->result("control.step", {{"ticks", 5}});
   ASSERT_TRUE(reference.grab_start(1, kBall, 0, target));
-  advance_ticks(reference, 5);
-  ASSERT_TRUE(reference.grab_end(1));
-  advance_ticks(reference, 5);
+  advance_ticks(reference, 10);
   EXPECT_EQ(hash(), hash_of(reference));
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), 1006);
 }
 
 TEST_F(SessionGrabs, EndWhenTheirClientLeavesOrJoinsAnotherSession) {
@@ -154,7 +153,7 @@ TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
   const Json error = client->error("grab.start", params);
   EXPECT_EQ(error.at("data").at("limit"), "grabs_per_session");
   EXPECT_EQ(error.at("data").at("maximum"), kMaxGrabs);
-  clients.front()->disconnect();
+  clients.front()->result("session.leave");
   start(*client);
 }
 

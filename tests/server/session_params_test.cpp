@@ -91,8 +91,8 @@ const std::vector<BadParams>& bad_params() {
        "must be below 19"},
       {"grab.start", R"({"body":3,"particle":0,"target":[0,0,1e7]})", "/target/2",
        "from -1000000 to 1000000"},
-      {"grab.move", R"({"grab":1,"target":[0,0,0]})", "/grab", "a grab of this client"},
-      {"grab.end", R"({"grab":1})", "/grab", "a grab of this client"},
+      {"grab.move", R"({"grab":1,"target":[0,0,0]})", "/grab", "a grab of this participant"},
+      {"grab.end", R"({"grab":1})", "/grab", "a grab of this participant"},
       {"grab.end", R"({"grab":1e300})", "/grab", "from 0 to"},
       {"frames.subscribe", R"({"every":0})", "/every", "from 1 to 100"},
       {"frames.subscribe", R"({"every":101})", "/every", "from 1 to 100"},
@@ -115,7 +115,7 @@ class BadParameters : public SessionTest {
   /// All that a client can see of the server's state.
   Json observe() {
     return {client->result("session.hash"), client->result("session.list"),
-            client->result("state.query"), client->result("session.join")};
+            client->result("state.query"), client->result("session.join").at("description")};
   }
 };
 

@@ -9,6 +9,9 @@ export type InstructionSetName = 'baseline' | 'avx2' | 'avx512';
 
 export type BodyKindName = 'liquid' | 'deformable' | 'rigid';
 
+/** Each may do what those before it may. */
+export type RoleName = 'viewer' | 'controller' | 'owner';
+
 /** A scene of the catalogue by its name, or a scene object as in a scene file. */
 export type SceneReference = string | Record<string, unknown>;
 
@@ -124,6 +127,16 @@ export interface SessionStats {
   stages: { stage: string; calls: number; seconds: number }[];
 }
 
+/** What a client is told of itself when it joins. */
+export interface JoinedAs {
+  participant: number;
+  name: string;
+  role: RoleName;
+  /** A secret: who joins with it takes the participant over. */
+  resume: string;
+  resumed: boolean;
+}
+
 /** The tick from which a command is in effect. */
 export interface InEffect {
   tick: number;
@@ -142,8 +155,8 @@ export interface Methods {
   'session.create': Method<{ name: string; scene: SceneReference }, InEffect & { session: string }>;
   'session.list': Method<Nothing, { sessions: SessionEntry[] }>;
   'session.join': Method<
-    { session?: string },
-    InEffect & { session: string; description: SessionDescription }
+    { session?: string; name?: string; resume?: string },
+    InEffect & JoinedAs & { session: string; description: SessionDescription }
   >;
   'session.leave': Method<Nothing, InEffect>;
   'session.close': Method<{ session: string }, InEffect>;
