@@ -52,7 +52,7 @@ export class FrameDecoder {
     frame.number = number;
     frame.epoch = epoch;
     frame.scale = scale ?? first?.scale ?? frame.scale;
-    this.symbols.start(new Uint8Array(buffer), header.symbolsBegin);
+    this.symbols.start(buffer, header.symbolsBegin);
     if (first) this.blocks.readDelta(frame, first, second);
     else this.blocks.readKey(frame);
     this.symbols.end();

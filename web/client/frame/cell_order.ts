@@ -1,48 +1,47 @@
 /** Particles by the cells of a grid: protocol/PROTOCOL.md, "Order". Keeps its memory. */
 export class CellOrder {
   /** Particles, cell by cell. */
-  order = new Uint32Array(0);
+  order = new Int32Array(0);
   /** Of the cells with particles, from number 1 on: their particles in `order`, and their places. */
-  begins = new Uint32Array(1);
-  places = new Uint32Array(1);
+  begins = new Int32Array(1);
+  places = new Int32Array(1);
   /** By place: the number of the cell there, 0 where it is empty. */
-  numbers = new Uint32Array(0);
+  numbers = new Int32Array(0);
   cellCount = 0;
   row = 0;
   layer = 0;
-  private placeOf = new Uint32Array(0);
+  private placeOf = new Int32Array(0);
 
   /** False where the box of all cells would be too large for so few particles. */
   sort(positions: Uint16Array, count: number, shift: number): boolean {
     this.cellCount = 0;
     this.reserve(count);
     if (count === 0) return true;
-    const box = boxOf(positions, count, shift);
-    const [x0, y0, z0, nx, ny, nz] = box;
+    const [x0, y0, z0, nx, ny, nz] = boxOf(positions, count, shift);
     const placeCount = nx * ny * nz;
     if (placeCount > 4096 + 16 * count) return false;
     this.row = nx;
     this.layer = nx * ny;
-    if (this.numbers.length < placeCount) this.numbers = new Uint32Array(2 * placeCount);
+    if (this.numbers.length < placeCount) this.numbers = new Int32Array(2 * placeCount);
     else this.numbers.fill(0, 0, placeCount);
-    const { numbers, placeOf, order } = this;
-    for (let i = 0, k = 0; i < count; ++i, k += 3) {
-      const x = ((positions[k] as number) >> shift) - x0 + 1;
-      const y = ((positions[k + 1] as number) >> shift) - y0 + 1;
-      const z = ((positions[k + 2] as number) >> shift) - z0 + 1;
-      const place = z * this.layer + y * nx + x;
-      placeOf[i] = place;
-      numbers[place] = (numbers[place] as number) + 1;
-    }
+    const first = (1 - z0) * this.layer + (1 - y0) * nx + 1 - x0;
+    this.countByPlace(positions, count, shift, first);
     this.listCells(placeCount, count);
-    const ends = this.begins;
-    for (let i = 0; i < count; ++i) {
-      const cell = numbers[placeOf[i] as number] as number;
-      const at = ends[cell + 1] as number;
-      order[at] = i;
-      ends[cell + 1] = at + 1;
-    }
+    this.fillCells(count);
     return true;
+  }
+
+  /** `first` is the place of the cell 0, 0, 0. */
+  private countByPlace(positions: Uint16Array, count: number, shift: number, first: number): void {
+    const { numbers, placeOf, row, layer } = this;
+    for (let i = 0, k = 0; i < count; ++i, k += 3) {
+      const x = positions[k]! >> shift;
+      const y = positions[k + 1]! >> shift;
+      const z = positions[k + 2]! >> shift;
+      const place = (first + x + Math.imul(y, row) + Math.imul(z, layer)) | 0;
+      placeOf[i] = place;
+      numbers[place] = (numbers[place]! + 1) | 0;
+    }
   }
 
   /** Leaves begins[c + 1] at the begin of cell c; filling in moves it to its end. */
@@ -52,25 +51,35 @@ export class CellOrder {
     let cell = 0;
     begins[1] = 0;
     for (let place = 0; place < placeCount; ++place) {
-      const particles = numbers[place] as number;
+      const particles = numbers[place]!;
       if (particles === 0) continue;
-      ++cell;
+      cell = (cell + 1) | 0;
       numbers[place] = cell;
       places[cell] = place;
       begins[cell + 1] = begin;
-      begin += particles;
+      begin = (begin + particles) | 0;
     }
     this.cellCount = cell;
     if (begin !== count) throw new Error('particles lost');
   }
 
+  private fillCells(count: number): void {
+    const { numbers, placeOf, order, begins: ends } = this;
+    for (let i = 0; i < count; ++i) {
+      const cell = (numbers[placeOf[i]!]! + 1) | 0;
+      const at = ends[cell]!;
+      order[at] = i;
+      ends[cell] = at + 1;
+    }
+  }
+
   private reserve(count: number): void {
     if (this.order.length >= count) return;
     const room = Math.ceil(1.5 * count);
-    this.order = new Uint32Array(room);
-    this.placeOf = new Uint32Array(room);
-    this.begins = new Uint32Array(room + 2);
-    this.places = new Uint32Array(room + 2);
+    this.order = new Int32Array(room);
+    this.placeOf = new Int32Array(room);
+    this.begins = new Int32Array(room + 2);
+    this.places = new Int32Array(room + 2);
   }
 }
 

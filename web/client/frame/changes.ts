@@ -31,8 +31,8 @@ export class ParticleChanges {
   private readonly motion = new Motion();
   private readonly kept = new KeptParticles();
   /** As in Matched. */
-  private secondPlaces = new Uint32Array(0);
-  private newPlaces = new Uint32Array(0);
+  private secondPlaces = new Int32Array(0);
+  private newPlaces = new Int32Array(0);
   private numbers = new Uint32Array(0);
   private readonly moved = [false, false, false];
   private readonly factors = [0, 0, 0];
@@ -66,7 +66,7 @@ export class ParticleChanges {
   }
 
   private keepAll(count: number): void {
-    const places = fitted(Uint32Array, this.newPlaces, count);
+    const places = fitted(Int32Array, this.newPlaces, count);
     for (let i = 0; i < count; ++i) places[i] = i;
     this.newPlaces = places;
   }
@@ -135,7 +135,7 @@ export class ParticleChanges {
   }
 
   private match(first: BlockData, second: BlockData): void {
-    this.secondPlaces = fitted(Uint32Array, this.secondPlaces, first.count);
+    this.secondPlaces = fitted(Int32Array, this.secondPlaces, first.count);
     const { secondPlaces } = this;
     let j = 0;
     for (let i = 0; i < first.count; ++i) {

@@ -3,7 +3,7 @@ import type { CellOrder } from './cell_order';
 import { kGrowth } from './room';
 
 /** The place of what is not there. */
-export const kNone = 0xffffffff;
+export const kNone = -1;
 
 /** The particles of the first reference, and where they are in the other frames. */
 export interface Matched {
@@ -11,24 +11,24 @@ export interface Matched {
   second: BlockData | undefined;
   cells: CellOrder;
   /** By particle of the first reference: its place in the second, and in the new block. */
-  secondPlaces: Uint32Array;
-  newPlaces: Uint32Array;
+  secondPlaces: Int32Array;
+  newPlaces: Int32Array;
 }
 
 /** The particles that stay, cell by cell. Keeps its memory. */
 export class KeptParticles {
   /** By cell: where its particles end. */
-  ends = new Uint32Array(1);
+  ends = new Int32Array(1);
   /** Their places in the new block. */
-  targets = new Uint32Array(0);
+  targets = new Int32Array(0);
   /** Three of each: first what is predicted, then what it is. */
   values = new Int32Array(0);
 
   reserve(count: number): void {
     if (this.targets.length >= count) return;
     const room = Math.ceil(kGrowth * count);
-    this.ends = new Uint32Array(room + 1);
-    this.targets = new Uint32Array(room);
+    this.ends = new Int32Array(room + 1);
+    this.targets = new Int32Array(room);
     this.values = new Int32Array(3 * room);
   }
 }

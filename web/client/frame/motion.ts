@@ -47,40 +47,51 @@ export class Motion {
     for (let c = 1; c <= cellCount; ++c) {
       const begin = begins[c]!;
       const end = begins[c + 1]!;
+      const counted = (begin + kMostCounted) | 0;
       let sx = 0;
       let sy = 0;
       let sz = 0;
       let n = 0;
       for (let k = begin; k < end; ++k) {
         const i = order[k]!;
-        const x = now[3 * i]!;
-        const y = now[3 * i + 1]!;
-        const z = now[3 * i + 2]!;
+        const from = Math.imul(3, i);
+        const x = now[from]!;
+        const y = now[from + 1]!;
+        const z = now[from + 2]!;
         let dx = kNoStep;
         let dy = 0;
         let dz = 0;
         const j = second ? secondPlaces[i]! : kNone;
-        if (j !== kNone) {
-          dx = x - earlier[3 * j]!;
-          dy = y - earlier[3 * j + 1]!;
-          dz = z - earlier[3 * j + 2]!;
-          if (k - begin < kMostCounted) {
-            sx += bounded(dx);
-            sy += bounded(dy);
-            sz += bounded(dz);
-            ++n;
+        if (j >= 0) {
+          const before = Math.imul(3, j);
+          dx = (x - earlier[before]!) | 0;
+          dy = (y - earlier[before + 1]!) | 0;
+          dz = (z - earlier[before + 2]!) | 0;
+          if (k < counted) {
+            sx = (sx + bounded(dx)) | 0;
+            sy = (sy + bounded(dy)) | 0;
+            sz = (sz + bounded(dz)) | 0;
+            n = (n + 1) | 0;
           }
         }
         const place = newPlaces[i]!;
-        if (place === kNone) continue;
+        if (place < 0) continue;
         targets[count] = place;
-        const at = 3 * count++;
-        put(values, at, x, y, z);
-        put(steps, at, dx, dy, dz);
+        const at = Math.imul(3, count);
+        count = (count + 1) | 0;
+        values[at] = x;
+        values[at + 1] = y;
+        values[at + 2] = z;
+        steps[at] = dx;
+        steps[at + 1] = dy;
+        steps[at + 2] = dz;
       }
       ends[c] = count;
-      put(sums, 4 * c, sx, sy, sz);
-      sums[4 * c + 3] = n;
+      const to = c << 2;
+      sums[to] = sx;
+      sums[to + 1] = sy;
+      sums[to + 2] = sz;
+      sums[to + 3] = n;
     }
   }
 
@@ -112,7 +123,7 @@ export class Motion {
   }
 
   /** The nine cells with the same x as this place and next to it. */
-  private sumColumn(numbers: Uint32Array, place: number, row: number, layer: number, to: number) {
+  private sumColumn(numbers: Int32Array, place: number, row: number, layer: number, to: number) {
     const { sums, columns } = this;
     let x = 0;
     let y = 0;
@@ -140,32 +151,33 @@ export class Motion {
     const { steps, means } = this;
     let at = 0;
     for (let c = 1; c <= cells.cellCount; ++c) {
-      const mx = means[3 * c]!;
-      const my = means[3 * c + 1]!;
-      const mz = means[3 * c + 2]!;
-      const end = 3 * ends[c]!;
+      const mean = Math.imul(3, c);
+      const mx = means[mean]!;
+      const my = means[mean + 1]!;
+      const mz = means[mean + 2]!;
+      const cx = (Math.imul(common, mx) + 128) | 0;
+      const cy = (Math.imul(common, my) + 128) | 0;
+      const cz = (Math.imul(common, mz) + 128) | 0;
+      const end = Math.imul(3, ends[c]!);
       for (; at < end; at += 3) {
         let bx = 0;
         let by = 0;
         let bz = 0;
-        if (steps[at] !== kNoStep) {
-          bx = (steps[at]! << 3) - mx;
-          by = (steps[at + 1]! << 3) - my;
-          bz = (steps[at + 2]! << 3) - mz;
+        const dx = steps[at]!;
+        if (dx !== kNoStep) {
+          bx = ((dx << 3) - mx) | 0;
+          by = ((steps[at + 1]! << 3) - my) | 0;
+          bz = ((steps[at + 2]! << 3) - mz) | 0;
         }
-        values[at] = (values[at]! << 3) + ahead(common, mx, own, bx);
-        values[at + 1] = (values[at + 1]! << 3) + ahead(common, my, own, by);
-        values[at + 2] = (values[at + 2]! << 3) + ahead(common, mz, own, bz);
+        values[at] = (values[at]! << 3) + ((cx + Math.imul(own, bx)) >> 8);
+        values[at + 1] = (values[at + 1]! << 3) + ((cy + Math.imul(own, by)) >> 8);
+        values[at + 2] = (values[at + 2]! << 3) + ((cz + Math.imul(own, bz)) >> 8);
       }
     }
   }
 }
 
 // Short, to be compiled in place.
-
-function ahead(common: number, mean: number, own: number, beyond: number): number {
-  return (Math.imul(common, mean) + Math.imul(own, beyond) + 128) >> 8;
-}
 
 function put(array: Int32Array, at: number, x: number, y: number, z: number): void {
   array[at] = x;
@@ -174,5 +186,6 @@ function put(array: Int32Array, at: number, x: number, y: number, z: number): vo
 }
 
 function bounded(step: number): number {
-  return step > kMostStep ? kMostStep : step < -kMostStep ? -kMostStep : step;
+  if ((step + kMostStep) >>> 0 <= 2 * kMostStep) return step;
+  return step > 0 ? kMostStep : -kMostStep;
 }

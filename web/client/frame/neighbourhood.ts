@@ -1,14 +1,7 @@
 import type { CellOrder } from './cell_order';
 import { badBlock } from './frame_error';
-import {
-  advance,
-  kCases,
-  kClasses,
-  kEscape,
-  kTableBits,
-  rangeOf,
-  valueOf,
-} from './residual_tables';
+import { kCases, kClasses, kEscape, kRanges, kResiduals } from './residual_tables';
+import { kResidualBits, kSlotBits, kTableBits } from './residual_tables';
 import { endsEarly, kLeastState } from './symbols';
 import type { SymbolReader } from './symbols';
 
@@ -20,16 +13,20 @@ export function classOfSize(size: number): number {
   return rowOfSize(size) - 3;
 }
 
-/** No size is above 2047 * 65536 >> 8. */
+/** By sixteenths of a size, which is below 2 ** 19: where its row begins in `kinds`. */
+const kRowBegins = Uint16Array.from({ length: 1 << 15 }, (_, k) => rowOfSize(k << 4) << 3);
 const kRows = 56;
+/** Behind them: the row of what is read first. */
+const kFirstRow = kRows << 3;
 
 /** Of a cell: three sums of residuals, three of their sizes, the count; and the next one's place. */
 const kSumBits = 3;
 const kMostCounted = 63;
 const kMostResidual = 8184;
 const kMostSize = 2047;
-const kNoMore = 1 << kTableBits;
-const kTableMask = kNoMore - 1;
+const kTableMask = (1 << kTableBits) - 1;
+const kSlotMask = (1 << kSlotBits) - 1;
+const kResidualMask = (1 << kResidualBits) - 1;
 
 /** Which values are read, and within what bounds they have to be. */
 export interface Wanted {
@@ -41,33 +38,174 @@ export interface Wanted {
 
 /** What neighbours tell of a particle: protocol/PROTOCOL.md, "Neighbours". Keeps its memory. */
 export class Neighbourhood {
-  private cells = new Int32Array(0);
-  private readonly before = new Int32Array(7);
+  private sums = new Int32Array(0);
   /** Of kCases what the row of a size stands for, and behind these what is read first. */
   private readonly kinds = new Uint16Array(8 * (kRows + 1));
 
   /**
    * Turns predictions [eighths], three of each particle cell by cell, into values. The particles of
    * cell c end before `ends[c]`.
+   *
+   * Half the time of a frame is spent here. So the three lanes stand side by side with all they
+   * need in variables, nothing is called, and what chance would decide is no branch.
    */
+  // eslint-disable-next-line max-lines-per-function
   read(
     symbols: SymbolReader,
-    cells: CellOrder,
-    ends: Uint32Array,
+    { cellCount, places, numbers, row, layer }: CellOrder,
+    ends: Int32Array,
     values: Int32Array,
-    wanted: Wanted,
+    { lanes, least, span }: Wanted,
   ): void {
-    const { cellCount } = cells;
     this.tune(symbols.bits(3) - 4, symbols.residualClass());
-    const room = (cellCount + 1) << kSumBits;
-    if (this.cells.length < room) this.cells = new Int32Array(2 * room);
+    this.reserve(cellCount);
+    const { sums, kinds } = this;
+    const { words, wordCount, states } = symbols;
+    const inverses = kInverses;
+    const rows = kRowBegins;
+    const residuals = kResiduals;
+    const ranges = kRanges;
+    const [has0, has1, has2] = [lanes[0] === true, lanes[1] === true, lanes[2] === true];
+    let next = symbols.next;
+    let s0 = states[0]!;
+    let s1 = states[1]!;
+    let s2 = states[2]!;
     let k = 0;
     for (let c = 1; c <= cellCount; ++c) {
-      this.lookAround(cells, cells.places[c]!);
+      const place = places[c]!;
+      const a = numbers[place - 1]! << kSumBits; // that without particles, number 0, has zeros
+      const b = numbers[place - row]! << kSumBits;
+      const d = numbers[place - layer]! << kSumBits;
+      const left0 = (sums[a]! + sums[b]! + sums[d]!) | 0;
+      const left1 = (sums[a + 1]! + sums[b + 1]! + sums[d + 1]!) | 0;
+      const left2 = (sums[a + 2]! + sums[b + 2]! + sums[d + 2]!) | 0;
+      const size0 = (sums[a + 3]! + sums[b + 3]! + sums[d + 3]! + 8) | 0;
+      const size1 = (sums[a + 4]! + sums[b + 4]! + sums[d + 4]! + 8) | 0;
+      const size2 = (sums[a + 5]! + sums[b + 5]! + sums[d + 5]! + 8) | 0;
+      const known = (sums[a + 6]! + sums[b + 6]! + sums[d + 6]! + 1) | 0;
+      // The neighbours' sums and, four times, those of the cell so far.
+      let e0 = left0;
+      let e1 = left1;
+      let e2 = left2;
+      let z0 = size0;
+      let z1 = size1;
+      let z2 = size2;
+      let count = known;
+      const most = (known + 4 * kMostCounted) | 0;
       const end = 3 * ends[c]!;
-      this.readCell(symbols, values, k, end, c << kSumBits, wanted);
-      k = end;
+      for (; k < end; k += 3) {
+        const inverse = inverses[count]!;
+        const isFirst = count === 1;
+        const all = (z0 + z1 + z2) | 0;
+        const p0 = values[k]!;
+        const p1 = values[k + 1]!;
+        const p2 = values[k + 2]!;
+        const m0 = (p0 + (Math.imul(e0, inverse) >> 16)) | 0;
+        const m1 = (p1 + (Math.imul(e1, inverse) >> 16)) | 0;
+        const m2 = (p2 + (Math.imul(e2, inverse) >> 16)) | 0;
+        const f0 = (m0 + 4) & 7; // the fraction, from 0 on
+        const f1 = (m1 + 4) & 7;
+        const f2 = (m2 + 4) & 7;
+        let r0 = 0;
+        let r1 = 0;
+        let r2 = 0;
+        if (has0) {
+          const size = Math.imul((Math.imul(13, z0) + all) >> 4, inverse) >> 8;
+          const kind = kinds[(isFirst ? kFirstRow : rows[size >> 4]!) | f0]!;
+          const table = kind & kTableMask;
+          const slot = s0 & kSlotMask;
+          r0 = residuals[(table << kSlotBits) | slot]!;
+          const range = ranges[(table << kResidualBits) | (r0 & kResidualMask)]!;
+          s0 = (Math.imul(range >>> 16, s0 >> kSlotBits) + slot - (range & 0xffff)) | 0;
+          const more = (s0 - kLeastState) >> 31; // -1 where the lane needs a word
+          s0 = (s0 << (more & 16)) | (words[next]! & more);
+          next = (next - more) | 0;
+          if (kind > kTableMask || r0 === kEscape) {
+            states[0] = s0;
+            symbols.next = next;
+            r0 = symbols.completed(kind, r0, 0);
+            s0 = states[0]!;
+            next = symbols.next;
+          }
+        }
+        if (has1) {
+          const size = Math.imul((Math.imul(13, z1) + all) >> 4, inverse) >> 8;
+          const kind = kinds[(isFirst ? kFirstRow : rows[size >> 4]!) | f1]!;
+          const table = kind & kTableMask;
+          const slot = s1 & kSlotMask;
+          r1 = residuals[(table << kSlotBits) | slot]!;
+          const range = ranges[(table << kResidualBits) | (r1 & kResidualMask)]!;
+          s1 = (Math.imul(range >>> 16, s1 >> kSlotBits) + slot - (range & 0xffff)) | 0;
+          const more = (s1 - kLeastState) >> 31; // -1 where the lane needs a word
+          s1 = (s1 << (more & 16)) | (words[next]! & more);
+          next = (next - more) | 0;
+          if (kind > kTableMask || r1 === kEscape) {
+            states[1] = s1;
+            symbols.next = next;
+            r1 = symbols.completed(kind, r1, 1);
+            s1 = states[1]!;
+            next = symbols.next;
+          }
+        }
+        if (has2) {
+          const size = Math.imul((Math.imul(13, z2) + all) >> 4, inverse) >> 8;
+          const kind = kinds[(isFirst ? kFirstRow : rows[size >> 4]!) | f2]!;
+          const table = kind & kTableMask;
+          const slot = s2 & kSlotMask;
+          r2 = residuals[(table << kSlotBits) | slot]!;
+          const range = ranges[(table << kResidualBits) | (r2 & kResidualMask)]!;
+          s2 = (Math.imul(range >>> 16, s2 >> kSlotBits) + slot - (range & 0xffff)) | 0;
+          const more = (s2 - kLeastState) >> 31; // -1 where the lane needs a word
+          s2 = (s2 << (more & 16)) | (words[next]! & more);
+          next = (next - more) | 0;
+          if (kind > kTableMask || r2 === kEscape) {
+            states[2] = s2;
+            symbols.next = next;
+            r2 = symbols.completed(kind, r2, 2);
+            s2 = states[2]!;
+            next = symbols.next;
+          }
+        }
+        if (next > wordCount) endsEarly(); // other words were read in place of what is not there
+        const t0 = (f0 - 4) >> 31; // -1 turns the residual
+        const t1 = (f1 - 4) >> 31;
+        const t2 = (f2 - 4) >> 31;
+        const v0 = (((m0 + 4) >> 3) + (r0 ^ t0) - t0) | 0;
+        const v1 = (((m1 + 4) >> 3) + (r1 ^ t1) - t1) | 0;
+        const v2 = (((m2 + 4) >> 3) + (r2 ^ t2) - t2) | 0;
+        if ((v0 - least) >>> 0 > span || (v1 - least) >>> 0 > span || (v2 - least) >>> 0 > span) {
+          badBlock('a position is outside the grid, or an attribute too large');
+        }
+        values[k] = v0;
+        values[k + 1] = v1;
+        values[k + 2] = v2;
+        if (count === most) continue;
+        count = (count + 4) | 0;
+        e0 = (e0 + (bounded((v0 << 3) - p0) << 2)) | 0;
+        e1 = (e1 + (bounded((v1 << 3) - p1) << 2)) | 0;
+        e2 = (e2 + (bounded((v2 << 3) - p2) << 2)) | 0;
+        z0 = (z0 + (sizeOf((v0 << 3) - m0) << 2)) | 0;
+        z1 = (z1 + (sizeOf((v1 << 3) - m1) << 2)) | 0;
+        z2 = (z2 + (sizeOf((v2 << 3) - m2) << 2)) | 0;
+      }
+      const at = c << kSumBits;
+      sums[at] = (e0 - left0) >> 2;
+      sums[at + 1] = (e1 - left1) >> 2;
+      sums[at + 2] = (e2 - left2) >> 2;
+      sums[at + 3] = (z0 - size0) >> 2;
+      sums[at + 4] = (z1 - size1) >> 2;
+      sums[at + 5] = (z2 - size2) >> 2;
+      sums[at + 6] = (count - known) >> 2;
     }
+    symbols.next = next;
+    states[0] = s0;
+    states[1] = s1;
+    states[2] = s2;
+  }
+
+  private reserve(cellCount: number): void {
+    const room = (cellCount + 1) << kSumBits;
+    if (this.sums.length < room) this.sums = new Int32Array(2 * room);
   }
 
   private tune(shift: number, firstClass: number): void {
@@ -77,155 +215,7 @@ export class Neighbourhood {
       for (let k = 0; k < 8; ++k) this.kinds[8 * row + k] = kCases[8 * index + k]!;
     }
   }
-
-  /** Sums up the cells before this one; that without particles, number 0, has zeros. */
-  private lookAround({ numbers, row, layer }: CellOrder, place: number): void {
-    const { cells, before } = this;
-    const a = numbers[place - 1]! << kSumBits;
-    const b = numbers[place - row]! << kSumBits;
-    const c = numbers[place - layer]! << kSumBits;
-    for (let k = 0; k < 7; ++k) before[k] = cells[a + k]! + cells[b + k]! + cells[c + k]!;
-  }
-
-  /** The three lanes side by side, all they need in variables: half the time of a loop over them. */
-  // eslint-disable-next-line max-lines-per-function
-  private readCell(
-    symbols: SymbolReader,
-    values: Int32Array,
-    begin: number,
-    end: number,
-    sums: number,
-    { lanes, least, span }: Wanted,
-  ): void {
-    const { cells, before, kinds } = this;
-    const { bytes, states } = symbols;
-    const [has0, has1, has2] = [lanes[0]!, lanes[1]!, lanes[2]!];
-    let next = symbols.next;
-    let s0 = states[0]!;
-    let s1 = states[1]!;
-    let s2 = states[2]!;
-    const left0 = before[0]!;
-    const left1 = before[1]!;
-    const left2 = before[2]!;
-    const size0 = before[3]! + 8;
-    const size1 = before[4]! + 8;
-    const size2 = before[5]! + 8;
-    const known = before[6]!;
-    let e0 = 0;
-    let e1 = 0;
-    let e2 = 0;
-    let z0 = 0;
-    let z1 = 0;
-    let z2 = 0;
-    let count = 0;
-    for (let k = begin; k < end; k += 3) {
-      const inverse = kInverses[(count << 2) + known + 1]!;
-      const p0 = values[k]!;
-      const p1 = values[k + 1]!;
-      const p2 = values[k + 2]!;
-      const a0 = (z0 << 2) + size0;
-      const a1 = (z1 << 2) + size1;
-      const a2 = (z2 << 2) + size2;
-      const all = a0 + a1 + a2;
-      const isFirst = count + known === 0;
-
-      const m0 = p0 + (Math.imul((e0 << 2) + left0, inverse) >> 16);
-      const m1 = p1 + (Math.imul((e1 << 2) + left1, inverse) >> 16);
-      const m2 = p2 + (Math.imul((e2 << 2) + left2, inverse) >> 16);
-      let r0 = 0;
-      let r1 = 0;
-      let r2 = 0;
-      if (has0) {
-        const mean = Math.imul((Math.imul(13, a0) + all) >> 4, inverse) >> 8;
-        const row = isFirst ? kRows : rowOfSize(mean);
-        const kind = kinds[(row << 3) | ((m0 + 4) & 7)]!;
-        const range = rangeOf(kind & kTableMask, s0);
-        s0 = advance(s0, range);
-        if (s0 < kLeastState) {
-          s0 = (s0 << 16) | bytes[next]! | (bytes[next + 1]! << 8);
-          next += 2;
-        }
-        r0 = valueOf(range);
-        if (kind >= kNoMore || r0 === kEscape) {
-          states[0] = s0;
-          symbols.next = next;
-          r0 = symbols.completed(kind, r0, 0);
-          s0 = states[0]!;
-          next = symbols.next;
-        }
-      }
-      if (has1) {
-        const mean = Math.imul((Math.imul(13, a1) + all) >> 4, inverse) >> 8;
-        const row = isFirst ? kRows : rowOfSize(mean);
-        const kind = kinds[(row << 3) | ((m1 + 4) & 7)]!;
-        const range = rangeOf(kind & kTableMask, s1);
-        s1 = advance(s1, range);
-        if (s1 < kLeastState) {
-          s1 = (s1 << 16) | bytes[next]! | (bytes[next + 1]! << 8);
-          next += 2;
-        }
-        r1 = valueOf(range);
-        if (kind >= kNoMore || r1 === kEscape) {
-          states[1] = s1;
-          symbols.next = next;
-          r1 = symbols.completed(kind, r1, 1);
-          s1 = states[1]!;
-          next = symbols.next;
-        }
-      }
-      if (has2) {
-        const mean = Math.imul((Math.imul(13, a2) + all) >> 4, inverse) >> 8;
-        const row = isFirst ? kRows : rowOfSize(mean);
-        const kind = kinds[(row << 3) | ((m2 + 4) & 7)]!;
-        const range = rangeOf(kind & kTableMask, s2);
-        s2 = advance(s2, range);
-        if (s2 < kLeastState) {
-          s2 = (s2 << 16) | bytes[next]! | (bytes[next + 1]! << 8);
-          next += 2;
-        }
-        r2 = valueOf(range);
-        if (kind >= kNoMore || r2 === kEscape) {
-          states[2] = s2;
-          symbols.next = next;
-          r2 = symbols.completed(kind, r2, 2);
-          s2 = states[2]!;
-          next = symbols.next;
-        }
-      }
-      if (next > bytes.length) endsEarly(); // zeros were read in place of what is not there
-      const v0 = valueNear(m0, r0);
-      const v1 = valueNear(m1, r1);
-      const v2 = valueNear(m2, r2);
-      if (isOutside(v0, least, span) || isOutside(v1, least, span) || isOutside(v2, least, span)) {
-        badBlock('a position is outside the grid, or an attribute too large');
-      }
-      values[k] = v0;
-      values[k + 1] = v1;
-      values[k + 2] = v2;
-      if (count === kMostCounted) continue;
-      ++count;
-      e0 += bounded((v0 << 3) - p0);
-      e1 += bounded((v1 << 3) - p1);
-      e2 += bounded((v2 << 3) - p2);
-      z0 += sizeOf((v0 << 3) - m0);
-      z1 += sizeOf((v1 << 3) - m1);
-      z2 += sizeOf((v2 << 3) - m2);
-    }
-    symbols.next = next;
-    states[0] = s0;
-    states[1] = s1;
-    states[2] = s2;
-    cells[sums] = e0;
-    cells[sums + 1] = e1;
-    cells[sums + 2] = e2;
-    cells[sums + 3] = z0;
-    cells[sums + 4] = z1;
-    cells[sums + 5] = z2;
-    cells[sums + 6] = count;
-  }
 }
-
-// Short, to be compiled in place.
 
 function rowOfSize(size: number): number {
   const least = Math.max(size, 64);
@@ -233,16 +223,7 @@ function rowOfSize(size: number): number {
   return (octave << 2) + ((least >> (octave + 4)) & 3);
 }
 
-/** The value at a residual from a prediction [eighths]. */
-function valueNear(eighths: number, residual: number): number {
-  const whole = (eighths + 4) >> 3;
-  const turn = (eighths - (whole << 3)) >> 31;
-  return (whole + ((residual ^ turn) - turn)) | 0;
-}
-
-function isOutside(value: number, least: number, span: number): boolean {
-  return (value - least) >>> 0 > span;
-}
+// Short, to be compiled in place.
 
 function bounded(residual: number): number {
   if (residual > kMostResidual) return kMostResidual;

@@ -38,10 +38,12 @@ function partBelow(eighths: number, steepness: number): number {
 /** First low bits, then the table and the place in it: what `kCases` has for a prediction. */
 const kPlaces = 2;
 export const kTableBits = 8;
-const kSymbolRoomBits = 6;
-/** Stands for what lies beyond the table. */
-export const kEscape = 127;
-const kValueBits = 24;
+/** States are kept modulo 2 ** 12 in slots; residuals of a table modulo 2 ** 6. */
+export const kSlotBits = 12;
+export const kResidualBits = 6;
+/** Stands for what lies beyond the table; also modulo 2 ** 6 no residual in one. */
+export const kEscape = 32;
+const kResidualMask = (1 << kResidualBits) - 1;
 
 /** By class and fraction, 8 of them from -4 on: low bits << 8 | table and place. */
 export const kCases = Uint16Array.from({ length: 8 * kClasses }, (_, k) => {
@@ -53,12 +55,12 @@ export const kCases = Uint16Array.from({ length: 8 * kClasses }, (_, k) => {
 });
 
 /**
- * By table and place: the symbol of each slot; and for each symbol what it stands for, its
- * frequency less 1 and where it starts, in 8, 12 and 12 bits.
+ * By table and place: the residual of each slot, or kEscape; and for each of these its frequency
+ * and where it starts, in 16 bits each.
  */
-function makeTables(): { symbols: Uint8Array; ranges: Int32Array } {
-  const symbols = new Uint8Array(kPlaces * kTables * kScale);
-  const ranges = new Int32Array((kPlaces * kTables) << kSymbolRoomBits);
+function makeTables(): { residuals: Int8Array; ranges: Int32Array } {
+  const residuals = new Int8Array((kPlaces * kTables) << kSlotBits);
+  const ranges = new Int32Array((kPlaces * kTables) << kResidualBits);
   for (let index = 0; index < kPlaces * kTables; ++index) {
     const radius = kRadius[index >> 1] ?? 0;
     const count = 2 * radius + 2;
@@ -68,31 +70,12 @@ function makeTables(): { symbols: Uint8Array; ranges: Int32Array } {
       k === count ? kScale : k + (((below(k - radius) - below(-radius)) * (kScale - count)) >> 16);
     for (let k = 0; k < count; ++k) {
       const [start, end] = [startOf(k), startOf(k + 1)];
-      const value = k === count - 1 ? kEscape : k - radius;
-      ranges[(index << kSymbolRoomBits) | k] =
-        (value << kValueBits) | ((end - start - 1) << 12) | start;
-      symbols.fill(k, kScale * index + start, kScale * index + end);
+      const residual = k === count - 1 ? kEscape : k - radius;
+      ranges[(index << kResidualBits) | (residual & kResidualMask)] = ((end - start) << 16) | start;
+      residuals.fill(residual, kScale * index + start, kScale * index + end);
     }
   }
-  return { symbols, ranges };
+  return { residuals, ranges };
 }
 
-const { symbols: kSymbols, ranges: kRanges } = makeTables();
-
-// Short, to be compiled in place.
-
-/** The range that a lane in this state is in. */
-export function rangeOf(index: number, state: number): number {
-  return kRanges[(index << kSymbolRoomBits) | kSymbols[(index << 12) | (state & 4095)]!]!;
-}
-
-/** The residual that a range stands for, or kEscape. */
-export function valueOf(range: number): number {
-  return range >> kValueBits;
-}
-
-/** The lane's state behind the range, before it is filled up. */
-export function advance(state: number, range: number): number {
-  const frequency = ((range >> 12) & 4095) + 1;
-  return (Math.imul(frequency, state >> 12) + (state & 4095) - (range & 4095)) | 0;
-}
+export const { residuals: kResiduals, ranges: kRanges } = makeTables();

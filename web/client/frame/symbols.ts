@@ -1,32 +1,39 @@
 import { badBlock, FrameError } from './frame_error';
-import {
-  advance,
-  kCases,
-  kClasses,
-  kEscape,
-  kRadius,
-  kTableBits,
-  rangeOf,
-  valueOf,
-} from './residual_tables';
+import { kCases, kClasses, kEscape, kRadius, kRanges, kResiduals } from './residual_tables';
+import { kResidualBits, kSlotBits, kTableBits } from './residual_tables';
+import { kGrowth } from './room';
 
 export const kLeastState = 1 << 15;
 const kMostResidualBits = 30;
 const kTableMask = (1 << kTableBits) - 1;
+const kSlotMask = (1 << kSlotBits) - 1;
+const kResidualMask = (1 << kResidualBits) - 1;
+/** So many words may be read before anybody looks whether they are there. */
+const kReadAhead = 3;
 
 /** The entropy decoder of protocol/PROTOCOL.md, "Symbols". */
 export class SymbolReader {
-  /** Where the next word is read, and from what. */
+  /** Which word is read next, and of which; behind `wordCount` there are some without meaning. */
   next = 0;
-  bytes: Uint8Array = new Uint8Array(0);
+  words = new Uint16Array(0);
+  wordCount = 0;
   readonly states = new Int32Array(3);
+  /** Without a word. */
+  private oddBytes = 0;
   private most = 0;
 
-  /** The symbols begin at `offset`. */
-  start(bytes: Uint8Array, offset: number): void {
-    this.bytes = bytes;
-    this.next = offset;
-    this.most = 8 * (bytes.length - offset);
+  /** The symbols begin at `offset`, which is even. */
+  start(buffer: ArrayBuffer, offset: number): void {
+    const bytes = buffer.byteLength - offset;
+    // Where there are typed arrays, they are little-endian.
+    const words = new Uint16Array(buffer, offset, bytes >> 1);
+    this.wordCount = words.length;
+    this.oddBytes = bytes & 1;
+    this.most = 8 * bytes;
+    const room = words.length + kReadAhead;
+    if (this.words.length < room) this.words = new Uint16Array(Math.ceil(kGrowth * room));
+    this.words.set(words);
+    this.next = 0;
     for (let lane = 0; lane < 3; ++lane) {
       const low = this.word();
       this.states[lane] = low | (this.word() << 16);
@@ -41,8 +48,8 @@ export class SymbolReader {
 
   /** All symbols have been read. */
   end(): void {
-    if (this.next !== this.bytes.length) {
-      const left = this.bytes.length - this.next;
+    const left = 2 * (this.wordCount - this.next) + this.oddBytes;
+    if (left !== 0) {
       throw new FrameError('extra_bytes', `${left} bytes after the last symbol`);
     }
     for (const state of this.states) {
@@ -87,16 +94,19 @@ export class SymbolReader {
   /** What a prediction left; it was `fraction` eighths above its whole part. */
   residual(residualClass: number, fraction: number, lane: number): number {
     const kind = kCases[(residualClass << 3) | (fraction + 4)]!;
-    const range = rangeOf(kind & kTableMask, this.states[lane]!);
-    this.fill(lane, advance(this.states[lane]!, range));
-    let value = valueOf(range);
+    const table = kind & kTableMask;
+    const state = this.states[lane]!;
+    const slot = state & kSlotMask;
+    let value = kResiduals[(table << kSlotBits) | slot]!;
+    const range = kRanges[(table << kResidualBits) | (value & kResidualMask)]!;
+    this.fill(lane, Math.imul(range >>> 16, state >> kSlotBits) + slot - (range & 0xffff));
     if (kind > kTableMask || value === kEscape) value = this.completed(kind, value, lane);
     return fraction < 0 ? -value : value;
   }
 
   /** The residual of which the table gave `value`, with what lies beyond, and its low bits. */
   completed(kind: number, value: number, lane: number): number {
-    if (this.next > this.bytes.length) endsEarly();
+    if (this.next > this.wordCount) endsEarly();
     const lowBits = kind >> kTableBits;
     if (value === kEscape) value = this.escaped(kRadius[(kind & kTableMask) >> 1]!, lowBits, lane);
     return lowBits > 0 ? (value << lowBits) + this.bits(lowBits, lane) : value;
@@ -120,10 +130,10 @@ export class SymbolReader {
   }
 
   private word(): number {
-    const { bytes, next } = this;
-    if (next + 2 > bytes.length) endsEarly();
-    this.next = next + 2;
-    return bytes[next]! | (bytes[next + 1]! << 8);
+    const { words, next, wordCount } = this;
+    if (next >= wordCount) endsEarly();
+    this.next = next + 1;
+    return words[next]!;
   }
 }
 
