@@ -256,7 +256,7 @@ bool Simulation::Impl::take_guarded_steps(std::uint32_t steps, AdvanceReport& re
 }
 
 void Simulation::Impl::begin_call() {
-  call_start.content = *this;
+  call_start.content = static_cast<const Content&>(*this);
   call_start.bounds.reset();
 }
 

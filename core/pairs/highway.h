@@ -3,6 +3,9 @@
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
 #endif
+#ifndef HWY_BROKEN_EMU128
+#define HWY_BROKEN_EMU128 1  // so that every compiler makes the plain loops of HWY_SCALAR
+#endif
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wold-style-cast"

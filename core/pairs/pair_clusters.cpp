@@ -86,17 +86,16 @@ class CandidateSearch {
     const Real reach = search_.reach * (1 + 1e-6) + 4e-7 * box.greatest();
     const Vec3 low = to_point(places_, box.low);
     const Vec3 high = to_point(places_, box.high);
+    const CullBox near{box.low.data(), box.high.data(), static_cast<float>(reach)};
     cluster.center = (low + high) / 2;
     cluster.first_candidate = count;
     for (const SourceGroup& group : groups_) {
       cluster.mirrored_begin = static_cast<Index>(count - cluster.first_candidate);
-      const float* const x = places_.x.data() + group.first;
-      const float* const y = places_.y.data() + group.first;
-      const float* const z = places_.z.data() + group.first;
+      const CullSlots slots{places_.x.data() + group.first, places_.y.data() + group.first,
+                            places_.z.data() + group.first, group.first};
       const auto cull = [&](Index begin, Index end) {
         make_room(found, count + (end - begin) + lanes_);
-        count = cull_(x, y, z, begin, end, box.low.data(), box.high.data(),
-                      static_cast<float>(reach), group.first, found.data(), count);
+        count = cull_(slots, begin, end, near, found.data(), count);
       };
       group.grid->for_each_run(low.array() - reach, high.array() + reach, cull);
     }

@@ -317,8 +317,11 @@ HWY_INLINE Real total(const Term* terms, std::size_t sum) {
   for (std::size_t t = 0; t < kTerms<T>; ++t) {
     hn::Store(terms[t].sums[sum], d, lanes + t * Lanes<T>::kCount);
   }
-  if constexpr (sizeof(T) == 8) return static_cast<Real>(lanes[0] + lanes[1]);
-  return static_cast<Real>((lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+  if constexpr (sizeof(T) == 8) {
+    return static_cast<Real>(lanes[0] + lanes[1]);
+  } else {
+    return static_cast<Real>((lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+  }
 }
 
 /// Over the cluster's candidates from `first` on, a multiple of the lanes.
@@ -411,29 +414,28 @@ struct Loops {
   }
 };
 
-std::size_t cull(const float* x, const float* y, const float* z, Index begin, Index end,
-                 const float* low, const float* high, float reach, Index first_source, Index* found,
+std::size_t cull(const CullSlots& slots, Index begin, Index end, const CullBox& box, Index* found,
                  std::size_t count) {
   const hn::ScalableTag<float> d;
   const hn::ScalableTag<std::uint32_t> u;
   using V = hn::Vec<decltype(d)>;
   const std::size_t lanes = hn::Lanes(d);
-  const V reach2 = hn::Set(d, reach * reach);
+  const V reach2 = hn::Set(d, box.reach * box.reach);
   const auto beyond = [&](const float* column, std::size_t k, int axis) HWY_ATTR {
     const V p = hn::LoadU(d, column + k);
-    const V below = hn::Sub(hn::Set(d, low[axis]), p);
-    const V above = hn::Sub(p, hn::Set(d, high[axis]));
+    const V below = hn::Sub(hn::Set(d, box.low[axis]), p);
+    const V above = hn::Sub(p, hn::Set(d, box.high[axis]));
     return hn::Max(hn::Max(below, above), hn::Zero(d));
   };
   for (std::size_t k = begin; k < end; k += lanes) {
-    const V dx = beyond(x, k, 0);
-    const V dy = beyond(y, k, 1);
-    const V dz = beyond(z, k, 2);
+    const V dx = beyond(slots.x, k, 0);
+    const V dy = beyond(slots.y, k, 1);
+    const V dz = beyond(slots.z, k, 2);
     const V square = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     auto is_near = hn::Lt(square, reach2);
     if (end - k < lanes) is_near = hn::And(is_near, hn::FirstN(d, end - k));
     const auto sources =
-        hn::Iota(u, static_cast<std::uint32_t>(first_source + static_cast<Index>(k)));
+        hn::Iota(u, static_cast<std::uint32_t>(slots.first_source + static_cast<Index>(k)));
     count += hn::CompressStore(sources, hn::RebindMask(u, is_near), u, found + count);
   }
   return count;

@@ -96,12 +96,12 @@ ImageOffsets::ImageOffsets(const Model& model, const VatMotion& motion) {
   for (int axis = 0; axis < 3; ++axis) {
     std::array<Real, kKinds>& along = offsets_[static_cast<std::size_t>(axis)];
     if (model.periodic.repeats(axis)) {
-      along[kBack] = -model.periodic.length(axis);
-      along[kOn] = model.periodic.length(axis);
+      along[back] = -model.periodic.length(axis);
+      along[on] = model.periodic.length(axis);
     }
     if (!model.scene.vat) continue;
-    along[kLowWall] = 2 * (model.scene.vat->min[axis] + motion.offset[axis]);
-    along[kHighWall] = 2 * (model.scene.vat->max[axis] + motion.offset[axis]);
+    along[low_wall] = 2 * (model.scene.vat->min[axis] + motion.offset[axis]);
+    along[high_wall] = 2 * (model.scene.vat->max[axis] + motion.offset[axis]);
   }
 }
 
@@ -112,9 +112,9 @@ PackedImage ImageOffsets::pack(const PairImage& image) const {
     const Real offset = image.offset[static_cast<Eigen::Index>(axis)];
     std::uint8_t& kind = packed.offsets[axis];
     if (image.axes[axis]) {
-      kind = offset == along[kLowWall] ? kLowWall : kHighWall;
+      kind = offset == along[low_wall] ? low_wall : high_wall;
     } else if (offset != 0) {
-      kind = offset < 0 ? kBack : kOn;
+      kind = offset < 0 ? back : on;
     }
     VAT_ASSERT(offset == along[kind]);
   }
@@ -129,8 +129,8 @@ Index PairSources::source_of(Index n) const {
 }
 
 void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
-  const bool is_solid = kind == kShiftedSolids || kind == kMirroredSolids;
-  const bool is_mirrored = kind == kMirroredSolids || kind == kMirroredLiquid;
+  const bool is_solid = kind == shifted_solids || kind == mirrored_solids;
+  const bool is_mirrored = kind == mirrored_solids || kind == mirrored_liquid;
   const CellSortedPoints& points = is_solid ? c.work.solids_in_liquid : c.work.liquid;
   const Index first = is_solid ? solids_ : 0;
   const std::size_t count = points.grid.order().size();
@@ -155,7 +155,7 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
 
 /// What was found, in one column, and sorted.
 void PairSources::join_images(const StepContext& c, Images kind) {
-  const bool is_solid = kind == kShiftedSolids || kind == kMirroredSolids;
+  const bool is_solid = kind == shifted_solids || kind == mirrored_solids;
   const CellSortedPoints& points = is_solid ? c.work.solids_in_liquid : c.work.liquid;
   const Index first = is_solid ? solids_ : 0;
   std::size_t total = 0;
@@ -296,12 +296,12 @@ PairInputs PairSources::charged_inputs() const {
 
 std::array<SourceGroup, 6> PairSources::groups(const UniformGrid& liquid,
                                                const UniformGrid& solids) const {
-  return {SourceGroup{&liquid, 0},  SourceGroup{&solids, solids_}, group_of(kShiftedSolids),
-          group_of(kShiftedLiquid), group_of(kMirroredSolids),     group_of(kMirroredLiquid)};
+  return {SourceGroup{&liquid, 0},  SourceGroup{&solids, solids_}, group_of(shifted_solids),
+          group_of(shifted_liquid), group_of(mirrored_solids),     group_of(mirrored_liquid)};
 }
 
 std::array<SourceGroup, 3> PairSources::liquid_groups(const UniformGrid& liquid) const {
-  return {SourceGroup{&liquid, 0}, group_of(kShiftedLiquid), group_of(kMirroredLiquid)};
+  return {SourceGroup{&liquid, 0}, group_of(shifted_liquid), group_of(mirrored_liquid)};
 }
 
 bool PairSources::is_current(const StepContext& c) const {
@@ -330,8 +330,8 @@ void PairSources::build(const StepContext& c, Real reach) {
   set_places(c);
   offsets_ = ImageOffsets(c.model, motion_of(c));
   for (const Images kind : kAllImages) {
-    const bool of_solids = kind == kShiftedSolids || kind == kMirroredSolids;
-    const bool is_mirrored = kind == kMirroredSolids || kind == kMirroredLiquid;
+    const bool of_solids = kind == shifted_solids || kind == mirrored_solids;
+    const bool is_mirrored = kind == mirrored_solids || kind == mirrored_liquid;
     images_[kind].first = end;
     if ((of_solids && !solid) || (is_mirrored ? c.model.walls.empty() : !c.model.periodic.any())) {
       images_[kind].all.clear();

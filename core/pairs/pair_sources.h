@@ -45,11 +45,12 @@ class ImageOffsets {
     const auto& [x, y, z] = image.offsets;
     return {{offsets_[0][x], offsets_[1][y], offsets_[2][z]},
             image.source,
-            {x >= kLowWall, y >= kLowWall, z >= kLowWall}};
+            {x >= low_wall, y >= low_wall, z >= low_wall}};
   }
 
  private:
-  enum Kind : std::uint8_t { kNone, kBack, kOn, kLowWall, kHighWall, kKinds };
+  enum Kind : std::uint8_t { none, back, on, low_wall, high_wall };
+  static constexpr std::size_t kKinds = high_wall + 1;
 
   std::array<std::array<Real, kKinds>, 3> offsets_{};  ///< by axis [m]
 };
@@ -150,8 +151,8 @@ class PairSources {
   /// The particle that an image is of; a particle itself.
   Index source_of(Index n) const;
   /// The first image in a wall; and the first of liquid.
-  Index first_mirrored() const { return images_[kMirroredSolids].first; }
-  Index first_mirrored_liquid() const { return images_[kMirroredLiquid].first; }
+  Index first_mirrored() const { return images_[mirrored_solids].first; }
+  Index first_mirrored_liquid() const { return images_[mirrored_liquid].first; }
   /// As above; and of them those of liquid.
   std::array<SourceGroup, 6> groups(const UniformGrid& liquid, const UniformGrid& solids) const;
   std::array<SourceGroup, 3> liquid_groups(const UniformGrid& liquid) const;
@@ -167,9 +168,9 @@ class PairSources {
     /// That in a slot.
     const PackedImage& image(std::size_t slot) const { return all[grid.order()[slot]]; }
   };
-  enum Images : std::uint8_t { kShiftedSolids, kShiftedLiquid, kMirroredSolids, kMirroredLiquid };
-  static constexpr std::array kAllImages = {kShiftedSolids, kShiftedLiquid, kMirroredSolids,
-                                            kMirroredLiquid};
+  enum Images : std::uint8_t { shifted_solids, shifted_liquid, mirrored_solids, mirrored_liquid };
+  static constexpr std::array kAllImages = {shifted_solids, shifted_liquid, mirrored_solids,
+                                            mirrored_liquid};
   SourceGroup group_of(Images which) const { return {&images_[which].grid, images_[which].first}; }
   void find_images(const StepContext& c, Real reach, Images kind);
   void join_images(const StepContext& c, Images kind);

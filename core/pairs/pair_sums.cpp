@@ -30,8 +30,9 @@ namespace {
 #if HWY_ARCH_X86
 /// Older processors do the same with their plain instructions.
 bool has_ssse3() {
-  static const bool has = (hwy::SupportedTargets() & HWY_SSSE3) != 0;  // costs a trap on some hosts
-  return has;
+  // Asked once: it costs a trap on some hosts.
+  static const bool kHas = (hwy::SupportedTargets() & HWY_SSSE3) != 0;
+  return kHas;
 }
 #endif
 

@@ -50,7 +50,9 @@ struct PlaceGrid {
   std::int32_t coordinate(Real x, int axis) const {
     const Real c = (x - origin[axis]) * inverse_unit;
     if (!(c > 0)) return 0;
-    return c < kCount ? static_cast<std::int32_t>(c + 0.5) : kCount;
+    if (!(c < kCount)) return kCount;
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): not below 0, and lround() would be a call
+    return static_cast<std::int32_t>(c + 0.5);
   }
   Vec3 place(const PackedPlace& p) const {
     return {origin.x() + unit * p.x, origin.y() + unit * p.y, origin.z() + unit * p.z};
@@ -143,11 +145,25 @@ const PairSums& pair_sums_without_vectors(PairPrecision precision, KernelId kern
 /// `set` must be one that the machine has.
 const PairSums& pair_sums(InstructionSet set, PairPrecision precision, KernelId kernel);
 
-/// The slots within `reach` of the box, appended to `found` from `count` on, which has room for all
-/// of them and lane_count() more; the new count. Coordinates by slot, low and high by axis.
-using CullFunction = std::size_t (*)(const float* x, const float* y, const float* z, Index begin,
-                                     Index end, const float* low, const float* high, float reach,
-                                     Index first_source, Index* found, std::size_t count);
+/// Where the slots of a group are [m], each beside its coordinates on the other axes.
+struct CullSlots {
+  const float* x;
+  const float* y;
+  const float* z;
+  Index first_source;  ///< the source of slot 0
+};
+
+/// A box [m], by axis, and how far around it is still near.
+struct CullBox {
+  const float* low;
+  const float* high;
+  float reach;
+};
+
+/// The sources in the slots from `begin` to `end` that are near the box, appended to `found` from
+/// `count` on, which has room for all of them and lane_count() more; the new count.
+using CullFunction = std::size_t (*)(const CullSlots& slots, Index begin, Index end,
+                                     const CullBox& box, Index* found, std::size_t count);
 CullFunction cull_function(InstructionSet set);
 
 /// Numbers of single precision in a vector, 16 at most.
