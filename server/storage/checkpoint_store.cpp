@@ -51,7 +51,7 @@ CheckpointStore::CheckpointStore(const std::string& path, std::size_t session_by
 }
 
 std::size_t CheckpointStore::write(const Checkpoint& checkpoint) {
-  const std::vector<std::byte> state = compress(checkpoint.state);
+  const std::vector<std::uint8_t> state = compress(checkpoint.state);
   const std::lock_guard lock(mutex_);
   Transaction transaction(database_);
   database_
@@ -62,7 +62,7 @@ std::size_t CheckpointStore::write(const Checkpoint& checkpoint) {
       .bind(1, checkpoint.position)
       .bind(2, checkpoint.sequence)
       .bind(3, std::string_view(checkpoint.fields))
-      .bind(4, std::span<const std::byte>(state))
+      .bind(4, std::span<const std::uint8_t>(state))
       .run();
   thin(checkpoint.session);
   transaction.commit();
@@ -105,7 +105,7 @@ void CheckpointStore::remove_row(std::uint64_t row) {
 
 std::optional<Checkpoint> CheckpointStore::read(const CheckpointPlace& place) {
   Checkpoint checkpoint;
-  std::vector<std::byte> compressed;
+  std::vector<std::uint8_t> compressed;
   {
     const std::lock_guard lock(mutex_);
     Statement query = database_.prepare(
@@ -113,7 +113,7 @@ std::optional<Checkpoint> CheckpointStore::read(const CheckpointPlace& place) {
     query.bind(0, place.row);
     if (!query.step()) return {};
     checkpoint = {query.count(0), query.count(1), query.count(2), std::string(query.text(3)), {}};
-    const std::span<const std::byte> bytes = query.bytes(4);
+    const std::span<const std::uint8_t> bytes = query.bytes(4);
     compressed.assign(bytes.begin(), bytes.end());
   }
   checkpoint.state = decompress(compressed, kMaxStateBytes);

@@ -14,10 +14,10 @@ namespace vat {
 /// A session as it was: what its log leads to up to a sequence and a position.
 struct Checkpoint {
   std::uint64_t session = 0;
-  std::uint64_t position = 0;    ///< as in a LogEntry
-  std::uint64_t sequence = 0;    ///< of the last entry that had been applied
-  std::string fields;            ///< JSON, an object: what the session has beside its simulation
-  std::vector<std::byte> state;  ///< of the simulation
+  std::uint64_t position = 0;       ///< as in a LogEntry
+  std::uint64_t sequence = 0;       ///< of the last entry that had been applied
+  std::string fields;               ///< JSON, an object: what the session has beside its simulation
+  std::vector<std::uint8_t> state;  ///< of the simulation
 };
 
 /// Where a checkpoint is, without its content.

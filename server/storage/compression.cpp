@@ -24,22 +24,22 @@ std::size_t check(std::size_t result) {
 
 }  // namespace
 
-std::vector<std::byte> compress(std::span<const std::byte> bytes) {
+std::vector<std::uint8_t> compress(std::span<const std::uint8_t> bytes) {
   const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   check(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel));
   check(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1));
-  std::vector<std::byte> frame(ZSTD_compressBound(bytes.size()));
+  std::vector<std::uint8_t> frame(ZSTD_compressBound(bytes.size()));
   frame.resize(
       check(ZSTD_compress2(context.get(), frame.data(), frame.size(), bytes.data(), bytes.size())));
   return frame;
 }
 
-std::vector<std::byte> decompress(std::span<const std::byte> frame, std::size_t max_bytes) {
+std::vector<std::uint8_t> decompress(std::span<const std::uint8_t> frame, std::size_t max_bytes) {
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > max_bytes) {
     throw StorageError(StorageError::Kind::corrupt, "compressed bytes: no size, or too large");
   }
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   const std::size_t got =
       check(ZSTD_decompress(bytes.data(), bytes.size(), frame.data(), frame.size()));
   if (got != bytes.size()) {

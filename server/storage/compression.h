@@ -1,15 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace vat {
 
 /// A zstd frame with a checksum.
-std::vector<std::byte> compress(std::span<const std::byte> bytes);
+std::vector<std::uint8_t> compress(std::span<const std::uint8_t> bytes);
 
 /// Throws StorageError, of kind corrupt, for what is damaged or holds more than `max_bytes`.
-std::vector<std::byte> decompress(std::span<const std::byte> frame, std::size_t max_bytes);
+std::vector<std::uint8_t> decompress(std::span<const std::uint8_t> frame, std::size_t max_bytes);
 
 }  // namespace vat

@@ -140,7 +140,7 @@ Statement& Statement::bind(int parameter, std::string_view text) {
   return *this;
 }
 
-Statement& Statement::bind(int parameter, std::span<const std::byte> bytes) {
+Statement& Statement::bind(int parameter, std::span<const std::uint8_t> bytes) {
   check(sqlite3_bind_blob64(statement_.get(), parameter + 1, bytes.data(), bytes.size(),
                             SQLITE_STATIC));
   return *this;
@@ -177,10 +177,10 @@ std::string_view Statement::text(int column) const {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::span<const std::byte> Statement::bytes(int column) const {
+std::span<const std::uint8_t> Statement::bytes(int column) const {
   const void* data = sqlite3_column_blob(statement_.get(), column);
   const int size = sqlite3_column_bytes(statement_.get(), column);
-  return {static_cast<const std::byte*>(data), static_cast<std::size_t>(size)};
+  return {static_cast<const std::uint8_t*>(data), static_cast<std::size_t>(size)};
 }
 
 void Statement::reset() {

@@ -65,7 +65,7 @@ class Statement {
   Statement& bind(int parameter, std::uint64_t value);  ///< at most 2^63 - 1
   Statement& bind(int parameter, double value);
   Statement& bind(int parameter, std::string_view text);
-  Statement& bind(int parameter, std::span<const std::byte> bytes);
+  Statement& bind(int parameter, std::span<const std::uint8_t> bytes);
 
   /// Runs to the next row; false at the end, when it is ready to be bound and run anew.
   bool step();
@@ -79,7 +79,7 @@ class Statement {
   bool is_null(int column) const;
   /// Valid until the next step.
   std::string_view text(int column) const;
-  std::span<const std::byte> bytes(int column) const;
+  std::span<const std::uint8_t> bytes(int column) const;
 
   /// Ends a query before its last row.
   void reset();

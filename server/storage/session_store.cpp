@@ -24,7 +24,8 @@ CREATE TABLE sessions (
   hash INTEGER,
   epoch INTEGER,
   playing INTEGER,
-  speed REAL
+  speed REAL,
+  participants TEXT
 ) STRICT;
 CREATE TABLE log (
   session INTEGER NOT NULL,
@@ -34,6 +35,7 @@ CREATE TABLE log (
   participant INTEGER NOT NULL,
   method TEXT NOT NULL,
   params TEXT NOT NULL,
+  refused INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (session, sequence)
 ) STRICT, WITHOUT ROWID;
 )"};
@@ -43,7 +45,7 @@ constexpr const char* kInsertEntry =
     " VALUES (?, ?, ?, ?, ?, ?, ?)";
 constexpr const char* kWriteBeat =
     "UPDATE sessions SET position = ?, tick = ?, sequence = ?, hash = ?, epoch = ?, playing = ?,"
-    " speed = ?, reached = max(reached, ?1) WHERE number = ?";
+    " speed = ?, participants = ?, reached = max(reached, ?1) WHERE number = ?";
 constexpr const char* kWriteReached =
     "UPDATE sessions SET reached = max(reached, ?) WHERE number = ?";
 constexpr std::size_t kEntriesAtOnce = 500;  // read or removed while commands wait
@@ -58,6 +60,7 @@ std::optional<SessionBeat> to_beat(const Statement& row, int column) {
   beat.epoch = static_cast<std::uint32_t>(row.integer(column + 4));
   beat.playing = row.integer(column + 5) != 0;
   beat.speed = row.real(column + 6);
+  beat.participants = row.text(column + 7);
   return beat;
 }
 
@@ -67,11 +70,12 @@ LogEntry to_entry(const Statement& row) {
           row.count(2),
           row.count(3),
           std::string(row.text(4)),
-          std::string(row.text(5))};
+          std::string(row.text(5)),
+          row.integer(6) != 0};
 }
 
 constexpr const char* kSelectEntries =
-    "SELECT sequence, position, tick, participant, method, params FROM log";
+    "SELECT sequence, position, tick, participant, method, params, refused FROM log";
 
 }  // namespace
 
@@ -103,7 +107,7 @@ std::vector<StoredSession> SessionStore::sessions() {
   std::vector<StoredSession> sessions;
   Statement query = database_.prepare(
       "SELECT number, name, instruction_set, settings, reached,"
-      " position, tick, sequence, hash, epoch, playing, speed"
+      " position, tick, sequence, hash, epoch, playing, speed, participants"
       " FROM sessions WHERE closed = 0 ORDER BY number");
   while (query.step()) {
     sessions.push_back({query.count(0), std::string(query.text(1)), std::string(query.text(2)),
@@ -169,6 +173,14 @@ void SessionStore::append(std::uint64_t session, std::span<const LogEntry> entri
   transaction.commit();
 }
 
+void SessionStore::refuse(std::uint64_t session, std::uint64_t sequence) {
+  const std::lock_guard lock(mutex_);
+  database_.prepare("UPDATE log SET refused = 1 WHERE session = ? AND sequence = ?")
+      .bind(0, session)
+      .bind(1, sequence)
+      .run();
+}
+
 std::vector<LogEntry> SessionStore::read(std::uint64_t session, std::uint64_t after) {
   const std::lock_guard lock(mutex_);
   std::vector<LogEntry> entries;
@@ -225,7 +237,8 @@ void SessionStore::beat(std::uint64_t session, const SessionBeat& beat) {
       .bind(4, std::int64_t{beat.epoch})
       .bind(5, std::int64_t{beat.playing})
       .bind(6, beat.speed)
-      .bind(7, session)
+      .bind(7, std::string_view(beat.participants))
+      .bind(8, session)
       .run();
 }
 

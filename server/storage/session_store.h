@@ -23,6 +23,7 @@ struct SessionBeat {
   std::uint32_t epoch = 0;
   bool playing = false;
   double speed = 1;
+  std::string participants;  ///< JSON, an array: who took part
 };
 
 struct StoredSession {
@@ -54,6 +55,8 @@ class SessionStore {
   /// All entries or none.
   void append(std::uint64_t session, std::span<const LogEntry> entries);
   void append(std::uint64_t session, const LogEntry& entry) { append(session, {&entry, 1}); }
+  /// Notes that the entry has changed nothing.
+  void refuse(std::uint64_t session, std::uint64_t sequence);
   /// The next ones with a sequence above `after`, in their order, some hundred at most; none at the
   /// end of the log.
   std::vector<LogEntry> read(std::uint64_t session, std::uint64_t after);

@@ -14,14 +14,14 @@ namespace vat {
 namespace {
 
 /// Bytes that do not shrink.
-std::vector<std::byte> noise(std::size_t count) {
-  std::vector<std::byte> bytes(count);
+std::vector<std::uint8_t> noise(std::size_t count) {
+  std::vector<std::uint8_t> bytes(count);
   std::uint32_t x = 1;
-  for (std::byte& b : bytes) {
+  for (std::uint8_t& b : bytes) {
     x ^= x << 13;
     x ^= x >> 17;
     x ^= x << 5;
-    b = static_cast<std::byte>(x >> 24);
+    b = static_cast<std::uint8_t>(x >> 24);
   }
   return bytes;
 }
@@ -104,17 +104,17 @@ TEST_F(StorageCheckpoints, ADamagedOneIsToldByItsKind) {
 }
 
 TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
-  std::vector<std::byte> bytes = noise(3000);
+  std::vector<std::uint8_t> bytes = noise(3000);
   bytes.resize(10'000);
-  std::vector<std::byte> frame = compress(bytes);
+  std::vector<std::uint8_t> frame = compress(bytes);
   EXPECT_LT(frame.size(), 4000U);
   EXPECT_EQ(decompress(frame, 10'000), bytes);
   EXPECT_THROW(decompress(frame, 9'999), StorageError);
   EXPECT_THROW(decompress(std::span(frame).first(frame.size() - 1), 10'000), StorageError);
   for (const std::size_t at : {std::size_t{1}, frame.size() / 2, frame.size() - 1}) {
-    frame[at] ^= std::byte{1};
+    frame[at] ^= 1;
     EXPECT_THROW(decompress(frame, 10'000), StorageError) << at;
-    frame[at] ^= std::byte{1};
+    frame[at] ^= 1;
   }
   EXPECT_TRUE(decompress(compress({}), 0).empty());
 }
@@ -148,7 +148,7 @@ TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
   std::uint64_t kept = 0;
   {
     Storage storage(folder.file("data"), {});
-    const LogEntry first{1, 0, 0, 0, "scene.load", "{}"};
+    const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
     const StoredSession session{0, "name", "avx2", "{}", 0, {}};
     const std::uint64_t closed = storage.sessions().create(session, first);
     kept = storage.sessions().create(session, first);

@@ -15,7 +15,7 @@ namespace vat {
 namespace {
 
 LogEntry entry(std::uint64_t sequence, std::uint64_t position, std::string params = "{}") {
-  return {sequence, position, position, 3, "world.set_gravity", std::move(params)};
+  return {sequence, position, position, 3, "world.set_gravity", std::move(params), false};
 }
 
 std::vector<std::uint64_t> sequences(SessionStore& store, std::uint64_t session) {
@@ -34,7 +34,7 @@ class StorageSessions : public testing::Test {
     session.name = "a name";
     session.instruction_set = "avx2";
     session.settings = R"({"locked":true})";
-    return store.create(session, {1, 0, 0, 0, "scene.load", R"({"scene":"pool"})"});
+    return store.create(session, {1, 0, 0, 0, "scene.load", R"({"scene":"pool"})", false});
   }
   test::TemporaryFolder folder;
   const std::string path = folder.file("vat.db");
@@ -46,7 +46,7 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
     SessionStore store(path);
     number = create(store);
     store.append(number, entry(2, 10, R"({"gravity":[0,0,-1]})"));
-    store.beat(number, {12, 11, 2, 0xfedcba9876543210, 4, true, 0.5});
+    store.beat(number, {12, 11, 2, 0xfedcba9876543210, 4, true, 0.5, "[1]"});
     store.reach(number, 20);
     store.reach(number, 15);  // earlier: it was further already
   }
@@ -67,6 +67,7 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
   EXPECT_EQ(session.beat->epoch, 4U);
   EXPECT_TRUE(session.beat->playing);
   EXPECT_EQ(session.beat->speed, 0.5);
+  EXPECT_EQ(session.beat->participants, "[1]");
 
   const std::vector<LogEntry> log = store.read(number, 1);
   ASSERT_EQ(log.size(), 1U);
@@ -80,7 +81,7 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
 TEST_F(StorageSessions, ABeatIsAPositionThatWasReached) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
-  store.beat(number, {12, 11, 1, 5, 1, true, 1});
+  store.beat(number, {12, 11, 1, 5, 1, true, 1, "[]"});
   EXPECT_EQ(store.sessions().at(0).reached, 12U);
 }
 
@@ -97,6 +98,17 @@ TEST_F(StorageSessions, WhatIsClosedStaysAwayAndItsNumberIsNotUsedAgain) {
   store.remove_closed();
   EXPECT_TRUE(store.read(number, 0).empty());
   EXPECT_GT(create(store), number);
+}
+
+TEST_F(StorageSessions, RefusedEntriesAreTold) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  store.append(number, entry(2, 1));
+  store.append(number, entry(3, 1));
+  store.refuse(number, 2);
+  EXPECT_TRUE(store.find(number, 2).value().refused);
+  EXPECT_FALSE(store.find(number, 3).value().refused);
+  EXPECT_FALSE(store.find(number, 4));
 }
 
 TEST_F(StorageSessions, LongLogsAreReadInParts) {
