@@ -7,6 +7,7 @@
 #include <chrono>
 #include <exception>
 #include <utility>
+#include <vector>
 
 namespace vat {
 namespace {
@@ -52,8 +53,8 @@ void Session::leave(Caller caller) {
   put({std::move(caller), Leave{}});
 }
 
-void Session::post(Caller caller, SessionAction action) {
-  put({std::move(caller), std::move(action)});
+void Session::post(Caller caller, SessionCommand command) {
+  put({std::move(caller), std::move(command)});
 }
 
 SessionSummary Session::summary() const {
@@ -93,6 +94,7 @@ void Session::run_turn(void (Session::*turn)()) {
 void Session::end_turn() {
   if (closed_) return;
   if (core_.take_interruption()) end_all_steps();
+  if (!tick_is_coming()) carry_out_pointers();
   core_.announce();
   follow_clock();
   update_summary();
@@ -144,11 +146,12 @@ void Session::carry_out(Item item) {
   } else if (const auto* join = std::get_if<Join>(&item.task)) {
     carry_out_join(std::move(item.caller), *join);
   } else {
-    carry_out_action(std::move(item.caller), std::get<SessionAction>(item.task));
+    carry_out_command(std::move(item.caller), std::get<SessionCommand>(std::move(item.task)));
   }
 }
 
 void Session::carry_out_join(Caller caller, const Join& join) {
+  carry_out_pointers();  // the connection may have been another participant's
   const Entry entry =
       core_.join(caller.client(), join.membership, join.entrant, SteadyClock::now());
   caller.answer(Json{{"tick", core_.run().tick()},
@@ -163,6 +166,7 @@ void Session::carry_out_join(Caller caller, const Join& join) {
 
 void Session::carry_out_leave(Caller caller) {
   const ConnectionId client = caller.client()->id();
+  carry_out_pointers();
   end_steps_of(client);
   if (const Participant* participant = core_.participants().find_client(client)) {
     core_.leave(participant->number);
@@ -171,6 +175,7 @@ void Session::carry_out_leave(Caller caller) {
 }
 
 void Session::carry_out_disconnect(const Caller& caller) {
+  carry_out_pointers();
   end_steps_of(caller.client()->id());
   core_.disconnect(caller.client()->id(), SteadyClock::now());
 }
@@ -179,15 +184,26 @@ void Session::end_steps_of(ConnectionId client) {
   for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
 }
 
-void Session::carry_out_action(Caller caller, const SessionAction& action) {
-  Participant* participant = core_.participants().find_client(caller.client()->id());
+void Session::carry_out_command(Caller caller, SessionCommand command) {
+  const Participant* participant = core_.participants().find_client(caller.client()->id());
   if (participant == nullptr) {
     caller.answer(not_joined());
     return;
   }
-  ActionResult result = act(*participant, action);
+  if (command.rules->is_logged && command.rules->message_class == MessageClass::pointer) {
+    pointers_.add(participant->number, std::move(command), std::move(caller));
+    return;
+  }
+  // What came before it: to the session, or from this client.
+  if (command.rules->is_logged || pointers_.has_of(participant->number)) carry_out_pointers();
+  const SessionCore::Given given{participant->number, command};
+  ActionResult result = std::move(core_.carry_out({&given, 1}).front());
   if (core_.take_interruption()) end_all_steps();
   update_summary();  // before the answer: who has it finds in session.list what was done
+  answer(std::move(caller), std::move(result));
+}
+
+void Session::answer(Caller caller, ActionResult result) {
   if (const auto* run = std::get_if<RunTicks>(&result)) {
     steps_.push_back({std::move(caller), run->count, {}});
     schedule_step();
@@ -200,12 +216,18 @@ void Session::carry_out_action(Caller caller, const SessionAction& action) {
   }
 }
 
-ActionResult Session::act(Participant& participant, const SessionAction& action) {
-  try {
-    return action(core_, participant);
-  } catch (const std::exception& error) {
-    spdlog::error("session {}: a command failed: {}", id_, error.what());
-    return internal_error();
+bool Session::tick_is_coming() const {
+  return core_.playing() || !steps_.empty();
+}
+
+void Session::carry_out_pointers() {
+  if (pointers_.empty()) return;
+  std::vector<PointerCommands::Newest> waiting = pointers_.take();
+  std::vector<SessionCore::Given> given;
+  for (const auto& newest : waiting) given.push_back({newest.participant, newest.command});
+  const std::vector<ActionResult> results = core_.carry_out(given);
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    for (Caller& caller : waiting[i].callers) answer(std::move(caller), results[i]);
   }
 }
 
@@ -255,6 +277,7 @@ void Session::tick_turn() {
 }
 
 void Session::run_tick(SteadyClock::time_point now, bool timed) {
+  carry_out_pointers();
   if (!core_.tick(now, timed)) return;
   update_summary();  // before the frames: who acknowledges one is told no earlier tick
   core_.publish_tick();
@@ -311,6 +334,9 @@ void Session::close_turn() {
     for (Item& item : job.deferred) item.caller.answer(no_such_session(id_));
   }
   steps_.clear();
+  for (auto& newest : pointers_.take()) {
+    for (Caller& pointer_caller : newest.callers) pointer_caller.answer(no_such_session(id_));
+  }
   for (Item& item : items) item.caller.answer(no_such_session(id_));
   if (closer) closer->answer(Json{{"tick", core_.run().tick()}});
 }

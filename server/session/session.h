@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "server/session/caller.h"
+#include "server/session/pointer_commands.h"
 #include "server/session/session_core.h"
 
 namespace vat {
@@ -42,7 +43,7 @@ class Session : public std::enable_shared_from_this<Session> {
   /// The caller's connection has ended; its participant may be resumed for a while.
   void disconnect(Caller caller);
   void leave(Caller caller);
-  void post(Caller caller, SessionAction action);
+  void post(Caller caller, SessionCommand command);
 
   /// As of the last answer or turn.
   SessionSummary summary() const;
@@ -56,7 +57,7 @@ class Session : public std::enable_shared_from_this<Session> {
   struct Disconnect {};
   struct Item {
     Caller caller;
-    std::variant<Join, Leave, Disconnect, SessionAction> task;
+    std::variant<Join, Leave, Disconnect, SessionCommand> task;
   };
   /// A control.step under way. The later commands of its client wait for its end.
   struct StepJob {
@@ -79,8 +80,12 @@ class Session : public std::enable_shared_from_this<Session> {
   void carry_out_leave(Caller caller);
   void carry_out_disconnect(const Caller& caller);
   void end_steps_of(ConnectionId client);
-  void carry_out_action(Caller caller, const SessionAction& action);
-  ActionResult act(Participant& participant, const SessionAction& action);
+  void carry_out_command(Caller caller, SessionCommand command);
+  void answer(Caller caller, ActionResult result);
+  /// Whether a tick is to come, before which commands that follow a pointer wait.
+  bool tick_is_coming() const;
+  /// Carries out those that have waited.
+  void carry_out_pointers();
 
   void step_turn();
   std::deque<StepJob>::iterator find_step(ConnectionId client);
@@ -113,6 +118,7 @@ class Session : public std::enable_shared_from_this<Session> {
   SteadyClock::duration period_{};  // of the clock; zero: it stands still
   boost::asio::steady_timer tick_timer_;
   boost::asio::steady_timer status_timer_;
+  PointerCommands pointers_;
   std::deque<StepJob> steps_;
   bool step_scheduled_ = false;
   bool closed_ = false;

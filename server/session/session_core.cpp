@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -76,6 +77,23 @@ void SessionCore::interrupt() {
 
 bool SessionCore::take_interruption() {
   return std::exchange(interrupted_, false);
+}
+
+std::vector<ActionResult> SessionCore::carry_out(std::span<const Given> commands) {
+  std::vector<ActionResult> results;
+  for (const Given& given : commands) {
+    results.push_back(apply(given.participant, given.command.action));
+  }
+  return results;
+}
+
+ActionResult SessionCore::apply(ParticipantNumber participant, const SessionAction& action) {
+  try {
+    return action(*this, participants_.ghost(participant));
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: a command failed: {}", id_, error.what());
+    return internal_error();
+  }
 }
 
 Entry SessionCore::join(const std::shared_ptr<ClientOutbox>& outbox, std::uint64_t membership,

@@ -4,10 +4,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "server/session/frame_feed.h"
+#include "server/session/method_rules.h"
 #include "server/session/participants.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
@@ -40,6 +43,26 @@ struct Entry {
   bool resumed = false;
 };
 
+class SessionCore;
+
+/// Ticks that a command asks for before it is answered.
+struct RunTicks {
+  std::uint64_t count = 0;
+};
+
+/// A command's reply; a result gets its `tick` afterwards.
+using ActionResult = std::variant<Json, RpcError, RunTicks>;
+
+/// What a command does once its parameters are read.
+using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
+
+/// A call of a session's method with valid parameters.
+struct SessionCommand {
+  const MethodRules* rules = nullptr;
+  Json params;  ///< an object
+  SessionAction action;
+};
+
 /// All that a session is but its threads: what is simulated, who takes part, and what they are
 /// told. Used by one thread at a time; its clock is given, but for the profile's.
 ///
@@ -66,6 +89,17 @@ class SessionCore {
   /// What the description tells has changed, but not the bodies.
   void description_changed() { description_due_ = true; }
   std::uint64_t next_grab() { return ++last_grab_; }
+
+  /// A command that a participant has given.
+  struct Given {
+    ParticipantNumber participant = 0;
+    const SessionCommand& command;
+  };
+  /// Carries out commands between two ticks; their results.
+  std::vector<ActionResult> carry_out(std::span<const Given> commands);
+  /// The one way by which commands change a session. The participant is a ghost where it is not
+  /// here.
+  ActionResult apply(ParticipantNumber participant, const SessionAction& action);
 
   /// A connection comes in, as a further participant or as the one that it resumes, whose other
   /// connection, if it has one, is closed. Ends what the connection was in the session before.
@@ -125,16 +159,5 @@ class SessionCore {
   bool frame_due_ = false;  // whatever tick it is
   bool interrupted_ = false;
 };
-
-/// Ticks that a command asks for before it is answered.
-struct RunTicks {
-  std::uint64_t count = 0;
-};
-
-/// A command's reply; a result gets its `tick` afterwards.
-using ActionResult = std::variant<Json, RpcError, RunTicks>;
-
-/// A command, its parameters read; run on the session's strand for a participant of it.
-using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
 
 }  // namespace vat

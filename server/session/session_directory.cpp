@@ -154,11 +154,11 @@ std::optional<RpcError> SessionDirectory::leave(Caller& caller) {
   return {};
 }
 
-std::optional<RpcError> SessionDirectory::post(Caller& caller, SessionAction action) {
+std::optional<RpcError> SessionDirectory::post(Caller& caller, SessionCommand command) {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(caller.client()->id());
   if (client == clients_.end() || client->second.session == 0) return not_joined();
-  sessions_.at(client->second.session)->post(std::move(caller), std::move(action));
+  sessions_.at(client->second.session)->post(std::move(caller), std::move(command));
   return {};
 }
 

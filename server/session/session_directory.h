@@ -42,8 +42,8 @@ class SessionDirectory {
   /// Answered by the session, or by the error that is returned. Without an id: the first session.
   std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id, Entrant entrant);
   std::optional<RpcError> leave(Caller& caller);
-  /// Hands the action to the session that the caller is in.
-  std::optional<RpcError> post(Caller& caller, SessionAction action);
+  /// Hands the command to the session that the caller is in.
+  std::optional<RpcError> post(Caller& caller, SessionCommand command);
   /// Answered by the session once its work has ended, or by the error that is returned.
   std::optional<RpcError> close(Caller& caller, const SessionId& id, const std::string& reason);
   /// The tick of the session that the caller is in, as of its last answer or turn; none outside.

@@ -44,7 +44,7 @@ class SessionServer::Impl {
         return;
       }
       Caller caller(client, id);
-      if (auto result = call(caller, std::get<RpcRequest>(request), message.size())) {
+      if (auto result = call(caller, std::get<RpcRequest>(std::move(request)), message.size())) {
         caller.answer(*std::move(result));
       }
     } catch (const std::exception& error) {
@@ -66,7 +66,7 @@ class SessionServer::Impl {
   }
 
   /// The answer, unless someone has taken the caller to answer later.
-  std::optional<RpcResult> call(Caller& caller, const RpcRequest& request, std::size_t bytes) {
+  std::optional<RpcResult> call(Caller& caller, RpcRequest request, std::size_t bytes) {
     const Method* method = find_method(request.method);
     if (method == nullptr) return method_not_found(request.method);
     if (method->rules.message_class != MessageClass::scene && bytes > limits().max_message_bytes) {
@@ -84,10 +84,13 @@ class SessionServer::Impl {
       if (!errors.empty()) return invalid_params(errors);
       return action(directory_, caller);
     }
-    SessionAction action = std::get<Method::ForSession>(method->read)(params, errors);
+    SessionCommand command;
+    command.rules = &method->rules;
+    command.action = std::get<Method::ForSession>(method->read)(params, errors);
     params.refuse_unknown();
     if (!errors.empty()) return invalid_params(errors);
-    if (auto error = directory_.post(caller, std::move(action))) return *std::move(error);
+    command.params = std::move(request.params);
+    if (auto error = directory_.post(caller, std::move(command))) return *std::move(error);
     return {};
   }
 
