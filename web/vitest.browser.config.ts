@@ -9,9 +9,10 @@ export default defineConfig({
   root: repository,
   server: { fs: { allow: [repository] } },
   resolve: {
-    // The tests lie outside of this folder, from where its packages are not found.
+    // The root and the tests lie outside of this folder, from where its packages are not found.
     alias: {
       'playwright-core': resolve(web, 'node_modules/playwright-core/index.mjs'),
+      vite: resolve(web, 'node_modules/vite/dist/node/index.js'),
       ws: resolve(web, 'node_modules/ws/wrapper.mjs'),
     },
   },

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/cli/command.h"
+#include "tests/bench/codec/decode_times.h"
 #include "tests/bench/codec/measure.h"
 #include "tests/bench/codec/peers.h"
 #include "tests/bench/options.h"
@@ -21,6 +22,10 @@ namespace {
 constexpr Real kFloatBits = 96;  // three float32
 constexpr Real kNanosecond = 1e-9;
 
+struct CodecOptions : Options {
+  bool times_web = true;  ///< the decoder in TypeScript too
+};
+
 struct Row {
   std::string scene;
   CodecSetting setting;
@@ -33,8 +38,15 @@ struct PeerRow {
   PeerResult result;
 };
 
+struct DecoderRow {
+  std::string scene;
+  std::size_t particles = 0;
+  DecodeTimes times;
+};
+
 struct Results {
   std::vector<Row> rows;
+  std::vector<DecoderRow> decoders;
   std::vector<PeerRow> peers;
 };
 
@@ -46,10 +58,25 @@ std::vector<CodecSetting> settings_of(Real share) {
   return settings;
 }
 
-void measure_scene(const CodecScene& scene, std::size_t threads, Results& results) {
-  const Recording recording = record(scene, threads);
+void measure_decoders(const CodecScene& scene, const std::vector<GridFrame>& frames,
+                      std::size_t particles, const CodecOptions& options, Results& results) {
+  const std::vector<FrameBytes> stream = stream_of(frames);
+  results.decoders.push_back({scene.name, particles, time_decoder(stream)});
+  if (!options.times_web) return;
+  Result<std::vector<DecodeTimes>> web = time_web_decoder(stream, options.output, scene.name);
+  if (!web) throw std::runtime_error(web.errors().front().message);
+  for (DecodeTimes& times : web.value()) {
+    results.decoders.push_back({scene.name, particles, std::move(times)});
+  }
+}
+
+void measure_scene(const CodecScene& scene, const CodecOptions& options, Results& results) {
+  const Recording recording = record(scene, options.threads);
   for (const Real share : {16, 64, 256}) {
     const std::vector<GridFrame> frames = on_grids(recording, scene.spacing / share);
+    if (share == 64) {
+      measure_decoders(scene, frames, recording.particles, options, results);
+    }
     for (const CodecSetting& setting : settings_of(share)) {
       results.rows.push_back({scene.name, setting, measure_codec(recording, frames, setting)});
     }
@@ -100,6 +127,26 @@ Table to_table(const std::vector<PeerRow>& rows) {
   return table;
 }
 
+constexpr Real kMillisecond = 1e-3;
+
+Table to_table(const std::vector<DecoderRow>& rows) {
+  const Machine machine = this_machine();
+  Table table{
+      {"case", "decoder", "version", "particles", "times", "ms per frame", "ms per frame, 90 %",
+       "decode [ns]", "ms per key frame", "decode key [ns]", "commit", "cpu"},
+      {}};
+  for (const auto& [scene, particles, times] : rows) {
+    const Real delta = median(times.deltas);
+    const Real key = median(times.keys);
+    table.rows.push_back({scene, times.decoder, times.version, std::uint64_t{particles},
+                          std::uint64_t{times.deltas.size()}, delta / kMillisecond,
+                          quantile(times.deltas, 0.9) / kMillisecond, nanoseconds(delta, particles),
+                          key / kMillisecond, nanoseconds(key, particles), machine.commit,
+                          machine.cpu});
+  }
+  return table;
+}
+
 const CodecResult* find(const Results& results, const std::string& scene,
                         const CodecSetting& setting) {
   for (const Row& row : results.rows) {
@@ -141,6 +188,18 @@ void add_rate(const Results& results, const std::string& scene, Real limit,
                      8e-3 * kFrameRate * result->delta_bytes});
 }
 
+/// The time of a frame of 30 000 particles, by that of a particle.
+void add_web_decoders(const Results& results, std::vector<Target>& targets) {
+  constexpr Real kParticles = 30'000;
+  for (const auto& [scene, particles, times] : results.decoders) {
+    if (scene != "dam-break-30k" || times.decoder == "C++") continue;
+    const bool is_browser = times.decoder.find("worker") != std::string::npos;
+    const Real scale = kParticles / static_cast<Real>(particles) / kMillisecond;
+    targets.push_back({scene + ": " + times.decoder + ", decode [ms per 30 000 particles]",
+                       is_browser ? 5.0 : 3.0, false, scale * median(times.deltas)});
+  }
+}
+
 std::vector<Target> targets_of(const Results& results) {
   std::vector<Target> targets;
   for (const char* scene : {"dam-break-10k", "dam-break-30k", "dam-break-30k-incompressible"}) {
@@ -151,6 +210,7 @@ std::vector<Target> targets_of(const Results& results) {
   add_rate(results, "figure-2", 600, targets);
   add_rate(results, "figure-2-settled", 25, targets);
   add_rate(results, "figure-2-asleep", 25, targets);
+  add_web_decoders(results, targets);
   return targets;
 }
 
@@ -158,6 +218,10 @@ Status write(const Results& results, const std::string& folder) {
   const std::vector<Target> targets = targets_of(results);
   const Table table = to_table(results.rows);
   if (Status written = write_table(table, folder, "codec", "# Frames"); !written) return written;
+  const Table decoders = to_table(results.decoders);
+  if (Status written = write_table(decoders, folder, "decoders", "# Decoders"); !written) {
+    return written;
+  }
   if (Status written = write_table(to_table(results.peers), folder, "peers", "# Other codecs");
       !written) {
     return written;
@@ -168,12 +232,13 @@ Status write(const Results& results, const std::string& folder) {
   }
   std::cout << '\n'
             << to_markdown(table) << '\n'
+            << to_markdown(decoders) << '\n'
             << to_markdown(to_table(results.peers)) << '\n'
             << to_markdown(target_table(targets)) << "\nwritten to " << folder << '\n';
   return {};
 }
 
-int codec(const Options& options) {
+int codec(CodecOptions options) {
   const std::vector<CodecScene> scenes = codec_scenes(options.quick);
   std::vector<std::string> names;
   for (const CodecScene& scene : scenes) names.push_back(scene.name);
@@ -184,10 +249,14 @@ int codec(const Options& options) {
   const Result<std::vector<std::size_t>> chosen = choose(options.cases, names);
   if (!chosen) return fail("codec", chosen.errors());
   Results results;
+  if (const std::string why = no_web_decoder(); options.times_web && !why.empty()) {
+    std::cout << "no times of the decoder in TypeScript: " << why << '\n';
+    options.times_web = false;
+  }
   try {
     for (const std::size_t index : chosen.value()) {
       std::cout << names[index] << " ..." << std::endl;
-      measure_scene(scenes[index], options.threads, results);
+      measure_scene(scenes[index], options, results);
     }
   } catch (const std::runtime_error& error) {
     std::cerr << "codec: " << error.what() << '\n';
@@ -201,8 +270,9 @@ int codec(const Options& options) {
 
 void add_codec_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("codec", "Frames: their size, and the time they take");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CodecOptions>();
   add_options(*command, *options);
+  command->add_flag("!--no-web", options->times_web, "Do not time the decoder in TypeScript");
   command->footer(
       "Exit codes: 0 measured, 1 a run failed or a frame came back changed, 2 wrong "
       "usage.");

@@ -1,5 +1,3 @@
-import { existsSync } from 'node:fs';
-import { chromium } from 'playwright-core';
 import type {
   Browser,
   BrowserContextOptions,
@@ -7,31 +5,10 @@ import type {
   Page,
   Request,
 } from 'playwright-core';
-
-const kFlags = [
-  '--headless',
-  '--no-sandbox',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-  '--use-gl=angle',
-  '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader',
-];
-
-/** Software rendering on a slow, busy machine still meets this. */
-const kDeadlineMs = 120_000;
+import { kDeadlineMs, launchChromium } from './chromium';
 
 /** A step of one colour channel below this may come from rounding. */
 const kSeenStep = 12;
-
-function chromiumPath(): string {
-  const path = process.env.CHROMIUM ?? '/usr/bin/chromium';
-  if (!existsSync(path)) throw new Error(`no browser at ${path}; set CHROMIUM`);
-  return path;
-}
 
 /** How the browser shows the page, where that is not as usual. */
 export type Look = Pick<
@@ -63,11 +40,7 @@ export class Viewer {
   }
 
   static async open(url: string, look: Look = {}): Promise<Viewer> {
-    const browser = await chromium.launch({
-      executablePath: chromiumPath(),
-      args: kFlags,
-      timeout: kDeadlineMs,
-    });
+    const browser = await launchChromium();
     const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
     page.setDefaultTimeout(kDeadlineMs);
     await page.addInitScript(addBrake);

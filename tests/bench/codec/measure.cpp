@@ -7,11 +7,10 @@
 #include <stdexcept>
 
 #include "server/session/frame_domain.h"
+#include "tests/bench/codec/stream.h"
 
 namespace vat::bench {
 namespace {
-
-constexpr std::size_t kKeyInterval = 10;  // of the frames that are also coded as key frames
 
 class Stopwatch {
  public:
@@ -75,11 +74,16 @@ std::size_t shown(const GridFrame& frame) {
 
 }  // namespace
 
-Real median(std::vector<Real> values) {
+Real quantile(std::vector<Real> values, Real part) {
   if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  const auto at = static_cast<std::size_t>(part * static_cast<Real>(values.size()));
+  const auto there = values.begin() + static_cast<std::ptrdiff_t>(std::min(at, values.size() - 1));
+  std::ranges::nth_element(values, there);
+  return *there;
+}
+
+Real median(std::vector<Real> values) {
+  return quantile(std::move(values), 0.5);
 }
 
 std::vector<GridFrame> on_grids(const Recording& recording, Real max_error) {

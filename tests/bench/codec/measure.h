@@ -37,7 +37,8 @@ std::vector<GridFrame> on_grids(const Recording& recording, Real max_error);
 CodecResult measure_codec(const Recording& recording, const std::vector<GridFrame>& frames,
                           const CodecSetting& setting);
 
-/// Median of values that are there; 0 of none.
+/// The value below which this part of them lies; 0 of none.
+Real quantile(std::vector<Real> values, Real part);
 Real median(std::vector<Real> values);
 
 }  // namespace vat::bench

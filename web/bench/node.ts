@@ -1,0 +1,6 @@
+/** Times the decoder in Node: prints the times of the stream that the first argument names. */
+import { readFileSync } from 'node:fs';
+import { decodeTimes } from './decode_times';
+
+const stream = new Uint8Array(readFileSync(process.argv[2] ?? '')).buffer;
+process.stdout.write(JSON.stringify(decodeTimes(stream)));
