@@ -2,32 +2,35 @@
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "protocol/scene_json.h"
 #include "server/cli/command.h"
 #include "server/cli/open_files.h"
-#include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
 #include "server/net/transport.h"
 #include "server/session/session_server.h"
+#include "server/settings/serve_settings.h"
+#include "server/settings/setting_sources.h"
 
 namespace vat {
 
@@ -35,31 +38,22 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr std::size_t kMaxThreads = 256;
-constexpr std::size_t kMaxEndpoints = 64;
-constexpr std::size_t kMostConnections = 100'000;
-constexpr double kMostResumeSeconds = 3600;
 /// Open files beside the connections: refused ones, HTTP requests, the log, the threads' own.
 constexpr std::size_t kOtherFiles = 512;
 
-constexpr const char* kFooter = R"(Prints one line with its URL when it is ready; all else goes to
-standard error. SIGINT and SIGTERM end it cleanly, a second one at once.
+/// The file's name, and what ./vat check takes.
+constexpr std::string_view kOtherVariables[] = {"VAT_CONFIG", "VAT_FUZZ_SECONDS"};
 
-Exit codes: 0 stopped by a signal, 1 invalid scene, unreadable folder or port in use, 2 wrong usage.)";
+constexpr const char* kFooter =
+    R"(Every setting can also be a variable of the environment (VAT_MAX_CONNECTIONS for
+--max-connections) or a member of the configuration file ("max_connections"): the file counts least,
+options count most.
 
-struct Options {
-  std::string host = "127.0.0.1";
-  std::uint16_t port = 8080;
-  std::string scene = "sliding-vat-liquid";
-  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
-  std::string web_folder = VAT_DEFAULT_WEB_DIR;
-  std::size_t threads = 0;
-  std::size_t endpoints = 1;
-  ServerLimits limits;
-  double resume_seconds = 30;
-  InstructionSet instructions = best_instruction_set();
-  std::string log_level = "info";
-};
+Prints one line with its URL when it is ready; all else goes to standard error. SIGINT and SIGTERM
+end it cleanly, a second one at once.
+
+Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder or port
+in use, 2 wrong usage, or a variable with a bad value.)";
 
 void start_log(const std::string& level) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("vat"));
@@ -105,35 +99,37 @@ void raise_file_limit(std::size_t connections) {
       allowed, connections, allowed - std::min(allowed, kOtherFiles));
 }
 
-TransportSettings transport_settings(const Options& options, const ServerLimits& limits) {
+TransportSettings transport_settings(const ServeSettings& options) {
   TransportSettings settings;
   settings.endpoints = options.endpoints;
   settings.host = options.host;
   settings.port = options.port;
-  settings.max_connections = limits.max_connections;
-  settings.max_message_bytes = limits.max_scene_message_bytes;
+  settings.max_connections = options.limits.max_connections;
+  settings.max_message_bytes = options.limits.max_scene_message_bytes;
+  settings.handshake_timeout = options.handshake_timeout;
+  settings.ping_interval = options.ping_interval;
   settings.report = [](std::string_view fault) { spdlog::error("internal error: {}", fault); };
   return settings;
 }
 
 /// Serves until a signal comes.
-int serve(const Options& options, const Catalogue& catalogue, const Scene& scene,
+int serve(const ServeSettings& options, const Catalogue& catalogue, const Scene& scene,
           StaticFiles viewer) {
   StopSignal stop_signal;
   ServerSettings settings;
   settings.version = VAT_VERSION;
   settings.threads = options.threads;
   settings.limits = options.limits;
-  settings.limits.resume_time =
-      std::chrono::milliseconds(std::llround(1000 * options.resume_seconds));
-  settings.instructions = options.instructions;
+  if (options.instructions != "best") {
+    settings.instructions = parse_instruction_set(options.instructions).value();
+  }
   spdlog::info("instruction set: {}", to_string(settings.instructions));
   SessionServer sessions(catalogue, settings);
   const Result<SessionId> session = sessions.create_session(scene.name, scene);
   if (!session) return fail(options.scene, session.errors());
 
   const auto transport = make_websocket_transport(
-      transport_settings(options, settings.limits), sessions,
+      transport_settings(options), sessions,
       make_http_site(std::move(viewer), [&] { return sessions.metrics(); }));
   raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
@@ -145,8 +141,7 @@ int serve(const Options& options, const Catalogue& catalogue, const Scene& scene
   return kExitOk;
 }
 
-int load_and_serve(const Options& options) {
-  start_log(options.log_level);
+int load_and_serve(const ServeSettings& options) {
   const Result<Catalogue> catalogue = Catalogue::open(options.scenes_folder);
   if (!catalogue) return fail(options.scenes_folder, catalogue.errors());
   const Result<Scene> scene = load_scene(options.scene, options.scenes_folder);
@@ -157,63 +152,90 @@ int load_and_serve(const Options& options) {
   return serve(options, catalogue.value(), scene.value(), std::move(viewer).value());
 }
 
-std::string check_host(const std::string& host) {
-  boost::system::error_code error;
-  asio::ip::make_address(host, error);
-  if (!error) return {};
-  return "'" + host + "' must be a numeric address, such as 127.0.0.1, 0.0.0.0 or ::1";
+/// The settings, their table, and what the command line says of them.
+struct CommandLine {
+  ServeSettings settings;
+  std::vector<Setting> table;
+  SettingTexts options;
+  std::string config;
+  bool print_config = false;
+};
+
+void add_setting(CLI::App& command, const Setting& setting, SettingTexts& texts) {
+  const auto check = [&setting](const std::string& text) {
+    const std::string fault = setting.find_fault(to_json(setting, text));
+    return fault.empty() ? fault : fault + ", not '" + text + "'";
+  };
+  const auto keep = [&setting, &texts](const std::string& text) { texts[setting.name] = text; };
+  command.add_option_function<std::string>(option_of(setting), keep, setting.help)
+      ->check(CLI::Validator(check, ""))
+      ->type_name(setting.range.find(' ') == std::string::npos ? setting.range
+                                                               : '[' + setting.range + ']')
+      ->default_str(to_text(setting.value()))
+      ->group(setting.group);
 }
 
-void add_options(CLI::App& command, Options& options) {
-  command.add_option("--host", options.host, "Address to listen on; 0.0.0.0: all of the machine")
-      ->check(CLI::Validator(check_host, "ADDRESS"))
-      ->capture_default_str();
-  command.add_option("--port", options.port, "Port to listen on; 0: any free one")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str();
-  command.add_option("--scene", options.scene, "The first session's. " + std::string(kSceneHelp))
-      ->capture_default_str();
-  command.add_option("--scenes", options.scenes_folder, "Folder of the catalogue");
-  command.add_option("--web", options.web_folder, "Folder of the built viewer");
-  command
-      .add_option("--threads", options.threads,
-                  "Threads that step sessions, and share the steps of the few; 0: one per core")
-      ->check(CLI::Range(std::size_t{0}, kMaxThreads))
-      ->capture_default_str();
-  command
-      .add_option(
-          "--endpoints", options.endpoints,
-          "Threads that share the connections of the port; one serves about a thousand viewers")
-      ->check(CLI::Range(std::size_t{1}, kMaxEndpoints))
-      ->capture_default_str();
-  command
-      .add_option("--max-connections", options.limits.max_connections,
-                  "WebSockets at once; the next is closed")
-      ->check(CLI::Range(std::size_t{1}, kMostConnections))
-      ->capture_default_str();
-  command
-      .add_option("--max-clients", options.limits.max_clients_per_session, "Clients of one session")
-      ->check(CLI::Range(std::size_t{1}, kMostConnections))
-      ->capture_default_str();
-  command
-      .add_option("--resume-seconds", options.resume_seconds,
-                  "Time in which a participant whose connection has ended can be resumed")
-      ->check(CLI::Range(0.0, kMostResumeSeconds))
-      ->capture_default_str();
-  add_isa_option(command, options.instructions);
-  command.add_option("--log-level", options.log_level, "What to log")
-      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
-      ->capture_default_str();
+void add_options(CLI::App& command, CommandLine& line) {
+  line.settings.scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  line.settings.web_folder = VAT_DEFAULT_WEB_DIR;
+  line.table = serve_settings(line.settings);
+  command.add_option("--config", line.config, "Configuration file: a JSON object with settings")
+      ->type_name("FILE")
+      ->envname("VAT_CONFIG");
+  command.add_flag("--print-config", line.print_config,
+                   "Print the settings in force and where each comes from, and end");
+  for (const Setting& setting : line.table) add_setting(command, setting, line.options);
+}
+
+/// The variables of the environment, but those that are read elsewhere.
+std::vector<std::string> environment() {
+  std::vector<std::string> entries;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view name = std::string_view(*entry).substr(0, std::strcspn(*entry, "="));
+    if (std::ranges::find(kOtherVariables, name) == std::end(kOtherVariables)) {
+      entries.emplace_back(*entry);
+    }
+  }
+  return entries;
+}
+
+int fail_in_file(const std::string& file, Errors errors) {
+  for (Error& error : errors) error.path = file + (error.path.empty() ? "" : ": " + error.path);
+  return fail(file, errors);
+}
+
+int run(CommandLine& line) {
+  const std::vector<std::string> variables = environment();
+  SettingSources sources;
+  if (!line.config.empty()) {
+    const Status read = apply_file(line.table, line.config, sources);
+    if (!read) return fail_in_file(line.config, read.errors());
+  }
+  const Status read = apply_environment(line.table, variables, sources);
+  if (!read) {
+    print_errors(std::cerr, "the environment", read.errors());
+    return kExitUsage;
+  }
+  apply_options(line.table, line.options, sources);
+  if (line.print_config) {
+    std::cout << describe(line.table, sources).dump(2) << '\n';
+    return kExitOk;
+  }
+  start_log(line.settings.log_level);
+  for (const std::string& unknown : unknown_variables(line.table, variables)) {
+    spdlog::warn("a variable is no setting: {}", unknown);
+  }
+  return load_and_serve(line.settings);
 }
 
 }  // namespace
 
 void add_serve_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("serve", "Serve the viewer and run sessions");
-  const auto options = std::make_shared<Options>();
-  add_options(*command, *options);
+  const auto line = std::make_shared<CommandLine>();
+  add_options(*command, *line);
   command->footer(kFooter);
-  command->callback([options, &exit_code] { exit_code = load_and_serve(*options); });
+  command->callback([line, &exit_code] { exit_code = run(*line); });
 }
 
 }  // namespace vat

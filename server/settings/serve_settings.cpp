@@ -1,0 +1,120 @@
+#include "server/settings/serve_settings.h"
+
+#include <boost/asio/ip/address.hpp>
+#include <utility>
+
+#include "core/limits.h"
+#include "core/support/instruction_set.h"
+
+namespace vat {
+namespace {
+
+constexpr std::size_t kMaxThreads = 256;
+constexpr std::size_t kMaxEndpoints = 64;
+constexpr std::size_t kMostConnections = 100'000;
+constexpr std::size_t kMostSessions = 10'000;
+constexpr std::size_t kMostBytes = 1024 * 1024 * 1024;
+constexpr std::uint64_t kMostSeconds = 3600;
+
+std::string check_host(const std::string& host) {
+  boost::system::error_code error;
+  boost::asio::ip::make_address(host, error);
+  return error ? "must be a numeric address, such as 127.0.0.1, 0.0.0.0 or ::1" : std::string();
+}
+
+std::string check_instructions(const std::string& name) {
+  if (name == "best") return {};
+  const Result<InstructionSet> set = parse_instruction_set(name);
+  const Status usable = set ? check_available(set.value()) : Status(set.errors());
+  return usable ? std::string() : usable.errors().front().message;
+}
+
+Setting shown_as(Setting setting, std::string shown_default) {
+  setting.shown_default = std::move(shown_default);
+  return setting;
+}
+
+void add_group(std::vector<Setting>& all, const char* group, std::vector<Setting> settings) {
+  for (Setting& setting : settings) {
+    setting.group = group;
+    all.push_back(std::move(setting));
+  }
+}
+
+std::vector<Setting> server_group(ServeSettings& s) {
+  return {
+      text_setting("host", s.host, "ADDRESS", "Address to listen on; 0.0.0.0: all of the machine",
+                   check_host),
+      number_setting<std::uint16_t>("port", s.port, 0, 65535, "Port to listen on; 0: any free one"),
+      text_setting("scene", s.scene, "SCENE",
+                   "The first session's: a scene file (a path with '/' or ending in '.json') or "
+                   "the name of a scene of the catalogue"),
+      shown_as(text_setting("scenes", s.scenes_folder, "FOLDER", "Folder of the catalogue"),
+               "that of the program"),
+      shown_as(text_setting("web", s.web_folder, "FOLDER", "Folder of the built viewer"),
+               "that of the program"),
+      number_setting<std::size_t>(
+          "threads", s.threads, 0, kMaxThreads,
+          "Threads that step sessions, and share the steps of the few; 0: one per core"),
+      number_setting<std::size_t>(
+          "endpoints", s.endpoints, 1, kMaxEndpoints,
+          "Threads that share the connections of the port; one serves about a thousand viewers"),
+      text_setting("isa", s.instructions, "SET",
+                   "Instruction set: baseline, avx2, avx512, or best: the machine's",
+                   check_instructions),
+      word_setting("log_level", s.log_level, {"debug", "info", "warn", "error", "off"},
+                   "What to log"),
+  };
+}
+
+std::vector<Setting> connection_limits(ServeSettings& s) {
+  ServerLimits& limits = s.limits;
+  return {
+      number_setting<std::size_t>("max_connections", limits.max_connections, 1, kMostConnections,
+                                  "WebSockets at once; the next is closed"),
+      number_setting<std::size_t>("max_clients", limits.max_clients_per_session, 1,
+                                  kMostConnections, "Clients of one session"),
+      number_setting<std::size_t>("max_grabs", limits.max_grabs_per_client, 1, kMaxGrabs,
+                                  "Grabs of one client at once"),
+      number_setting<std::size_t>("max_message_bytes", limits.max_message_bytes, 1024, kMostBytes,
+                                  "Of a message that holds neither scene nor body"),
+      number_setting<std::size_t>("max_scene_message_bytes", limits.max_scene_message_bytes, 1024,
+                                  kMostBytes, "Of a message that does"),
+      number_setting<std::size_t>("max_commands_in_flight", limits.max_commands_in_flight, 1,
+                                  1'000'000, "Commands of one client that are not answered yet"),
+      number_setting<std::size_t>("max_bytes_in_flight", limits.max_bytes_in_flight, 1024,
+                                  kMostBytes, "Of the messages of these commands"),
+      time_setting("frame_patience_seconds", limits.frame_patience, 1, kMostSeconds,
+                   "Without an acknowledgement, after which a viewer is closed"),
+      time_setting("resume_seconds", limits.resume_time, 0, kMostSeconds,
+                   "In which a participant whose connection has ended can be resumed"),
+      time_setting("handshake_seconds", s.handshake_timeout, 0.001, kMostSeconds,
+                   "For a whole HTTP request, or the upgrade to a WebSocket"),
+      time_setting("ping_seconds", s.ping_interval, 0.001, kMostSeconds,
+                   "Between pings; who is silent for two of them is dropped"),
+  };
+}
+
+std::vector<Setting> session_limits(ServerLimits& limits) {
+  return {
+      number_setting<std::size_t>("max_sessions", limits.max_sessions, 1, kMostSessions,
+                                  "Sessions at once"),
+      number_setting<std::size_t>("max_particles", limits.max_particles, 1, kMaxParticles,
+                                  "Particles of one session"),
+      number_setting<std::size_t>("max_particle_steps_per_tick", limits.max_particle_steps_per_tick,
+                                  1, 1'000'000'000,
+                                  "Particles of a session times the steps of its tick"),
+  };
+}
+
+}  // namespace
+
+std::vector<Setting> serve_settings(ServeSettings& target) {
+  std::vector<Setting> all;
+  add_group(all, "Server", server_group(target));
+  add_group(all, "Limits of connections", connection_limits(target));
+  add_group(all, "Limits of sessions", session_limits(target.limits));
+  return all;
+}
+
+}  // namespace vat

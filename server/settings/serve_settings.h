@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "server/limits.h"
+#include "server/settings/setting.h"
+
+namespace vat {
+
+/// What `vat serve` can be told.
+struct ServeSettings {
+  std::string host = "127.0.0.1";  ///< a numeric address
+  std::uint16_t port = 8080;       ///< 0: any free one
+  std::string scene = "sliding-vat-liquid";
+  std::string scenes_folder;
+  std::string web_folder;
+  std::size_t threads = 0;  ///< 0: one a core
+  std::size_t endpoints = 1;
+  std::string instructions = "best";  ///< or the name of a set
+  std::string log_level = "info";
+  std::chrono::milliseconds handshake_timeout{10'000};
+  std::chrono::milliseconds ping_interval{20'000};
+  ServerLimits limits;
+};
+
+/// The one table of them: options, variables of the environment, members of a configuration file
+/// and the page SETTINGS.md come from it. `target` must outlive it.
+std::vector<Setting> serve_settings(ServeSettings& target);
+
+}  // namespace vat

@@ -1,0 +1,76 @@
+// Settings of the server as the built program takes them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.h"
+
+namespace vat::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A variable of the environment while it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST(ServeSettings, FileThenEnvironmentThenOptions) {
+  const TemporaryFolder folder;
+  folder.write("vat.json", R"({"port": 1, "endpoints": 2, "max_sessions": 3})");
+  const Variable port("VAT_PORT", "4");
+  const Variable endpoints("VAT_ENDPOINTS", "5");
+  const ProgramResult result =
+      run_vat({"serve", "--config", folder.file("vat.json"), "--port", "6", "--print-config"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json printed = nlohmann::json::parse(result.out);
+  EXPECT_EQ(printed.at("settings").at("port"), 6);
+  EXPECT_EQ(printed.at("settings").at("endpoints"), 5);
+  EXPECT_EQ(printed.at("settings").at("max_sessions"), 3);
+  EXPECT_EQ(printed.at("sources").at("port"), "option");
+  EXPECT_EQ(printed.at("sources").at("endpoints"), "environment");
+  EXPECT_EQ(printed.at("sources").at("max_sessions"), "file " + folder.file("vat.json"));
+  EXPECT_EQ(printed.at("sources").at("host"), "default");
+}
+
+TEST(ServeSettings, TheFileMayBeNamedByTheEnvironment) {
+  const TemporaryFolder folder;
+  folder.write("vat.json", R"({"port": 1})");
+  const Variable file("VAT_CONFIG", folder.file("vat.json"));
+  const ProgramResult result = run_vat({"serve", "--print-config"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out).at("settings").at("port"), 1);
+}
+
+TEST(ServeSettings, AFileWithFaultsIsRefused) {
+  const TemporaryFolder folder;
+  folder.write("vat.json", R"({"prot": 1})");
+  const ProgramResult result = run_vat({"serve", "--config", folder.file("vat.json")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, HasSubstr("vat.json: /prot: is no setting; the nearest is port"));
+  EXPECT_EQ(run_vat({"serve", "--config", folder.file("none.json")}).exit_code, 1);
+}
+
+TEST(ServeSettings, AVariableWithABadValueIsRefused) {
+  const Variable port("VAT_PORT", "http");
+  const ProgramResult result = run_vat({"serve", "--print-config"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("VAT_PORT: must be a whole number from 0 to 65535"));
+}
+
+}  // namespace
+}  // namespace vat::test
