@@ -1,4 +1,4 @@
-#include "tests/protocol/pattern.h"
+#include "server/script/pattern.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,6 +58,26 @@ TEST(Pattern, Comparisons) {
   EXPECT_FALSE(matches(R"({"$ne": 1})", "1"));
 }
 
+TEST(Pattern, ToleranceOfEachNumberInAList) {
+  EXPECT_TRUE(matches(R"({"$near": [[1, 2], 0.1]})", "[1.05, 1.95]"));
+  EXPECT_FALSE(matches(R"({"$near": [[1, 2], 0.1]})", "[1.05, 1.85]"));
+  EXPECT_FALSE(matches(R"({"$near": [[1, 2], 0.1]})", "[1]"));
+  EXPECT_FALSE(matches(R"({"$near": [[1, 2], 0.1]})", "1"));
+  EXPECT_THROW(reason(R"({"$near": ["x", 0.1]})", "1"), ScriptError);
+}
+
+TEST(Pattern, OrientationsWithinAnAngle) {
+  // A turn about z by 0.2 rad, by its half angle.
+  const char* turned = "[0.995004165278, 0, 0, 0.0998334166468]";
+  EXPECT_TRUE(matches(R"({"$turned": [[1, 0, 0, 0], 0.2001]})", turned));
+  EXPECT_FALSE(matches(R"({"$turned": [[1, 0, 0, 0], 0.1999]})", turned));
+  EXPECT_TRUE(matches(R"({"$turned": [[-1, 0, 0, 0], 0.2001]})", turned));  // the same orientation
+  EXPECT_TRUE(matches(R"({"$turned": [[2, 0, 0, 0], 1e-9]})", "[-0.5, 0, 0, 0]"));
+  EXPECT_FALSE(matches(R"({"$turned": [[1, 0, 0, 0], 4]})", "[0, 0, 0]"));
+  EXPECT_FALSE(matches(R"({"$turned": [[1, 0, 0, 0], 4]})", "[0, 0, 0, 0]"));
+  EXPECT_THROW(reason(R"({"$turned": [[1, 0, 0], 0.1]})", turned), ScriptError);
+}
+
 TEST(Pattern, TestsOfTextsAndLists) {
   EXPECT_TRUE(matches(R"({"$contains": "bc"})", R"("abcd")"));
   EXPECT_FALSE(matches(R"({"$contains": "x"})", R"("abcd")"));
@@ -111,9 +131,9 @@ TEST(Pattern, WhatDoesNotMatchCapturesNothing) {
 
 TEST(Pattern, TheReasonNamesThePlaceAndBothSides) {
   const std::string text = reason(R"({"a": [1, {"$ge": 3}]})", R"({"a": [1, 2]})");
-  EXPECT_EQ(text, R"(at /a/1: expected {"$ge":3}, came 2)");
-  EXPECT_THAT(reason("1", "[2]"), HasSubstr("at the top: expected 1, came [2]"));
-  EXPECT_THAT(reason(R"("$t")", "2", {{"$t", 1}}), HasSubstr("expected $t = 1, came 2"));
+  EXPECT_EQ(text, "at /a/1\n  expected {\"$ge\":3}\n  came     2");
+  EXPECT_THAT(reason("1", "[2]"), HasSubstr("at the top\n  expected 1\n  came     [2]"));
+  EXPECT_THAT(reason(R"("$t")", "2", {{"$t", 1}}), HasSubstr("expected $t = 1\n  came     2"));
   EXPECT_THAT(reason(R"({"a": 1})", "{}"), HasSubstr("a member \"a\""));
 }
 

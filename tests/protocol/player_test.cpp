@@ -1,4 +1,4 @@
-#include "tests/protocol/player.h"
+#include "server/script/player.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -101,7 +101,7 @@ TEST(Player, ARepliedCallIsMet) {
 TEST(Player, AWrongResultIsNamedWithItsLine) {
   EXPECT_EQ(
       outcome({R"({"comment": "c"})", R"({"call": "m", "params": {"x": 2}, "result": {"x": 1}})"}),
-      "s:3: at /result/x: expected 1, came 2");
+      "s:3: at /result/x\n  expected 1\n  came     2");
 }
 
 TEST(Player, AnUnexpectedResultIsAFailure) {
@@ -119,7 +119,7 @@ TEST(Player, RepliesAreTakenByTheirId) {
 TEST(Player, ExpectedRepliesMustMatch) {
   EXPECT_EQ(outcome({kSayReply, R"({"expect": {"id": 7, "result": {"x": 1}}})"}), "");
   EXPECT_THAT(outcome({kSayReply, R"({"expect": {"id": 7, "result": {"x": 2}}})"}),
-              HasSubstr("s:3: at /result/x: expected 2, came 1"));
+              HasSubstr("s:3: at /result/x\n  expected 2\n  came     1"));
   EXPECT_THAT(outcome({R"({"expect": {"id": 7}})"}), HasSubstr("none came"));
 }
 
@@ -128,7 +128,7 @@ TEST(Player, WaitsForAnEventAndPassesOverOthers) {
                                             {"jsonrpc": "2.0", "method": "e", "params": {"n": 2}}]}})";
   EXPECT_EQ(outcome({events, R"({"wait_event": {"params": {"n": 2}}})"}), "");
   EXPECT_THAT(outcome({events, R"({"wait_event": {"params": {"n": 3}}})"}),
-              HasSubstr("the last that came: at /params/n: expected 3, came 2"));
+              HasSubstr("the last that came: at /params/n\n  expected 3\n  came     2"));
 }
 
 TEST(Player, FramesMustMatch) {
@@ -136,7 +136,7 @@ TEST(Player, FramesMustMatch) {
                      R"({"wait_frame": {"number": 2, "blocks": []}})"}),
             "");
   EXPECT_THAT(outcome({R"({"send": {"say": [[1, 4]]}})", R"({"expect_frame": {"epoch": 5}})"}),
-              HasSubstr("at /epoch: expected 5, came 4"));
+              HasSubstr("at /epoch\n  expected 5\n  came     4"));
   EXPECT_THAT(outcome({R"({"expect_frame": {}})"}), HasSubstr("expected a frame, none came"));
 }
 
@@ -210,16 +210,30 @@ TEST(ReadScript, NamesTheLineOfAMistake) {
   }
 }
 
-TEST(ReadExchange, TakesTheBlockAfterTheHeading) {
+TEST(ReadDocument, TakesTheExchangeAfterTheHeading) {
   const std::string path = testing::TempDir() + "document.md";
   std::ofstream(path) << "```text\n> {\"no\": 1}\n```\n## Here\nWords.\n```text\n> {\"a\": 1}\n"
                          "< {\"b\": 2}\n```\n> more\n";
-  const std::vector<Line> lines = read_exchange(path, "## Here");
-  ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[0].action, Json::parse(R"({"send": {"a": 1}})"));
-  EXPECT_EQ(lines[1].action, Json::parse(R"({"expect": {"b": 2}})"));
-  EXPECT_EQ(lines[1].place, "document.md:8");
-  EXPECT_THROW(read_exchange(path, "## There"), ScriptError);
+  const std::vector<Line> lines = read_document(path, "## Here");
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0].action, Json::parse(R"({"connect": "a"})"));
+  EXPECT_EQ(lines[1].action, Json::parse(R"({"send": {"a": 1}})"));
+  EXPECT_EQ(lines[2].action, Json::parse(R"({"expect": {"b": 2}})"));
+  EXPECT_EQ(lines[2].place, "document.md:8");
+  EXPECT_THROW(read_document(path, "## There"), ScriptError);
+}
+
+TEST(ReadDocument, TakesTheScriptAfterTheHeading) {
+  const std::string path = testing::TempDir() + "scripts.md";
+  std::ofstream(path) << "## Here\n\n```jsonl\n{\"close\": true}\n```\n```jsonl\n{}\n```\n";
+  const std::vector<Line> lines = read_document(path, "## Here");
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].action, Json::parse(R"({"close": true})"));
+}
+
+TEST(Player, WaitsForTicks) {
+  // A request is answered by its params: the tick never comes.
+  EXPECT_THAT(outcome({R"({"wait_ticks": 3})"}), HasSubstr("at /result\n  expected a member"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "tests/protocol/client.h"
+#include "server/script/client.h"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
@@ -27,7 +27,7 @@ class WebSocketClient final : public Client {
   }
 
   /// The HTTP status.
-  unsigned connect(std::uint16_t port, const ConnectRequest& request, Deadline deadline);
+  unsigned connect(const WebSocketUrl& url, const ConnectRequest& request, Deadline deadline);
 
   void send_text(const std::string& text) override { send({Message::Kind::text, text, 0}); }
   void send_binary(const std::string& bytes) override { send({Message::Kind::binary, bytes, 0}); }
@@ -50,6 +50,7 @@ class WebSocketClient final : public Client {
   }
 
  private:
+  void open_socket(const WebSocketUrl& url, Deadline deadline);
   template <class Condition>
   void run_until(Deadline deadline, Condition&& reached);
   void send(Message message);
@@ -80,10 +81,25 @@ void WebSocketClient::run_until(Deadline deadline, Condition&& reached) {
   }
 }
 
-unsigned WebSocketClient::connect(std::uint16_t port, const ConnectRequest& request,
+void WebSocketClient::open_socket(const WebSocketUrl& url, Deadline deadline) {
+  asio::ip::tcp::resolver resolver(context_);
+  error_code failure;
+  const auto found = resolver.resolve(url.host, url.port, failure);
+  if (failure) throw std::runtime_error("no address of " + url.host + ": " + failure.message());
+  beast::tcp_stream& socket = beast::get_lowest_layer(stream_);
+  std::optional<error_code> outcome;
+  socket.expires_at(deadline);
+  socket.async_connect(found, [&](error_code result, const auto&) { outcome = result; });
+  run_until(Deadline::max(), [&] { return outcome.has_value(); });
+  socket.expires_never();
+  if (*outcome) {
+    throw std::runtime_error("no server at " + url.authority() + ": " + outcome->message());
+  }
+}
+
+unsigned WebSocketClient::connect(const WebSocketUrl& url, const ConnectRequest& request,
                                   Deadline deadline) {
-  const asio::ip::tcp::endpoint server(asio::ip::address_v4::loopback(), port);
-  beast::get_lowest_layer(stream_).socket().connect(server);  // to this machine: at once
+  open_socket(url, deadline);
   if (!request.subprotocol.empty()) {
     stream_.set_option(websocket::stream_base::decorator([&](websocket::request_type& upgrade) {
       upgrade.set(beast::http::field::sec_websocket_protocol, request.subprotocol);
@@ -91,7 +107,7 @@ unsigned WebSocketClient::connect(std::uint16_t port, const ConnectRequest& requ
   }
   websocket::response_type response;
   std::optional<error_code> outcome;
-  stream_.async_handshake(response, "127.0.0.1:" + std::to_string(port), request.path,
+  stream_.async_handshake(response, url.authority(), request.path.empty() ? url.path : request.path,
                           [&](error_code failure) { outcome = failure; });
   run_until(deadline, [&] { return outcome.has_value(); });
   if (!outcome) {
@@ -155,9 +171,10 @@ void WebSocketClient::ended(error_code failure) {
 
 }  // namespace
 
-Connected connect_websocket(std::uint16_t port, const ConnectRequest& request, Deadline deadline) {
+Connected connect_websocket(const WebSocketUrl& url, const ConnectRequest& request,
+                            Deadline deadline) {
   auto client = std::make_unique<WebSocketClient>();
-  const unsigned status = client->connect(port, request, deadline);
+  const unsigned status = client->connect(url, request, deadline);
   if (status != 101) return {nullptr, status};
   return {std::move(client), status};
 }

@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "protocol/frame_codec.h"
-#include "tests/protocol/client.h"
-#include "tests/protocol/script.h"
+#include "server/script/client.h"
+#include "server/script/frame_json.h"
+#include "server/script/script.h"
+#include "server/script/transcript.h"
 
 namespace vat::script {
 
@@ -14,7 +16,7 @@ struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Plays scripts. README.md in this folder lists the actions.
+/// Plays scripts. protocol/SCRIPTS.md lists the actions.
 ///
 /// Beside what the lines ask for, every message that comes must be a JSON-RPC object or a valid
 /// frame, and a client's frames must be numbered without a gap, each of the epoch that the last
@@ -28,12 +30,16 @@ class Player {
   /// Makes a capture beforehand.
   void set(const std::string& name, Json value) { captures_[name] = std::move(value); }
 
+  /// Writes what is sent and received; `transcript` must outlive this.
+  void record(Transcript& transcript) { transcript_ = &transcript; }
+
   /// Throws Failure at the first line that is not met, and ScriptError for a mistake in a line.
   void play(const std::vector<Line>& lines);
 
  private:
   /// A client and what it received and no line has asked for yet.
   struct Peer {
+    std::string connection;  ///< its name in the transcript
     std::unique_ptr<Client> client;
     std::deque<Json> replies;
     std::deque<Json> events;
@@ -41,6 +47,7 @@ class Player {
     std::optional<Message> closed;
     FrameDecoder decoder;
     std::optional<std::uint64_t> epoch;  ///< of the last description
+    BodyNames names;                     ///< the same
   };
   using Inbox = std::deque<Json> Peer::*;
 
@@ -50,6 +57,7 @@ class Player {
   void connect(const Json& line);
   void send(const Json& line);
   void call(const Json& line);
+  void wait_ticks(const Json& line);
   void notify(const Json& line);
   void expect_reply(const Json& line);
   void wait_for(const Json& line, const char* action, Inbox inbox);
@@ -62,7 +70,12 @@ class Player {
   Deadline deadline_of(const Json& line) const;
   /// Takes one message into the inboxes; false where none came by the deadline.
   bool receive(Peer& peer, Deadline deadline);
+  void send_text(Peer& peer, const std::string& text, const Json& line);
+  /// Sends a request and waits for its reply.
+  Json request(Peer& peer, const Json& method, const Json& params, const Json& line);
   void receive_text(Peer& peer, const std::string& text);
+  /// Keeps what a description tells of frames.
+  static void learn_description(Peer& peer, const Json& content);
   void receive_frame(Peer& peer, const std::string& bytes);
   /// The first element of the inbox that `wanted` holds for, taken out of it.
   template <class Wanted>
@@ -71,6 +84,8 @@ class Player {
 
   Connect connect_;
   std::chrono::milliseconds patience_;
+  Transcript* transcript_ = nullptr;
+  int connections_ = 0;
   std::map<std::string, Peer> peers_;
   Captures captures_;
   std::int64_t last_id_ = 1'000'000;  ///< of `call`; scripts choose smaller ones

@@ -1,7 +1,9 @@
-#include "tests/protocol/pattern.h"
+#include "server/script/pattern.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace vat::script {
 namespace {
@@ -57,6 +59,51 @@ std::string shown(const Json& value) {
   return text;
 }
 
+/// Numbers within `error`, or lists of such.
+bool is_near(const Json& value, const Json& wanted, double error) {
+  if (wanted.is_number()) {
+    return value.is_number() && std::abs(value.get<double>() - wanted.get<double>()) <= error;
+  }
+  if (!wanted.is_array()) throw ScriptError("$near needs a number or a list of numbers");
+  if (!value.is_array() || value.size() != wanted.size()) return false;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!is_near(value[i], wanted[i], error)) return false;
+  }
+  return true;
+}
+
+/// A quaternion's four numbers, divided by its length; nothing where it is none.
+std::optional<std::array<double, 4>> unit_quaternion(const Json& value) {
+  if (!value.is_array() || value.size() != 4) return {};
+  std::array<double, 4> numbers{};
+  double square = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!value[i].is_number()) return {};
+    numbers[i] = value[i].get<double>();
+    square += numbers[i] * numbers[i];
+  }
+  if (!(square > 0)) return {};
+  for (double& number : numbers) number /= std::sqrt(square);
+  return numbers;
+}
+
+/// The angle of the rotation from one orientation to the other [rad]; infinite where the value is
+/// no quaternion. q and -q are the same orientation.
+double angle_between(const Json& value, const Json& wanted) {
+  const auto b = unit_quaternion(wanted);
+  if (!b) throw ScriptError("$turned needs a quaternion [w, x, y, z] and an angle");
+  const auto a = unit_quaternion(value);
+  if (!a) return std::numeric_limits<double>::infinity();
+  double same = 0;
+  double opposite = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    same += ((*a)[i] - (*b)[i]) * ((*a)[i] - (*b)[i]);
+    opposite += ((*a)[i] + (*b)[i]) * ((*a)[i] + (*b)[i]);
+  }
+  // By the distance of the nearer two: exact for small angles, as an arc cosine is not.
+  return 4 * std::asin(std::min(1.0, std::sqrt(std::min(same, opposite)) / 2));
+}
+
 /// Walks a pattern and a value together.
 class Matcher {
  public:
@@ -74,8 +121,8 @@ class Matcher {
  private:
   static std::optional<std::string> fault(const std::string& path, const std::string& expected,
                                           const Json& value) {
-    return "at " + (path.empty() ? "the top" : path) + ": expected " + expected + ", came " +
-           shown(value);
+    return "at " + (path.empty() ? "the top" : path) + "\n  expected " + expected +
+           "\n  came     " + shown(value);
   }
 
   std::optional<std::string> match_name(const Json& pattern, const Json& value,
@@ -150,8 +197,10 @@ class Matcher {
 
   static bool holds_for_number(const std::string& test, const Json& operand, const Json& value) {
     if (test == "$near") {
-      return value.is_number() && std::abs(value.get<double>() - operand.at(0).get<double>()) <=
-                                      operand.at(1).get<double>();
+      return is_near(value, operand.at(0), operand.at(1).get<double>());
+    }
+    if (test == "$turned") {
+      return angle_between(value, operand.at(0)) <= operand.at(1).get<double>();
     }
     const bool known = test == "$ge" || test == "$gt" || test == "$le" || test == "$lt";
     if (!known) throw ScriptError("unknown test " + test);

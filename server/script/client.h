@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "server/script/websocket_url.h"
+
 namespace vat::script {
 
 using Deadline = std::chrono::steady_clock::time_point;
@@ -32,7 +34,7 @@ class Client {
 };
 
 struct ConnectRequest {
-  std::string path = "/ws";
+  std::string path;                    ///< "": that of the URL
   std::string subprotocol = "vat.v1";  ///< "": none is asked for
 };
 
@@ -43,7 +45,8 @@ struct Connected {
 };
 using Connect = std::function<Connected(const ConnectRequest&)>;
 
-/// Connects to a server on this machine. Throws std::runtime_error where there is none.
-Connected connect_websocket(std::uint16_t port, const ConnectRequest& request, Deadline deadline);
+/// Connects to a server. Throws std::runtime_error where there is none.
+Connected connect_websocket(const WebSocketUrl& url, const ConnectRequest& request,
+                            Deadline deadline);
 
 }  // namespace vat::script

@@ -28,7 +28,9 @@ Json substitute(const Json& value, const Captures& captures);
 /// values must be equal. "$any" matches anything; "$name" matches anything the first time and an
 /// equal value after that. An object whose members begin with $ tests:
 ///   $eq $ne $ge $gt $le $lt: comparison with an operand, which may use captures
-///   $near: [x, e], a number within e of x         $type: "number", "string", "boolean", ...
+///   $near: [x, e], a number within e of x, or a list of numbers each within e of that in x
+///   $turned: [q, e], an orientation [w, x, y, z] at most e rad from q
+///   $type: "number", "string", "boolean", ...
 ///   $contains: a text with this part              $size: a text or list of this length
 ///   $has: a list with a matching element          $each: a list of matching elements only
 ///   $absent: true where there must be no such member

@@ -1,4 +1,4 @@
-#include "tests/protocol/script.h"
+#include "server/script/script.h"
 
 #include <fstream>
 
@@ -22,6 +22,15 @@ std::string short_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
 
+/// A line of an exchange as one of a script.
+Line read_exchanged(const std::string& text, const std::string& place) {
+  if (text.size() < 2 || (text[0] != '>' && text[0] != '<') || text[1] != ' ') {
+    throw ScriptError(place + ": must begin with \"> \" or \"< \"");
+  }
+  const Json message = parse_line(text.substr(2), place);
+  return {place, {{text[0] == '>' ? "send" : "expect", message}}};
+}
+
 }  // namespace
 
 std::vector<Line> read_script(const std::string& path) {
@@ -37,28 +46,30 @@ std::vector<Line> read_script(const std::string& path) {
   return lines;
 }
 
-std::vector<Line> read_exchange(const std::string& path, const std::string& heading) {
+std::vector<Line> read_document(const std::string& path, const std::string& heading) {
+  enum class Place { before, after_heading, in_exchange, in_script };
   std::ifstream file = open(path);
   std::vector<Line> lines;
   std::string text;
-  bool after_heading = false;
-  bool inside = false;
+  Place where = Place::before;
   for (int number = 1; std::getline(file, text); ++number) {
     const std::string place = short_name(path) + ':' + std::to_string(number);
-    if (inside) {
-      if (text == "```") break;
-      if (text.size() < 2 || (text[0] != '>' && text[0] != '<') || text[1] != ' ') {
-        throw ScriptError(place + ": must begin with \"> \" or \"< \"");
+    if (where == Place::before) {
+      if (text == heading) where = Place::after_heading;
+    } else if (where == Place::after_heading) {
+      if (text == "```jsonl") where = Place::in_script;
+      if (text == "```text") {
+        where = Place::in_exchange;
+        lines.push_back({place, {{"connect", "a"}}});
       }
-      const Json message = parse_line(text.substr(2), place);
-      lines.push_back({place, {{text[0] == '>' ? "send" : "expect", message}}});
-    } else if (text == heading) {
-      after_heading = true;
-    } else if (after_heading && text == "```text") {
-      inside = true;
+    } else if (text == "```") {
+      break;
+    } else {
+      lines.push_back(where == Place::in_script ? Line{place, parse_line(text, place)}
+                                                : read_exchanged(text, place));
     }
   }
-  if (lines.empty()) throw ScriptError(path + ": has no exchange after \"" + heading + '"');
+  if (lines.empty()) throw ScriptError(path + ": shows no script after \"" + heading + '"');
   return lines;
 }
 

@@ -1,9 +1,6 @@
-#include "tests/protocol/player.h"
+#include "server/script/player.h"
 
-#include <algorithm>
 #include <set>
-
-#include "tests/protocol/frame_json.h"
 
 namespace vat::script {
 namespace {
@@ -12,11 +9,12 @@ namespace {
 const std::map<std::string, std::set<std::string>>& known_actions() {
   static const std::map<std::string, std::set<std::string>> kActions{
       {"connect", {"path", "subprotocol", "refused"}},
-      {"send", {}},
-      {"send_text", {}},
+      {"send", {"wrong"}},
+      {"send_text", {"wrong"}},
       {"send_binary", {}},
       {"call", {"params", "result", "error"}},
-      {"notify", {"params"}},
+      {"notify", {"params", "wrong"}},
+      {"wait_ticks", {}},
       {"expect", {}},
       {"wait_event", {}},
       {"expect_frame", {}},
@@ -92,6 +90,7 @@ void Player::run_action(const std::string& action, const Json& line) {
   if (action == "connect") return connect(line);
   if (action == "call") return call(line);
   if (action == "notify") return notify(line);
+  if (action == "wait_ticks") return wait_ticks(line);
   if (action == "expect") return expect_reply(line);
   if (action == "wait_event") return wait_for(line, "wait_event", &Peer::events);
   if (action == "wait_frame") return wait_for(line, "wait_frame", &Peer::frames);
@@ -122,41 +121,72 @@ void Player::connect(const Json& line) {
                   std::to_string(connected.http_status));
   }
   Peer& peer = peers_[name_of(line["connect"])] = Peer{};
+  peer.connection = name_of(line["connect"]) + '#' + std::to_string(++connections_);
   peer.client = std::move(connected.client);
 }
 
+void Player::send_text(Peer& peer, const std::string& text, const Json& line) {
+  if (transcript_ != nullptr) transcript_->sent(peer.connection, text, line.value("wrong", false));
+  peer.client->send_text(text);
+}
+
 void Player::send(const Json& line) {
-  Client& client = *peer_of(line).client;
+  Peer& peer = peer_of(line);
   if (line.contains("send")) {
-    client.send_text(substitute(line["send"], captures_).dump());
+    send_text(peer, substitute(line["send"], captures_).dump(), line);
   } else if (line.contains("send_text")) {
-    client.send_text(substitute(line["send_text"], captures_).get<std::string>());
+    send_text(peer, substitute(line["send_text"], captures_).get<std::string>(), line);
   } else {
-    client.send_binary(from_hex(substitute(line["send_binary"], captures_).get<std::string>()));
+    peer.client->send_binary(
+        from_hex(substitute(line["send_binary"], captures_).get<std::string>()));
   }
 }
 
-void Player::call(const Json& line) {
-  Peer& peer = peer_of(line);
+Json Player::request(Peer& peer, const Json& method, const Json& params, const Json& line) {
   const std::int64_t id = ++last_id_;
-  Json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", line["call"]}};
-  if (line.contains("params")) request["params"] = substitute(line["params"], captures_);
-  peer.client->send_text(request.dump());
-  const auto reply = take(peer, &Peer::replies, deadline_of(line),
-                          [&](const Json& message) { return message["id"] == id; });
+  Json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}};
+  if (!params.is_null()) request["params"] = substitute(params, captures_);
+  send_text(peer, request.dump(), line);
+  auto reply = take(peer, &Peer::replies, deadline_of(line),
+                    [&](const Json& message) { return message["id"] == id; });
   if (!reply) throw Failure("expected a reply, none came");
+  return *std::move(reply);
+}
+
+void Player::call(const Json& line) {
+  const Json reply = request(peer_of(line), line["call"], line.value("params", Json()), line);
   Json pattern = {{"jsonrpc", "2.0"}};
   const bool fails = line.contains("error");
   pattern[fails ? "error" : "result"] =
       fails ? line["error"] : line.value("result", Json::object());
   pattern[fails ? "result" : "error"] = {{"$absent", true}};
-  require(pattern, *reply);
+  require(pattern, reply);
+}
+
+void Player::wait_ticks(const Json& line) {
+  constexpr auto kInterval = std::chrono::milliseconds(10);
+  Peer& peer = peer_of(line);
+  const Deadline deadline = deadline_of(line);
+  std::optional<std::uint64_t> wanted;
+  for (;;) {
+    const Json reply = request(peer, "state.query", {{"bodies", Json::array()}}, line);
+    require({{"result", {{"tick", {{"$ge", 0}}}}}}, reply);
+    const auto tick = reply["result"]["tick"].get<std::uint64_t>();
+    if (!wanted) wanted = tick + line["wait_ticks"].get<std::uint64_t>();
+    if (tick >= *wanted) return;
+    if (std::chrono::steady_clock::now() > deadline) {
+      throw Failure("expected tick " + std::to_string(*wanted) + ", it is " + std::to_string(tick));
+    }
+    const auto next = std::chrono::steady_clock::now() + kInterval;
+    while (receive(peer, next)) {
+    }
+  }
 }
 
 void Player::notify(const Json& line) {
   Json message = {{"jsonrpc", "2.0"}, {"method", line["notify"]}};
   if (line.contains("params")) message["params"] = substitute(line["params"], captures_);
-  peer_of(line).client->send_text(message.dump());
+  send_text(peer_of(line), message.dump(), line);
 }
 
 void Player::expect_reply(const Json& line) {
@@ -252,6 +282,7 @@ bool Player::receive(Peer& peer, Deadline deadline) {
 }
 
 void Player::receive_text(Peer& peer, const std::string& text) {
+  if (transcript_ != nullptr) transcript_->received(peer.connection, text);
   Json message = Json::parse(text, nullptr, false);
   if (!message.is_object() || message.value("jsonrpc", Json()) != "2.0" ||
       message.contains("id") == message.contains("method")) {
@@ -259,14 +290,21 @@ void Player::receive_text(Peer& peer, const std::string& text) {
   }
   const bool is_reply = message.contains("id");
   const Json& content = message.value(is_reply ? "result" : "params", Json::object());
-  if (content.is_object() && content.contains("epoch")) {
-    peer.epoch = content["epoch"].get<std::uint64_t>();
-  }
+  learn_description(peer, content.is_object() ? content.value("description", content) : content);
   (is_reply ? peer.replies : peer.events).push_back(std::move(message));
 }
 
+void Player::learn_description(Peer& peer, const Json& content) {
+  if (!content.is_object() || !content.contains("epoch")) return;
+  peer.epoch = content["epoch"].get<std::uint64_t>();
+  peer.names.clear();
+  for (const Json& body : content.value("bodies", Json::array())) {
+    peer.names[body.at("body").get<std::uint32_t>()] = body.at("name").get<std::string>();
+  }
+}
+
 void Player::receive_frame(Peer& peer, const std::string& bytes) {
-  Json frame = frame_to_json(bytes, peer.decoder);
+  Json frame = frame_to_json(bytes, peer.decoder, peer.names);
   if (peer.epoch && frame["epoch"] != *peer.epoch) {
     throw Failure("a frame of epoch " + frame["epoch"].dump() + " after the description of epoch " +
                   std::to_string(*peer.epoch));

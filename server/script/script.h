@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/protocol/pattern.h"
+#include "server/script/pattern.h"
 
 namespace vat::script {
 
@@ -17,8 +17,9 @@ struct Line {
 /// line, where one is not a JSON object.
 std::vector<Line> read_script(const std::string& path);
 
-/// The exchange that a Markdown document shows: the first block after `heading` that is fenced with
-/// ```text; its lines begin with "> " (a client sends) or "< " (it receives what matches).
-std::vector<Line> read_exchange(const std::string& path, const std::string& heading);
+/// What a Markdown document shows after the line `heading`: the first block that is fenced with
+/// ```jsonl, the lines of a script, or with ```text, an exchange whose lines begin with "> " (a
+/// client, which is connected first, sends) or "< " (it receives what matches).
+std::vector<Line> read_document(const std::string& path, const std::string& heading);
 
 }  // namespace vat::script

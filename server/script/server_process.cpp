@@ -1,4 +1,4 @@
-#include "tests/protocol/server_process.h"
+#include "server/script/server_process.h"
 
 #include <poll.h>
 #include <sys/prctl.h>

@@ -1,0 +1,123 @@
+#include "server/cli/script.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "server/cli/command.h"
+#include "server/cli/option_checks.h"
+#include "server/cli/scene_argument.h"
+#include "server/script/play_file.h"
+#include "server/script/player.h"
+
+namespace vat {
+
+namespace {
+
+constexpr const char* kFooter = R"(A script is a file of JSON lines; protocol/SCRIPTS.md tells
+what they can say, and tests/protocol/scripts has examples. Without --server each script is played
+against a server of its own on a free port.
+
+Exit codes: 0 every line was met, 1 one was not, or there is no server, 2 wrong usage, or a mistake
+in a script.)";
+
+constexpr double kMostPatience = 86'400;  // [s] a day
+
+struct Options {
+  std::vector<std::string> files;
+  std::string server;
+  std::string scene = "sliding-vat-liquid";
+  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  double patience = 20;
+  script::PlaySettings play;
+};
+
+std::string check_url(const std::string& text) {
+  try {
+    script::read_websocket_url(text);
+    return {};
+  } catch (const std::invalid_argument& fault) {
+    return fault.what();
+  }
+}
+
+/// Plays a file and says how that went. kExitOk also where it was passed over.
+int play(const std::string& path, const script::PlaySettings& settings, bool& was_played) {
+  was_played = true;
+  try {
+    const std::size_t lines = script::play_file(path, settings);
+    std::cout << path << ": " << lines << " lines, all met" << std::endl;
+    return kExitOk;
+  } catch (const script::NeedsOwnServer& reason) {
+    was_played = false;
+    std::cout << path << ": passed over: it " << reason.what() << std::endl;
+    return kExitOk;
+  } catch (const script::ScriptError& mistake) {
+    std::cerr << path << ": a mistake in the script\n" << mistake.what() << '\n';
+    return kExitUsage;
+  } catch (const std::runtime_error& failure) {
+    std::cerr << path << ": failed\n" << failure.what() << '\n';
+    return kExitFailed;
+  }
+}
+
+int play_all(Options& options) {
+  script::PlaySettings& settings = options.play;
+  settings.patience = std::chrono::milliseconds(static_cast<std::int64_t>(options.patience * 1000));
+  if (!options.server.empty()) settings.server = script::read_websocket_url(options.server);
+  settings.program = "/proc/self/exe";
+  settings.arguments = {"serve",   "--port",      "0",           "--scenes", options.scenes_folder,
+                        "--scene", options.scene, "--log-level", "error"};
+  int exit_code = kExitOk;
+  bool any_was_played = false;
+  for (const std::string& file : options.files) {
+    bool was_played = false;
+    exit_code = std::max(exit_code, play(file, settings, was_played));
+    any_was_played = any_was_played || was_played;
+  }
+  if (any_was_played) return exit_code;
+  std::cerr << "no script can be played against a server that runs already\n";
+  return kExitUsage;
+}
+
+void add_options(CLI::App& command, Options& options) {
+  command.add_option("file", options.files, "Scripts, in .jsonl")->required();
+  command
+      .add_option("--server", options.server,
+                  "Address of a running server: ws://HOST[:PORT][/PATH], by default port 80, /ws")
+      ->check(CLI::Validator(check_url, "URL"));
+  command
+      .add_option("--scene", options.scene,
+                  "The first session's of a server that is started. " + std::string(kSceneHelp))
+      ->capture_default_str();
+  command.add_option("--scenes", options.scenes_folder, "Folder of such a server's catalogue");
+  command.add_option("--patience", options.patience, "How long a line waits [s]")
+      ->check(real_in(0, kMostPatience))
+      ->capture_default_str();
+  command.add_option("--set", options.play.captures,
+                     "NAME TEXT: what the scripts' \"$NAME\" stands for");
+  command.add_option("--heading", options.play.heading,
+                     "Play what a Markdown document shows under this heading");
+  command
+      .add_option("--transcript", options.play.transcript_folder,
+                  "Folder for what is sent and received, a file for each script")
+      ->envname("VAT_TRANSCRIPT");
+}
+
+}  // namespace
+
+void add_script_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("script", "Play scripts of the protocol against a server and check it");
+  const auto options = std::make_shared<Options>();
+  add_options(*command, *options);
+  command->footer(kFooter);
+  command->callback([options, &exit_code] { exit_code = play_all(*options); });
+}
+
+}  // namespace vat

@@ -1,0 +1,82 @@
+#include "server/script/play_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "server/script/player.h"
+#include "server/script/server_process.h"
+
+namespace vat::script {
+namespace {
+
+/// Takes the arguments out that a first line {"server": [...]} has.
+std::vector<std::string> take_server_arguments(std::vector<Line>& lines) {
+  const Line first = lines.front();
+  if (!first.action.contains("server")) return {};
+  const Json& words = first.action["server"];
+  const bool texts =
+      words.is_array() && std::ranges::all_of(words, [](const Json& w) { return w.is_string(); });
+  if (!texts || first.action.size() > (first.action.contains("comment") ? 2U : 1U)) {
+    throw ScriptError(first.place + ": \"server\" needs a list of arguments, and stands alone");
+  }
+  lines.erase(lines.begin());
+  return words.get<std::vector<std::string>>();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += ' ' + word;
+  return text;
+}
+
+std::unique_ptr<Transcript> open_transcript(const std::string& path, const PlaySettings& settings) {
+  if (settings.transcript_folder.empty()) return {};
+  return std::make_unique<Transcript>(settings.transcript_folder,
+                                      std::filesystem::path(path).stem().string());
+}
+
+void play_lines(const std::string& path, const std::vector<Line>& lines, const WebSocketUrl& url,
+                const PlaySettings& settings) {
+  const auto transcript = open_transcript(path, settings);
+  Player player(
+      [&](const ConnectRequest& request) {
+        return connect_websocket(url, request,
+                                 std::chrono::steady_clock::now() + settings.patience);
+      },
+      settings.patience);
+  if (transcript) player.record(*transcript);
+  for (const auto& [name, text] : settings.captures) player.set('$' + name, text);
+  player.play(lines);
+}
+
+void play_with_own_server(const std::string& path, const std::vector<Line>& lines,
+                          const std::vector<std::string>& arguments, const PlaySettings& settings) {
+  std::vector<std::string> all = settings.arguments;
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  ServerProcess server(settings.program, all);
+  play_lines(path, lines, {"127.0.0.1", std::to_string(server.port()), "/ws"}, settings);
+  if (!server.is_running()) throw Failure("the server has ended");
+  if (const int status = server.stop(); status != 0) {
+    throw Failure("the server ended with status " + std::to_string(status));
+  }
+}
+
+}  // namespace
+
+std::size_t play_file(const std::string& path, const PlaySettings& settings) {
+  std::vector<Line> lines =
+      settings.heading.empty() ? read_script(path) : read_document(path, settings.heading);
+  const std::size_t count = lines.size();
+  const std::vector<std::string> arguments = take_server_arguments(lines);
+  if (!settings.server) {
+    play_with_own_server(path, lines, arguments, settings);
+  } else if (arguments.empty()) {
+    play_lines(path, lines, *settings.server, settings);
+  } else {
+    throw NeedsOwnServer("needs a server of its own, with" + joined(arguments));
+  }
+  return count;
+}
+
+}  // namespace vat::script

@@ -1,0 +1,35 @@
+#include "server/script/transcript.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace vat::script {
+
+Transcript::Transcript(const std::string& folder, const std::string& name) {
+  std::filesystem::create_directories(folder);
+  const std::string path = folder + '/' + name + ".jsonl";
+  file_.open(path);
+  if (!file_) throw std::runtime_error(path + ": cannot be written");
+}
+
+void Transcript::sent(std::string_view connection, std::string_view message, bool wrong) {
+  write("sent", connection, message, wrong);
+}
+
+void Transcript::received(std::string_view connection, std::string_view message) {
+  write("received", connection, message, false);
+}
+
+void Transcript::write(const char* what, std::string_view connection, std::string_view message,
+                       bool wrong) {
+  nlohmann::json line{{"connection", connection}, {what, message}};
+  if (wrong) line["wrong"] = true;
+  // What is not UTF-8 was not read as a message either.
+  const std::string text =
+      line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  const std::lock_guard lock(mutex_);
+  file_ << text << std::flush;
+}
+
+}  // namespace vat::script
