@@ -47,11 +47,17 @@ Controls rebind(Controls controls, const Model& before, const Model& model) {
 
 void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
                                  const std::vector<std::optional<std::vector<Index>>>& kept) {
+  std::vector<char> as_described(ids.size(), false);
   for (std::size_t b = 0; b < ids.size(); ++b) {
     const ModelBody* known = find(ids[b]);
-    if (samples[b] == nullptr && known != nullptr) samples[b] = known->sample;
+    if (samples[b] != nullptr || known == nullptr || known->sample == nullptr) continue;
+    samples[b] = known->sample;
+    as_described[b] = known->is_as_described;
   }
   auto new_model = compile(std::move(scene), ids, std::move(samples));
+  for (std::size_t b = 0; b < ids.size(); ++b) {
+    if (as_described[b]) new_model->bodies[b].is_as_described = true;
+  }
   State new_state = initial_state(*new_model);
   Controls old_controls = controls;
   for (std::size_t b = 0; b < ids.size(); ++b) {

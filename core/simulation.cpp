@@ -10,7 +10,6 @@
 #include "core/scene/validate.h"
 #include "core/simulation_impl.h"
 #include "core/step/measure.h"
-#include "core/support/hash.h"
 
 namespace vat {
 
@@ -182,88 +181,6 @@ Vec3 Simulation::vat_offset() const {
   return vat ? vat_motion(*vat, impl_->time()).offset : Vec3(Vec3::Zero());
 }
 
-namespace {
-
-void add_configuration(const Model& model, const Configuration& now, StateHash& hash) {
-  for (Index i = 0; i < model.free_count; ++i) hash.add(now.position[i]);
-  for (Index i = 0; i < model.free_count; ++i) hash.add(now.velocity[i]);
-  for (const RigidState& rigid : now.rigid) {
-    hash.add(rigid.center_of_mass);
-    hash.add(rigid.orientation);
-    hash.add(rigid.momentum);
-    hash.add(rigid.angular_momentum);
-  }
-  for (const ContactImpulse& contact : now.contacts) {
-    hash.add(std::uint64_t{contact.particle});
-    hash.add(contact.other);
-    hash.add(contact.drift);
-    hash.add(contact.finish);
-    hash.add(std::uint64_t{contact.is_steady});
-  }
-  for (const SpringState& spring : now.springs) {
-    hash.add(spring.rest_length);
-    hash.add(std::uint64_t{spring.is_torn});
-  }
-  for (const Real pressure : now.pressure) hash.add(pressure);
-}
-
-/// The rest of the state of what is stepped.
-void add_state(const Model& model, const State& state, StateHash& hash) {
-  for (const std::uint32_t looks : state.slow_looks) hash.add(std::uint64_t{looks});
-  const StepControl control = model.scene.numerics.control;
-  if (control != StepControl::fixed) {
-    hash.add(state.history.step);
-    hash.add(std::uint64_t{state.history.held});
-    hash.add(state.history.observed_rate);
-  }
-  hash.add(std::uint64_t{state.forces_current});
-  if (!state.forces_current) return;
-  if (control == StepControl::local) {
-    for (const std::uint8_t level : state.levels.particle) hash.add(std::uint64_t{level});
-    hash.add(std::uint64_t{state.levels.liquid});
-    hash.add(state.levels.skin);
-  }
-  hash.add(state.bound.omega2);
-  hash.add(state.bound.rate);
-  for (Index i = 0; i < model.free_count; ++i) hash.add(state.forces.particle[i]);
-  for (const Vec3& force : state.forces.rigid_force) hash.add(force);
-  for (const Vec3& torque : state.forces.rigid_torque) hash.add(torque);
-  for (const Vec3& velocity : state.forces.transport) hash.add(velocity);
-}
-
-void add_controls(const Controls& controls, StateHash& hash) {
-  for (const Grab& grab : controls.grabs) {
-    hash.add(std::uint64_t{grab.body});
-    hash.add(std::uint64_t{grab.particle});
-    hash.add(grab.target);
-    hash.add(grab.stiffness);
-    for (const Index held : grab.held) hash.add(std::uint64_t{held});
-  }
-  for (const AppliedForce& applied : controls.applied_forces) {
-    hash.add(std::uint64_t{applied.body});
-    hash.add(applied.acceleration);
-    hash.add(applied.end_step);
-  }
-}
-
-}  // namespace
-
-std::uint64_t Simulation::state_hash() const {
-  StateHash hash;
-  hash.add(impl_->state.step_count);
-  add_configuration(impl_->all(), impl_->gather(), hash);
-  if (impl_->sleepers) {
-    for (const Index island : impl_->sleepers->islands) hash.add(std::uint64_t{island});
-  }
-  add_state(*impl_->model, impl_->state, hash);
-  hash.add(impl_->all().scene.gravity);
-  for (const Emitter& emitter : impl_->all().scene.emitters) {
-    hash.add(std::uint64_t{emitter.open});
-  }
-  add_controls(impl_->controls, hash);
-  return hash.value();
-}
-
 Diagnostics Simulation::diagnostics() const {
   const ForceModel force_model{impl_->all(),  impl_->controls, impl_->measured,
                                impl_->runner, nullptr,         impl_->state.step_count};
@@ -295,22 +212,5 @@ std::string Simulation::plan_text() const {
 void Simulation::set_observer(StageObserver* observer) {
   impl_->observer = observer;
 }
-
-Snapshot Simulation::snapshot() const {
-  return Snapshot(std::make_shared<const Snapshot::Content>(*impl_));
-}
-
-void Simulation::restore(const Snapshot& snapshot) {
-  const Snapshot::Content& content = *snapshot.content_;
-  impl_->adopt(content, Impl::bounds_of(content), find_step_bounds(*content.model));
-  impl_->show();
-}
-
-Snapshot::Snapshot(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
-Snapshot::Snapshot(const Snapshot&) = default;
-Snapshot::Snapshot(Snapshot&&) noexcept = default;
-Snapshot& Snapshot::operator=(const Snapshot&) = default;
-Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
-Snapshot::~Snapshot() = default;
 
 }  // namespace vat

@@ -123,6 +123,14 @@ class Simulation {
   static Result<Simulation> create(const Scene& scene, TaskRunner* runner = nullptr,
                                    InstructionSet instructions = best_instruction_set());
 
+  /// Goes on from the bytes of a snapshot with the same bits, in any process of any machine that
+  /// has the instruction set. Fails where the bytes are not all of those that a snapshot gave, are
+  /// of another version of the format, or were saved with other instructions: those of the bytes
+  /// are used where none are given. Codes: not_saved, other_version, wrong_length, damaged,
+  /// bad_value, other_instruction_set, not_available.
+  static Result<Simulation> load(std::span<const std::uint8_t> bytes, TaskRunner* runner = nullptr,
+                                 std::optional<InstructionSet> instructions = {});
+
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
@@ -161,7 +169,8 @@ class Simulation {
   std::uint64_t state_hash() const;
   /// A copy of the present state, with the bodies and the commands in force.
   Snapshot snapshot() const;
-  /// Goes back to a snapshot taken from this simulation, bodies and commands in force included.
+  /// Goes to a snapshot taken from this simulation, or from another with the same instruction set,
+  /// bodies and commands in force included. Ids go on: none that this one gave is given again.
   void restore(const Snapshot& snapshot);
 
   /// Measures the present state, at the cost of about one force evaluation.
@@ -211,7 +220,8 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Everything needed to go on with the same bits. Copies share their content.
+/// Everything needed to go on with the same bits. Constant: copies share their content, and it may
+/// be read by any thread.
 class Snapshot {
  public:
   Snapshot(const Snapshot&);
@@ -220,11 +230,21 @@ class Snapshot {
   Snapshot& operator=(Snapshot&&) noexcept;
   ~Snapshot();
 
+  /// That of the simulation as it was.
+  std::uint64_t state_hash() const;
+  /// For Simulation::load(): the scene as it was, the state and the commands in force. Per particle
+  /// 48 bytes, of liquids by incompressible solves 8 more, with velocity Verlet 24 more, where
+  /// liquid flows in or out or has melted 64 more; a body that sleeps counts once, others beside it
+  /// twice.
+  std::vector<std::uint8_t> to_bytes() const;
+
  private:
   friend class Simulation;
   struct Content;
-  explicit Snapshot(std::shared_ptr<const Content> content);
+  Snapshot(std::shared_ptr<const Content> content, BodyId next_id, InstructionSet instructions);
   std::shared_ptr<const Content> content_;
+  BodyId next_id_;
+  InstructionSet instructions_;
 };
 
 }  // namespace vat

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -22,6 +23,12 @@ struct Snapshot::Content {
   State state;
   Controls controls;
   std::shared_ptr<const Sleepers> sleepers;  ///< null where no body sleeps
+
+  /// Of all bodies, whether they sleep or not.
+  const Model& all() const { return sleepers ? *sleepers->model : *model; }
+  /// Configuration of all bodies at any time.
+  Configuration gather() const;
+  std::uint64_t hash() const;
 };
 
 /// Those of `controls` whose bodies are in `model`, bound to their places there. A body that has
@@ -46,7 +53,7 @@ struct Simulation::Impl : Snapshot::Content {
 
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
-  BodyId next_id = 1;      ///< not in snapshots: an id is never used again
+  BodyId next_id = 1;      ///< restore() leaves it: an id is never used again
   GuardBounds bounds;      ///< of the model
   StepBounds step_bounds;  ///< of the model
   Workspace work;
@@ -69,8 +76,7 @@ struct Simulation::Impl : Snapshot::Content {
     return static_cast<std::uint32_t>(std::llround(numerics.tick / numerics.step));
   }
   Real time() const { return static_cast<Real>(state.step_count) * step_size(); }
-  /// Of all bodies, whether they sleep or not; between calls, as they are now.
-  const Model& all() const { return sleepers ? *sleepers->model : *model; }
+  /// Of all bodies; between calls, as they are now.
   const Configuration& all_now() const { return sleepers ? shown : state.now; }
   const ModelBody* find(BodyId id) const;
   /// For the checks of what users add.
@@ -78,6 +84,8 @@ struct Simulation::Impl : Snapshot::Content {
 
   /// How far bodies may move in a step depends on all that may notice them: sleepers too.
   static GuardBounds bounds_of(const Content& content);
+  /// Takes over what the bytes of a snapshot tell; changes nothing but next_id where it fails.
+  Status load(std::span<const std::uint8_t> bytes);
   /// Takes over what belongs together. Does not fail.
   void adopt(Content content, GuardBounds content_bounds, StepBounds content_step_bounds) noexcept;
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
@@ -100,8 +108,6 @@ struct Simulation::Impl : Snapshot::Content {
   void sleep_and_wake();
   void look_for_rest();
   void wake_near();
-  /// Configuration of all bodies at any time.
-  Configuration gather() const;
   /// Brings `shown` up to date, where some sleep.
   void show();
   /// Goes on with the bodies that are in no island, from a configuration of all of them.

@@ -51,7 +51,7 @@ GuardBounds Simulation::Impl::bounds_of(const Content& content) {
   return bounds;
 }
 
-Configuration Simulation::Impl::gather() const {
+Configuration Snapshot::Content::gather() const {
   if (!sleepers) return state.now;
   Configuration result = sleepers->configuration;
   write_part(*model, state.now, *sleepers->model, result);

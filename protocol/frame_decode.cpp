@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "protocol/block_coder.h"
-#include "protocol/byte_io.h"
+#include "core/support/byte_io.h"
 #include "protocol/frame_check.h"
 #include "protocol/frame_codec.h"
 #include "protocol/frame_layout.h"

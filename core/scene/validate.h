@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/sampling.h"
 #include "core/scene/scene.h"
 #include "core/support/result.h"
 
@@ -52,6 +53,12 @@ Errors find_melting_errors(const Scene& scene, const Present& present, std::size
 /// start with `path`. Samples nothing.
 Errors find_interface_errors(const Scene& scene, const Present& present,
                              const InterfaceDescription& interface, const std::string& path);
+
+/// The errors of a scene that commands and time have changed since it was found to have none, its
+/// numerics chosen: where bodies began and how many pairs they made then says nothing of it any
+/// more, and what they are together was limited as they came. `known`, by body: its particles; null
+/// where they are those of its description.
+Errors find_changed_errors(const Scene& scene, const std::vector<const SampledBody*>& known);
 
 /// Things that are allowed and likely to disappoint: settings without effect, bodies that overlap
 /// one another or the walls at the start, spacing against support radius, motion that is too fast

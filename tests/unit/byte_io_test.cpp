@@ -1,4 +1,4 @@
-#include "protocol/byte_io.h"
+#include "core/support/byte_io.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "protocol/byte_io.h"
+#include "core/support/byte_io.h"
 #include "protocol/frame_layout.h"
 
 namespace vat::bench {

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/saved/saved_bytes.h"
+#include "core/support/byte_io.h"
+#include "tests/support/resting_scenes.h"
+#include "tests/support/shaken_vat.h"
+
+// The reader of saved simulations: whatever is not what a snapshot gave is refused, and named.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+std::vector<std::uint8_t> make_bytes() {
+  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
+  simulation.advance(10);
+  EXPECT_TRUE(simulation.grab_start(7, simulation.bodies()[1].id, 5, {0.1, 0.1, 0.4}).ok());
+  EXPECT_TRUE(simulation.apply_force(simulation.bodies()[2].id, {5, 0, -3}, 0.04).ok());
+  simulation.advance(1);
+  return simulation.snapshot().to_bytes();
+}
+
+std::string code_of(std::span<const std::uint8_t> bytes) {
+  const Result<Simulation> loaded = Simulation::load(bytes);
+  return loaded ? "" : loaded.errors()[0].code;
+}
+
+TEST(SavedBytes, OfWhichSomeAreMissingAreRefused) {
+  const std::vector<std::uint8_t> bytes = make_bytes();
+  ASSERT_EQ(code_of(bytes), "");
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 100) {
+    const std::string expected = length < kSavedHeaderSize ? "not_saved" : "wrong_length";
+    ASSERT_EQ(code_of(std::span(bytes).first(length)), expected) << length;
+  }
+}
+
+TEST(SavedBytes, WithMoreAfterThemAreRefused) {
+  std::vector<std::uint8_t> bytes = make_bytes();
+  bytes.push_back(0);
+  EXPECT_EQ(code_of(bytes), "wrong_length");
+  finish_saved(bytes);
+  EXPECT_EQ(code_of(bytes), "bad_value");
+}
+
+TEST(SavedBytes, OfAnotherVersionAreRefused) {
+  std::vector<std::uint8_t> bytes = make_bytes();
+  store<std::uint32_t>(bytes, kSavedMagic.size(), kSavedVersion + 1);
+  EXPECT_EQ(code_of(bytes), "other_version");
+}
+
+TEST(SavedBytes, OfAnotherInstructionSetAreRefused) {
+  const Simulation simulation =
+      Simulation::create(make_shaken_vat(IntegratorId::heun), nullptr, InstructionSet::baseline)
+          .value();
+  std::vector<std::uint8_t> bytes = simulation.snapshot().to_bytes();
+  ASSERT_TRUE(Simulation::load(bytes, nullptr, InstructionSet::baseline).ok());
+  EXPECT_EQ(Simulation::load(bytes).value().instruction_set(), InstructionSet::baseline);
+  const auto other = Simulation::load(bytes, nullptr, InstructionSet::avx2);
+  ASSERT_FALSE(other.ok());
+  EXPECT_EQ(other.errors()[0].code, "other_instruction_set");
+  bytes[kSavedMagic.size() + sizeof kSavedVersion] = 3;
+  EXPECT_EQ(code_of(bytes), "bad_value");
+}
+
+TEST(SavedBytes, DamagedAnywhereAreRefused) {
+  std::vector<std::uint8_t> bytes = make_bytes();
+  for (std::size_t at = kSavedHeaderSize; at < bytes.size(); at += 1 + at / 200) {
+    for (const unsigned bit : {1u, 128u}) {
+      bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ bit);
+      ASSERT_EQ(code_of(bytes), "damaged") << at;
+      bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ bit);
+    }
+  }
+  EXPECT_EQ(code_of(bytes), "");
+}
+
+/// What becomes of bytes that were changed by somebody who knows of the checksum. What is taken can
+/// be gone on with.
+std::string code_of_forged(std::vector<std::uint8_t> bytes) {
+  finish_saved(bytes);
+  Result<Simulation> loaded = Simulation::load(bytes);
+  if (!loaded) return loaded.errors()[0].code;
+  loaded.value().advance(2);
+  return "";
+}
+
+// Of some the state's hash says nothing: texts, reports, the scene's numbers.
+TEST(SavedBytes, ForgedAnywhereAreRefusedOrGoneOnWith) {
+  const std::vector<std::uint8_t> bytes = make_bytes();
+  for (std::size_t at = kSavedHeaderSize; at < bytes.size(); at += 1 + at / 200) {
+    for (const unsigned value : {0x00u, 0x7fu, 0xffu}) {
+      std::vector<std::uint8_t> forged = bytes;
+      forged[at] = static_cast<std::uint8_t>(value);
+      const std::string code = code_of_forged(std::move(forged));
+      ASSERT_TRUE(code.empty() || code == "bad_value") << at << ' ' << code;
+    }
+  }
+}
+
+TEST(SavedBytes, WithAnotherPlaceAreNotTheStateOfTheirHash) {
+  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
+  simulation.advance(10);
+  std::vector<std::uint8_t> bytes = simulation.snapshot().to_bytes();
+  std::vector<std::uint8_t> place;
+  ByteWriter writer(place);
+  for (int axis = 0; axis < 3; ++axis) writer.put(simulation.bodies()[0].positions[3][axis]);
+  const auto found = std::ranges::search(bytes, place);
+  ASSERT_FALSE(found.empty());
+  found.front() ^= 1;
+  finish_saved(bytes);
+  const Result<Simulation> loaded = Simulation::load(bytes);
+  ASSERT_FALSE(loaded.ok());
+  EXPECT_EQ(loaded.errors()[0].path, "/hash");
+}
+
+TEST(SavedBytes, CutAndSignedAnewAreRefused) {
+  const std::vector<std::uint8_t> bytes = make_bytes();
+  for (std::size_t length = kSavedHeaderSize; length < bytes.size(); length += 1 + length / 100) {
+    std::vector<std::uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<long>(length));
+    ASSERT_EQ(code_of_forged(std::move(cut)), "bad_value") << length;
+  }
+}
+
+}  // namespace
+}  // namespace vat

@@ -1,0 +1,30 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "protocol/scene_json.h"
+#include "tests/support/saved_bits.h"
+
+// Each scene of the catalogue goes on from bytes as if nothing had been, from its start and later.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+TEST(SavedCatalogue, GoesOnFromItsBytes) {
+  for (const auto& file : std::filesystem::directory_iterator(VAT_SOURCE_DIR "/protocol/scenes")) {
+    if (file.path().extension() != ".json") continue;
+    SCOPED_TRACE(file.path().stem().string());
+    const Result<Scene> scene = read_scene_file(file.path().string());
+    ASSERT_TRUE(scene.ok());
+    Simulation simulation = make_simulation(scene.value());
+    expect_goes_on(simulation, 3);
+    simulation.advance(7 * simulation.steps_per_tick() + 1);
+    expect_goes_on(simulation, 3);
+  }
+}
+
+}  // namespace
+}  // namespace vat

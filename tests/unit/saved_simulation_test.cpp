@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/mixed_scenes.h"
+#include "tests/support/resting_scenes.h"
+#include "tests/support/saved_bits.h"
+#include "tests/support/shaken_vat.h"
+
+// Snapshots that outlive their process, at moments at which there is more than places and
+// velocities to go on from.
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+TEST(SavedSimulation, GoesOnWithEveryIntegrator) {
+  for (const IntegratorId integrator : kIntegrators) {
+    SCOPED_TRACE(to_string(integrator));
+    Simulation simulation = make_simulation(make_shaken_vat(integrator));
+    expect_goes_on(simulation, 20);
+    simulation.advance(200);
+    expect_goes_on(simulation, 50);
+  }
+}
+
+TEST(SavedSimulation, GoesOnWithEveryControlOfSteps) {
+  for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
+    SCOPED_TRACE(to_string(control));
+    Scene scene = make_shaken_vat(IntegratorId::velocity_verlet, 2e-3);
+    scene.numerics.control = control;
+    Simulation simulation = make_simulation(scene);
+    expect_goes_on(simulation, 20);
+    simulation.advance(100);
+    expect_goes_on(simulation, 50);
+  }
+}
+
+TEST(SavedSimulation, HoldsWhatUsersDo) {
+  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
+  simulation.advance(30);
+  const std::vector<BodyView> bodies = simulation.bodies();
+  ASSERT_TRUE(simulation.grab_start(7, bodies[1].id, 5, {0.1, 0.1, 0.4}).ok());
+  ASSERT_TRUE(simulation.grab_start(1ULL << 40, bodies[0].id, 0, {0, 0.1, 0.1}).ok());
+  ASSERT_TRUE(simulation.apply_force(bodies[2].id, {5, 0, -3}, 0.02).ok());
+  ASSERT_TRUE(simulation.set_gravity({3, 1, -5}).ok());
+  expect_goes_on(simulation, 5);  // the force is still there
+  expect_goes_on(simulation, 40, [n = 0](Simulation& each) mutable {
+    ASSERT_TRUE(each.grab_move(7, {0.1, 0, 0.3 + 0.001 * (n++ / 2)}).ok());
+  });
+}
+
+BodyDescription make_newcomer(BodyKind kind, Real height) {
+  return make_block("new " + std::to_string(height), kind, "b", 3, {0.05, 0, height}, Vec3::Zero());
+}
+
+TEST(SavedSimulation, HoldsBodiesThatCameAndWent) {
+  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
+  simulation.advance(20);
+  ASSERT_TRUE(simulation.add_body(make_newcomer(BodyKind::deformable, 0.5)).ok());
+  const BodyId second = simulation.add_body(make_newcomer(BodyKind::liquid, 0.7)).value();
+  ASSERT_TRUE(simulation.remove_body(simulation.find_body("crate").value()).ok());
+  ASSERT_TRUE(simulation.set_interface({{"a", "b"}, {900, 0.2}, 0.07}).ok());
+  simulation.advance(20);
+  expect_goes_on(simulation, 20);
+  // The last id is not given again, though its body is gone.
+  ASSERT_TRUE(simulation.remove_body(second).ok());
+  auto loaded = Simulation::load(simulation.snapshot().to_bytes());
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_EQ(loaded.value().add_body(make_newcomer(BodyKind::liquid, 0.7)).value(), second + 1);
+}
+
+TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
+  Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.gravity = {1000, 0, 0};
+  scene.bodies = {make_block("fast", BodyKind::liquid, "a", 1, {0, 0, 0}, {45, 0, 0}),
+                  make_block("other", BodyKind::rigid, "b", 1, {9, 9, 9}, Vec3::Zero())};
+  Simulation simulation = make_simulation(scene);
+  std::uint64_t undone = 0;
+  for (int step = 0; step < 40; ++step) {
+    undone += simulation.advance(1).undone_steps;
+    if (step % 10 == 9) expect_goes_on(simulation, 3);
+  }
+  EXPECT_GT(undone, 0U);
+}
+
+/// A stack that sleeps until a marble falls on it after 1.06 s, and another crate that sleeps on.
+Scene make_struck_stack() {
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("low", 0.0), make_marble("marble", {0.03, 0.02, 6}),
+                  make_crate("high", {0.02, 0, kCrateRest + kCrateEdge}), make_crate("far", 5.0)};
+  return scene;
+}
+
+TEST(SavedSimulation, HoldsWhatSleeps) {
+  Simulation simulation = make_simulation(make_struck_stack());
+  simulation.advance(60);  // contacts, and looks at what may come to rest
+  expect_goes_on(simulation, 10);
+  simulation.advance(100);
+  ASSERT_EQ(simulation.sleeping_body_count(), 3U);
+  expect_goes_on(simulation, 20);  // the stack wakes
+  ASSERT_EQ(simulation.sleeping_body_count(), 1U);
+  expect_goes_on(simulation, 100);
+}
+
+TEST(SavedSimulation, HoldsLiquidThatSleeps) {
+  for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
+    SCOPED_TRACE(to_string(solver));
+    Simulation simulation = make_simulation(make_resting_pool(solver));
+    advance_to_sleep(simulation, "water", kPebbleRelease);
+    ASSERT_TRUE(is_asleep(simulation, "water"));
+    expect_goes_on(simulation, 3);
+    while (simulation.time() < kPebbleSplash - 0.1) simulation.advance(3);
+    expect_goes_on(simulation, 20);
+    ASSERT_FALSE(is_asleep(simulation, "water"));
+    expect_goes_on(simulation, 3);
+  }
+}
+
+// Of an incompressible liquid, how its weight damps it is that of the gravity at its compilation.
+TEST(SavedSimulation, KeepsTheDampingOfAnEarlierGravity) {
+  Scene scene = make_resting_pool(PressureSolver::incompressible);
+  scene.sleeping.reset();
+  scene.materials[1].liquid->viscosity = 400;
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(9);
+  ASSERT_TRUE(simulation.set_gravity({0, 0, -900}).ok());
+  expect_goes_on(simulation, 3);
+}
+
+TEST(SavedSimulation, HoldsAMomentOfAFlowAndOfMelting) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 2e-3);
+  scene.numerics.tick = 0.02;
+  scene.pressure_solver = PressureSolver::tait;
+  scene.gravity = {0, 0, -10};
+  scene.materials = {make_liquid("water", 1000, {.stiffness = 100, .support_radius = 0.125}),
+                     make_material("ice", 900)};
+  BodyDescription pool;
+  pool.name = "pool";
+  pool.kind = BodyKind::liquid;
+  pool.material = "water";
+  pool.spacing = 0.05;
+  pool.shape = BoxShape{{0.5, 0.5, 0.03}, {0.2, 0.2, 0.05}};
+  BodyDescription ice = make_body("ice", BodyKind::deformable, "ice",
+                                  make_particles(make_lattice(3, 3, 3, 0.05), 0.1), 0.025);
+  ice.springs = join_near(make_lattice(3, 3, 3, 0.05), 0.06, {500, 1});
+  ice.position = {0.9, 0.5, 0.1};
+  ice.melting = Melting{"water", 0.3};
+  scene.bodies = {pool, ice};
+  scene.vat = Vat{{0, 0, 0}, {1.5, 1, 1}, false, {}, {}};
+  scene.emitters = {{.name = "tap",
+                     .body = "pool",
+                     .position = {0.2, 0.5, 0.5},
+                     .size = {{0.15, 0.15}},
+                     .speed = 0.75,
+                     .most_particles = 5000}};
+  scene.drains = {{"hole", {0.1, 0.4, 0}, {0.3, 0.6, 0.06}}};
+  Simulation simulation = make_simulation(scene);
+  for (int n = 0; n < 6; ++n) {
+    simulation.advance(37);  // in the midst of ticks and layers
+    expect_goes_on(simulation, 4);
+  }
+  EXPECT_GT(simulation.diagnostics().drained_particles, 0U);
+  EXPECT_EQ(simulation.bodies()[1].kind, BodyKind::liquid);
+  ASSERT_TRUE(simulation.set_emitter("tap", false).ok());
+  expect_goes_on(simulation, 4);
+}
+
+TEST(SavedSimulation, HoldsTheHashOfItsMoment) {
+  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::heun));
+  simulation.advance(10);
+  const Snapshot snapshot = simulation.snapshot();
+  const std::uint64_t hash = simulation.state_hash();
+  simulation.advance(10);
+  EXPECT_EQ(snapshot.state_hash(), hash);
+  EXPECT_NE(simulation.state_hash(), hash);
+  EXPECT_EQ(Simulation::load(snapshot.to_bytes()).value().state_hash(), hash);
+}
+
+// What a session does that goes back to its scene after its process has.
+TEST(SavedSimulation, GoesBackToAStartMadeAnew) {
+  const Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
+  Simulation simulation = make_simulation(scene);
+  const Snapshot start = simulation.snapshot();
+  simulation.advance(10);
+  ASSERT_TRUE(simulation.add_body(make_newcomer(BodyKind::liquid, 0.7)).ok());
+  Simulation loaded = Simulation::load(simulation.snapshot().to_bytes()).value();
+  loaded.restore(make_simulation(scene).snapshot());
+  simulation.restore(start);
+  EXPECT_EQ(loaded.state_hash(), simulation.state_hash());
+  EXPECT_EQ(loaded.add_body(make_newcomer(BodyKind::liquid, 0.7)).value(),
+            simulation.add_body(make_newcomer(BodyKind::liquid, 0.7)).value());
+  loaded.advance(20);
+  simulation.advance(20);
+  EXPECT_EQ(loaded.state_hash(), simulation.state_hash());
+}
+
+}  // namespace
+}  // namespace vat
