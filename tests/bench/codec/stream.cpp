@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "protocol/byte_io.h"
+#include "core/support/byte_io.h"
 #include "protocol/frame_codec.h"
 #include "tests/bench/report/table.h"
 
