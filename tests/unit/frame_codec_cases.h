@@ -245,10 +245,6 @@ inline Stream edge_stream() {
   return stream;
 }
 
-inline std::vector<Stream> all_streams() {
-  return {edge_stream(), moving_stream(), attribute_stream()};
-}
-
 inline std::string golden_path(const std::string& file) {
   return std::string(VAT_SOURCE_DIR) + "/tests/golden/frames/" + file;
 }

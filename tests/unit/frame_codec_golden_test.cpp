@@ -4,7 +4,7 @@
 #include <set>
 
 #include "protocol/json_reader.h"
-#include "tests/unit/frame_codec_cases.h"
+#include "tests/unit/frame_limit_cases.h"
 
 namespace vat {
 namespace {

@@ -8,7 +8,7 @@
 #include "protocol/rans.h"
 #include "protocol/residual_tables.h"
 #include "tests/unit/allocation_counter.h"
-#include "tests/unit/frame_codec_cases.h"
+#include "tests/unit/frame_limit_cases.h"
 
 namespace vat {
 namespace {
