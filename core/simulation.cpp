@@ -157,11 +157,16 @@ BodyView view_of(const Model& model, const Configuration& at, const ModelBody& b
 
 std::vector<BodyView> Simulation::bodies() const {
   std::vector<BodyView> views;
+  list_bodies(views);
+  return views;
+}
+
+void Simulation::list_bodies(std::vector<BodyView>& views) const {
+  views.clear();
   views.reserve(impl_->all().bodies.size());
   for (const ModelBody& body : impl_->all().bodies) {
     views.push_back(view_of(impl_->all(), impl_->all_now(), body, impl_->sleepers.get()));
   }
-  return views;
 }
 
 std::optional<BodyView> Simulation::find_body(BodyId id) const {
@@ -193,17 +198,24 @@ Diagnostics Simulation::diagnostics() const {
 }
 
 Result<LiquidFields> Simulation::liquid_fields(BodyId id) const {
+  LiquidFields fields;
+  if (Status measured = measure_liquid(id, fields); !measured) return measured.errors();
+  return fields;
+}
+
+Status Simulation::measure_liquid(BodyId id, LiquidFields& fields) const {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return Error{"no_such_body", "/body", "there is no such body"};
   if (body->kind != BodyKind::liquid) {
     return Error{"not_liquid", "/body", "body '" + body->name + "' is not liquid"};
   }
   diagnostics();  // leaves density and pressure of the present positions in `measured`
-  const auto part = [&](const std::vector<Real>& column) {
-    return std::vector<Real>(column.begin() + body->particles.begin,
-                             column.begin() + body->particles.end);
+  const auto copy = [&](const std::vector<Real>& column, std::vector<Real>& part) {
+    part.assign(column.begin() + body->particles.begin, column.begin() + body->particles.end);
   };
-  return LiquidFields{part(impl_->measured.density), part(impl_->measured.pressure)};
+  copy(impl_->measured.density, fields.density);
+  copy(impl_->measured.pressure, fields.pressure);
+  return {};
 }
 
 std::string Simulation::plan_text() const {

@@ -154,6 +154,8 @@ class Simulation {
 
   /// In the order of the scene; added bodies are last.
   std::vector<BodyView> bodies() const;
+  /// The same in a list whose memory is used again.
+  void list_bodies(std::vector<BodyView>& views) const;
   /// Nothing if no body has this id. Ids stay with their bodies, whatever is added or removed.
   std::optional<BodyView> find_body(BodyId id) const;
   /// Nothing if no body has this name.
@@ -162,6 +164,8 @@ class Simulation {
   Vec3 vat_offset() const;
   /// Fails for a body that is not liquid.
   Result<LiquidFields> liquid_fields(BodyId id) const;
+  /// The same in columns whose memory is used again.
+  Status measure_liquid(BodyId id, LiquidFields& fields) const;
 
   /// 64-bit hash of all that the next steps start from: the state, with the forces that are kept
   /// from the last step, gravity, open emitters, grabs and applied forces. Equal futures for one

@@ -1,32 +1,26 @@
+#include <algorithm>
+
+#include "core/support/check.h"
 #include "protocol/published_state.h"
 
 namespace vat {
 namespace {
 
-template <class Values>
-std::vector<float> to_floats(const Values& values) {
-  return {values.begin(), values.end()};
-}
-
-std::vector<float> speeds_of(const BodyView& view) {
-  std::vector<float> speeds;
+void put_speeds(const BodyView& view, std::vector<float>& speeds) {
   speeds.reserve(view.velocities.size());
   for (const Vec3& velocity : view.velocities) {
     speeds.push_back(static_cast<float>(velocity.norm()));
   }
-  return speeds;
 }
 
-void publish_particles(const Simulation& simulation, const BodyView& view,
-                       const ByAttribute<bool>& wanted, PublishedState::Body& body) {
-  const auto [speed, density, pressure] = wanted;
-  body.positions.assign(view.positions.begin(), view.positions.end());
-  body.numbers.assign(view.numbers.begin(), view.numbers.end());
-  if (speed) body.attributes[0] = speeds_of(view);
-  if (view.kind != BodyKind::liquid || !(density || pressure)) return;
-  const LiquidFields fields = simulation.liquid_fields(view.id).value();
-  if (density) body.attributes[1] = to_floats(fields.density);
-  if (pressure) body.attributes[2] = to_floats(fields.pressure);
+/// Back to what a new one is, but for the memory.
+void clear(PublishedState::Body& body) {
+  body.positions.clear();
+  body.center_of_mass = {};
+  body.orientation = {1, 0, 0, 0};
+  body.bounding_radius = 0;
+  body.numbers.clear();
+  for (std::vector<float>& column : body.attributes) column.clear();
 }
 
 void publish_pose(const BodyView& view, PublishedState::Body& body) {
@@ -40,25 +34,47 @@ void publish_pose(const BodyView& view, PublishedState::Body& body) {
   }
 }
 
+void publish_particles(const Simulation& simulation, const BodyView& view,
+                       const ByAttribute<bool>& wanted, LiquidFields& fields,
+                       PublishedState::Body& body) {
+  const auto [speed, density, pressure] = wanted;
+  body.positions.assign(view.positions.begin(), view.positions.end());
+  body.numbers.assign(view.numbers.begin(), view.numbers.end());
+  if (speed) put_speeds(view, body.attributes[0]);
+  if (view.kind != BodyKind::liquid || !(density || pressure)) return;
+  const Status measured = simulation.measure_liquid(view.id, fields);
+  VAT_CHECK(measured.ok());
+  if (density) body.attributes[1].assign(fields.density.begin(), fields.density.end());
+  if (pressure) body.attributes[2].assign(fields.pressure.begin(), fields.pressure.end());
+}
+
 }  // namespace
 
-PublishedState publish(const Simulation& simulation, const ByAttribute<bool>& wanted) {
-  PublishedState state;
+void StatePublisher::publish(const Simulation& simulation, const ByAttribute<bool>& wanted,
+                             PublishedState& state) {
+  state.header = {};
   state.header.time = simulation.time();
   state.has_vat = simulation.scene().vat.has_value();
   state.vat_offset = simulation.vat_offset();
-  const std::vector<BodyView> views = simulation.bodies();
-  state.bodies.reserve(views.size());
-  for (const BodyView& view : views) {
-    PublishedState::Body& body = state.bodies.emplace_back();
+  simulation.list_bodies(views_);
+  state.bodies.resize(views_.size());
+  for (std::size_t b = 0; b < views_.size(); ++b) {
+    const BodyView& view = views_[b];
+    PublishedState::Body& body = state.bodies[b];
+    clear(body);
     body.id = view.id;
     body.kind = view.kind;
     if (view.kind == BodyKind::rigid) {
       publish_pose(view, body);
     } else {
-      publish_particles(simulation, view, wanted, body);
+      publish_particles(simulation, view, wanted, fields_, body);
     }
   }
+}
+
+PublishedState publish(const Simulation& simulation, const ByAttribute<bool>& wanted) {
+  PublishedState state;
+  StatePublisher().publish(simulation, wanted, state);
   return state;
 }
 

@@ -50,8 +50,22 @@ struct PublishedState {
   std::vector<Body> bodies;
 };
 
-/// A copy of what the simulation shows, with the attributes that are `wanted`; of the header it
-/// knows the time. Density and pressure cost a search for neighbours.
+/// Copies what a simulation shows, again and again, into memory that is used again. Used by one
+/// thread at a time.
+class StatePublisher {
+ public:
+  /// Replaces all of `state`, with the attributes that are `wanted`; of the header it knows the
+  /// time. Density and pressure cost a search for neighbours. Allocates nothing where `state` has
+  /// had as much in it before; but for those two.
+  void publish(const Simulation& simulation, const ByAttribute<bool>& wanted,
+               PublishedState& state);
+
+ private:
+  std::vector<BodyView> views_;
+  LiquidFields fields_;
+};
+
+/// The same, once.
 PublishedState publish(const Simulation& simulation, const ByAttribute<bool>& wanted = {});
 
 }  // namespace vat

@@ -43,10 +43,10 @@ void FrameDelivery::set_vat(const std::optional<Vat>& vat) {
   has_state_ = false;
 }
 
-void FrameDelivery::publish(PublishedState state, SteadyClock::time_point now) {
+void FrameDelivery::publish(PublishedState& state, SteadyClock::time_point now) {
   made_.clear();
   note_turns(state);
-  source_.publish(std::move(state));
+  source_.publish(state);
   Groups groups;
   for (auto& [client, viewer] : viewers_) {
     gather(viewer, now, groups);

@@ -27,8 +27,9 @@ class FrameDelivery {
   /// The states from here on are of another scene, or of the same from its start.
   void set_vat(const std::optional<Vat>& vat);
 
-  /// A further state: goes to those whose turn it is and to those who have missed theirs.
-  void publish(PublishedState state, SteadyClock::time_point now);
+  /// A further state: goes to those whose turn it is and to those who have missed theirs. Leaves an
+  /// older one in its place.
+  void publish(PublishedState& state, SteadyClock::time_point now);
   /// These may have become ready.
   void retry(std::span<const ConnectionId> clients, SteadyClock::time_point now);
 

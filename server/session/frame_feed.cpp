@@ -33,7 +33,7 @@ void FrameFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscrip
                     Subscription wish) {
   put([&] {
     mail_.changes.emplace_back(Added{std::move(outbox), subscription, wish});
-    mail_.state.reset();  // it may lack attributes that are wanted now; a newer one follows
+    mail_.has_state = false;  // it may lack attributes that are wanted now; a newer one follows
   });
 }
 
@@ -44,12 +44,15 @@ void FrameFeed::remove(ConnectionId client) {
 void FrameFeed::set_vat(const std::optional<Vat>& vat) {
   put([&] {
     mail_.changes.emplace_back(vat);
-    mail_.state.reset();
+    mail_.has_state = false;
   });
 }
 
-void FrameFeed::publish(PublishedState state) {
-  put([&] { mail_.state = std::move(state); });
+void FrameFeed::publish(PublishedState& state) {
+  put([&] {
+    std::swap(mail_.state, state);
+    mail_.has_state = true;
+  });
 }
 
 void FrameFeed::wake(ConnectionId client) {
@@ -67,21 +70,23 @@ void FrameFeed::put(Put&& put) {
 void FrameFeed::turn() {
   thread_local const bool gives_way = give_way();
   static_cast<void>(gives_way);
-  Mail mail;
   {
     const std::lock_guard lock(mutex_);
-    mail = std::exchange(mail_, {});
+    std::swap(mail_, mail_at_work_);
     turn_scheduled_ = false;
   }
   try {
-    carry_out(std::move(mail));
+    carry_out_mail();
   } catch (const std::exception& error) {
     spdlog::error("session {}: frames lost by a fault of the server: {}", session_, error.what());
   }
+  mail_at_work_.changes.clear();
+  mail_at_work_.has_state = false;
+  mail_at_work_.woken.clear();
 }
 
-void FrameFeed::carry_out(Mail mail) {
-  for (Change& change : mail.changes) {
+void FrameFeed::carry_out_mail() {
+  for (Change& change : mail_at_work_.changes) {
     if (auto* added = std::get_if<Added>(&change)) {
       delivery_.add(std::move(added->outbox), added->subscription, added->wish);
     } else if (const auto* client = std::get_if<ConnectionId>(&change)) {
@@ -90,10 +95,10 @@ void FrameFeed::carry_out(Mail mail) {
       delivery_.set_vat(std::get<std::optional<Vat>>(change));
     }
   }
-  if (mail.state) {
-    delivery_.publish(*std::move(mail.state), SteadyClock::now());
+  if (mail_at_work_.has_state) {
+    delivery_.publish(mail_at_work_.state, SteadyClock::now());
   } else {
-    delivery_.retry(mail.woken, SteadyClock::now());
+    delivery_.retry(mail_at_work_.woken, SteadyClock::now());
   }
 }
 

@@ -27,7 +27,9 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   void remove(ConnectionId client);
   void set_vat(const std::optional<Vat>& vat);
 
-  void publish(PublishedState state);
+  /// Takes the state, and leaves an older one in its place, whose memory the next may use: so a
+  /// tick allocates nothing for what it publishes.
+  void publish(PublishedState& state);
   void wake(ConnectionId client) override;
 
  private:
@@ -39,13 +41,14 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   using Change = std::variant<Added, ConnectionId, std::optional<Vat>>;
   struct Mail {
     std::vector<Change> changes;
-    std::optional<PublishedState> state;
+    PublishedState state;
+    bool has_state = false;  // or it is an older one's memory
     std::vector<ConnectionId> woken;
   };
   template <class Put>
   void put(Put&& put);
   void turn();
-  void carry_out(Mail mail);
+  void carry_out_mail();
 
   const std::string session_;
   boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
@@ -54,7 +57,9 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   Mail mail_;
   bool turn_scheduled_ = false;
 
-  FrameDelivery delivery_;  // used on the strand only
+  // Used on the strand only.
+  Mail mail_at_work_;  // empty between turns, but for memory
+  FrameDelivery delivery_;
 };
 
 }  // namespace vat

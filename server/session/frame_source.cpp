@@ -51,10 +51,10 @@ void FrameSource::set_vat(const std::optional<Vat>& vat) {
   domain_ = FrameDomain(vat);
 }
 
-void FrameSource::publish(PublishedState state) {
+void FrameSource::publish(PublishedState& state) {
   const std::uint32_t number = state_.header.number;
   const bool shows_more = number == 0 || !shows_the_same(state, state_);
-  state_ = std::move(state);
+  std::swap(state_, state);
   state_.header.number = shows_more ? number + 1 : number;
   domain_.include(state_);
   frames_.clear();

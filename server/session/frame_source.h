@@ -54,8 +54,8 @@ class FrameSource {
   /// The grids of another scene, or of the same from its start.
   void set_vat(const std::optional<Vat>& vat);
   /// A further state, of which frames are made from now on. It gets the next number where it shows
-  /// something new.
-  void publish(PublishedState state);
+  /// something new. The one before is left in its place.
+  void publish(PublishedState& state);
 
   std::uint32_t number() const { return state_.header.number; }
   const FrameHeader& header() const { return state_.header; }

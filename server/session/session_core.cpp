@@ -230,18 +230,20 @@ void SessionCore::announce_status() {
 
 void SessionCore::publish_frame() {
   frame_due_ = false;
-  if (participants_.is_watched()) frames_->publish(published());
+  if (!participants_.is_watched()) return;
+  fill_state();
+  frames_->publish(state_);
 }
 
-PublishedState SessionCore::published() const {
-  PublishedState state = publish(run_.simulation(), participants_.wanted_attributes());
-  state.header.playing = playing_;
-  state.header.slow = playing_ && rate_.slower_than(speed_);
-  state.header.epoch = run_.epoch();
-  state.header.tick = run_.tick();
-  state.header.published = wall_clock();
-  state.header.real_time_factor = static_cast<float>(rate_.rate());
-  return state;
+void SessionCore::fill_state() {
+  publisher_.publish(run_.simulation(), participants_.wanted_attributes(), state_);
+  FrameHeader& header = state_.header;
+  header.playing = playing_;
+  header.slow = playing_ && rate_.slower_than(speed_);
+  header.epoch = run_.epoch();
+  header.tick = run_.tick();
+  header.published = wall_clock();
+  header.real_time_factor = static_cast<float>(rate_.rate());
 }
 
 void SessionCore::close_silent(SteadyClock::time_point now) {

@@ -139,7 +139,7 @@ class SessionCore {
   void tell_guard(const AdvanceReport& report);
   void start_epoch();
   void publish_frame();
-  PublishedState published() const;
+  void fill_state();
   void release_connection(const Participant& participant, ConnectionId next);
   /// So that those who come and go at once do not grow without bound.
   void bound_absences();
@@ -150,6 +150,8 @@ class SessionCore {
   SessionRun run_;
   Participants participants_;
   const std::shared_ptr<FrameFeed> frames_;
+  StatePublisher publisher_;
+  PublishedState state_;  // the next, or what another has left in its place
   RateMeter rate_;
   bool playing_ = true;
   double speed_ = 1;  // simulated seconds per second

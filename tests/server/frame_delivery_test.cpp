@@ -53,7 +53,7 @@ class FrameDeliveryTest : public testing::Test {
     state.bodies[0].id = 1;
     state.bodies[0].positions = {{x, 0.5, 0.5}};
     now += std::chrono::milliseconds(20);
-    delivery.publish(std::move(state), now);
+    delivery.publish(state, now);
   }
   void acknowledge_all(const TestViewer& viewer) {
     EXPECT_TRUE(viewer.outbox->acknowledge(viewer.last().number, now));

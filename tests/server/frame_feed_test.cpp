@@ -49,7 +49,8 @@ TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   wish.attribute_errors[0] = 0.01;
 
   Block block(pool);
-  feed->publish(make_state(7, false));
+  PublishedState state = make_state(7, false);
+  feed->publish(state);
   feed->add(outbox, outbox->subscribe(membership, feed, SteadyClock::now()), wish);
   block.release();
   std::promise<void> done;
@@ -57,10 +58,36 @@ TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   done.get_future().wait();
   EXPECT_TRUE(connection->frames().empty());
 
-  feed->publish(make_state(8, true));
+  state = make_state(8, true);
+  feed->publish(state);
   pool.join();
   ASSERT_EQ(connection->frames().size(), 1U);
   EXPECT_EQ(connection->frames()[0].header.tick, 8U);
+}
+
+// One that is filled, one that waits, one that is taken out of the mail and one that is shown: from
+// the fifth on a tick finds the memory that an earlier one has used.
+TEST(FrameFeed, FourStatesGoRound) {
+  constexpr std::size_t kParticles = 1000;
+  boost::asio::thread_pool pool(1);
+  ServerMetrics metrics;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool);
+  PublishedState state;
+  for (std::uint64_t tick = 1; tick <= 100; ++tick) {
+    if (tick > 4) {
+      ASSERT_EQ(state.bodies.size(), 1U);
+      ASSERT_GE(state.bodies[0].positions.capacity(), kParticles);
+    }
+    state.header = {.epoch = kEpoch, .tick = tick};
+    state.bodies.resize(1);
+    state.bodies[0].positions.assign(kParticles, Vec3(0, 0, 1e-3 * static_cast<double>(tick)));
+    feed->publish(state);
+    if (tick % 3 == 0) continue;  // the next one takes its place where it still waits
+    std::promise<void> done;
+    boost::asio::post(pool, [&] { done.set_value(); });
+    done.get_future().wait();
+  }
+  pool.join();
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class FrameSourceTest : public testing::Test {
   /// The next tick, of a state that may have changed.
   void publish(PublishedState state) {
     state.header.tick = ++tick_;
-    source.publish(std::move(state));
+    source.publish(state);
   }
   std::shared_ptr<const GridFrame> frame(double max_error = kError) {
     return source.frame(cut(wish(max_error)));

@@ -51,7 +51,8 @@ TEST_F(StalledReader, OneFrameAtMostWaitsOutsideTheSystem) {
   std::mt19937 random(1);
   std::size_t most_queued = 0;
   for (std::uint64_t tick = 1; tick <= 50; ++tick) {
-    delivery.publish(make_state(tick, random), now += std::chrono::milliseconds(20));
+    PublishedState state = make_state(tick, random);
+    delivery.publish(state, now += std::chrono::milliseconds(20));
     most_queued = std::max(most_queued, connection->queued_bytes());
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

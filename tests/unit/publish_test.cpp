@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "protocol/grid_frame.h"
 #include "tests/support/scenes.h"
+#include "tests/unit/allocation_counter.h"
 
 namespace vat {
 namespace {
@@ -58,6 +60,51 @@ TEST(Publish, AttributesAreWithinTheirErrors) {
     }
   }
   EXPECT_EQ(columns[0][0], std::lround(5 / 0.006)) << "it begins with 5 m/s";
+}
+
+bool equal(const PublishedState& a, const PublishedState& b) {
+  return a.header.time == b.header.time && a.has_vat == b.has_vat && a.vat_offset == b.vat_offset &&
+         a.bodies == b.bodies;
+}
+
+/// Two balls in a vat.
+Simulation make_balls() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.001);
+  scene.materials = {make_material("wood", 600)};
+  scene.vat = Vat{{-1, -1, -1}, {9, 9, 9}, true, {}};
+  for (int i = 0; i < 3; ++i) {
+    scene.bodies.push_back(make_body("body" + std::to_string(i),
+                                     i == 1 ? BodyKind::deformable : BodyKind::rigid, "wood",
+                                     make_particles(make_lattice(3, 3, 3, 0.1), 0.1), 0.05));
+    scene.bodies.back().position = {2.0 * i, 2, 2};
+  }
+  return make_simulation(scene);
+}
+
+TEST(Publish, NothingOfWhatWasInAStateBeforeIsLeft) {
+  const Simulation falling = make_falling();
+  const Simulation balls = make_balls();
+  StatePublisher publisher;
+  PublishedState state;
+  publisher.publish(falling, {true, true, true}, state);
+  state.header.tick = 7;
+  publisher.publish(balls, {}, state);
+  EXPECT_TRUE(equal(state, publish(balls)));
+  EXPECT_EQ(state.header.tick, 0U);
+  publisher.publish(falling, {false, true, false}, state);
+  EXPECT_TRUE(equal(state, publish(falling, {false, true, false})));
+}
+
+TEST(Publish, AllocatesNothingInMemoryThatHasHeldAsMuch) {
+  Simulation simulation = make_falling();
+  StatePublisher publisher;
+  PublishedState state;
+  publisher.publish(simulation, {true, false, false}, state);
+  simulation.advance(3);
+  const std::size_t before = allocation_count();
+  publisher.publish(simulation, {true, false, false}, state);
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_TRUE(equal(state, publish(simulation, {true, false, false})));
 }
 
 TEST(Publish, ARigidBodysRadiusReachesItsFarthestParticle) {
