@@ -17,6 +17,10 @@ constexpr std::size_t kCommandsPerTurn = 64;
 constexpr auto kTurnTime = std::chrono::milliseconds(10);
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 
+double seconds(SteadyClock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
+
 }  // namespace
 
 Session::Session(std::string id, std::string name, Simulation simulation,
@@ -278,9 +282,15 @@ void Session::tick_turn() {
 
 void Session::run_tick(SteadyClock::time_point now, bool timed) {
   carry_out_pointers();
+  const auto due = timed ? clock_.due() : now;
+  const auto begin = SteadyClock::now();
   if (!core_.tick(now, timed)) return;
+  const auto stepped = SteadyClock::now();
   update_summary();  // before the frames: who acknowledges one is told no earlier tick
   core_.publish_tick();
+  spdlog::debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id_,
+                core_.run().tick(), seconds(stepped - begin), seconds(SteadyClock::now() - stepped),
+                seconds(now - due));
 }
 
 void Session::follow_clock() {

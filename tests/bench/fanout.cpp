@@ -10,6 +10,7 @@
 #include "server/cli/command.h"
 #include "server/cli/open_files.h"
 #include "tests/bench/fanout/case.h"
+#include "tests/bench/fanout/turns.h"
 #include "tests/bench/options.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
@@ -38,6 +39,13 @@ constexpr const char* kScene = R"({
                "tick": 0.03333333333333333},
   "bodies": [{"name": "water", "kind": "liquid", "material": "water", "spacing": 0.085,
     "shape": {"type": "box", "center": [1.1, 1, 0.8], "size": [2.2, 2, 1.5]}}]})";
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const FanoutCase& one : fanout_cases()) names.push_back(one.name);
+  for (const TurnsCase& one : turns_cases()) names.push_back(one.name);
+  return names;
+}
 
 Table to_table(const std::vector<FanoutResult>& results) {
   const Machine machine = this_machine();
@@ -87,6 +95,37 @@ Table to_table(const std::vector<FanoutResult>& results) {
   return table;
 }
 
+Table to_table(const std::vector<TurnsResult>& results) {
+  const Machine machine = this_machine();
+  Table table{{"case", "quantity", "viewers", "viewers who come", "segments", "values",
+               "median without", "median with", "ratio", "ratio low", "ratio high", "99 % without",
+               "99 % with", "ratio of 99 %", "ratio of 99 % low", "ratio of 99 % high", "commit",
+               "cpu", "cores of the machine"},
+              {}};
+  for (const TurnsResult& r : results) {
+    std::uint64_t values = 0;
+    for (const Segments* segments : {&r.without, &r.with}) {
+      for (const auto& segment : *segments) values += segment.size();
+    }
+    const QuantileRatio median = quantile_ratio(r.without, r.with, 0.5);
+    const QuantileRatio highest = quantile_ratio(r.without, r.with, 0.99);
+    table.rows.push_back({r.name, r.quantity, std::uint64_t{r.staying}, std::uint64_t{r.coming},
+                          std::uint64_t{r.without.size() + r.with.size()}, values,
+                          pooled_quantile(r.without, 0.5), pooled_quantile(r.with, 0.5),
+                          median.value, median.low, median.high, pooled_quantile(r.without, 0.99),
+                          pooled_quantile(r.with, 0.99), highest.value, highest.low, highest.high,
+                          machine.commit, machine.cpu, std::uint64_t{machine.cores}});
+  }
+  return table;
+}
+
+Status write_results(const Table& table, const std::filesystem::path& folder, const char* name,
+                     const char* heading) {
+  if (table.rows.empty()) return {};
+  std::cout << '\n' << to_markdown(table);
+  return write_table(table, folder, name, heading);
+}
+
 int run_cases(const std::vector<std::size_t>& chosen, const FanoutOptions& options) {
   FanoutSettings settings;
   settings.program = options.program;
@@ -99,25 +138,28 @@ int run_cases(const std::vector<std::size_t>& chosen, const FanoutOptions& optio
     return fail(settings.scene, written.errors());
   }
   std::vector<FanoutResult> results;
+  std::vector<TurnsResult> turns;
   for (const std::size_t index : chosen) {
-    const bool is_ticks = index == fanout_cases().size();
-    std::cout << (is_ticks ? kTickCase : fanout_cases()[index].name) << " ..." << std::endl;
-    for (FanoutResult& result :
-         is_ticks ? run_ticks(settings) : run_fanout(fanout_cases()[index], settings)) {
-      results.push_back(std::move(result));
+    std::cout << case_names()[index] << " ..." << std::endl;
+    if (index < fanout_cases().size()) {
+      const auto more = run_fanout(fanout_cases()[index], settings);
+      results.insert(results.end(), more.begin(), more.end());
+    } else {
+      const auto more = run_turns(turns_cases()[index - fanout_cases().size()], settings);
+      turns.insert(turns.end(), more.begin(), more.end());
     }
   }
-  const Table table = to_table(results);
-  const Status written = write_table(table, folder, "fanout", "# Fan-out");
-  if (!written) return fail(options.common.output, written.errors());
-  std::cout << '\n' << to_markdown(table) << "\nwritten to " << options.common.output << '\n';
+  for (const Status& written :
+       {write_results(to_table(results), folder, "fanout", "# Fan-out"),
+        write_results(to_table(turns), folder, "turns", "# With and without some viewers")}) {
+    if (!written) return fail(options.common.output, written.errors());
+  }
+  std::cout << "\nwritten to " << options.common.output << '\n';
   return kExitOk;
 }
 
 int fanout(const FanoutOptions& options) {
-  std::vector<std::string> names;
-  for (const FanoutCase& one : fanout_cases()) names.push_back(one.name);
-  names.emplace_back(kTickCase);
+  const std::vector<std::string> names = case_names();
   if (options.common.list) {
     print_names(names);
     return kExitOk;
@@ -126,7 +168,7 @@ int fanout(const FanoutOptions& options) {
   if (!chosen) return fail("fanout", chosen.errors());
   std::size_t most = 200;
   for (const std::size_t index : chosen.value()) {
-    if (index == fanout_cases().size()) continue;  // the ticks' few
+    if (index >= fanout_cases().size()) continue;  // at most 200
     std::size_t viewers = 0;
     for (const std::size_t count : fanout_cases()[index].viewers) viewers += count;
     most = std::max(most, viewers);

@@ -14,10 +14,7 @@ namespace {
 
 constexpr std::size_t kViewersPerProcess = 1000;
 constexpr std::size_t kDefaultConnections = 1024;  // of the server
-constexpr double kFullRate = 30;                   // frames a second, as the scene's ticks
 constexpr auto kSettling = std::chrono::seconds(3);
-constexpr std::size_t kTickViewers = 200;
-constexpr double kTickTurn = 512 / kFullRate + 1;  // [s] in which all recent ticks are of the turn
 
 void sleep(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
@@ -45,17 +42,6 @@ std::vector<std::string> server_arguments(const FanoutCase& one, const FanoutSet
     words.insert(words.end(), {"--max-connections", most, "--max-clients", most});
   }
   return words;
-}
-
-/// The bytes of a frame, from a second with one viewer.
-double measure_frame(LoadSettings settings) {
-  LoadProcess one(settings, {1, 0, 0, 0}, 1);
-  one.wait_ready();
-  one.begin();
-  sleep(1);
-  const Sightings seen = one.end().front();
-  return static_cast<double>(seen.bytes) /
-         static_cast<double>(std::max<std::uint64_t>(1, seen.frames));
 }
 
 ViewerCounts share_of(const ViewerCounts& viewers, std::size_t process, std::size_t processes) {
@@ -120,10 +106,6 @@ FanoutResult summarise(const Sightings& seen, std::size_t viewers, double second
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 void read_ticks(const Served& server, FanoutResult& result) {
   const auto metrics = server.metrics();
   result.tick_median = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.5\"}");
@@ -131,43 +113,16 @@ void read_ticks(const Served& server, FanoutResult& result) {
   result.lateness_99 = metric(metrics, "vat_recent_tick_lateness_seconds{quantile=\"0.99\"}");
 }
 
-double median_of(const std::vector<FanoutResult>& turns, double FanoutResult::*value) {
-  std::vector<float> values;
-  for (const FanoutResult& turn : turns) values.push_back(static_cast<float>(turn.*value));
-  return quantile(values, 0.5);
-}
-
-FanoutResult median_turn(std::vector<FanoutResult> turns) {
-  FanoutResult result = turns.front();
-  result.tick_median = median_of(turns, &FanoutResult::tick_median);
-  result.tick_99 = median_of(turns, &FanoutResult::tick_99);
-  result.lateness_99 = median_of(turns, &FanoutResult::lateness_99);
-  return result;
-}
-
 }  // namespace
 
-std::vector<FanoutResult> run_ticks(const FanoutSettings& settings) {
-  const std::size_t rounds = settings.seconds < 10 ? 1 : 5;
-  const Served server(settings.program, {"--scene", settings.scene, "--log-level", "error"});
-  const LoadSettings load_settings{server.port(), settings.max_error, 0, "s1"};
-  std::vector<FanoutResult> alone;
-  std::vector<FanoutResult> watched;
-  std::this_thread::sleep_for(kSettling);
-  for (std::size_t round = 0; round < rounds; ++round) {
-    FanoutResult result;
-    result.name = kTickCase;
-    result.endpoints = 1;
-    sleep(kTickTurn);
-    read_ticks(server, result);
-    alone.push_back(result);
-    const auto load = start_load(load_settings, {kTickViewers, 0, 0, 0});
-    result.viewers = kTickViewers;
-    sleep(kTickTurn);
-    read_ticks(server, result);
-    watched.push_back(result);
-  }
-  return {median_turn(alone), median_turn(watched)};
+double measure_frame(LoadSettings settings) {
+  LoadProcess one(settings, {1, 0, 0, 0}, 1);
+  one.wait_ready();
+  one.begin();
+  sleep(1);
+  const Sightings seen = one.end().front();
+  return static_cast<double>(seen.bytes) /
+         static_cast<double>(std::max<std::uint64_t>(1, seen.frames));
 }
 
 const std::vector<FanoutCase>& fanout_cases() {

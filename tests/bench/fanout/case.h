@@ -48,10 +48,10 @@ struct FanoutResult {
 
 const std::vector<FanoutCase>& fanout_cases();
 
-/// What ticks take without viewers and with 200 plain ones, in turns in one server: two rows, each
-/// with the medians of its turns. The settings' time says how many turns.
-inline constexpr const char* kTickCase = "ticks";
-std::vector<FanoutResult> run_ticks(const FanoutSettings& settings);
+/// Frames a second, as the scene's ticks.
+inline constexpr double kFullRate = 30;
+/// The bytes of a frame, from a second with one viewer.
+double measure_frame(LoadSettings settings);
 
 /// Runs a case: a row for each kind of viewer that it has. Throws std::runtime_error where the
 /// server or the viewers fail.

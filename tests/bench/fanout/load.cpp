@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <sys/epoll.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@ namespace {
 constexpr int kPatience = 60'000;  // [ms]
 constexpr char kReady = 'r';
 constexpr char kBegin = 'b';
+constexpr char kTell = 't';
 constexpr char kEnd = 'e';
 
 void write_all(int file, const void* data, std::size_t size) {
@@ -98,10 +100,12 @@ class Load {
         write_all(to_, &kReady, 1);
       }
       if (command_ == kBegin) seen_ = {};
+      if (command_ == kTell || command_ == kEnd) {
+        for (const Sightings& seen : seen_) write_sightings(to_, seen);
+      }
       if (command_ == kEnd) break;
       command_ = 0;
     }
-    for (const Sightings& seen : seen_) write_sightings(to_, seen);
   }
 
  private:
@@ -186,6 +190,7 @@ LoadProcess::LoadProcess(const LoadSettings& settings, const ViewerCounts& viewe
   if (process_ < 0) throw std::runtime_error("no process for the load");
   if (process_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    setpriority(PRIO_PROCESS, 0, settings.niceness);
     close(to[1]);
     close(from[0]);
     try {
@@ -222,11 +227,19 @@ void LoadProcess::begin() {
   write_all(to_, &kBegin, 1);
 }
 
-LoadSightings LoadProcess::end() {
-  write_all(to_, &kEnd, 1);
+LoadSightings LoadProcess::ask(char command) {
+  write_all(to_, &command, 1);
   LoadSightings seen;
   for (Sightings& one : seen) one = read_sightings(from_);
   return seen;
+}
+
+LoadSightings LoadProcess::tell() {
+  return ask(kTell);
+}
+
+LoadSightings LoadProcess::end() {
+  return ask(kEnd);
 }
 
 }  // namespace vat::bench

@@ -27,10 +27,14 @@ class LoadProcess {
   void wait_ready();
   /// What is seen from now on counts.
   void begin();
-  /// What was seen since begin(); ends the process.
+  /// What was seen since begin().
+  LoadSightings tell();
+  /// The same; ends the process.
   LoadSightings end();
 
  private:
+  LoadSightings ask(char command);
+
   int process_ = -1;
   int to_ = -1;
   int from_ = -1;

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -77,7 +78,9 @@ std::string get(std::uint16_t port, const std::string& target) {
 
 }  // namespace
 
-Served::Served(const std::string& program, const std::vector<std::string>& arguments) {
+Served::Served(const std::string& program, const std::vector<std::string>& arguments,
+               const std::string& log)
+    : log_(log) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
   std::vector<std::string> words{program, "serve", "--port", "0"};
@@ -89,6 +92,9 @@ Served::Served(const std::string& program, const std::vector<std::string>& argum
   if (process_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(ends[1], STDOUT_FILENO);
+    if (!log.empty()) {
+      dup2(open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644), STDERR_FILENO);
+    }
     execv(program.c_str(), argv.data());
     _exit(127);
   }
@@ -124,6 +130,26 @@ std::uint64_t Served::resident_bytes() const {
   std::uint64_t resident = 0;
   file >> size >> resident;
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::size_t Served::log_size() const {
+  return static_cast<std::size_t>(std::filesystem::file_size(log_));
+}
+
+std::vector<TickTimes> Served::ticks_since(std::size_t begin) const {
+  std::ifstream file(log_);
+  file.seekg(static_cast<std::streamoff>(begin));
+  std::vector<TickTimes> ticks;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t found = line.find(": tick ");
+    TickTimes tick;
+    if (found != std::string::npos &&
+        std::sscanf(line.c_str() + found, ": tick %*u took %lf s, publishing %lf s, late %lf s",
+                    &tick.seconds, &tick.publish, &tick.lateness) == 3) {
+      ticks.push_back(tick);
+    }
+  }
+  return ticks;
 }
 
 std::map<std::string, double> Served::metrics() const {

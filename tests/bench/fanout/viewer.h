@@ -37,6 +37,7 @@ struct LoadSettings {
   double max_error = 0;              ///< [m] that each asks for
   double half_bytes_per_second = 0;  ///< that `half` reads
   std::string session = "s1";
+  int niceness = 0;  ///< of the process: 0 to 19, which gives way to all others
 };
 
 /// A WebSocket of a viewer, as cheap as can be: it looks at the first bytes of frames only, throws
