@@ -108,7 +108,8 @@ TEST_F(TransportMessageTest, ProtocolErrorsClose) {
         client_frame(9, std::string(126, 'x')),  // a control frame that is too long
         client_frame(9, "in two", false),        // a control frame in fragments
         client_frame(1, "a", false) + client_frame(1, "b"),
-        std::string("\xf1\x80", 2) + "\1\2\3\4"}) {  // reserved bits
+        std::string("\xf1\x80", 2) + "\1\2\3\4",     // reserved bits
+        std::string("\xc1\x80", 2) + "\1\2\3\4"}) {  // that of permessage-deflate alone
     WsClient client(port);
     client.raw().write(bytes);
     EXPECT_EQ(client.read_close(), 1002) << testing::PrintToString(bytes);

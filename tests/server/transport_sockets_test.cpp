@@ -1,0 +1,105 @@
+// What the transport asks of the system for its sockets, which are looked for among this process's.
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <fstream>
+#include <thread>
+
+#include "tests/server/transport_fixture.h"
+
+namespace vat::test {
+
+namespace {
+
+std::uint16_t local_port(int file) {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  if (getsockname(file, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+  return address.sin_family == AF_INET ? ntohs(address.sin_port) : 0;
+}
+
+int option(int file, int level, int name) {
+  int value = -1;
+  socklen_t size = sizeof value;
+  EXPECT_EQ(getsockopt(file, level, name, &value, &size), 0);
+  return value;
+}
+
+/// The server's sockets: those that listen, or those of its connections.
+std::vector<int> sockets_of(std::uint16_t port, bool listening) {
+  constexpr int kMostFiles = 4096;
+  std::vector<int> files;
+  for (int file = 0; file < kMostFiles; ++file) {
+    if (local_port(file) != port) continue;
+    if ((option(file, SOL_SOCKET, SO_ACCEPTCONN) == 1) == listening) files.push_back(file);
+  }
+  return files;
+}
+
+class TransportSocketsTest : public TransportTest {};
+
+// Else a frame's end may wait for an acknowledgement that the peer holds back for 40 ms.
+TEST_F(TransportSocketsTest, SendAtOnce) {
+  settings.endpoints = 2;
+  start();
+  std::vector<std::unique_ptr<WsClient>> clients;
+  for (int i = 0; i < 8; ++i) clients.push_back(std::make_unique<WsClient>(port));
+  ASSERT_TRUE(recorder.wait_opened(8));
+  const std::vector<int> sockets = sockets_of(port, false);
+  ASSERT_EQ(sockets.size(), 8U);
+  for (const int socket : sockets) EXPECT_EQ(option(socket, IPPROTO_TCP, TCP_NODELAY), 1);
+}
+
+// socket(7): the system takes twice the setting, for what it needs itself.
+TEST_F(TransportSocketsTest, HoldLittle) {
+  settings.send_buffer_bytes = 100'000;
+  start();
+  WsClient client(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  const std::vector<int> sockets = sockets_of(port, false);
+  ASSERT_EQ(sockets.size(), 1U);
+  EXPECT_EQ(option(sockets[0], SOL_SOCKET, SO_SNDBUF), 200'000);
+}
+
+// Many come at once, when a server starts again. tcpi_sacked of a socket that listens is how many
+// may wait.
+TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {
+  start();
+  const std::vector<int> sockets = sockets_of(port, true);
+  ASSERT_EQ(sockets.size(), 1U);
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  ASSERT_EQ(getsockopt(sockets[0], IPPROTO_TCP, TCP_INFO, &info, &size), 0);
+  unsigned most = 0;
+  std::ifstream("/proc/sys/net/core/somaxconn") >> most;
+  EXPECT_GE(info.tcpi_sacked, std::min(1024U, most));
+}
+
+// A handler that is slow holds up those who come meanwhile, and costs none of them its connection.
+TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
+  http_handler = [](std::string_view, std::string_view) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    return HttpResponse{200, "text/plain", "slow", {}};
+  };
+  recorder.echo = true;
+  start();
+  RawClient slow(port);
+  slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  std::vector<std::unique_ptr<RawClient>> waiting;
+  const std::string request =
+      "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\n" + upgrade_headers() + "\r\n";
+  for (int i = 0; i < 100; ++i) {
+    waiting.push_back(std::make_unique<RawClient>(port));
+    waiting.back()->write(request);
+  }
+  EXPECT_TRUE(recorder.wait_opened(100));
+}
+
+}  // namespace
+
+}  // namespace vat::test
