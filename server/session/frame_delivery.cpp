@@ -105,7 +105,7 @@ void FrameDelivery::gather(Viewer& viewer, SteadyClock::time_point now, Groups& 
     return;
   }
   GroupKey key;
-  key.cut = FrameCut(viewer.wish, viewer.pace.coarseness(), viewer.pace.detail());
+  key.cut = FrameCut(viewer.wish, default_error_, viewer.pace.coarseness(), viewer.pace.detail());
   key.stride = static_cast<std::uint8_t>(viewer.period());
   key.awaits_any = viewer.awaits_any;
   key.first = viewer.held[0].get();

@@ -26,6 +26,8 @@ class FrameDelivery {
   void remove(ConnectionId client);
   /// The states from here on are of another scene, or of the same from its start.
   void set_vat(const std::optional<Vat>& vat);
+  /// [m] Of positions, for those who have asked for none; 0, as at first: the finest grid.
+  void set_default_error(double max_error) { default_error_ = max_error; }
 
   /// A further state: goes to those whose turn it is and to those who have missed theirs. Leaves an
   /// older one in its place.
@@ -76,6 +78,7 @@ class FrameDelivery {
   std::map<ConnectionId, Viewer> viewers_;
   FrameSource source_;
   std::map<GroupKey, Made> made_;  // of the last state
+  double default_error_ = 0;
   bool has_state_ = false;
   std::uint64_t tick_ = 0;   // of the last state
   std::uint32_t epoch_ = 0;  // the same

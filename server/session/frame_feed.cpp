@@ -29,12 +29,14 @@ FrameFeed::FrameFeed(std::string session, const std::optional<Vat>& vat, ServerM
       strand_(boost::asio::make_strand(pool.get_executor())),
       delivery_(vat, metrics) {}
 
-void FrameFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
+bool FrameFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
                     Subscription wish) {
+  bool has_dropped = false;
   put([&] {
     mail_.changes.emplace_back(Added{std::move(outbox), subscription, wish});
-    mail_.has_state = false;  // it may lack attributes that are wanted now; a newer one follows
+    has_dropped = std::exchange(mail_.has_state, false);
   });
+  return has_dropped;
 }
 
 void FrameFeed::remove(ConnectionId client) {
@@ -46,6 +48,10 @@ void FrameFeed::set_vat(const std::optional<Vat>& vat) {
     mail_.changes.emplace_back(vat);
     mail_.has_state = false;
   });
+}
+
+void FrameFeed::set_default_error(double max_error) {
+  put([&] { mail_.changes.emplace_back(DefaultError{max_error}); });
 }
 
 void FrameFeed::publish(PublishedState& state) {
@@ -91,6 +97,8 @@ void FrameFeed::carry_out_mail() {
       delivery_.add(std::move(added->outbox), added->subscription, added->wish);
     } else if (const auto* client = std::get_if<ConnectionId>(&change)) {
       delivery_.remove(*client);
+    } else if (const auto* error = std::get_if<DefaultError>(&change)) {
+      delivery_.set_default_error(error->max_error);
     } else {
       delivery_.set_vat(std::get<std::optional<Vat>>(change));
     }

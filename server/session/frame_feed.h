@@ -22,10 +22,13 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
             boost::asio::thread_pool& pool);
 
-  /// What is done here takes effect before a state that is published later.
-  void add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription, Subscription wish);
+  /// What is done here takes effect before a state that is published later. True where a state that
+  /// waited was dropped, since it may lack what the new one wants: one should be published soon.
+  bool add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription, Subscription wish);
   void remove(ConnectionId client);
   void set_vat(const std::optional<Vat>& vat);
+  /// See FrameDelivery.
+  void set_default_error(double max_error);
 
   /// Takes the state, and leaves an older one in its place, whose memory the next may use: so a
   /// tick allocates nothing for what it publishes.
@@ -38,7 +41,10 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
     std::uint64_t subscription;
     Subscription wish;
   };
-  using Change = std::variant<Added, ConnectionId, std::optional<Vat>>;
+  struct DefaultError {
+    double max_error;
+  };
+  using Change = std::variant<Added, ConnectionId, std::optional<Vat>, DefaultError>;
   struct Mail {
     std::vector<Change> changes;
     PublishedState state;

@@ -15,8 +15,9 @@ bool shows_the_same(const PublishedState& a, const PublishedState& b) {
 
 }  // namespace
 
-FrameCut::FrameCut(const Subscription& wish, unsigned coarseness, std::uint8_t detail)
-    : max_error_(wish.max_error),
+FrameCut::FrameCut(const Subscription& wish, double default_error, unsigned coarseness,
+                   std::uint8_t detail)
+    : max_error_(wish.max_error.value_or(default_error)),
       coarseness_(coarseness),
       attribute_errors_(wish.attribute_errors),
       detail_(std::min(wish.selection.detail, detail)),

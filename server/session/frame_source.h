@@ -24,8 +24,10 @@ using HeldFrames = std::array<std::shared_ptr<const GridFrame>, 2>;
 class FrameCut {
  public:
   FrameCut() = default;
-  /// `coarseness` times the errors that were asked for, and no more than `detail`.
-  FrameCut(const Subscription& wish, unsigned coarseness, std::uint8_t detail);
+  /// `coarseness` times the errors that were asked for, and no more than `detail`. Positions
+  /// without one have the error `default_error` [m].
+  FrameCut(const Subscription& wish, double default_error, unsigned coarseness,
+           std::uint8_t detail);
 
   double max_error() const { return max_error_; }
   double coarseness() const { return coarseness_; }

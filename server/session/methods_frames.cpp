@@ -41,7 +41,7 @@ ByAttribute<double> read_attributes(const Json& value, const std::string& path, 
 
 SessionAction read_subscribe(ObjectReader& params, Errors& errors) {
   Subscription subscription;
-  subscription.max_error = params.real("max_error", 0, kMaxLength, 0.0);
+  if (params.has("max_error")) subscription.max_error = params.real("max_error", 0, kMaxLength);
   subscription.every = params.count("every", 1, kMaxFrameInterval, 1);
   subscription.selection.detail =
       static_cast<std::uint8_t>(params.count("detail", 0, kFullDetail, kFullDetail));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "server/session/default_error.h"
 #include "server/session/describe.h"
 
 namespace vat {
@@ -28,7 +29,9 @@ SessionCore::SessionCore(std::string id, std::string name, Simulation simulation
       environment_(environment),
       run_(std::move(simulation), environment.metrics),
       frames_(std::make_shared<FrameFeed>(id_, run_.simulation().scene().vat, environment.metrics,
-                                          environment.frame_threads)) {}
+                                          environment.frame_threads)) {
+  frames_->set_default_error(default_max_error(run_.simulation()));
+}
 
 void SessionCore::set_playing(bool playing) {
   interrupt();
@@ -69,6 +72,7 @@ void SessionCore::bodies_changed() {
 void SessionCore::start_epoch() {
   description_due_ = status_due_ = frame_due_ = true;
   participants_.start_epoch(run_.epoch());
+  frames_->set_default_error(default_max_error(run_.simulation()));
 }
 
 void SessionCore::interrupt() {
@@ -129,8 +133,8 @@ void SessionCore::subscribe(Participant& participant, const Subscription& subscr
   const std::uint64_t number = participant.outbox->subscribe(participant.membership, frames_, now);
   if (number == 0) return;  // it is about to leave
   participant.subscription = subscription;
-  frames_->add(participant.outbox, number, subscription);
-  frame_due_ = true;
+  const bool replaced = frames_->add(participant.outbox, number, subscription);
+  (playing_ && !replaced ? tick_frame_due_ : frame_due_) = true;
 }
 
 void SessionCore::unsubscribe(Participant& participant) {
@@ -211,7 +215,7 @@ void SessionCore::tell_description() {
 
 void SessionCore::publish_tick() {
   tell_description();  // a tick may begin an epoch
-  if (frame_due_ || participants_.is_watched(run_.tick())) publish_frame();
+  if (frame_due_ || tick_frame_due_ || participants_.is_watched(run_.tick())) publish_frame();
 }
 
 void SessionCore::announce() {
@@ -229,7 +233,7 @@ void SessionCore::announce_status() {
 }
 
 void SessionCore::publish_frame() {
-  frame_due_ = false;
+  frame_due_ = tick_frame_due_ = false;
   if (!participants_.is_watched()) return;
   fill_state();
   frames_->publish(state_);

@@ -111,7 +111,9 @@ class SessionCore {
   void leave(ParticipantNumber number);
   /// Those who have been away for too long leave.
   void end_absences(SteadyClock::time_point now);
-  /// The participant gets the present state at the next chance, and then those that it asks for.
+  /// The participant gets the present state of a session that pauses, the next of one that plays,
+  /// and then those that it asks for. So all who come between two ticks share a key frame, and from
+  /// the second frame after it on they share all frames with those who were there before.
   void subscribe(Participant& participant, const Subscription& subscription,
                  SteadyClock::time_point now);
   void unsubscribe(Participant& participant);
@@ -158,7 +160,8 @@ class SessionCore {
   std::uint64_t last_grab_ = 0;
   bool description_due_ = false;
   bool status_due_ = false;
-  bool frame_due_ = false;  // whatever tick it is
+  bool frame_due_ = false;       // at once
+  bool tick_frame_due_ = false;  // with the next tick, whichever it is
   bool interrupted_ = false;
 };
 

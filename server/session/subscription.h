@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "protocol/grid_frame.h"
 
@@ -8,8 +9,8 @@ namespace vat {
 
 /// The frames that a client asks for: the best that it gets.
 struct Subscription {
-  double max_error = 0;     ///< [m]; 0: the finest grid
-  std::uint64_t every = 1;  ///< [ticks]
+  std::optional<double> max_error;  ///< [m]; 0: the finest grid; none: the session's default
+  std::uint64_t every = 1;          ///< [ticks]
   FrameSelection selection;
   /// [m/s], [kg/m^3], [Pa]; 0: without the attribute.
   ByAttribute<double> attribute_errors{};

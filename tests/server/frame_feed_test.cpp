@@ -51,7 +51,8 @@ TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   Block block(pool);
   PublishedState state = make_state(7, false);
   feed->publish(state);
-  feed->add(outbox, outbox->subscribe(membership, feed, SteadyClock::now()), wish);
+  EXPECT_TRUE(feed->add(outbox, outbox->subscribe(membership, feed, SteadyClock::now()), wish))
+      << "a further state should be published";
   block.release();
   std::promise<void> done;
   boost::asio::post(pool, [&] { done.set_value(); });

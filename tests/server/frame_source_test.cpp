@@ -29,7 +29,7 @@ Subscription wish(double max_error) {
 }
 
 FrameCut cut(const Subscription& wish, unsigned coarseness = 1, std::uint8_t detail = kFullDetail) {
-  return {wish, coarseness, detail};
+  return {wish, 0, coarseness, detail};
 }
 
 std::span<const std::uint8_t> bytes_of(const SharedFrame& frame) {

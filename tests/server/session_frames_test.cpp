@@ -47,6 +47,36 @@ TEST_F(SessionFrames, AnErrorBoundIsKept) {
   }
 }
 
+// The fixture's deformable cube and its pool have particles at 0.1 m.
+TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
+  const auto quantum = [this](const Json& params) {
+    client->result("frames.subscribe", params);
+    const std::uint32_t tick = client->result("control.step").at("tick").get<std::uint32_t>();
+    return client->wait_frame([=](const GridFrame& f) { return f.header.tick == tick; })
+        .scale.grid.quantum;
+  };
+  const double usual = 2 * 0.1 / 64;
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual);
+  const Json ball = {{"name", "marble"},
+                     {"kind", "rigid"},
+                     {"material", "wood"},
+                     {"spacing", 0.02},
+                     {"shape", {{"type", "sphere"}, {"radius", 0.04}}},
+                     {"position", {0.2, 0.8, 0.8}}};
+  client->result("world.add_body", {{"body", ball}});
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual) << "a rigid body has a pose";
+  Json block = ball;
+  block["name"] = "block";
+  block["kind"] = "deformable";
+  block["material"] = "rubber";
+  block["spacing"] = 0.05;
+  block["shape"] = {{"type", "box"}, {"center", {0, 0, 0}}, {"size", {0.1, 0.1, 0.1}}};
+  block["position"] = {0.8, 0.2, 0.8};
+  client->result("world.add_body", {{"body", block}});
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual / 2);
+  EXPECT_LT(quantum({{"max_error", 0}}), usual / 10);
+}
+
 TEST_F(SessionFrames, AttributesComeWhereTheyAreAskedFor) {
   client->result("control.step", {{"ticks", 5}});
   client->result("frames.subscribe", {{"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});

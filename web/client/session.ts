@@ -30,7 +30,7 @@ export interface SessionOptions extends ConnectionOptions {
   clockPeriodMs?: number;
   /**
    * The greatest error of a position over the radius of the scene's smallest particles; by default
-   * as little as the server can give.
+   * what the session gives.
    */
   errorInRadii?: number;
 }
@@ -43,7 +43,7 @@ export class Session {
   private clockTimer: ReturnType<typeof setTimeout> | undefined;
   private hasJoined = false;
   private isWatched = true;
-  /** What was subscribed to, or is to be [m]; undefined: as little as can be had. */
+  /** What was subscribed to, or is to be [m]; undefined: what the session gives. */
   private maxError: number | undefined;
 
   constructor(
