@@ -2,6 +2,7 @@
 
 #include "protocol/frame_codec.h"
 #include "tests/bench/fanout/frame_facts.h"
+#include "tests/bench/fanout/segments.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 #include "tests/support/temporary_folder.h"
@@ -25,6 +26,23 @@ TEST(BenchFanout, ReadsWhatTheHeaderSays) {
   EXPECT_TRUE(facts.is_key);
   EXPECT_EQ(facts.published, 1.7e9 + 0.25);
   EXPECT_THROW(bench::frame_facts("VATF"), std::runtime_error);
+}
+
+// Where all segments are alike, every draw gives the same. An odd one is missing in 0.9^10, a
+// third, of the draws: the interval has both ratios.
+TEST(BenchFanout, RatiosOfQuantilesHaveAnIntervalByWholeSegments) {
+  const bench::Segments ones(10, {1, 2, 3, 4, 5});
+  bench::Segments twos(10, {2, 4, 6, 8, 10});
+  EXPECT_EQ(bench::pooled_quantile(ones, 0.5), 3);
+  const bench::QuantileRatio alike = bench::quantile_ratio(ones, twos, 0.5);
+  EXPECT_EQ(alike.value, 2);
+  EXPECT_EQ(alike.low, 2);
+  EXPECT_EQ(alike.high, 2);
+  twos[3] = {100, 100, 100, 100, 100};
+  const bench::QuantileRatio odd = bench::quantile_ratio(ones, twos, 0.99);
+  EXPECT_EQ(odd.value, 100.0 / 5);
+  EXPECT_EQ(odd.low, 2);
+  EXPECT_EQ(odd.high, 20);
 }
 
 // One viewer at the scene's rate: what the machine does beside that only makes it less.
