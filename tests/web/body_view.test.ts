@@ -1,4 +1,5 @@
 import { Ray, Vector3 } from 'three';
+import type { BufferAttribute, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../web/client/index';
 import type { FrameHeader, GridBlock } from '../../web/client/index';
@@ -31,6 +32,13 @@ function pickAt(view: BodyView, i: number): number | undefined {
   return view.pick(new Ray(new Vector3(10 * i, 0, 50), new Vector3(0, 0, -1)))?.particle;
 }
 
+/** What the graphics know particles by. */
+function numbersOf(view: BodyView): { shown: number[]; version: number } {
+  const { geometry } = view.group.children[0] as Mesh;
+  const column = geometry.getAttribute('number') as BufferAttribute;
+  return { shown: [...column.array].slice(0, view.count), version: column.version };
+}
+
 describe('BodyView', () => {
   it('shows as many particles as a frame has, whatever was described', () => {
     const view = liquid(4);
@@ -52,5 +60,22 @@ describe('BodyView', () => {
     expect(view.positionOf(4)?.x).toBe(10);
     expect(view.positionOf(2)).toBeUndefined();
     expect(view.positionOf(10)).toBeUndefined();
+  });
+
+  it('tints particles by their numbers, which it sends only when they change', () => {
+    const view = liquid(4);
+    view.showGrid(block(4), header);
+    expect(numbersOf(view)).toEqual({ shown: [0, 1, 2, 3], version: 0 });
+    const numbers = Uint32Array.of(1, 4, 9);
+    view.showGrid({ ...block(3), numbers }, header);
+    const { shown, version } = numbersOf(view);
+    expect(shown).toEqual([1, 4, 9]);
+    expect(version).toBeGreaterThan(0);
+    view.showGrid({ ...block(3), numbers: numbers.slice() }, header);
+    expect(numbersOf(view).version).toBe(version);
+    view.showGrid({ ...block(5), numbers: Uint32Array.of(1, 4, 9, 10, 12) }, header);
+    expect(numbersOf(view).shown).toEqual([1, 4, 9, 10, 12]);
+    view.showGrid(block(2), header);
+    expect(numbersOf(view).shown).toEqual([0, 1]);
   });
 });

@@ -30,13 +30,30 @@ const kGrowth = 1.5;
 
 const kGloss = { deformable: 0.1, rigid: 0.35 };
 
-/** Two triangles for each instance; `center` is the instance's place. */
-function squares(centers: InstancedBufferAttribute): InstancedBufferGeometry {
+/** For poses, which come with every frame. */
+const kPlace = new Vector3();
+const kTurn = new Quaternion();
+const kOne = new Vector3(1, 1, 1);
+
+/** 0, 1, 2, ... */
+function plainNumbers(count: number): InstancedBufferAttribute {
+  return new InstancedBufferAttribute(
+    new Uint32Array(count).map((_, i) => i),
+    1,
+  );
+}
+
+/** Two triangles for each instance; `center` is the instance's place, `number` its particle's. */
+function squares(
+  centers: InstancedBufferAttribute,
+  numbers: InstancedBufferAttribute,
+): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry();
   const corners = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
   geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   geometry.setAttribute('center', centers);
+  geometry.setAttribute('number', numbers);
   return geometry;
 }
 
@@ -50,6 +67,8 @@ export class BodyView {
   private centers: InstancedBufferAttribute;
   /** Of the particles, rising; undefined: 0, 1, 2, ... */
   private numbers: Uint32Array | undefined;
+  /** The same for the graphics, which tint particles by them. */
+  private numberColumn: InstancedBufferAttribute;
   private readonly geometry: InstancedBufferGeometry;
   private readonly materials: ShaderMaterial[] = [];
   /** Takes positions that do not fill the graphics buffer; as long as that. */
@@ -64,7 +83,8 @@ export class BodyView {
     this.centers = local
       ? new InstancedBufferAttribute(new Float32Array(local), 3)
       : new InstancedBufferAttribute(new Uint16Array(3 * description.particles), 3);
-    this.geometry = squares(this.centers);
+    this.numberColumn = plainNumbers(this.centers.count);
+    this.geometry = squares(this.centers, this.numberColumn);
     this.count = this.centers.count;
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
@@ -87,6 +107,7 @@ export class BodyView {
    */
   showGrid(block: GridBlock, { origin, quantum }: FrameHeader): void {
     const { positions } = block;
+    const wasNumbered = this.numbers !== undefined;
     this.numbers = block.numbers;
     this.count = positions.length / 3;
     const room = this.centers.array.length;
@@ -94,14 +115,14 @@ export class BodyView {
     else if (positions.length < room) this.copy(positions, room);
     else this.grow(positions);
     this.centers.needsUpdate = true;
+    if (wasNumbered || this.numbers) this.showNumbers();
     this.group.matrix.makeScale(quantum, quantum, quantum).setPosition(...origin);
     this.shown();
   }
 
   showPose({ position, orientation }: PoseBlock): void {
     const [w, x, y, z] = orientation;
-    const one = new Vector3(1, 1, 1);
-    this.group.matrix.compose(new Vector3(...position), new Quaternion(x, y, z, w), one);
+    this.group.matrix.compose(kPlace.set(...position), kTurn.set(x, y, z, w), kOne);
     this.shown();
   }
 
@@ -131,6 +152,20 @@ export class BodyView {
     this.geometry.dispose(); // frees the old buffer
     this.centers = new InstancedBufferAttribute(this.copies, 3);
     this.geometry.setAttribute('center', this.centers);
+    this.numberColumn = plainNumbers(this.centers.count);
+    this.geometry.setAttribute('number', this.numberColumn);
+  }
+
+  /** They are sent to the graphics only where they have changed. */
+  private showNumbers(): void {
+    const { numbers, count } = this;
+    const shown = this.numberColumn.array as Uint32Array;
+    for (let i = 0; i < count; ++i) {
+      const number = numbers ? numbers[i]! : i;
+      if (shown[i] === number) continue;
+      shown[i] = number;
+      this.numberColumn.needsUpdate = true;
+    }
   }
 
   /** World position of the particle with this number; undefined where it is not shown. */

@@ -5,6 +5,7 @@
  */
 export const kImpostorVertexShader = /* glsl */ `
   in vec3 center;
+  in uint number;
   uniform float radius;
   flat out vec3 view_center;
   flat out float tint;
@@ -18,7 +19,7 @@ export const kImpostorVertexShader = /* glsl */ `
     vec3 up = cross(toward, right);
     float outline = radius * sqrt(distance2 / max(distance2 - radius * radius, 0.01 * distance2));
     view_point = view_center + outline * (position.x * right + position.y * up);
-    tint = fract(float(gl_InstanceID) * 0.618034) - 0.5;
+    tint = fract(float(number & 65535u) * 0.618034) - 0.5;
     gl_Position = projectionMatrix * vec4(view_point, 1.0);
   }
 `;
