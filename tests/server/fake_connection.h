@@ -16,6 +16,7 @@
 #include "protocol/frame_codec.h"
 #include "protocol/json_reader.h"
 #include "server/net/transport.h"
+#include "server/script/transcript.h"
 
 namespace vat::test {
 
@@ -33,6 +34,7 @@ class FakeConnection final : public Connection {
     const bool is_reply = message.find(R"("id":)") != std::string::npos;
     if (failing_ || (is_reply && fail_next_reply_.exchange(false)))
       throw std::runtime_error("no memory for this message");
+    if (record_ != nullptr) record_->received(std::to_string(id_), message);
     change([&] {
       add_queued(message.size());
       texts_.push_back(Json::parse(message));
@@ -51,6 +53,9 @@ class FakeConnection final : public Connection {
   void close(std::uint16_t code, std::string_view) override {
     change([&] { close_code_ = code; });
   }
+
+  /// Writes what is sent from now on; `record` must outlive this, and may be null.
+  void record(script::Transcript* record) { record_ = record; }
 
   /// The peer reads nothing more (or all again).
   void stall(bool stalled) {
@@ -122,6 +127,7 @@ class FakeConnection final : public Connection {
   }
 
   const ConnectionId id_;
+  script::Transcript* record_ = nullptr;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Json> texts_;

@@ -4,6 +4,7 @@
 
 #include "core/simulation.h"
 #include "server/session/describe.h"
+#include "tests/server/message_record.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test {
@@ -75,7 +76,13 @@ Scene to_scene(const std::string& text) {
 
 TestClient::TestClient(SessionServer& server, ConnectionId id)
     : connection(std::make_shared<FakeConnection>(id)), server_(server) {
+  connection->record(message_record());
   server_.opened(connection);
+}
+
+void TestClient::send_raw(std::string_view text, bool wrong) {
+  if (auto* record = message_record()) record->sent(std::to_string(connection->id()), text, wrong);
+  server_.text_received(connection->id(), text);
 }
 
 void TestClient::disconnect() {
@@ -91,6 +98,10 @@ int TestClient::send(std::string_view method, const Json& params) {
 
 void TestClient::notify(std::string_view method, const Json& params) {
   send_raw(make_request(method, params).dump());
+}
+
+void TestClient::notify_wrong(std::string_view method, const Json& params) {
+  send_raw(make_request(method, params).dump(), true);
 }
 
 Json TestClient::wait_reply(int id) {

@@ -34,7 +34,9 @@ class TestClient {
   /// Sends a request; its id.
   int send(std::string_view method, const Json& params = nullptr);
   void notify(std::string_view method, const Json& params = nullptr);
-  void send_raw(std::string_view text) { server_.text_received(connection->id(), text); }
+  /// The same of what is to be refused, as nobody is told.
+  void notify_wrong(std::string_view method, const Json& params = nullptr);
+  void send_raw(std::string_view text, bool wrong = false);
 
   /// The reply to a request that was sent.
   Json wait_reply(int id);

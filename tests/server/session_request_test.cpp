@@ -119,10 +119,10 @@ TEST_F(Requests, TheIdComesBackAsItWas) {
 TEST_F(Requests, NotificationsAreCarriedOutAndNeverAnswered) {
   const std::size_t before = client->connection->texts().size();
   client->notify("control.set_speed", {{"speed", 2}});
-  client->notify("control.set_speed", {{"speed", 1000}});
+  client->notify_wrong("control.set_speed", {{"speed", 1000}});
   client->notify("server.info");
   client->notify("session.join", {{"session", "s9"}});
-  client->notify("no.such.method");
+  client->notify_wrong("no.such.method");
   client->wait_event("session.status", [](const Json& status) { return status["speed"] == 2; });
   client->result("session.hash");
   const auto texts = client->connection->texts();
