@@ -126,7 +126,7 @@ class Simulation {
   /// Goes on from the bytes of a snapshot with the same bits, in any process of any machine that
   /// has the instruction set. Fails where the bytes are not all of those that a snapshot gave, are
   /// of another version of the format, or were saved with other instructions: those of the bytes
-  /// are used where none are given. Codes: not_saved, other_version, wrong_length, damaged,
+  /// are used where none are given. Codes: other_format, other_version, wrong_length, damaged,
   /// bad_value, other_instruction_set, not_available.
   static Result<Simulation> load(std::span<const std::uint8_t> bytes, TaskRunner* runner = nullptr,
                                  std::optional<InstructionSet> instructions = {});

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +15,8 @@
 #include "core/step/step_control.h"
 
 namespace vat {
+
+class LoadingArchive;
 
 /// What a snapshot holds: everything but scratch.
 struct Snapshot::Content {
@@ -85,7 +86,7 @@ struct Simulation::Impl : Snapshot::Content {
   /// How far bodies may move in a step depends on all that may notice them: sleepers too.
   static GuardBounds bounds_of(const Content& content);
   /// Takes over what the bytes of a snapshot tell; changes nothing but next_id where it fails.
-  Status load(std::span<const std::uint8_t> bytes);
+  Status load(LoadingArchive& archive);
   /// Takes over what belongs together. Does not fail.
   void adopt(Content content, GuardBounds content_bounds, StepBounds content_step_bounds) noexcept;
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold

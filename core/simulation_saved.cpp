@@ -4,8 +4,8 @@
 
 #include "core/model/compile.h"
 #include "core/saved/check_saved.h"
-#include "core/saved/saved_bytes.h"
 #include "core/saved/scene_fields.h"
+#include "core/saved/sealed_bytes.h"
 #include "core/saved/state_fields.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
@@ -13,6 +13,14 @@
 #include "core/support/check.h"
 
 namespace vat {
+namespace {
+
+constexpr Seal kSeal{"vat.sim\n", 1, "a saved simulation"};
+
+}  // namespace
+
+template <>
+inline constexpr InstructionSet kLastOf<InstructionSet> = InstructionSet::avx512;
 
 Snapshot Simulation::snapshot() const {
   return {std::make_shared<const Snapshot::Content>(*impl_), impl_->next_id,
@@ -78,40 +86,44 @@ Status bad_bytes(const LoadingArchive& archive) {
 }  // namespace
 
 std::vector<std::uint8_t> Snapshot::to_bytes() const {
-  std::vector<std::uint8_t> bytes = begin_saved(instructions_);
+  std::vector<std::uint8_t> bytes = begin_sealed(kSeal);
   SavingArchive archive(bytes);
   const Model& all = content_->all();
   std::vector<SavedBody> bodies;
   for (std::size_t b = 0; b < all.bodies.size(); ++b) bodies.push_back(saved_body(all, b));
-  archive(content_->hash(), all.scene, next_id_, bodies, content_->sleepers != nullptr);
+  archive(instructions_, content_->hash(), all.scene, next_id_, bodies,
+          content_->sleepers != nullptr);
   if (content_->sleepers) archive(content_->sleepers->configuration, content_->sleepers->islands);
   archive(content_->state, content_->controls);
-  finish_saved(bytes);
+  close_seal(bytes);
   return bytes;
 }
 
 Result<Simulation> Simulation::load(std::span<const std::uint8_t> bytes, TaskRunner* runner,
                                     std::optional<InstructionSet> instructions) {
-  const Result<SavedContent> saved = open_saved(bytes);
-  if (!saved) return saved.errors();
-  if (instructions.value_or(saved.value().instructions) != saved.value().instructions) {
+  const auto content = open_sealed(kSeal, bytes);
+  if (!content) return content.errors();
+  LoadingArchive archive(content.value());
+  InstructionSet saved{};
+  archive(saved);
+  if (archive.failed()) {
+    return Error{"bad_value", "/instruction_set", "must be one that this program knows"};
+  }
+  if (instructions.value_or(saved) != saved) {
     return Error{"other_instruction_set", "/instruction_set",
                  std::string("the simulation was saved with the instruction set ") +
-                     to_string(saved.value().instructions) + ", not " + to_string(*instructions)};
+                     to_string(saved) + ", not " + to_string(*instructions)};
   }
-  if (Status available = check_available(saved.value().instructions); !available) {
-    return available.errors();
-  }
+  if (Status available = check_available(saved); !available) return available.errors();
   Simulation simulation;
   Impl& impl = *simulation.impl_;
   impl.runner = runner;
-  impl.work.instructions = impl.measured.instructions = saved.value().instructions;
-  if (Status loaded = impl.load(saved.value().bytes); !loaded) return loaded.errors();
+  impl.work.instructions = impl.measured.instructions = saved;
+  if (Status loaded = impl.load(archive); !loaded) return loaded.errors();
   return simulation;
 }
 
-Status Simulation::Impl::load(std::span<const std::uint8_t> bytes) {
-  LoadingArchive archive(bytes);
+Status Simulation::Impl::load(LoadingArchive& archive) {
   std::uint64_t saved_hash = 0;
   Scene scene;
   std::vector<SavedBody> bodies;

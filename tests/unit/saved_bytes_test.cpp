@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/saved/saved_bytes.h"
+#include "core/saved/sealed_bytes.h"
 #include "core/support/byte_io.h"
 #include "tests/support/resting_scenes.h"
 #include "tests/support/shaken_vat.h"
@@ -32,7 +32,7 @@ TEST(SavedBytes, OfWhichSomeAreMissingAreRefused) {
   const std::vector<std::uint8_t> bytes = make_bytes();
   ASSERT_EQ(code_of(bytes), "");
   for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 100) {
-    const std::string expected = length < kSavedHeaderSize ? "not_saved" : "wrong_length";
+    const std::string expected = length < kSealSize ? "other_format" : "wrong_length";
     ASSERT_EQ(code_of(std::span(bytes).first(length)), expected) << length;
   }
 }
@@ -41,13 +41,13 @@ TEST(SavedBytes, WithMoreAfterThemAreRefused) {
   std::vector<std::uint8_t> bytes = make_bytes();
   bytes.push_back(0);
   EXPECT_EQ(code_of(bytes), "wrong_length");
-  finish_saved(bytes);
+  close_seal(bytes);
   EXPECT_EQ(code_of(bytes), "bad_value");
 }
 
 TEST(SavedBytes, OfAnotherVersionAreRefused) {
   std::vector<std::uint8_t> bytes = make_bytes();
-  store<std::uint32_t>(bytes, kSavedMagic.size(), kSavedVersion + 1);
+  store<std::uint32_t>(bytes, kSealVersionAt, 2);
   EXPECT_EQ(code_of(bytes), "other_version");
 }
 
@@ -61,13 +61,14 @@ TEST(SavedBytes, OfAnotherInstructionSetAreRefused) {
   const auto other = Simulation::load(bytes, nullptr, InstructionSet::avx2);
   ASSERT_FALSE(other.ok());
   EXPECT_EQ(other.errors()[0].code, "other_instruction_set");
-  bytes[kSavedMagic.size() + sizeof kSavedVersion] = 3;
+  bytes[kSealSize] = 3;
+  close_seal(bytes);
   EXPECT_EQ(code_of(bytes), "bad_value");
 }
 
 TEST(SavedBytes, DamagedAnywhereAreRefused) {
   std::vector<std::uint8_t> bytes = make_bytes();
-  for (std::size_t at = kSavedHeaderSize; at < bytes.size(); at += 1 + at / 200) {
+  for (std::size_t at = kSealSize; at < bytes.size(); at += 1 + at / 200) {
     for (const unsigned bit : {1u, 128u}) {
       bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ bit);
       ASSERT_EQ(code_of(bytes), "damaged") << at;
@@ -80,7 +81,7 @@ TEST(SavedBytes, DamagedAnywhereAreRefused) {
 /// What becomes of bytes that were changed by somebody who knows of the checksum. What is taken can
 /// be gone on with.
 std::string code_of_forged(std::vector<std::uint8_t> bytes) {
-  finish_saved(bytes);
+  close_seal(bytes);
   Result<Simulation> loaded = Simulation::load(bytes);
   if (!loaded) return loaded.errors()[0].code;
   loaded.value().advance(2);
@@ -90,7 +91,7 @@ std::string code_of_forged(std::vector<std::uint8_t> bytes) {
 // Of some the state's hash says nothing: texts, reports, the scene's numbers.
 TEST(SavedBytes, ForgedAnywhereAreRefusedOrGoneOnWith) {
   const std::vector<std::uint8_t> bytes = make_bytes();
-  for (std::size_t at = kSavedHeaderSize; at < bytes.size(); at += 1 + at / 200) {
+  for (std::size_t at = kSealSize; at < bytes.size(); at += 1 + at / 200) {
     for (const unsigned value : {0x00u, 0x7fu, 0xffu}) {
       std::vector<std::uint8_t> forged = bytes;
       forged[at] = static_cast<std::uint8_t>(value);
@@ -110,7 +111,7 @@ TEST(SavedBytes, WithAnotherPlaceAreNotTheStateOfTheirHash) {
   const auto found = std::ranges::search(bytes, place);
   ASSERT_FALSE(found.empty());
   found.front() ^= 1;
-  finish_saved(bytes);
+  close_seal(bytes);
   const Result<Simulation> loaded = Simulation::load(bytes);
   ASSERT_FALSE(loaded.ok());
   EXPECT_EQ(loaded.errors()[0].path, "/hash");
@@ -118,7 +119,7 @@ TEST(SavedBytes, WithAnotherPlaceAreNotTheStateOfTheirHash) {
 
 TEST(SavedBytes, CutAndSignedAnewAreRefused) {
   const std::vector<std::uint8_t> bytes = make_bytes();
-  for (std::size_t length = kSavedHeaderSize; length < bytes.size(); length += 1 + length / 100) {
+  for (std::size_t length = kSealSize; length < bytes.size(); length += 1 + length / 100) {
     std::vector<std::uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<long>(length));
     ASSERT_EQ(code_of_forged(std::move(cut)), "bad_value") << length;
   }
