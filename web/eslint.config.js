@@ -4,6 +4,7 @@ import tseslint from 'typescript-eslint';
 
 export default defineConfig(
   { ignores: ['**/node_modules/', '**/dist/'] },
+  { ignores: ['web/client/protocol.ts', 'web/client/scene_format.ts'] }, // written by a script
   js.configs.recommended,
   tseslint.configs.strict,
   {

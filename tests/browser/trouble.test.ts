@@ -61,7 +61,7 @@ it('names a scene from outside of the catalogue', async () => {
   observer = await Observer.join(server.url);
   await page.untilTick(1);
   const scene = {
-    format: 'vat.scene/1',
+    format: 'vat.scene/1' as const,
     name: 'mine',
     title: 'My scene',
     materials: [],

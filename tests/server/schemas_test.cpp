@@ -57,12 +57,12 @@ TEST(Schemas, HaveTheErrorsOfTheTable) {
     const Json& properties = errors.at(name).at("properties");
     EXPECT_EQ(properties.at("code").at("const"), row.code) << name;
     EXPECT_EQ(properties.at("data").at("properties").at("kind").at("const"), name);
-    for (const Json& choice : errors.at("error").at("oneOf")) {
+    for (const Json& choice : errors.at("reply_error").at("oneOf")) {
       if (choice.at("$ref") == "#/$defs/" + name) ++listed;
     }
   }
   EXPECT_EQ(listed, error_rows().size());
-  EXPECT_EQ(errors.at("error").at("oneOf").size(), error_rows().size());
+  EXPECT_EQ(errors.at("reply_error").at("oneOf").size(), error_rows().size());
 }
 
 }  // namespace

@@ -82,6 +82,9 @@ class SourceRules(RuleTest):
         longest = "x\n" * source_rules.MAX_LINES
         self.accepts(source_rules.file_length, {"a.cpp": longest, "web/package-lock.json": "\n" * 999})
         self.refuses(source_rules.file_length, {"web/a.ts": longest + "x\n"}, "web/a.ts", "501")
+        written = "// Written from a/ by `b`; not to be edited.\n"
+        self.accepts(source_rules.file_length, {"web/a.ts": written + longest})
+        self.refuses(source_rules.file_length, {"web/a.ts": longest + written}, "web/a.ts", "501")
 
     def test_line_ends(self):
         self.accepts(source_rules.line_ends, {"a.md": "x\n", "empty.txt": ""})

@@ -231,13 +231,13 @@ describe('requests', () => {
 
   it('rejects with what the server says', async () => {
     const socket = openLine();
-    const reply = connection.request('control.set_speed', { speed: 9 });
-    const data = { kind: 'invalid_params', path: '/speed' };
-    socket.receiveJson({ id: 1, error: { code: -32602, message: 'from 0.05 to 4', data } });
+    const reply = connection.request('world.remove_body', { body: 9 });
+    const data = { kind: 'no_such_body', path: '/body' };
+    socket.receiveJson({ id: 1, error: { code: 1003, message: 'there is no such body', data } });
     await expect(reply).rejects.toMatchObject({
-      kind: 'invalid_params',
-      message: 'from 0.05 to 4',
-      code: -32602,
+      kind: 'no_such_body',
+      message: 'there is no such body',
+      code: 1003,
       data,
     });
   });

@@ -1,3 +1,4 @@
+import { appendFileSync, mkdirSync } from 'node:fs';
 import type { SocketClose } from '../../web/client/index';
 
 interface Sent {
@@ -5,6 +6,20 @@ interface Sent {
   method: string;
   params?: Record<string, unknown>;
 }
+
+/**
+ * Writes what a client sends to the folder that $VAT_TRANSCRIPT names, where what all tests send is
+ * checked against the schemas. What comes back is the tests' own, and not checked.
+ */
+function record(connection: number, sent: string): void {
+  const folder = process.env.VAT_TRANSCRIPT;
+  if (folder === undefined) return;
+  mkdirSync(folder, { recursive: true });
+  const line = JSON.stringify({ connection: String(connection), sent });
+  appendFileSync(`${folder}/web-${process.pid}.jsonl`, `${line}\n`);
+}
+
+let sockets = 0;
 
 /** A WebSocket whose other end is the test. */
 export class FakeSocket {
@@ -25,6 +40,7 @@ export class FakeSocket {
   onmessage: ((event: never) => void) | null = null;
   onerror: ((event: never) => void) | null = null;
   readonly sent: Sent[] = [];
+  private readonly number = ++sockets;
   closed = false;
 
   constructor(
@@ -35,6 +51,7 @@ export class FakeSocket {
   }
 
   send(text: string): void {
+    record(this.number, text);
     this.sent.push(JSON.parse(text) as Sent);
   }
 

@@ -37,7 +37,7 @@ def request_message(method, file):
 def reply_message(method, file):
     schema = envelope(["id"], id=shared("message.json#/$defs/id"),
                       result=shared(f"{file}.json#/$defs/{method}.result"),
-                      error=shared("errors.json#/$defs/error"))
+                      error=shared("errors.json#/$defs/reply_error"))
     schema["oneOf"] = [{"required": ["result"]}, {"required": ["error"]}]
     return message(method + ".reply", f"The answer to {method}", schema)
 

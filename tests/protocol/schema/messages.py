@@ -22,6 +22,7 @@ BEFORE_PARAMETERS = {
 
 
 MAX_DEPTH = 16
+MAX_VALUES = 100_000
 
 
 def unique(pairs):
@@ -38,20 +39,33 @@ def finite(text):
     return number
 
 
-def depth(value):
+def whole(text):
+    finite(text)
+    return int(text)
+
+
+def size(value):
+    """(depth, number of values)"""
     if isinstance(value, dict):
         value = list(value.values())
     if not isinstance(value, list):
-        return 0
-    return 1 + max(map(depth, value), default=0)
+        return 0, 1
+    depths, counts = zip(*map(size, value)) if value else ((0,), ())
+    return 1 + max(depths), 1 + sum(counts)
+
+
+def is_too_much(message):
+    depth, count = size(message)
+    return depth > MAX_DEPTH or count > MAX_VALUES
 
 
 def parse(text):
     """The message, or None for what the protocol does not take as JSON."""
     try:
         message = json.loads(
-            text, object_pairs_hook=unique, parse_float=finite, parse_constant=finite)
-        return message if depth(message) <= MAX_DEPTH else None
+            text, object_pairs_hook=unique, parse_float=finite, parse_int=whole,
+            parse_constant=finite)
+        return None if is_too_much(message) else message
     except (ValueError, RecursionError):
         return None
 
@@ -78,6 +92,7 @@ class Transcript:
         self.seen = seen
         self.faults = []
         self.asked = defaultdict(list)  # {(connection, id): [(method, fault, line)]}
+        self.marked = set()  # lines of those that are wrong on purpose
         self.unanswerable = defaultdict(list)  # {connection: lines with wrong messages}
         self.null_errors = Counter()  # {connection: errors that were answered to no id}
 
@@ -97,6 +112,10 @@ class Transcript:
         for connection, wrong in self.unanswerable.items():
             for line, reason in wrong[self.null_errors[connection]:]:
                 self.fail(line, f"sent, not answered and not marked as wrong: {reason}")
+        for waiting in self.asked.values():
+            for _, reason, line in waiting:
+                if reason and line not in self.marked:
+                    self.fail(line, f"sent, not answered and not marked as wrong: {reason}")
         return self.faults
 
     def sent(self, entry, line):
@@ -108,6 +127,7 @@ class Transcript:
         if schemas.fault(identity, "message", "id") is None:
             key = (entry["connection"], json.dumps(identity))
             self.asked[key].append((message.get("method"), reason, line))
+            self.marked |= {line} if entry.get("wrong") else set()
         elif reason and not entry.get("wrong"):
             self.unanswerable[entry["connection"]].append((line, reason))
 

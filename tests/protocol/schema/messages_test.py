@@ -78,6 +78,7 @@ class Messages(unittest.TestCase):
     def test_what_is_not_answered_must_be_right_or_marked(self):
         self.assert_fault("not marked as wrong", sent({"method": "no.such"}))
         self.assert_fault("not marked as wrong", sent("{"))
+        self.assert_fault("not marked as wrong", sent({"id": 1, "method": "no.such"}))
 
     def test_replies_have_a_request(self):
         self.assert_fault("not asked", received({"id": 1, "result": {"tick": 3}}))

@@ -1,0 +1,526 @@
+// Written from protocol/schemas/ by `npm run types`; not to be edited.
+import type {Body as SceneBody, Interface as SceneInterface, Scene} from './scene_format';
+
+/** The session's tick from which what was asked is in effect; 0 after a reset. */
+export type Tick = number;
+/** [x, y, z], z is up, in SI units */
+export type Vector = [number, number, number];
+/** [w, x, y, z] of a unit quaternion */
+export type Quaternion = [number, number, number, number];
+/** [x, y, z] of a place [m] */
+export type Point = [number, number, number];
+/** At most 64 bytes of UTF-8 without control characters */
+export type Name = string;
+/** Names a session for the life of the server */
+export type SessionId = string;
+/** Names a body for the life of its session; 0 is the vat's */
+export type BodyId = number;
+/** A particle's number within its body */
+export type ParticleNumber = number;
+/** Names a grab for the life of its session */
+export type GrabId = number;
+/** Numbers a participant of a session, and no other one of it */
+export type ParticipantId = number;
+/** What a participant may do; each role may do what those before it may */
+export type Role = 'viewer' | 'controller' | 'owner';
+
+export type BodyKind = 'liquid' | 'deformable' | 'rigid';
+/** Hashes can be compared where it is the same */
+export type InstructionSet = 'baseline' | 'avx2' | 'avx512';
+/** Of the state of a simulation */
+export type Hash = string;
+/** A scene of the catalogue by its name, or a scene as in a scene file */
+export type SceneReference = string | Scene;
+/** No parameters */
+export type Nothing = Record<string, never>;
+/** The parameter that is at fault, a JSON pointer into params */
+export type Path = string;
+/** What to do */
+export type Hint = string;
+/** Messages and hints are for people and may change their words */
+export type ReplyError =
+  | ParseError
+  | InvalidRequest
+  | MethodNotFound
+  | InvalidParams
+  | InternalError
+  | NotJoined
+  | NoSuchSession
+  | NoSuchBody
+  | NoSuchScene
+  | LimitReached
+  | NotAllowed;
+
+/** What a command answers that has nothing else to say */
+export interface InEffect {
+  tick: Tick;
+}
+/** The vat at offset zero */
+export interface VatDescription {
+  min: Vector;
+  max: Vector;
+  lid: boolean;
+}
+
+export interface BodyDescription {
+  body: BodyId;
+  name: string;
+  kind: BodyKind;
+  material: string;
+  /** Their number when the epoch began; emitters and drains change it, and the frames' blocks tell */
+  particles: number;
+  /** Of the largest particle [m] */
+  radius: number;
+  /** Rigid bodies: particles about the centre of mass in body axes, 3 numbers each */
+  local_positions?: number[];
+}
+
+export interface SessionDescription {
+  session: SessionId;
+  /** Frames of the same epoch belong to this description */
+  epoch: number;
+  tick: Tick;
+  /** Of the session */
+  name: string;
+  /** The scene's name */
+  scene: string;
+  /** The scene's title */
+  title: string;
+  playing: boolean;
+  /** Simulated seconds per second that are asked for */
+  speed: number;
+  /** Simulated time of a tick [s] */
+  tick_seconds: number;
+  gravity: Vector;
+  vat: null | VatDescription;
+  /** In the order of a frame's blocks */
+  bodies: BodyDescription[];
+}
+/** Pauses, then runs so many ticks */
+export interface ControlStepParams {
+  ticks?: number;
+}
+/** Sets how fast time goes on */
+export interface ControlSetSpeedParams {
+  /** Simulated seconds per second */
+  speed: number;
+}
+
+export interface ParameterError {
+  code: string;
+  path: Path;
+  message: string;
+}
+
+export interface ParseError {
+  code: -32700;
+  message: string;
+  data: {
+    kind: 'parse_error';
+    hint: Hint;
+    reason: 'parse_error' | 'too_deep' | 'duplicate_key' | 'too_many_values';
+  };
+}
+
+export interface InvalidRequest {
+  code: -32600;
+  message: string;
+  data: {
+    kind: 'invalid_request';
+    hint: Hint;
+  };
+}
+
+export interface MethodNotFound {
+  code: -32601;
+  message: string;
+  data: {
+    kind: 'method_not_found';
+    hint: Hint;
+  };
+}
+
+export interface InvalidParams {
+  code: -32602;
+  message: string;
+  data: {
+    kind: 'invalid_params';
+    hint: Hint;
+    path: Path;
+    errors: ParameterError[];
+  };
+}
+
+export interface InternalError {
+  code: -32603;
+  message: string;
+  data: {
+    kind: 'internal_error';
+    hint: Hint;
+  };
+}
+
+export interface NotJoined {
+  code: 1001;
+  message: string;
+  data: {
+    kind: 'not_joined';
+    hint: Hint;
+  };
+}
+
+export interface NoSuchSession {
+  code: 1002;
+  message: string;
+  data: {
+    kind: 'no_such_session';
+    hint: Hint;
+    path?: Path;
+  };
+}
+
+export interface NoSuchBody {
+  code: 1003;
+  message: string;
+  data: {
+    kind: 'no_such_body';
+    hint: Hint;
+    path: Path;
+  };
+}
+
+export interface NoSuchScene {
+  code: 1004;
+  message: string;
+  data: {
+    kind: 'no_such_scene';
+    hint: Hint;
+    path: Path;
+  };
+}
+
+export interface LimitReached {
+  code: 1005;
+  message: string;
+  data: {
+    kind: 'limit_reached';
+    hint: Hint;
+    path?: Path;
+    /** Its name in server.info */
+    limit: string;
+    maximum: number;
+  };
+}
+
+export interface NotAllowed {
+  code: 1006;
+  message: string;
+  data: {
+    kind: 'not_allowed';
+    hint: Hint;
+    path?: Path;
+  };
+}
+/** Twice a second and after each change */
+export interface SessionStatus {
+  tick: Tick;
+  /** Simulated time [s] */
+  time: number;
+  playing: boolean;
+  speed: number;
+  /** Achieved simulated seconds per second */
+  real_time_factor: number;
+  /** Participants that are connected */
+  clients: number;
+  particles: number;
+}
+/** A step with impossible values was undone */
+export interface SessionGuard {
+  tick: Tick;
+  cause: 'non_finite' | 'outside_domain' | 'too_fast' | 'too_many_pairs';
+  time: number;
+  body: BodyId;
+  particle: number;
+  /** If false, the session has paused at the last good state */
+  recovered: boolean;
+}
+
+export interface SessionClosed {
+  session: SessionId;
+  reason: string;
+}
+/** Asks for frames, or for other frames than before */
+export interface FramesSubscribeParams {
+  /** Greatest position error per axis [m] */
+  max_error?: number;
+  /** Frames of the ticks that it divides */
+  every?: number;
+  /** An eighth, a quarter, half or all of the particles of liquid and deformable bodies */
+  detail?: number;
+  /** Only what is inside [m] */
+  region?: {
+    min: Point;
+    max: Point;
+  };
+  /** Those that are wanted, each with its greatest error [m/s, kg/m^3, Pa] */
+  attributes?: {
+    speed?: number;
+    density?: number;
+    pressure?: number;
+  };
+}
+/** Acknowledges frames, so that more come */
+export interface FramesAckParams {
+  /** Of a frame that came, from its header; acknowledges all before it too */
+  number: number;
+}
+/** The tick is there while the client is in a session */
+export interface FramesAckResult {
+  tick?: Tick;
+}
+/** Pulls a particle to a place */
+export interface GrabStartParams {
+  body: BodyId;
+  particle: ParticleNumber;
+  target: Point;
+}
+
+export interface GrabStartResult {
+  tick: Tick;
+  grab: GrabId;
+}
+/** Pulls it to another place */
+export interface GrabMoveParams {
+  grab: GrabId;
+  target: Point;
+}
+/** Lets it go */
+export interface GrabEndParams {
+  grab: GrabId;
+}
+
+export interface SceneListResult {
+  /** Of the catalogue */
+  scenes: SceneEntry[];
+}
+
+export interface SceneEntry {
+  name: string;
+  title: string;
+  description: string;
+}
+/** Puts another scene into the session, at tick 0 */
+export interface SceneLoadParams {
+  scene: SceneReference;
+}
+/** What the server is and allows */
+export interface ServerInfoResult {
+  name: 'vat';
+  version: string;
+  protocol: 'vat.v1';
+  instruction_set: InstructionSet;
+  /** The server's clock [s since 1970] */
+  time: number;
+  /** Every limit by its name, as in the errors limit_reached */
+  limits: {
+    [k: string]: number;
+  };
+  /** The names of all methods */
+  methods: string[];
+}
+/** Makes a session, which plays; nobody has joined it yet */
+export interface SessionCreateParams {
+  name: Name;
+  scene: SceneReference;
+}
+
+export interface SessionCreateResult {
+  tick: Tick;
+  session: SessionId;
+}
+
+export interface SessionListResult {
+  sessions: SessionEntry[];
+}
+
+export interface SessionEntry {
+  session: SessionId;
+  name: string;
+  scene: string;
+  /** Participants that are connected */
+  clients: number;
+  playing: boolean;
+  tick: Tick;
+  particles: number;
+}
+/** Takes part in a session */
+export interface SessionJoinParams {
+  session?: SessionId;
+  name?: Name;
+  /** The token of a participant that is away */
+  resume?: string;
+}
+
+export interface SessionJoinResult {
+  tick: Tick;
+  session: SessionId;
+  participant: ParticipantId;
+  name: string;
+  role: Role;
+  /** A secret: who joins with it takes the participant over */
+  resume: string;
+  /** Whether it is one that was there before */
+  resumed: boolean;
+  description: SessionDescription;
+}
+/** Ends a session for all */
+export interface SessionCloseParams {
+  session: SessionId;
+}
+
+export interface SessionHashResult {
+  tick: Tick;
+  hash: Hash;
+  instruction_set: InstructionSet;
+  /** Simulated time [s] */
+  time: number;
+}
+
+export interface SessionStatsResult {
+  tick: Tick;
+  instruction_set: InstructionSet;
+  /** That step sessions */
+  threads: number;
+  particles: number;
+  sleeping_bodies: number;
+  /** This and what follows: since the scene was loaded */
+  ticks: number;
+  /** Parts of steps and undone ones included */
+  substeps: number;
+  undone_substeps: number;
+  /** Wall time of the ticks [s] */
+  seconds: number;
+  /** [s] */
+  longest_tick: number;
+  stages: {
+    stage: string;
+    calls: number;
+    seconds: number;
+  }[];
+}
+/** The bodies' state in full precision */
+export interface StateQueryParams {
+  /** Names or ids; by default all */
+  bodies?: (BodyId | Name)[];
+}
+
+export interface StateQueryResult {
+  tick: Tick;
+  /** Simulated time [s] */
+  time: number;
+  bodies: BodyState[];
+}
+
+export interface BodyState {
+  body: BodyId;
+  name: string;
+  kind: BodyKind;
+  /** Of its particles in the order of their numbers [m] */
+  positions: Vector[];
+  /** [m/s] */
+  velocities: Vector[];
+  /** Which particles are there, where some are gone */
+  numbers?: ParticleNumber[];
+  center_of_mass?: Vector;
+  orientation?: Quaternion;
+  velocity?: Vector;
+  angular_velocity?: Vector;
+}
+/** Adds a body */
+export interface WorldAddBodyParams {
+  body: SceneBody;
+}
+
+export interface WorldAddBodyResult {
+  tick: Tick;
+  body: BodyId;
+}
+/** Takes a body away */
+export interface WorldRemoveBodyParams {
+  body: BodyId;
+}
+/** Makes a deformable body liquid */
+export interface WorldMeltBodyParams {
+  body: BodyId;
+  material: Name;
+}
+/** Opens or closes an emitter */
+export interface WorldSetEmitterParams {
+  emitter: Name;
+  open: boolean;
+}
+/** Sets gravity */
+export interface WorldSetGravityParams {
+  /** [m/s^2] */
+  gravity: [number, number, number];
+}
+/** Sets what happens where two materials meet */
+export interface WorldSetInterfaceParams {
+  interface: SceneInterface;
+}
+/** Pushes a body for a while */
+export interface WorldApplyForceParams {
+  body: BodyId;
+  /** On the whole body [N] */
+  force: [number, number, number];
+  /** [s] */
+  duration: number;
+}
+
+/** Every method: what it takes and what it answers. */
+export interface Methods {
+  'control.play': { params: Nothing; result: InEffect };
+  'control.pause': { params: Nothing; result: InEffect };
+  'control.step': { params: ControlStepParams; result: InEffect };
+  'control.reset': { params: Nothing; result: InEffect };
+  'control.set_speed': { params: ControlSetSpeedParams; result: InEffect };
+  'frames.subscribe': { params: FramesSubscribeParams; result: InEffect };
+  'frames.unsubscribe': { params: Nothing; result: InEffect };
+  'frames.ack': { params: FramesAckParams; result: FramesAckResult };
+  'grab.start': { params: GrabStartParams; result: GrabStartResult };
+  'grab.move': { params: GrabMoveParams; result: InEffect };
+  'grab.end': { params: GrabEndParams; result: InEffect };
+  'scene.list': { params: Nothing; result: SceneListResult };
+  'scene.load': { params: SceneLoadParams; result: InEffect };
+  'server.info': { params: Nothing; result: ServerInfoResult };
+  'session.create': { params: SessionCreateParams; result: SessionCreateResult };
+  'session.list': { params: Nothing; result: SessionListResult };
+  'session.join': { params: SessionJoinParams; result: SessionJoinResult };
+  'session.leave': { params: Nothing; result: InEffect };
+  'session.close': { params: SessionCloseParams; result: InEffect };
+  'session.hash': { params: Nothing; result: SessionHashResult };
+  'session.stats': { params: Nothing; result: SessionStatsResult };
+  'state.query': { params: StateQueryParams; result: StateQueryResult };
+  'world.add_body': { params: WorldAddBodyParams; result: WorldAddBodyResult };
+  'world.remove_body': { params: WorldRemoveBodyParams; result: InEffect };
+  'world.melt_body': { params: WorldMeltBodyParams; result: InEffect };
+  'world.set_emitter': { params: WorldSetEmitterParams; result: InEffect };
+  'world.set_gravity': { params: WorldSetGravityParams; result: InEffect };
+  'world.set_interface': { params: WorldSetInterfaceParams; result: InEffect };
+  'world.apply_force': { params: WorldApplyForceParams; result: InEffect };
+}
+
+/** Every event: what its notification carries. */
+export interface Events {
+  'session.description': SessionDescription;
+  'session.status': SessionStatus;
+  'session.guard': SessionGuard;
+  'session.closed': SessionClosed;
+}
+
+export const kEventNames = [
+  'session.description',
+  'session.status',
+  'session.guard',
+  'session.closed',
+] as const;
