@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
 #include "protocol/block_coder.h"
 #include "protocol/frame_layout.h"
@@ -35,10 +36,10 @@ std::uint32_t key_class(std::int32_t size) {
 
 // ---- what only writers choose
 
+/// Mean distance along the axes over about so many samples.
 double distance_at(const GridBlock& block, const std::vector<std::uint32_t>& places,
-                   std::size_t stride) {
-  constexpr std::size_t kSamples = 256;
-  const std::size_t step = std::max<std::size_t>(1, (places.size() - stride) / kSamples);
+                   std::size_t stride, std::size_t samples) {
+  const std::size_t step = std::max<std::size_t>(1, (places.size() - stride) / samples);
   std::int64_t sum = 0;
   std::size_t count = 0;
   for (std::size_t i = stride; i < places.size(); i += step, ++count) {
@@ -78,12 +79,34 @@ bool three_predict_better(const GridBlock& block, const std::vector<std::uint32_
   return by_three < by_one;
 }
 
+/// By stride, from 2 on. Few samples tell which are worth a closer look; the others are infinite.
+std::vector<double> distances_of(const GridBlock& block, const std::vector<std::uint32_t>& places) {
+  constexpr std::size_t kMostStride = 2048;
+  constexpr std::size_t kLookedAt = 64;
+  constexpr std::size_t kGlance = 24;
+  constexpr std::size_t kSamples = 256;
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::vector<double> distances(std::min(kMostStride, places.size() / 2), kFar);
+  double most = kFar;
+  if (distances.size() > kLookedAt + 2) {
+    for (std::size_t s = 2; s < distances.size(); ++s) {
+      distances[s] = distance_at(block, places, s, kGlance);
+    }
+    std::vector<double> sorted(distances.begin() + 2, distances.end());
+    std::ranges::nth_element(sorted, sorted.begin() + kLookedAt);
+    most = sorted[kLookedAt];
+  }
+  for (std::size_t s = 2; s < distances.size(); ++s) {
+    const bool is_near = most == kFar || distances[s] < most;
+    distances[s] = is_near ? distance_at(block, places, s, kSamples) : kFar;
+  }
+  return distances;
+}
+
 Strides choose_strides(const GridBlock& block, const std::vector<std::uint32_t>& places) {
   constexpr std::size_t kLeast = 64;
-  constexpr std::size_t kMostStride = 2048;
   if (places.size() < kLeast) return {};
-  std::vector<double> distances(std::min(kMostStride, places.size() / 2));
-  for (std::size_t s = 2; s < distances.size(); ++s) distances[s] = distance_at(block, places, s);
+  const std::vector<double> distances = distances_of(block, places);
   Strides strides;
   strides.count = 3;
   const std::size_t second = nearest_stride(distances, 0);
