@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "protocol/frame_codec.h"
 #include "tests/bench/fanout/frame_facts.h"
 #include "tests/bench/fanout/segments.h"
@@ -43,6 +45,7 @@ TEST(BenchFanout, RatiosOfQuantilesHaveAnIntervalByWholeSegments) {
   EXPECT_EQ(odd.value, 100.0 / 5);
   EXPECT_EQ(odd.low, 2);
   EXPECT_EQ(odd.high, 20);
+  EXPECT_TRUE(std::isnan(bench::quantile_ratio(bench::Segments(4, {1}), ones, 0.5).low));
 }
 
 // One viewer at the scene's rate: what the machine does beside that only makes it less.

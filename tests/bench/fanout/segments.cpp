@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kDraws = 2000;
 constexpr double kOutside = 0.025;  // on either side of the interval
+constexpr std::size_t kLeastSegments = 5;
 
 double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -39,7 +40,7 @@ QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share)
   QuantileRatio ratio;
   ratio.value = pooled_quantile(b, share) / pooled_quantile(a, share);
   ratio.low = ratio.high = std::numeric_limits<double>::quiet_NaN();
-  if (a.empty() || b.empty()) return ratio;
+  if (std::min(a.size(), b.size()) < kLeastSegments) return ratio;
   std::mt19937 random(1);
   std::vector<float> draws;
   for (int i = 0; i < kDraws; ++i) {

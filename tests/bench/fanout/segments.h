@@ -22,7 +22,7 @@ double pooled_quantile(const Segments& segments, double share);
 
 /// pooled_quantile() of `b` over that of `a`. The interval is that of a bootstrap which draws whole
 /// segments, with replacement, for what disturbs a machine lasts longer than a value: the middle
-/// 95 % of 2000 draws.
+/// 95 % of 2000 draws. NaN where either has fewer than five segments: too few to draw from.
 QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share);
 
 }  // namespace vat::bench
