@@ -251,7 +251,7 @@ export interface SessionClosed {
 }
 /** Asks for frames, or for other frames than before */
 export interface FramesSubscribeParams {
-  /** Greatest position error per axis [m] */
+  /** Greatest position error per axis [m]; default: a 64th of the finest spacing */
   max_error?: number;
   /** Frames of the ticks that it divides */
   every?: number;
