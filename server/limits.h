@@ -25,6 +25,7 @@ struct ServerLimits {
   std::chrono::seconds frame_patience{30};
   /// In which a participant whose connection has ended can be resumed by another one.
   std::chrono::milliseconds resume_time{30'000};
+  std::size_t max_tokens = 10'000;  ///< invitations and tickets that are good at once
 };
 
 /// Fixed by PROTOCOL.md.
@@ -37,7 +38,8 @@ inline constexpr double kMaxSpeedFactor = 4;           // the same
 inline constexpr std::uint32_t kFrameWindow = 3;       // frames sent and not acknowledged
 inline constexpr std::size_t kMaxFrameGroups = 8;      // frames that are made of one state
 inline constexpr std::size_t kMaxControlQueueBytes = 1024 * 1024;
-inline constexpr std::size_t kMaxTokenBytes = 256;     // of what a client shows to be let in
+inline constexpr std::uint64_t kMaxExactCount = 9'007'199'254'740'992;  // 2^53: JSON's numbers
+inline constexpr std::size_t kMaxTokenBytes = 256;  // of what a client shows to be let in
 inline constexpr std::size_t kMaxLongMessages = 2;  // longer than that, in the control queue
 
 }  // namespace vat

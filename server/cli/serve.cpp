@@ -25,6 +25,7 @@
 #include "server/cli/command.h"
 #include "server/cli/open_files.h"
 #include "server/cli/scene_argument.h"
+#include "server/cli/serve_access.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
 #include "server/net/transport.h"
@@ -42,7 +43,8 @@ namespace asio = boost::asio;
 constexpr std::size_t kOtherFiles = 512;
 
 /// The file's name, and what ./vat check takes.
-constexpr std::string_view kOtherVariables[] = {"VAT_CONFIG", "VAT_FUZZ_SECONDS"};
+constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG",
+                                                "VAT_FUZZ_SECONDS"};
 
 constexpr const char* kFooter =
     R"(Every setting can also be a variable of the environment (VAT_MAX_CONNECTIONS for
@@ -85,11 +87,6 @@ std::string viewer_url(const std::string& host, std::uint16_t port) {
   return "http://" + (address.is_v6() ? "[" + text + "]" : text) + ":" + std::to_string(port) + "/";
 }
 
-void warn_of_open_host(const std::string& host) {
-  if (asio::ip::make_address(host).is_loopback()) return;
-  spdlog::warn("listening on {}: whoever can reach this address can use the server", host);
-}
-
 void raise_file_limit(std::size_t connections) {
   const std::size_t allowed = raise_open_files(connections + kOtherFiles);
   if (allowed >= connections + kOtherFiles) return;
@@ -113,13 +110,14 @@ TransportSettings transport_settings(const ServeSettings& options) {
 }
 
 /// Serves until a signal comes.
-int serve(const ServeSettings& options, const Catalogue& catalogue, const Scene& scene,
-          StaticFiles viewer) {
+int serve(const ServeSettings& options, const ServeAccess& access, const Catalogue& catalogue,
+          const Scene& scene, StaticFiles viewer) {
   StopSignal stop_signal;
   ServerSettings settings;
   settings.version = VAT_VERSION;
   settings.threads = options.threads;
   settings.limits = options.limits;
+  settings.access = access.settings;
   if (options.instructions != "best") {
     settings.instructions = parse_instruction_set(options.instructions).value();
   }
@@ -133,8 +131,9 @@ int serve(const ServeSettings& options, const Catalogue& catalogue, const Scene&
       make_http_site(std::move(viewer), [&] { return sessions.metrics(); }));
   raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
-  warn_of_open_host(options.host);
-  std::cout << "vat is at " << viewer_url(options.host, port) << " (Ctrl-C stops it)" << std::endl;
+  const std::string url = viewer_url(options.host, port);
+  tell_access(options, access, url);
+  std::cout << "vat is at " << url << " (Ctrl-C stops it)" << std::endl;
   stop_signal.wait();
   sessions.stop();
   transport->stop();
@@ -149,7 +148,10 @@ int load_and_serve(const ServeSettings& options) {
   Result<StaticFiles> viewer = StaticFiles::read(options.web_folder);
   if (!viewer) return fail(options.web_folder, viewer.errors());
   if (viewer.value().empty()) spdlog::warn("there is no viewer in {}", options.web_folder);
-  return serve(options, catalogue.value(), scene.value(), std::move(viewer).value());
+  const Result<ServeAccess> access = serve_access(options);
+  if (!access) return fail("access", access.errors());
+  return serve(options, access.value(), catalogue.value(), scene.value(),
+               std::move(viewer).value());
 }
 
 /// The settings, their table, and what the command line says of them.

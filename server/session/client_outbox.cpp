@@ -73,6 +73,7 @@ void ClientOutbox::send(std::string text) {
 std::uint64_t ClientOutbox::join() {
   const std::lock_guard lock(mutex_);
   membership_ += membership_ % 2 == 0 ? 1 : 2;
+  role_ = Role::none;
   is_subscribed_ = false;
   window_.clear();
   return membership_;
@@ -81,7 +82,18 @@ std::uint64_t ClientOutbox::join() {
 void ClientOutbox::leave() {
   const std::lock_guard lock(mutex_);
   membership_ += membership_ % 2;
+  role_ = Role::none;
   is_subscribed_ = false;
+}
+
+void ClientOutbox::set_role(std::uint64_t membership, Role role) {
+  const std::lock_guard lock(mutex_);
+  if (membership == membership_) role_ = role;
+}
+
+Role ClientOutbox::role() {
+  const std::lock_guard lock(mutex_);
+  return role_;
 }
 
 void ClientOutbox::send_event(std::uint64_t membership, const std::string& text) {

@@ -12,6 +12,7 @@
 
 #include "server/net/transport.h"
 #include "server/session/frame_window.h"
+#include "server/session/role.h"
 
 namespace vat {
 
@@ -79,6 +80,9 @@ class ClientOutbox {
   /// Begins a membership and ends the one before. Frames that are in flight no longer count.
   std::uint64_t join();
   void leave();
+  /// What the client may do in the session that it is in; none before it is taken in.
+  void set_role(std::uint64_t membership, Role role);
+  Role role();
   void send_event(std::uint64_t membership, const std::string& text);
   /// From now on frames are sent in this epoch only.
   void start_epoch(std::uint64_t membership, std::uint32_t epoch);
@@ -114,6 +118,7 @@ class ClientOutbox {
   ControlQueue queue_;
   bool closed_ = false;
   std::uint64_t membership_ = 0;  // even: in no session
+  Role role_ = Role::none;
   std::uint32_t epoch_ = 0;
   std::size_t commands_ = 0;  // in flight
   std::size_t command_bytes_ = 0;

@@ -26,7 +26,10 @@ constexpr ErrorRow kRows[] = {
     {ErrorKind::limit_reached, 1005, "limit_reached",
      "Ask for less, or end something that counts towards data.limit, and try again."},
     {ErrorKind::not_allowed, 1006, "not_allowed",
-     "Another client has what is needed, or the server stops; the message tells."},
+     "Ask whoever may: an owner gives roles, a controller hands over; or wait for what the message "
+     "tells."},
+    {ErrorKind::not_authenticated, 1007, "not_authenticated",
+     "Show a token that is good now by access.enter, or ask for a new one."},
 };
 
 constexpr bool is_in_order() {

@@ -18,7 +18,8 @@ enum class ErrorKind : std::uint8_t {
   no_such_body,
   no_such_scene,
   limit_reached,
-  not_allowed
+  not_allowed,
+  not_authenticated
 };
 
 /// What holds for all errors of a kind. Codes and names are stable: a new error gets a new kind.

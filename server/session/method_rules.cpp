@@ -1,19 +1,24 @@
 #include "server/session/method_rules.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
 namespace vat {
 namespace {
 
 constexpr bool kLogged = true;
 constexpr bool kNotLogged = false;
+constexpr bool kOfNamedSession = true;
 
 constexpr MethodRules kRules[] = {
     {"server.info", Role::none, MessageClass::query, kNotLogged},
-    {"scene.list", Role::none, MessageClass::query, kNotLogged},
-    {"session.create", Role::none, MessageClass::scene, kNotLogged},
-    {"session.list", Role::none, MessageClass::query, kNotLogged},
-    {"session.join", Role::none, MessageClass::control, kNotLogged},
+    {"scene.list", Role::viewer, MessageClass::query, kNotLogged},
+    {"session.create", Role::controller, MessageClass::scene, kNotLogged},
+    {"session.list", Role::viewer, MessageClass::query, kNotLogged},
+    {"session.join", Role::viewer, MessageClass::control, kNotLogged},
     {"session.leave", Role::viewer, MessageClass::control, kNotLogged},
-    {"session.close", Role::none, MessageClass::control, kNotLogged},
+    {"session.close", Role::owner, MessageClass::control, kNotLogged, kOfNamedSession},
     {"scene.load", Role::controller, MessageClass::scene, kLogged},
     {"control.play", Role::controller, MessageClass::control, kLogged},
     {"control.pause", Role::controller, MessageClass::control, kLogged},
@@ -32,16 +37,39 @@ constexpr MethodRules kRules[] = {
     {"grab.end", Role::controller, MessageClass::control, kLogged},
     {"frames.subscribe", Role::viewer, MessageClass::control, kNotLogged},
     {"frames.unsubscribe", Role::viewer, MessageClass::control, kNotLogged},
-    {"frames.ack", Role::none, MessageClass::query, kNotLogged},
+    {"frames.ack", Role::viewer, MessageClass::query, kNotLogged},
     {"state.query", Role::viewer, MessageClass::query, kNotLogged},
     {"session.hash", Role::viewer, MessageClass::query, kNotLogged},
     {"session.stats", Role::viewer, MessageClass::query, kNotLogged},
+    {"session.configure", Role::owner, MessageClass::control, kNotLogged},
+    {"session.invite", Role::owner, MessageClass::control, kNotLogged},
+    {"participant.rename", Role::viewer, MessageClass::control, kNotLogged},
+    {"participant.set_role", Role::owner, MessageClass::control, kNotLogged},
+    {"participant.kick", Role::owner, MessageClass::control, kNotLogged},
+    {"control.request", Role::viewer, MessageClass::control, kNotLogged},
+    {"control.hand_over", Role::controller, MessageClass::control, kNotLogged},
+    {"access.enter", Role::none, MessageClass::control, kNotLogged},
+    {"access.ticket", Role::owner, MessageClass::control, kNotLogged, kOfNamedSession},
 };
 
 }  // namespace
 
 std::span<const MethodRules> method_rules() {
   return kRules;
+}
+
+const MethodRules& rules_of(std::string_view method) {
+  const auto found = std::ranges::find(kRules, method, &MethodRules::method);
+  if (found == std::end(kRules)) {
+    throw std::logic_error("no rules for the method " + std::string(method));
+  }
+  return *found;
+}
+
+std::optional<RpcError> refuse_role(const MethodRules& rules, Role role) {
+  if (role >= rules.least_role) return {};
+  if (role == Role::none) return not_authenticated("the first message has to be access.enter");
+  return role_too_low(rules.method, role, rules.least_role);
 }
 
 const char* to_string(MessageClass message_class) {

@@ -1,27 +1,14 @@
 #include "server/session/method_table.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 namespace vat {
-namespace {
-
-const MethodRules& rules_of(std::string_view method) {
-  const auto found = std::ranges::find(method_rules(), method, &MethodRules::method);
-  if (found == method_rules().end()) {
-    throw std::logic_error("no rules for the method " + std::string(method));
-  }
-  return *found;
-}
-
-}  // namespace
-
 const std::vector<Method>& all_methods() {
   static const std::vector<Method> kMethods = [] {
     std::vector<Method> all;
-    for (const auto group : {server_methods(), session_methods(), control_methods(),
-                             world_methods(), grab_methods(), frame_methods(), state_methods()}) {
+    for (const auto group :
+         {server_methods(), session_methods(), control_methods(), world_methods(), grab_methods(),
+          frame_methods(), state_methods(), people_methods(), access_methods()}) {
       all.insert(all.end(), group.begin(), group.end());
     }
     for (Method& method : all) {

@@ -33,6 +33,8 @@ std::span<const Method> world_methods();
 std::span<const Method> grab_methods();
 std::span<const Method> frame_methods();
 std::span<const Method> state_methods();
+std::span<const Method> people_methods();
+std::span<const Method> access_methods();
 
 /// All of them, in the order of PROTOCOL.md.
 const std::vector<Method>& all_methods();

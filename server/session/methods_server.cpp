@@ -35,6 +35,7 @@ Json describe_limits(const ServerLimits& limits) {
       {"frame_window", kFrameWindow},
       {"frame_groups", kMaxFrameGroups},
       {"frame_patience_seconds", limits.frame_patience.count()},
+      {"tokens", limits.max_tokens},
       {"resume_seconds", std::chrono::duration<double>(limits.resume_time).count()},
       {"control_queue_bytes", kMaxControlQueueBytes},
   };
@@ -48,6 +49,7 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
       {"version", directory.settings().version},
       {"protocol", "vat.v1"},
       {"instruction_set", to_string(directory.settings().instructions)},
+      {"access", to_string(directory.settings().access.mode)},
       {"time", seconds_since_1970()},
       {"limits", describe_limits(directory.settings().limits)},
       {"methods", std::move(methods)},

@@ -26,9 +26,9 @@ ServerAction read_create(ObjectReader& params, Errors&) {
   };
 }
 
-std::optional<RpcResult> list_sessions(const SessionDirectory& directory) {
+std::optional<RpcResult> list_sessions(const SessionDirectory& directory, const Caller& caller) {
   Json sessions = Json::array();
-  for (const auto& [id, summary] : directory.list()) {
+  for (const auto& [id, summary] : directory.list(caller)) {
     sessions.push_back({{"session", id},
                         {"name", summary.name},
                         {"scene", summary.scene},
@@ -41,7 +41,8 @@ std::optional<RpcResult> list_sessions(const SessionDirectory& directory) {
 }
 
 ServerAction read_list(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, Caller&) { return list_sessions(directory); };
+  return
+      [](SessionDirectory& directory, Caller& caller) { return list_sessions(directory, caller); };
 }
 
 ServerAction read_join(ObjectReader& params, Errors& errors) {

@@ -42,6 +42,11 @@ Participant& Participants::add(std::string name, Role role) {
   return added;
 }
 
+void Participants::set_role(Participant& participant, Role role) {
+  participant.role = role;
+  if (participant.is_here()) participant.outbox->set_role(participant.membership, role);
+}
+
 Participant& Participants::ghost(ParticipantNumber number) {
   Participant& ghost = all_[number];
   ghost.number = number;
@@ -61,6 +66,7 @@ void Participants::connect(Participant& participant, std::shared_ptr<ClientOutbo
   participant.outbox = std::move(outbox);
   participant.membership = membership;
   participant.away_since.reset();
+  participant.outbox->set_role(membership, participant.role);
 }
 
 void Participants::disconnect(Participant& participant) {
@@ -69,9 +75,10 @@ void Participants::disconnect(Participant& participant) {
   participant.outbox.reset();
 }
 
-void Participants::send_event(const std::string& text) {
+void Participants::send_event(const std::string& text, Role least) {
   for (auto& [number, participant] : all_) {
-    if (participant.is_here()) participant.outbox->send_event(participant.membership, text);
+    if (!participant.is_here() || participant.role < least) continue;
+    participant.outbox->send_event(participant.membership, text);
   }
 }
 

@@ -54,6 +54,7 @@ class Participants {
 
   /// A further one, with the next number.
   Participant& add(std::string name, Role role);
+  void set_role(Participant& participant, Role role);
   /// The one of this number; a ghost where there is none yet.
   Participant& ghost(ParticipantNumber number);
   void remove(ParticipantNumber number);
@@ -62,7 +63,8 @@ class Participants {
                std::uint64_t membership);
   void disconnect(Participant& participant);
 
-  void send_event(const std::string& text);
+  /// To those of this role and those above.
+  void send_event(const std::string& text, Role least = Role::viewer);
   /// No client gets a frame of an earlier epoch from now on.
   void start_epoch(std::uint32_t epoch);
   /// Whether somebody here has subscribed to the frame of this tick.

@@ -12,6 +12,8 @@ const char* to_string(Role role) {
       return "controller";
     case Role::owner:
       return "owner";
+    case Role::admin:
+      return "admin";
   }
   return "";
 }

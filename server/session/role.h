@@ -4,12 +4,13 @@
 
 namespace vat {
 
-/// What a client may do in a session; each role may do what those before it may.
+/// What a client may do; each role may do what those before it may.
 enum class Role : std::uint8_t {
-  none,        ///< in no session
+  none,        ///< has not been let in
   viewer,      ///< watches and asks
   controller,  ///< changes what is simulated
-  owner        ///< decides who may, and ends the session
+  owner,       ///< of a session: decides who may, and ends it
+  admin        ///< of the server: all, in every session
 };
 const char* to_string(Role role);
 

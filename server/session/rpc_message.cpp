@@ -90,6 +90,17 @@ RpcError not_allowed(std::string message) {
   return {ErrorKind::not_allowed, std::move(message)};
 }
 
+RpcError role_too_low(std::string_view method, Role role, Role least) {
+  const std::string least_role = to_string(least);
+  return {ErrorKind::not_allowed,
+          std::string(method) + " needs the role " + least_role,
+          {{"role", to_string(role)}, {"least_role", least_role}}};
+}
+
+RpcError not_authenticated(std::string message) {
+  return {ErrorKind::not_authenticated, std::move(message)};
+}
+
 RpcError refused(const Errors& errors) {
   VAT_CHECK(!errors.empty());
   const Error& first = errors.front();

@@ -8,12 +8,13 @@
 
 #include "protocol/json_reader.h"
 #include "server/session/error_table.h"
+#include "server/session/role.h"
 
 /// JSON-RPC 2.0 messages and the errors of PROTOCOL.md.
 namespace vat {
 
-/// A reply's error. `data` is what stands beside its `kind` and `hint`: a parameter that is at fault
-/// by `path`, a pointer into `params`.
+/// A reply's error. `data` is what stands beside its `kind` and `hint`: a parameter that is at
+/// fault by `path`, a pointer into `params`.
 struct RpcError {
   ErrorKind kind;
   std::string message;  ///< for people
@@ -39,6 +40,9 @@ RpcError no_such_scene(std::string_view scene);
 /// `limit` is the name in server.info's `limits`, `maximum` its value.
 RpcError limit_reached(std::string_view limit, std::size_t maximum);
 RpcError not_allowed(std::string message);
+/// The role of who called the method is below the least that may.
+RpcError role_too_low(std::string_view method, Role role, Role least);
+RpcError not_authenticated(std::string message);
 /// What the core refused: its no_such_body has an error of its own, all else is invalid_params.
 RpcError refused(const Errors& errors);
 

@@ -23,11 +23,11 @@ double seconds(SteadyClock::duration time) {
 
 }  // namespace
 
-Session::Session(std::string id, std::string name, Simulation simulation,
+Session::Session(std::string id, SessionSettings settings, Simulation simulation,
                  const SessionEnvironment& environment, boost::asio::thread_pool& pool)
     : id_(id),
       strand_(boost::asio::make_strand(pool.get_executor())),
-      core_(std::move(id), std::move(name), std::move(simulation), environment),
+      core_(std::move(id), std::move(settings), std::move(simulation), environment),
       tick_timer_(strand_),
       status_timer_(strand_) {
   update_summary();
@@ -45,8 +45,9 @@ void Session::close(std::optional<Caller> caller) {
   schedule(&Session::close_turn);
 }
 
-void Session::join(Caller caller, std::uint64_t membership, Entrant entrant) {
-  put({std::move(caller), Join{membership, std::move(entrant)}});
+void Session::join(Caller caller, std::uint64_t membership, Entrant entrant,
+                   std::function<void()> undo) {
+  put({std::move(caller), Join{membership, std::move(entrant), std::move(undo)}});
 }
 
 void Session::disconnect(Caller caller) {
@@ -156,8 +157,13 @@ void Session::carry_out(Item item) {
 
 void Session::carry_out_join(Caller caller, const Join& join) {
   carry_out_pointers();  // the connection may have been another participant's
-  const Entry entry =
-      core_.join(caller.client(), join.membership, join.entrant, SteadyClock::now());
+  auto joined = core_.join(caller.client(), join.membership, join.entrant, SteadyClock::now());
+  if (auto* error = std::get_if<RpcError>(&joined)) {
+    join.undo();
+    caller.answer(std::move(*error));
+    return;
+  }
+  const auto& entry = std::get<Entry>(joined);
   caller.answer(Json{{"tick", core_.run().tick()},
                      {"session", id_},
                      {"participant", entry.participant.number},
@@ -165,6 +171,7 @@ void Session::carry_out_join(Caller caller, const Join& join) {
                      {"role", to_string(entry.participant.role)},
                      {"resume", entry.resume},
                      {"resumed", entry.resumed},
+                     {"settings", core_.describe_settings()},
                      {"description", core_.description()}});
 }
 
@@ -194,12 +201,17 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
     caller.answer(not_joined());
     return;
   }
+  if (auto error = refuse_role(*command.rules, participant->role)) {
+    caller.answer(*std::move(error));
+    return;
+  }
   if (command.rules->is_logged && command.rules->message_class == MessageClass::pointer) {
     pointers_.add(participant->number, std::move(command), std::move(caller));
     return;
   }
   // What came before it: to the session, or from this client.
-  if (command.rules->is_logged || pointers_.has_of(participant->number)) carry_out_pointers();
+  const bool is_query = command.rules->message_class == MessageClass::query;
+  if (!is_query || pointers_.has_of(participant->number)) carry_out_pointers();
   const SessionCore::Given given{participant->number, command};
   ActionResult result = std::move(core_.carry_out({&given, 1}).front());
   if (core_.take_interruption()) end_all_steps();

@@ -4,6 +4,7 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -30,7 +31,7 @@ namespace vat {
 /// all else of a session is used on its strand alone.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(std::string id, std::string name, Simulation simulation,
+  Session(std::string id, SessionSettings settings, Simulation simulation,
           const SessionEnvironment& environment, boost::asio::thread_pool& pool);
 
   void start();
@@ -39,10 +40,12 @@ class Session : public std::enable_shared_from_this<Session> {
   void close(std::optional<Caller> caller);
 
   /// Answered with who it is then, and the description.
-  void join(Caller caller, std::uint64_t membership, Entrant entrant);
+  /// Where it is refused, `undo` is called first.
+  void join(Caller caller, std::uint64_t membership, Entrant entrant, std::function<void()> undo);
   /// The caller's connection has ended; its participant may be resumed for a while.
   void disconnect(Caller caller);
   void leave(Caller caller);
+  /// The participant's role has to be as the command's rules ask when its turn comes.
   void post(Caller caller, SessionCommand command);
 
   /// As of the last answer or turn.
@@ -52,6 +55,7 @@ class Session : public std::enable_shared_from_this<Session> {
   struct Join {
     std::uint64_t membership;
     Entrant entrant;
+    std::function<void()> undo;
   };
   struct Leave {};
   struct Disconnect {};

@@ -13,8 +13,6 @@
 namespace vat {
 namespace {
 
-constexpr std::uint16_t kReplaced = 4010;
-
 double wall_clock() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration<double>(now).count();
@@ -22,10 +20,10 @@ double wall_clock() {
 
 }  // namespace
 
-SessionCore::SessionCore(std::string id, std::string name, Simulation simulation,
+SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
                          const SessionEnvironment& environment)
     : id_(std::move(id)),
-      name_(std::move(name)),
+      settings_(std::move(settings)),
       environment_(environment),
       run_(std::move(simulation), environment.metrics),
       frames_(std::make_shared<FrameFeed>(id_, run_.simulation().scene().vat, environment.metrics,
@@ -100,34 +98,6 @@ ActionResult SessionCore::apply(ParticipantNumber participant, const SessionActi
   }
 }
 
-Entry SessionCore::join(const std::shared_ptr<ClientOutbox>& outbox, std::uint64_t membership,
-                        const Entrant& entrant, SteadyClock::time_point now) {
-  status_due_ = true;
-  Participant* resumed =
-      entrant.resume ? participants_.find_resume(hash_of_token(*entrant.resume)) : nullptr;
-  const Participant* before = participants_.find_client(outbox->id());
-  if (before != nullptr && before != resumed) leave(before->number);
-  Participant& participant =
-      resumed != nullptr ? *resumed : participants_.add(entrant.name, entrant.role);
-  if (participant.is_here()) release_connection(participant, outbox->id());
-  participants_.connect(participant, outbox, membership);
-  outbox->start_epoch(membership, run_.epoch());
-  if (resumed != nullptr) {
-    if (participant.subscription) subscribe(participant, *participant.subscription, now);
-    return {participant, *entrant.resume, true};
-  }
-  if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);
-  std::string token = make_token();
-  participant.resume = hash_of_token(token);
-  return {participant, std::move(token)};
-}
-
-void SessionCore::release_connection(const Participant& participant, ConnectionId next) {
-  const std::shared_ptr<ClientOutbox>& outbox = participant.outbox;
-  if (participant.subscription) frames_->remove(outbox->id());
-  if (outbox->id() != next) outbox->close(kReplaced, "replaced by a resumed connection");
-}
-
 void SessionCore::subscribe(Participant& participant, const Subscription& subscription,
                             SteadyClock::time_point now) {
   const std::uint64_t number = participant.outbox->subscribe(participant.membership, frames_, now);
@@ -142,49 +112,6 @@ void SessionCore::unsubscribe(Participant& participant) {
   participant.subscription.reset();
   participant.outbox->unsubscribe();
   frames_->remove(participant.outbox->id());
-}
-
-void SessionCore::disconnect(ConnectionId client, SteadyClock::time_point now) {
-  Participant* participant = participants_.find_client(client);
-  if (participant == nullptr) return;
-  if (participant->subscription) frames_->remove(client);
-  participants_.disconnect(*participant);
-  participant->away_since = now;
-  status_due_ = true;
-  bound_absences();
-}
-
-void SessionCore::leave(ParticipantNumber number) {
-  const Participant* participant = participants_.find(number);
-  if (participant == nullptr) return;
-  for (const auto& [grab, body] : participant->grabs) {
-    const Status ended = run_.simulation().grab_end(grab);
-    if (!ended) spdlog::warn("session {}: grab {} was gone already", id_, grab);
-  }
-  if (participant->is_here() && participant->subscription) {
-    frames_->remove(participant->outbox->id());
-  }
-  participants_.remove(number);
-  status_due_ = true;
-}
-
-void SessionCore::end_absences(SteadyClock::time_point now) {
-  std::vector<ParticipantNumber> gone;
-  for (const auto& [number, participant] : participants_.all()) {
-    if (!participant.is_away()) continue;
-    if (now - *participant.away_since >= environment_.limits.resume_time) gone.push_back(number);
-  }
-  for (const ParticipantNumber number : gone) leave(number);
-}
-
-void SessionCore::bound_absences() {
-  if (participants_.away() <= environment_.limits.max_clients_per_session) return;
-  const Participant* first = nullptr;
-  for (const auto& [number, participant] : participants_.all()) {
-    if (!participant.is_away()) continue;
-    if (first == nullptr || participant.away_since < first->away_since) first = &participant;
-  }
-  leave(first->number);
 }
 
 bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
@@ -272,7 +199,7 @@ Json SessionCore::description() const {
       {"session", id_},
       {"epoch", run_.epoch()},
       {"tick", run_.tick()},
-      {"name", name_},
+      {"name", settings_.name},
       {"scene", scene.name},
       {"title", scene.title},
       {"playing", playing_},
@@ -285,8 +212,8 @@ Json SessionCore::description() const {
 }
 
 SessionSummary SessionCore::summary() const {
-  return {name_,       run_.simulation().scene().name,    participants_.connected(), playing_,
-          run_.tick(), run_.simulation().particle_count()};
+  return {settings_.name, run_.simulation().scene().name,     participants_.connected(), playing_,
+          run_.tick(),    run_.simulation().particle_count(), settings_.creator};
 }
 
 }  // namespace vat

@@ -27,13 +27,23 @@ struct SessionSummary {
   bool playing = false;
   std::uint64_t tick = 0;
   std::size_t particles = 0;
+  ConnectionId creator = 0;  ///< who is its owner once it joins; 0: nobody
 };
 
 /// Who asks to take part.
 struct Entrant {
   std::string name;                   ///< empty: one is made up
-  Role role = Role::controller;       ///< of a further participant
   std::optional<std::string> resume;  ///< the token of the participant to be resumed
+  std::optional<Role> role;           ///< by invitation; absent: the usual one
+  bool passes_lock = false;
+};
+
+/// What an owner decides of a session.
+struct SessionSettings {
+  std::string name;
+  Role default_role = Role::controller;  ///< of who joins without an invitation
+  bool is_locked = false;                ///< nobody joins without an invitation
+  ConnectionId creator = 0;              ///< owner as soon as it joins; 0: nobody
 };
 
 /// What a connection is told of itself when it comes in.
@@ -70,9 +80,10 @@ struct SessionCommand {
 /// many commands at once make one description, one status and one frame.
 class SessionCore {
  public:
-  SessionCore(std::string id, std::string name, Simulation simulation,
+  SessionCore(std::string id, SessionSettings settings, Simulation simulation,
               const SessionEnvironment& environment);
 
+  const std::string& id() const { return id_; }
   const SessionEnvironment& environment() const { return environment_; }
   SessionRun& run() { return run_; }
   const SessionRun& run() const { return run_; }
@@ -103,12 +114,22 @@ class SessionCore {
 
   /// A connection comes in, as a further participant or as the one that it resumes, whose other
   /// connection, if it has one, is closed. Ends what the connection was in the session before.
-  Entry join(const std::shared_ptr<ClientOutbox>& outbox, std::uint64_t membership,
-             const Entrant& entrant, SteadyClock::time_point now);
+  std::variant<Entry, RpcError> join(const std::shared_ptr<ClientOutbox>& outbox,
+                                     std::uint64_t membership, const Entrant& entrant,
+                                     SteadyClock::time_point now);
   /// The participant of the connection, if there is one, may be resumed for a while.
   void disconnect(ConnectionId client, SteadyClock::time_point now);
   /// Ends the participant's grabs, and the participant.
   void leave(ParticipantNumber number);
+  /// Ends its connection too, told why.
+  void kick(ParticipantNumber number, const std::string& reason);
+  void rename(Participant& participant, std::string name);
+  /// Who may no longer change things lets go of what it held. A session has one owner at most: a
+  /// further one takes the place of the one before, who becomes a controller.
+  void set_role(Participant& participant, Role role);
+  const SessionSettings& settings() const { return settings_; }
+  void configure(SessionSettings settings);
+  Json describe_settings() const;
   /// Those who have been away for too long leave.
   void end_absences(SteadyClock::time_point now);
   /// The participant gets the present state of a session that pauses, the next of one that plays,
@@ -142,12 +163,14 @@ class SessionCore {
   void start_epoch();
   void publish_frame();
   void fill_state();
+  Participant& take_in(const ClientOutbox& outbox, const Entrant& entrant, std::string& token);
+  void end_grabs(const Participant& participant);
   void release_connection(const Participant& participant, ConnectionId next);
   /// So that those who come and go at once do not grow without bound.
   void bound_absences();
 
   const std::string id_;
-  const std::string name_;
+  SessionSettings settings_;
   const SessionEnvironment& environment_;
   SessionRun run_;
   Participants participants_;

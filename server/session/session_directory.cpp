@@ -18,20 +18,22 @@ std::size_t thread_count(std::size_t wanted) {
   return std::max<std::size_t>(2, std::thread::hardware_concurrency());
 }
 
+}  // namespace
+
 SessionId to_id(std::uint64_t number) {
   return "s" + std::to_string(number);
 }
-
-}  // namespace
 
 SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings settings)
     : catalogue_(catalogue),
       settings_(std::move(settings)),
       runner_(thread_count(settings_.threads)),
+      tokens_(settings_.limits.max_tokens),
       frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
-      environment_{catalogue_, settings_.limits, settings_.instructions,
-                   runner_,    metrics_,         frame_threads_},
+      environment_{catalogue_,     settings_.limits, settings_.instructions, runner_, metrics_,
+                   frame_threads_, tokens_},
       pool_(runner_.thread_count()),
+      later_(std::make_shared<Later>(pool_)),
       creations_(boost::asio::make_strand(pool_)) {}
 
 SessionDirectory::~SessionDirectory() {
@@ -42,7 +44,14 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   const std::lock_guard lock(mutex_);
   if (stopped_ || clients_.size() >= settings_.limits.max_connections) return false;
   const ConnectionId id = connection->id();
-  clients_[id].outbox = std::make_shared<ClientOutbox>(std::move(connection));
+  Client& client = clients_[id];
+  client.outbox = std::make_shared<ClientOutbox>(std::move(connection));
+  if (settings_.access.mode == AccessMode::open) {
+    client.access.role = Role::controller;
+  } else {
+    later_->at(SteadyClock::now() + settings_.access.enter_time,
+               [this, id] { close_unless_entered(id); });
+  }
   return true;
 }
 
@@ -56,11 +65,11 @@ void SessionDirectory::disconnect(ConnectionId id) {
   clients_.erase(client);
 }
 
-std::shared_ptr<ClientOutbox> SessionDirectory::find_client(ConnectionId id) const {
+SessionDirectory::Sender SessionDirectory::find_client(ConnectionId id) const {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(id);
-  if (client == clients_.end() || client->second.outbox->is_closed()) return nullptr;
-  return client->second.outbox;
+  if (client == clients_.end() || client->second.outbox->is_closed()) return {};
+  return {client->second.outbox, client->second.access.role};
 }
 
 std::optional<RpcError> SessionDirectory::refuse_session() const {
@@ -74,7 +83,8 @@ std::optional<RpcError> SessionDirectory::refuse_session_locked() const {
   return limit_reached("sessions", settings_.limits.max_sessions);
 }
 
-std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene) {
+std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene,
+                                                           ConnectionId creator) {
   if (auto error = refuse_session()) return *std::move(error);
   auto simulation = make_simulation(scene, environment_);  // without the lock
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
@@ -82,9 +92,11 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   const std::lock_guard lock(mutex_);
   if (auto error = refuse_session_locked()) return *std::move(error);  // it took long
   const Sessions::key_type number = ++last_session_;
-  const auto session =
-      std::make_shared<Session>(to_id(number), std::move(name),
-                                std::get<Simulation>(std::move(simulation)), environment_, pool_);
+  const Role default_role =
+      settings_.access.mode == AccessMode::open ? Role::controller : Role::viewer;
+  const auto session = std::make_shared<Session>(
+      to_id(number), SessionSettings{std::move(name), default_role, false, creator},
+      std::get<Simulation>(std::move(simulation)), environment_, pool_);
   sessions_.emplace(number, session);
   session->start();
   spdlog::info("session {} created: {}", to_id(number), scene.name);
@@ -95,11 +107,16 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
                                                        Json scene) {
   const std::lock_guard lock(mutex_);
   if (auto error = refuse_session_locked()) return error;
-  boost::asio::post(creations_, [this, caller = std::move(caller), name = std::move(name),
+  const ConnectionId creator = caller.client()->id();
+  const Client* client = find_caller(caller);
+  if (client != nullptr && !client->access.session.empty()) {
+    return not_allowed("the token is for session " + client->access.session + " only");
+  }
+  boost::asio::post(creations_, [this, creator, caller = std::move(caller), name = std::move(name),
                                  scene = std::move(scene)]() mutable {
     const ThreadPoolRunner::Guest guest(runner_);
     try {
-      caller.answer(create_from(scene, std::move(name)));
+      caller.answer(create_from(scene, std::move(name), creator));
     } catch (const std::exception& error) {
       spdlog::error("session.create failed: {}", error.what());
       caller.answer(internal_error());
@@ -108,19 +125,22 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
   return {};
 }
 
-RpcResult SessionDirectory::create_from(const Json& scene, std::string name) {
+RpcResult SessionDirectory::create_from(const Json& scene, std::string name, ConnectionId creator) {
   if (auto error = refuse_session()) return *std::move(error);  // others were before it
   auto read = read_client_scene(scene, catalogue_);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
-  auto created = create(std::move(name), std::get<Scene>(read));
+  auto created = create(std::move(name), std::get<Scene>(read), creator);
   if (auto* error = std::get_if<RpcError>(&created)) return std::move(*error);
   return Json{{"session", std::get<SessionId>(created)}, {"tick", 0}};
 }
 
-std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const {
+std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list(
+    const Caller& caller) const {
   const std::lock_guard lock(mutex_);
+  const Client* client = find_caller(caller);
   std::vector<std::pair<SessionId, SessionSummary>> list;
   for (const auto& [number, session] : sessions_) {
+    if (client == nullptr || refuse_access(*client, number)) continue;
     list.emplace_back(to_id(number), session->summary());
     list.back().second.clients = client_count(number);
   }
@@ -130,11 +150,15 @@ std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list() const
 std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::optional<SessionId>& id,
                                                Entrant entrant) {
   const std::lock_guard lock(mutex_);
-  const auto session = id ? find_session(*id) : sessions_.begin();
-  if (session == sessions_.end()) return no_such_session(id ? *id : "at all", "/session");
   const auto found = clients_.find(caller.client()->id());
   if (found == clients_.end()) return not_allowed("the connection is closed");
   Client& client = found->second;
+  const bool has_own = !id && !client.access.session.empty();
+  const auto session = id        ? find_session(*id)
+                       : has_own ? find_session(client.access.session)
+                                 : sessions_.begin();
+  if (session == sessions_.end()) return no_such_session(id ? *id : "at all", "/session");
+  if (auto error = refuse_access(client, session->first)) return error;
   const std::size_t others =
       client_count(session->first) - (client.session == session->first ? 1 : 0);
   if (others >= settings_.limits.max_clients_per_session) {
@@ -142,7 +166,11 @@ std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::option
   }
   if (client.session != session->first) leave_session(client, Caller(client.outbox, {}));
   client.session = session->first;
-  session->second->join(std::move(caller), client.outbox->join(), std::move(entrant));
+  session->second->join(std::move(caller), client.outbox->join(),
+                        complete(std::move(entrant), client),
+                        [this, connection = client.outbox->id(), number = session->first] {
+                          undo_join(connection, number);
+                        });
   return {};
 }
 
@@ -167,6 +195,7 @@ std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId&
   const std::lock_guard lock(mutex_);
   const auto session = find_session(id);
   if (session == sessions_.end()) return no_such_session(id, "/session");
+  if (auto error = refuse_role(caller, rules_of("session.close"), session->first)) return error;
   close_session(session, reason, std::move(caller));
   return {};
 }
@@ -202,6 +231,7 @@ void SessionDirectory::stop() {
     stopped_ = true;
     while (!sessions_.empty()) close_session(sessions_.begin(), "the server stops", {});
   }
+  later_->stop();
   pool_.join();
   frame_threads_.join();
 }
@@ -234,6 +264,7 @@ void SessionDirectory::close_session(Sessions::iterator session, const std::stri
     client.outbox->send(event);  // the last that it hears of the session
   }
   session->second->close(std::move(caller));
+  tokens_.remove_session(id);
   sessions_.erase(session);
   spdlog::info("session {} closed: {}", id, reason);
 }

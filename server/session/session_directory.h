@@ -13,10 +13,15 @@
 #include <variant>
 #include <vector>
 
+#include "server/access/access.h"
+#include "server/session/later.h"
 #include "server/session/session.h"
 #include "server/session/session_server.h"
 
 namespace vat {
+
+/// The id of the session with this number.
+SessionId to_id(std::uint64_t number);
 
 /// The sessions, the clients and who is in which; owns the threads. Safe to use from any thread.
 class SessionDirectory {
@@ -30,15 +35,28 @@ class SessionDirectory {
   /// False if there are too many already.
   bool connect(std::shared_ptr<Connection> connection);
   void disconnect(ConnectionId id);
-  /// Null if it is not connected, or is being closed.
-  std::shared_ptr<ClientOutbox> find_client(ConnectionId id) const;
+  /// Who has sent a message.
+  struct Sender {
+    std::shared_ptr<ClientOutbox> outbox;  ///< null: it is not connected, or is being closed
+    Role role = Role::none;                ///< which it was let in with
+  };
+  Sender find_client(ConnectionId id) const;
 
-  std::variant<SessionId, RpcError> create(std::string name, const Scene& scene);
+  /// Lets the client in anew, with what the token gives; answered at once, or later where the token
+  /// is not good.
+  std::optional<RpcResult> enter(Caller& caller, std::string_view token);
+  /// A token for one use, soon. Without a session, which is an admin's to give, it is good in all.
+  RpcResult issue_ticket(const Caller& caller, Role role, const std::optional<SessionId>& session);
+
+  /// `creator` is its owner once it joins; 0: nobody is.
+  std::variant<SessionId, RpcError> create(std::string name, const Scene& scene,
+                                           ConnectionId creator);
   /// Reads the scene and creates the session on a thread of the pool, one at a time, and answers
   /// there; or gives the error at once.
   std::optional<RpcError> create_later(Caller& caller, std::string name, Json scene);
 
-  std::vector<std::pair<SessionId, SessionSummary>> list() const;
+  /// Those that are open to the caller.
+  std::vector<std::pair<SessionId, SessionSummary>> list(const Caller& caller) const;
   /// Answered by the session, or by the error that is returned. Without an id: the first session.
   std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id, Entrant entrant);
   std::optional<RpcError> leave(Caller& caller);
@@ -59,13 +77,26 @@ class SessionDirectory {
   struct Client {
     std::shared_ptr<ClientOutbox> outbox;
     Sessions::key_type session = 0;  // 0: none
+    Grant access;
+    std::size_t wrong_tokens = 0;
   };
 
-  RpcResult create_from(const Json& scene, std::string name);
+  RpcResult create_from(const Json& scene, std::string name, ConnectionId creator);
   /// Why there can be no further session, if so.
   std::optional<RpcError> refuse_session() const;
 
+  /// The token's, if it is good.
+  std::optional<Grant> find_grant(std::string_view token);
+  void close_unless_entered(ConnectionId id);
+  void undo_join(ConnectionId id, Sessions::key_type session);
+
   // With the mutex held.
+  const Client* find_caller(const Caller& caller) const;
+  /// Why the caller may not call a method that names this session, if so.
+  std::optional<RpcError> refuse_role(const Caller& caller, const MethodRules& rules,
+                                      Sessions::key_type session) const;
+  std::optional<RpcError> refuse_access(const Client& client, Sessions::key_type session) const;
+  Entrant complete(Entrant entrant, const Client& client) const;
   Sessions::iterator find_session(const SessionId& id);
   std::size_t client_count(Sessions::key_type session) const;
   void leave_session(Client& client, Caller caller);
@@ -76,13 +107,15 @@ class SessionDirectory {
 
   const Catalogue& catalogue_;
   const ServerSettings settings_;
-  // Five that outlive the sessions. The runner's threads help with their steps as far as the
+  // Six that outlive the sessions. The runner's threads help with their steps as far as the
   // pool's have nothing to do.
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
+  AccessTokens tokens_;
   boost::asio::thread_pool frame_threads_;
   const SessionEnvironment environment_;
   boost::asio::thread_pool pool_;
+  const std::shared_ptr<Later> later_;
   // Creations come one after the other: they take one thread from the sessions at most.
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations_;
 

@@ -4,6 +4,7 @@
 
 #include "core/support/instruction_set.h"
 #include "protocol/scene_json.h"
+#include "server/access/access.h"
 #include "server/limits.h"
 #include "server/server_metrics.h"
 #include "server/task_runner.h"
@@ -18,6 +19,7 @@ struct SessionEnvironment {
   ThreadPoolRunner& runner;  ///< for the blocks of all sessions' steps
   ServerMetrics& metrics;
   boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send all sessions' frames
+  AccessTokens& tokens;
 };
 
 }  // namespace vat

@@ -35,16 +35,18 @@ class SessionServer::Impl {
   SessionDirectory& directory() { return directory_; }
 
   /// Carries out a message. An error is answered to the id that was found, or to null.
-  void receive(const std::shared_ptr<ClientOutbox>& client, std::string_view message) {
+  void receive(const SessionDirectory::Sender& sender, std::string_view message) {
+    const std::shared_ptr<ClientOutbox>& client = sender.outbox;
     std::optional<Json> id;
     try {
-      auto request = read(message, id);
+      auto request = read(message, sender.role, id);
       if (auto* error = std::get_if<RpcError>(&request)) {
         client->send(write_reply(id.value_or(nullptr), std::move(*error)));
         return;
       }
       Caller caller(client, id);
-      if (auto result = call(caller, std::get<RpcRequest>(std::move(request)), message.size())) {
+      if (auto result =
+              call(caller, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
         caller.answer(*std::move(result));
       }
     } catch (const std::exception& error) {
@@ -56,7 +58,12 @@ class SessionServer::Impl {
  private:
   const ServerLimits& limits() const { return directory_.settings().limits; }
 
-  std::variant<RpcRequest, RpcError> read(std::string_view message, std::optional<Json>& id) const {
+  std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
+                                          std::optional<Json>& id) const {
+    // Who has not been let in has nothing long to say.
+    if (role == Role::none && message.size() > limits().max_message_bytes) {
+      return limit_reached("message_bytes", limits().max_message_bytes);
+    }
     if (message.size() > limits().max_scene_message_bytes) {
       return limit_reached("scene_message_bytes", limits().max_scene_message_bytes);
     }
@@ -66,8 +73,11 @@ class SessionServer::Impl {
   }
 
   /// The answer, unless someone has taken the caller to answer later.
-  std::optional<RpcResult> call(Caller& caller, RpcRequest request, std::size_t bytes) {
+  std::optional<RpcResult> call(Caller& caller, Role role, RpcRequest request, std::size_t bytes) {
     const Method* method = find_method(request.method);
+    if (role == Role::none && (method == nullptr || method->rules.least_role > Role::none)) {
+      return not_authenticated("the first message has to be access.enter");
+    }
     if (method == nullptr) return method_not_found(request.method);
     if (method->rules.message_class != MessageClass::scene && bytes > limits().max_message_bytes) {
       return limit_reached("message_bytes", limits().max_message_bytes);
@@ -79,6 +89,9 @@ class SessionServer::Impl {
     Errors errors;
     ObjectReader params(request.params, "", errors);
     if (const auto* read = std::get_if<Method::ForServer>(&method->read)) {
+      if (!method->rules.is_of_named_session) {
+        if (auto error = refuse_role(method->rules, role)) return *std::move(error);
+      }
       const ServerAction action = (*read)(params, errors);
       params.refuse_unknown();
       if (!errors.empty()) return invalid_params(errors);
@@ -103,7 +116,7 @@ SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings
 SessionServer::~SessionServer() = default;
 
 Result<SessionId> SessionServer::create_session(std::string name, const Scene& scene) {
-  auto created = impl_->directory().create(std::move(name), scene);
+  auto created = impl_->directory().create(std::move(name), scene, 0);
   if (const auto* error = std::get_if<RpcError>(&created)) return to_errors(*error);
   return std::get<SessionId>(std::move(created));
 }
@@ -123,12 +136,12 @@ void SessionServer::opened(std::shared_ptr<Connection> connection) {
 }
 
 void SessionServer::text_received(ConnectionId id, std::string_view message) {
-  const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id);
-  if (client != nullptr) impl_->receive(client, message);
+  const SessionDirectory::Sender sender = impl_->directory().find_client(id);
+  if (sender.outbox != nullptr) impl_->receive(sender, message);
 }
 
 void SessionServer::binary_received(ConnectionId id, std::string_view) {
-  const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id);
+  const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id).outbox;
   if (client == nullptr) return;
   client->send(write_reply(nullptr, invalid_request("binary messages are for frames from here")));
 }

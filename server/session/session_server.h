@@ -8,6 +8,7 @@
 #include "core/support/instruction_set.h"
 #include "core/support/result.h"
 #include "protocol/scene_json.h"
+#include "server/access/access.h"
 #include "server/limits.h"
 #include "server/net/transport.h"
 
@@ -21,6 +22,7 @@ struct ServerSettings {
   std::string version;  ///< told by server.info
   InstructionSet instructions = best_instruction_set();
   std::size_t threads = 0;  ///< that step the sessions; 0: as many as the machine has cores
+  AccessSettings access;
 };
 
 /// The server behind the transport: its sessions, its clients, and the methods of PROTOCOL.md.

@@ -67,6 +67,17 @@ std::vector<Setting> server_group(ServeSettings& s) {
   };
 }
 
+std::vector<Setting> access_group(ServeSettings& s) {
+  return {
+      word_setting("access", s.access, {"auto", "open", "token"},
+                   "Who is let in: open: everybody; token: who shows a token; auto: open on the "
+                   "machine's own addresses (127.0.0.1, ::1), token on others"),
+      text_setting("admin_token_file", s.admin_token_file, "FILE",
+                   "Whose first line is the admin's token, in place of the variable "
+                   "VAT_ADMIN_TOKEN"),
+  };
+}
+
 std::vector<Setting> connection_limits(ServeSettings& s) {
   ServerLimits& limits = s.limits;
   return {
@@ -88,6 +99,8 @@ std::vector<Setting> connection_limits(ServeSettings& s) {
                    "Without an acknowledgement, after which a viewer is closed"),
       time_setting("resume_seconds", limits.resume_time, 0, kMostSeconds,
                    "In which a participant whose connection has ended can be resumed"),
+      number_setting<std::size_t>("max_tokens", limits.max_tokens, 1, 1'000'000,
+                                  "Invitations and tickets that are good at once"),
       time_setting("handshake_seconds", s.handshake_timeout, 0.001, kMostSeconds,
                    "For a whole HTTP request, or the upgrade to a WebSocket"),
       time_setting("ping_seconds", s.ping_interval, 0.001, kMostSeconds,
@@ -112,6 +125,7 @@ std::vector<Setting> session_limits(ServerLimits& limits) {
 std::vector<Setting> serve_settings(ServeSettings& target) {
   std::vector<Setting> all;
   add_group(all, "Server", server_group(target));
+  add_group(all, "Access", access_group(target));
   add_group(all, "Limits of connections", connection_limits(target));
   add_group(all, "Limits of sessions", session_limits(target.limits));
   return all;

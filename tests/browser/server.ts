@@ -11,6 +11,9 @@ function program(): string {
   return path;
 }
 
+/** Of the servers of the tests. */
+export const kAdminToken = 'the admin token of the browser tests';
+
 /** The real server, as a user starts it. */
 export class Server {
   private process: ChildProcess | undefined;
@@ -24,6 +27,7 @@ export class Server {
   async start(): Promise<void> {
     const child = spawn(program(), ['serve', '--port', String(this.port)], {
       stdio: ['ignore', 'pipe', 'inherit'],
+      env: { ...process.env, VAT_ADMIN_TOKEN: kAdminToken },
     });
     this.process = child;
     this.port = await announcedPort(child);

@@ -1,7 +1,7 @@
 import { afterAll, afterEach, beforeAll, expect, it } from 'vitest';
 import { startFront } from './front';
 import { Observer } from './observer';
-import { Server } from './server';
+import { kAdminToken, Server } from './server';
 import { Viewer } from './viewer';
 
 /** What a user sees when things do not go as planned. */
@@ -113,6 +113,7 @@ it('says that its session was closed, and goes to the one that is left', async (
   await page.untilTick(1);
   const [first] = (await observer.request('session.list', {})).sessions;
   await observer.request('session.create', { name: 'other', scene: 'dam-break' });
+  await observer.request('access.enter', { token: kAdminToken });
   await observer.request('session.close', { session: first!.session });
   await page.untilScene('dam-break');
   await page.untilTick(1);

@@ -50,10 +50,11 @@ class SessionCoreTest : public testing::Test {
   ThreadPoolRunner runner{1};
   ServerMetrics metrics;
   boost::asio::thread_pool frame_threads{1};
-  const SessionEnvironment environment{catalogue, limits,  InstructionSet::baseline,
-                                       runner,    metrics, frame_threads};
-  SessionCore core{"s1", "one", Simulation::create(to_scene(mixed_scene_text())).value(),
-                   environment};
+  AccessTokens tokens{1};
+  const SessionEnvironment environment{
+      catalogue, limits, InstructionSet::baseline, runner, metrics, frame_threads, tokens};
+  SessionCore core{
+      "s1", {"one"}, Simulation::create(to_scene(mixed_scene_text())).value(), environment};
 
  private:
   std::vector<std::pair<std::shared_ptr<FakeConnection>, std::shared_ptr<ClientOutbox>>> viewers_;

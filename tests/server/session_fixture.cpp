@@ -10,19 +10,12 @@
 namespace vat::test {
 namespace {
 
-Catalogue make_catalogue() {
-  const TemporaryFolder folder;
-  folder.write("mixed.json", mixed_scene_text());
-  folder.write("unstable.json", unstable_scene_text());
-  Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
-  return std::move(catalogue).value();
-}
-
 ServerSettings make_settings(const ServerLimits& limits) {
   ServerSettings settings;
   settings.limits = limits;
   settings.version = "1.2.3";
   settings.threads = 2;
+  settings.access.admin = hash_of_token(kAdminToken);
   return settings;
 }
 
@@ -33,6 +26,14 @@ Json make_request(std::string_view method, const Json& params) {
 }
 
 }  // namespace
+
+Catalogue test_catalogue() {
+  const TemporaryFolder folder;
+  folder.write("mixed.json", mixed_scene_text());
+  folder.write("unstable.json", unstable_scene_text());
+  Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
+  return std::move(catalogue).value();
+}
 
 const std::string& mixed_scene_text() {
   static const std::string kText = R"({
@@ -151,7 +152,7 @@ std::vector<Json> TestClient::events(std::string_view event) const {
 }
 
 SessionTest::SessionTest(const ServerLimits& limits)
-    : catalogue(make_catalogue()), server(catalogue, make_settings(limits)) {
+    : catalogue(test_catalogue()), server(catalogue, make_settings(limits)) {
   if (!server.create_session("first", to_scene(mixed_scene_text()))) {
     throw std::runtime_error("the first session was refused");
   }
@@ -165,6 +166,12 @@ SessionTest::SessionTest(const ServerLimits& limits)
 
 std::unique_ptr<TestClient> SessionTest::connect() {
   return std::make_unique<TestClient>(server, ++last_connection_);
+}
+
+std::unique_ptr<TestClient> SessionTest::connect_admin() {
+  auto admin = connect();
+  admin->result("access.enter", {{"token", kAdminToken}});
+  return admin;
 }
 
 std::unique_ptr<TestClient> SessionTest::join(const std::string& session) {

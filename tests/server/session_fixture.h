@@ -20,6 +20,10 @@ const std::string& mixed_scene_text();
 /// Two particles on a spring so stiff that no step of the guard holds it.
 const std::string& unstable_scene_text();
 Scene to_scene(const std::string& text);
+/// With both of them, as `mixed` and `unstable`.
+Catalogue test_catalogue();
+
+inline constexpr std::string_view kAdminToken = "the admin token of the tests";
 
 /// One client of a SessionServer, which must outlive it.
 class TestClient {
@@ -72,6 +76,8 @@ class SessionTest : public testing::Test {
 
   /// Connects a further client.
   std::unique_ptr<TestClient> connect();
+  /// Connects one that was let in as an admin.
+  std::unique_ptr<TestClient> connect_admin();
   /// Connects one that has joined `session`.
   std::unique_ptr<TestClient> join(const std::string& session = "s1");
   std::string hash() { return client->result("session.hash").at("hash"); }

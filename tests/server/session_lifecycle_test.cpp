@@ -8,6 +8,7 @@ namespace {
 class SessionLifecycle : public SessionTest {
  protected:
   using SessionTest::SessionTest;
+  void SetUp() override { client->result("access.enter", {{"token", kAdminToken}}); }
 
   std::string create(const std::string& name, const Json& scene = "mixed") {
     return client->result("session.create", {{"name", name}, {"scene", scene}}).at("session");
@@ -80,6 +81,7 @@ TEST_F(SessionLifecycle, EveryReplyNamesTheTick) {
   EXPECT_EQ(guest->result("control.step", {{"ticks", 3}}).at("tick"), 3);
   EXPECT_EQ(guest->result("session.leave").at("tick"), 3);
   client->result("control.step", {{"ticks", 2}});
+  guest->result("access.enter", {{"token", kAdminToken}});
   EXPECT_EQ(guest->result("session.close", {{"session", "s1"}}).at("tick"), 5);
 }
 

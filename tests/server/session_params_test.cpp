@@ -205,6 +205,13 @@ TEST_F(BadParameters, MethodsOfASessionNeedOne) {
       {"state.query", nullptr},
       {"session.hash", nullptr},
       {"session.stats", nullptr},
+      {"session.configure", nullptr},
+      {"session.invite", {{"role", "viewer"}}},
+      {"participant.rename", {{"name", "x"}}},
+      {"participant.set_role", {{"participant", 1}, {"role", "viewer"}}},
+      {"participant.kick", {{"participant", 1}}},
+      {"control.request", nullptr},
+      {"control.hand_over", {{"participant", 1}}},
   };
   for (const auto& [method, params] : calls) {
     const Json error = outsider->error(method, params);
@@ -218,16 +225,19 @@ class GoodParameters : public SessionTest {};
 TEST_F(GoodParameters, EveryMethodOfTheProtocolIsThere) {
   const Json info = client->result("server.info");
   EXPECT_EQ(info.at("methods"),
-            Json({"server.info",         "scene.list",        "session.create",
-                  "session.list",        "session.join",      "session.leave",
-                  "session.close",       "scene.load",        "control.play",
-                  "control.pause",       "control.step",      "control.reset",
-                  "control.set_speed",   "world.add_body",    "world.remove_body",
-                  "world.melt_body",     "world.set_emitter", "world.set_gravity",
-                  "world.set_interface", "world.apply_force", "grab.start",
-                  "grab.move",           "grab.end",          "frames.subscribe",
-                  "frames.unsubscribe",  "frames.ack",        "state.query",
-                  "session.hash",        "session.stats"}));
+            Json({"server.info",         "scene.list",         "session.create",
+                  "session.list",        "session.join",       "session.leave",
+                  "session.close",       "scene.load",         "control.play",
+                  "control.pause",       "control.step",       "control.reset",
+                  "control.set_speed",   "world.add_body",     "world.remove_body",
+                  "world.melt_body",     "world.set_emitter",  "world.set_gravity",
+                  "world.set_interface", "world.apply_force",  "grab.start",
+                  "grab.move",           "grab.end",           "frames.subscribe",
+                  "frames.unsubscribe",  "frames.ack",         "state.query",
+                  "session.hash",        "session.stats",      "session.configure",
+                  "session.invite",      "participant.rename", "participant.set_role",
+                  "participant.kick",    "control.request",    "control.hand_over",
+                  "access.enter",        "access.ticket"}));
   EXPECT_EQ(info.at("name"), "vat");
   EXPECT_EQ(info.at("version"), "1.2.3");
   EXPECT_EQ(info.at("protocol"), "vat.v1");

@@ -1,6 +1,12 @@
 // Written from protocol/schemas/ by `npm run types`; not to be edited.
 import type {Body as SceneBody, Interface as SceneInterface, Scene} from './scene_format';
 
+/** A secret that lets somebody in */
+export type Token = string;
+/** What a participant may do; each role may do what those before it may */
+export type Role = 'viewer' | 'controller' | 'owner' | 'admin';
+/** Names a session for the life of the server */
+export type SessionId = string;
 /** The session's tick from which what was asked is in effect; 0 after a reset. */
 export type Tick = number;
 /** [x, y, z], z is up, in SI units */
@@ -11,8 +17,8 @@ export type Quaternion = [number, number, number, number];
 export type Point = [number, number, number];
 /** At most 64 bytes of UTF-8 without control characters */
 export type Name = string;
-/** Names a session for the life of the server */
-export type SessionId = string;
+/** At most 64 bytes of UTF-8: something to see, and neither control characters nor marks of direction */
+export type PersonName = string;
 /** Names a body for the life of its session; 0 is the vat's */
 export type BodyId = number;
 /** A particle's number within its body */
@@ -21,8 +27,6 @@ export type ParticleNumber = number;
 export type GrabId = number;
 /** Numbers a participant of a session, and no other one of it */
 export type ParticipantId = number;
-/** What a participant may do; each role may do what those before it may */
-export type Role = 'viewer' | 'controller' | 'owner';
 
 export type BodyKind = 'liquid' | 'deformable' | 'rigid';
 /** Hashes can be compared where it is the same */
@@ -49,8 +53,39 @@ export type ReplyError =
   | NoSuchBody
   | NoSuchScene
   | LimitReached
-  | NotAllowed;
+  | NotAllowed
+  | NotAuthenticated;
 
+/** Shows a token: an admin's, an invitation, a ticket, or that of a participant */
+export interface AccessEnterParams {
+  token: Token;
+}
+
+export interface AccessEnterResult {
+  role: Role;
+  session?: SessionId;
+}
+/** Makes a token that is good once and soon */
+export interface AccessTicketParams {
+  /** An admin is one in all sessions */
+  role: 'viewer' | 'controller' | 'admin';
+  session?: SessionId;
+}
+
+export interface AccessTicketResult {
+  token: Token;
+  role: Role;
+  /** For which it is good */
+  seconds: number;
+}
+/** What an owner decides of a session */
+export interface Settings {
+  name: string;
+  /** Of who joins without an invitation */
+  default_role: 'viewer' | 'controller';
+  /** Nobody joins without an invitation */
+  locked: boolean;
+}
 /** What a command answers that has nothing else to say */
 export interface InEffect {
   tick: Tick;
@@ -104,6 +139,10 @@ export interface ControlStepParams {
 export interface ControlSetSpeedParams {
   /** Simulated seconds per second */
   speed: number;
+}
+/** Makes a viewer a controller; a controller becomes a viewer by it */
+export interface ControlHandOverParams {
+  participant: ParticipantId;
 }
 
 export interface ParameterError {
@@ -219,6 +258,17 @@ export interface NotAllowed {
     kind: 'not_allowed';
     hint: Hint;
     path?: Path;
+    role?: Role;
+    least_role?: Role;
+  };
+}
+
+export interface NotAuthenticated {
+  code: 1007;
+  message: string;
+  data: {
+    kind: 'not_authenticated';
+    hint: Hint;
   };
 }
 /** Twice a second and after each change */
@@ -248,6 +298,11 @@ export interface SessionGuard {
 export interface SessionClosed {
   session: SessionId;
   reason: string;
+}
+/** Somebody asks for control; sent to those who can hand it over */
+export interface ControlRequested {
+  participant: ParticipantId;
+  name: string;
 }
 /** Asks for frames, or for other frames than before */
 export interface FramesSubscribeParams {
@@ -298,6 +353,21 @@ export interface GrabMoveParams {
 export interface GrabEndParams {
   grab: GrabId;
 }
+/** Changes the caller's name */
+export interface ParticipantRenameParams {
+  name: PersonName;
+}
+/** Gives a role; ownership is handed over */
+export interface ParticipantSetRoleParams {
+  participant: ParticipantId;
+  role: 'viewer' | 'controller' | 'owner';
+}
+/** Ends a participant and its connection */
+export interface ParticipantKickParams {
+  participant: ParticipantId;
+  /** What the close frame tells */
+  reason?: string;
+}
 
 export interface SceneListResult {
   /** Of the catalogue */
@@ -319,6 +389,8 @@ export interface ServerInfoResult {
   version: string;
   protocol: 'vat.v1';
   instruction_set: InstructionSet;
+  /** Whether a token has to be shown first */
+  access: 'open' | 'token';
   /** The server's clock [s since 1970] */
   time: number;
   /** Every limit by its name, as in the errors limit_reached */
@@ -356,9 +428,8 @@ export interface SessionEntry {
 /** Takes part in a session */
 export interface SessionJoinParams {
   session?: SessionId;
-  name?: Name;
-  /** The token of a participant that is away */
-  resume?: string;
+  name?: PersonName;
+  resume?: Token;
 }
 
 export interface SessionJoinResult {
@@ -371,7 +442,37 @@ export interface SessionJoinResult {
   resume: string;
   /** Whether it is one that was there before */
   resumed: boolean;
+  settings: Settings;
   description: SessionDescription;
+}
+/** Decides who may join, and as what */
+export interface SessionConfigureParams {
+  name?: PersonName;
+  default_role?: 'viewer' | 'controller';
+  locked?: boolean;
+}
+
+export interface SessionConfigureResult {
+  tick: Tick;
+  name: string;
+  default_role: 'viewer' | 'controller';
+  locked: boolean;
+}
+/** Makes an invitation into the session */
+export interface SessionInviteParams {
+  role: 'viewer' | 'controller';
+  /** By default any number */
+  uses?: number;
+  /** [s] */
+  expires?: number;
+}
+
+export interface SessionInviteResult {
+  tick: Tick;
+  token: Token;
+  role: Role;
+  /** [s] */
+  expires: number;
 }
 /** Ends a session for all */
 export interface SessionCloseParams {
@@ -479,23 +580,32 @@ export interface WorldApplyForceParams {
 
 /** Every method: what it takes and what it answers. */
 export interface Methods {
+  'access.enter': { params: AccessEnterParams; result: AccessEnterResult };
+  'access.ticket': { params: AccessTicketParams; result: AccessTicketResult };
   'control.play': { params: Nothing; result: InEffect };
   'control.pause': { params: Nothing; result: InEffect };
   'control.step': { params: ControlStepParams; result: InEffect };
   'control.reset': { params: Nothing; result: InEffect };
   'control.set_speed': { params: ControlSetSpeedParams; result: InEffect };
+  'control.request': { params: Nothing; result: InEffect };
+  'control.hand_over': { params: ControlHandOverParams; result: InEffect };
   'frames.subscribe': { params: FramesSubscribeParams; result: InEffect };
   'frames.unsubscribe': { params: Nothing; result: InEffect };
   'frames.ack': { params: FramesAckParams; result: FramesAckResult };
   'grab.start': { params: GrabStartParams; result: GrabStartResult };
   'grab.move': { params: GrabMoveParams; result: InEffect };
   'grab.end': { params: GrabEndParams; result: InEffect };
+  'participant.rename': { params: ParticipantRenameParams; result: InEffect };
+  'participant.set_role': { params: ParticipantSetRoleParams; result: InEffect };
+  'participant.kick': { params: ParticipantKickParams; result: InEffect };
   'scene.list': { params: Nothing; result: SceneListResult };
   'scene.load': { params: SceneLoadParams; result: InEffect };
   'server.info': { params: Nothing; result: ServerInfoResult };
   'session.create': { params: SessionCreateParams; result: SessionCreateResult };
   'session.list': { params: Nothing; result: SessionListResult };
   'session.join': { params: SessionJoinParams; result: SessionJoinResult };
+  'session.configure': { params: SessionConfigureParams; result: SessionConfigureResult };
+  'session.invite': { params: SessionInviteParams; result: SessionInviteResult };
   'session.leave': { params: Nothing; result: InEffect };
   'session.close': { params: SessionCloseParams; result: InEffect };
   'session.hash': { params: Nothing; result: SessionHashResult };
@@ -516,6 +626,8 @@ export interface Events {
   'session.status': SessionStatus;
   'session.guard': SessionGuard;
   'session.closed': SessionClosed;
+  'session.configured': Settings;
+  'control.requested': ControlRequested;
 }
 
 export const kEventNames = [
@@ -523,4 +635,6 @@ export const kEventNames = [
   'session.status',
   'session.guard',
   'session.closed',
+  'session.configured',
+  'control.requested',
 ] as const;

@@ -119,6 +119,8 @@ export class App {
         this.leave();
         this.notices.add('warning', `The session was closed: ${params.reason}`);
         break;
+      case 'session.configured':
+      case 'control.requested':
       case 'session.description': // comes as a report of its own
         break;
     }

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/access/token.h"
+#include "server/session/role.h"
+
+namespace vat {
+
+enum class AccessMode {
+  open,  ///< whoever connects is let in, as a controller
+  token  ///< a client has to show a token first
+};
+const char* to_string(AccessMode mode);
+
+struct AccessSettings {
+  AccessMode mode = AccessMode::open;
+  std::optional<TokenHash> admin;                 ///< of the admin token; absent: there is none
+  std::chrono::milliseconds enter_time{10'000};   ///< for the token; then the connection is closed
+  std::chrono::milliseconds refusal_delay{1000};  ///< of the answer to a wrong token
+  std::size_t max_wrong_tokens = 3;               ///< with so many the connection is closed
+  std::chrono::seconds ticket_time{60};           ///< for which a ticket is good
+};
+
+/// What a client is let in with.
+struct Grant {
+  Role role = Role::none;
+  std::string session;         ///< the only one that is open to it; empty: all are
+  bool is_invitation = false;  ///< the role holds in the session, whatever is usual there
+};
+
+/// The tokens that are good now, but for the admin's. Safe to use from any thread.
+class AccessTokens {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// At most so many that were issued are kept.
+  explicit AccessTokens(std::size_t max_issued) : max_issued_(max_issued) {}
+
+  /// A new token, good `uses` times (absent: any number) until `end`. Nothing if there are too
+  /// many.
+  std::optional<std::string> issue(Grant grant, std::optional<std::size_t> uses,
+                                   Clock::time_point end, Clock::time_point now);
+  /// A token that somebody else looks after, good until it is removed.
+  void add(const TokenHash& token, Grant grant);
+  void remove(const TokenHash& token);
+  void remove_session(std::string_view session);
+  /// What the token gives, and counts the use; nothing if it is not good.
+  std::optional<Grant> use(const TokenHash& token, Clock::time_point now);
+
+ private:
+  struct Entry {
+    Grant grant;
+    std::optional<std::size_t> uses;
+    std::optional<Clock::time_point> end;  // absent: it was not issued here
+  };
+  void remove_old(Clock::time_point now);
+
+  const std::size_t max_issued_;
+  std::mutex mutex_;
+  // Found by their hashes: what the time of a search could tell is of the hash, not of the token.
+  std::map<TokenHash, Entry> entries_;
+  std::size_t issued_ = 0;
+};
+
+}  // namespace vat

@@ -1,0 +1,143 @@
+// The participants of a session: who comes, goes, and may do what.
+
+#include <spdlog/spdlog.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/session/session_core.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint16_t kKicked = 4003;
+constexpr std::uint16_t kReplaced = 4010;
+
+}  // namespace
+
+std::variant<Entry, RpcError> SessionCore::join(const std::shared_ptr<ClientOutbox>& outbox,
+                                                std::uint64_t membership, const Entrant& entrant,
+                                                SteadyClock::time_point now) {
+  Participant* resumed =
+      entrant.resume ? participants_.find_resume(hash_of_token(*entrant.resume)) : nullptr;
+  const Participant* before = participants_.find_client(outbox->id());
+  if (before != nullptr && before != resumed) leave(before->number);
+  const bool may_pass = entrant.passes_lock || outbox->id() == settings_.creator;
+  if (resumed == nullptr && settings_.is_locked && !may_pass) {
+    return not_allowed("the session is locked");
+  }
+  std::string token = resumed != nullptr ? *entrant.resume : "";
+  Participant& participant = resumed != nullptr ? *resumed : take_in(*outbox, entrant, token);
+  if (participant.is_here()) release_connection(participant, outbox->id());
+  participants_.connect(participant, outbox, membership);
+  outbox->start_epoch(membership, run_.epoch());
+  if (participant.subscription) subscribe(participant, *participant.subscription, now);
+  status_due_ = true;
+  return Entry{participant, std::move(token), resumed != nullptr};
+}
+
+Participant& SessionCore::take_in(const ClientOutbox& outbox, const Entrant& entrant,
+                                  std::string& token) {
+  const bool is_creator = outbox.id() == settings_.creator && entrant.role != Role::admin;
+  const Role role = is_creator ? Role::owner : entrant.role.value_or(settings_.default_role);
+  token = make_token();
+  Participant& participant = participants_.add(entrant.name, role);
+  if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);
+  participant.resume = hash_of_token(token);
+  environment_.tokens.add(*participant.resume, {Role::viewer, id_});
+  return participant;
+}
+
+void SessionCore::release_connection(const Participant& participant, ConnectionId next) {
+  const std::shared_ptr<ClientOutbox>& outbox = participant.outbox;
+  if (participant.subscription) frames_->remove(outbox->id());
+  if (outbox->id() != next) outbox->close(kReplaced, "replaced by a resumed connection");
+}
+
+void SessionCore::disconnect(ConnectionId client, SteadyClock::time_point now) {
+  Participant* participant = participants_.find_client(client);
+  if (participant == nullptr) return;
+  if (participant->subscription) frames_->remove(client);
+  participants_.disconnect(*participant);
+  participant->away_since = now;
+  status_due_ = true;
+  bound_absences();
+}
+
+void SessionCore::leave(ParticipantNumber number) {
+  const Participant* participant = participants_.find(number);
+  if (participant == nullptr) return;
+  end_grabs(*participant);
+  if (participant->is_here() && participant->subscription) {
+    frames_->remove(participant->outbox->id());
+  }
+  if (participant->resume) environment_.tokens.remove(*participant->resume);
+  participants_.remove(number);
+  status_due_ = true;
+}
+
+void SessionCore::end_grabs(const Participant& participant) {
+  const auto grabs = participant.grabs;
+  for (const auto& [grab, body] : grabs) {
+    const Status ended = run_.simulation().grab_end(grab);
+    if (!ended) spdlog::warn("session {}: grab {} was gone already", id_, grab);
+    participants_.forget_grab(grab);
+  }
+}
+
+void SessionCore::kick(ParticipantNumber number, const std::string& reason) {
+  const Participant* participant = participants_.find(number);
+  if (participant == nullptr) return;
+  const std::shared_ptr<ClientOutbox> outbox = participant->outbox;
+  leave(number);
+  if (outbox != nullptr) outbox->close(kKicked, reason);
+}
+
+void SessionCore::rename(Participant& participant, std::string name) {
+  participant.name = std::move(name);
+}
+
+void SessionCore::set_role(Participant& participant, Role role) {
+  if (role == Role::owner) {
+    settings_.creator = 0;
+    for (const auto& [number, other] : participants_.all()) {
+      if (other.role == Role::owner)
+        participants_.set_role(*participants_.find(number), Role::controller);
+    }
+  }
+  participants_.set_role(participant, role);
+  if (role < Role::controller) end_grabs(participant);
+}
+
+void SessionCore::configure(SessionSettings settings) {
+  settings_ = std::move(settings);
+  participants_.send_event(write_event("session.configured", describe_settings()));
+}
+
+Json SessionCore::describe_settings() const {
+  return {{"name", settings_.name},
+          {"default_role", to_string(settings_.default_role)},
+          {"locked", settings_.is_locked}};
+}
+
+void SessionCore::end_absences(SteadyClock::time_point now) {
+  std::vector<ParticipantNumber> gone;
+  for (const auto& [number, participant] : participants_.all()) {
+    if (!participant.is_away()) continue;
+    if (now - *participant.away_since >= environment_.limits.resume_time) gone.push_back(number);
+  }
+  for (const ParticipantNumber number : gone) leave(number);
+}
+
+void SessionCore::bound_absences() {
+  if (participants_.away() <= environment_.limits.max_clients_per_session) return;
+  const Participant* first = nullptr;
+  for (const auto& [number, participant] : participants_.all()) {
+    if (!participant.is_away()) continue;
+    if (first == nullptr || participant.away_since < first->away_since) first = &participant;
+  }
+  leave(first->number);
+}
+
+}  // namespace vat
