@@ -275,6 +275,7 @@ bool Player::receive(Peer& peer, Deadline deadline) {
       receive_frame(peer, message->bytes);
       break;
     case Message::Kind::closed:
+      if (transcript_ != nullptr) transcript_->closed(peer.connection, message->close_code);
       peer.closed = std::move(message);
       break;
   }

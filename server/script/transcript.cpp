@@ -14,17 +14,20 @@ Transcript::Transcript(const std::string& folder, const std::string& name) {
 }
 
 void Transcript::sent(std::string_view connection, std::string_view message, bool wrong) {
-  write("sent", connection, message, wrong);
+  nlohmann::json line{{"connection", connection}, {"sent", message}};
+  if (wrong) line["wrong"] = true;
+  write(line);
 }
 
 void Transcript::received(std::string_view connection, std::string_view message) {
-  write("received", connection, message, false);
+  write({{"connection", connection}, {"received", message}});
 }
 
-void Transcript::write(const char* what, std::string_view connection, std::string_view message,
-                       bool wrong) {
-  nlohmann::json line{{"connection", connection}, {what, message}};
-  if (wrong) line["wrong"] = true;
+void Transcript::closed(std::string_view connection, std::uint16_t code) {
+  write({{"connection", connection}, {"closed", code}});
+}
+
+void Transcript::write(const nlohmann::json& line) {
   // What is not UTF-8 was not read as a message either.
   const std::string text =
       line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';

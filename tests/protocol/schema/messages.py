@@ -107,7 +107,7 @@ class Transcript:
                 entry = json.loads(text)
                 if "sent" in entry:
                     self.sent(entry, number)
-                else:
+                elif "received" in entry:
                     self.received(entry, number)
         for connection, wrong in self.unanswerable.items():
             for line, reason in wrong[self.null_errors[connection]:]:

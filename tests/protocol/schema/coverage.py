@@ -1,0 +1,107 @@
+"""coverage.py SCRIPTS TRANSCRIPTS: the scripts show every method, event, kind of error and limit.
+
+SCRIPTS is the folder of the scripts, TRANSCRIPTS that of what they sent and received."""
+
+import json
+import sys
+from pathlib import Path
+
+import schemas
+
+LEAST_SCRIPTS = 40
+# Kinds of errors that no client can bring about.
+NOT_SHOWN = {"internal_error"}
+# What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
+# error; a number: the code that a connection is closed with; a script: it is all about that.
+LIMITS = {
+    "applied_forces": "limit", "bodies": ("path", "/scene/bodies"), "clients_per_session": "limit",
+    "command_bytes_in_flight": ("script", "limits"), "commands_in_flight": "limit",
+    "connections": ("closed", 1013), "control_queue_bytes": ("closed", 4008),
+    "frame_groups": ("script", "frames"), "frame_patience_seconds": ("script", "slow-client"),
+    "frame_window": ("script", "acknowledging"), "grabs_per_client": "limit",
+    "grabs_per_session": "limit", "message_bytes": "limit", "message_depth": ("reason", "too_deep"),
+    "message_values": ("reason", "too_many_values"), "name_bytes": ("path", "/name"),
+    "particle_steps_per_tick": "limit", "particles": "limit",
+    "resume_seconds": ("script", "coming-back"), "scene_message_bytes": ("closed", 1009),
+    "sessions": "limit", "ticks_per_step": ("path", "/ticks"),
+}
+
+
+class Seen:
+    """What the transcripts of the scripts have."""
+
+    def __init__(self, scripts, transcripts):
+        self.results, self.events, self.kinds = set(), set(), set()
+        self.shown = {("script", path.stem) for path in scripts}
+        self.limits = set()
+        for script in scripts:
+            methods = {}
+            with open(transcripts / f"{script.stem}.jsonl", encoding="utf-8") as file:
+                for line in file:
+                    self.entry(json.loads(line), methods)
+
+    def entry(self, entry, methods):
+        if "closed" in entry:
+            self.shown.add(("closed", entry["closed"]))
+            return
+        try:
+            message = json.loads(entry["sent" if "sent" in entry else "received"])
+        except (ValueError, RecursionError):
+            return
+        if not isinstance(message, dict):
+            return
+        key = (entry["connection"], json.dumps(message.get("id")))
+        if "sent" in entry:
+            methods[key] = message.get("method")
+        elif "method" in message:
+            self.events.add(message["method"])
+        elif "result" in message:
+            self.results.add(methods.get(key))
+            self.limits |= set(message["result"].get("limits", ()))
+        else:
+            self.error(message["error"]["data"])
+
+    def error(self, data):
+        self.kinds.add(data["kind"])
+        self.shown |= {("limit", data.get("limit")), ("reason", data.get("reason"))}
+        self.shown |= {("path", error["path"]) for error in data.get("errors", ())}
+
+    def lacks(self):
+        """What no script shows, in words."""
+        yield from (f"no result of {m}" for m in sorted(set(schemas.methods()) - self.results))
+        events = set(schemas.definitions("events"))
+        yield from (f"no event {name}" for name in sorted(events - self.events))
+        yield from (f"no error {kind}" for kind in sorted(kinds() - NOT_SHOWN - self.kinds))
+        yield from (f"no word here on the limit {name}" for name in sorted(self.limits - set(LIMITS)))
+        yield from (f"no limit {name} in server.info" for name in sorted(set(LIMITS) - self.limits))
+        for name, how in LIMITS.items():
+            if (("limit", name) if how == "limit" else how) not in self.shown:
+                yield f"the limit {name} is not shown by {how}"
+
+
+def kinds():
+    choices = schemas.definitions("errors")["reply_error"]["oneOf"]
+    return {choice["$ref"].removeprefix("#/$defs/") for choice in choices}
+
+
+def uncommented(path):
+    """Whether no comment says what the script shows, at its begin."""
+    with open(path, encoding="utf-8") as file:
+        first = [json.loads(line) for line in file if line.strip()][:2]
+    return not any("comment" in line for line in first)
+
+
+def main():
+    scripts = sorted(Path(sys.argv[1]).glob("*.jsonl"))
+    faults = list(Seen(scripts, Path(sys.argv[2])).lacks())
+    faults += [f"{path.name} does not say what it shows" for path in scripts if uncommented(path)]
+    if len(scripts) < LEAST_SCRIPTS:
+        faults.append(f"{len(scripts)} scripts, fewer than {LEAST_SCRIPTS}")
+    for fault in faults:
+        print(fault)
+    print(f"{len(scripts)} scripts, {len(schemas.methods())} methods, {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
