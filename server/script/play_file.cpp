@@ -1,6 +1,7 @@
 #include "server/script/play_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 

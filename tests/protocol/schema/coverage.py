@@ -23,7 +23,7 @@ LIMITS = {
     "message_values": ("reason", "too_many_values"), "name_bytes": ("path", "/name"),
     "particle_steps_per_tick": "limit", "particles": "limit",
     "resume_seconds": ("script", "coming-back"), "scene_message_bytes": ("closed", 1009),
-    "sessions": "limit", "ticks_per_step": ("path", "/ticks"),
+    "sessions": "limit", "ticks_per_step": ("path", "/ticks"), "tokens": "limit",
 }
 
 
