@@ -22,6 +22,11 @@ export default defineConfig(
     },
   },
   {
+    files: ['**/example.mjs'],
+    languageOptions: { globals: { console: 'readonly' } },
+    rules: { 'no-console': 'off' },
+  },
+  {
     files: ['**/*.test.ts'],
     rules: { 'max-lines-per-function': 'off' },
   },

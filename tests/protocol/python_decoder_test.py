@@ -1,15 +1,19 @@
 """The frames of tests/golden decode to what stands beside them, damaged ones to their reasons."""
 
 import json
+import sys
 import unittest
 from pathlib import Path
 from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "protocol" / "python"))
 
 from bad_frame import BadFrame
 from blocks import Block, ParticleBlock
 from decode_frame import Decoder, Frame
 
-FRAMES = Path(__file__).parents[2] / "golden" / "frames"
+FRAMES = ROOT / "tests" / "golden" / "frames"
 KINDS = ("liquid", "deformable", "rigid", "vat")
 
 

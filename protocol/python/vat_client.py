@@ -1,0 +1,224 @@
+"""A client of vat.v1 in plain Python: `with Client(url) as client: client.call("server.info")`.
+
+Everything happens in the caller's thread, while a call waits. Frames are decoded by the module
+decode_frame beside this file, where it is there; without it only their bytes can be had.
+"""
+
+import base64
+import hashlib
+import json
+import os
+import socket
+import struct
+import time
+from collections import deque
+from urllib.parse import urlsplit
+
+GUID = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455
+CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10
+
+
+class VatError(Exception):
+    """An error that the server answered: `code`, `kind`, `data`, with `path` and `hint` in it."""
+
+    def __init__(self, error):
+        super().__init__(error["message"])
+        self.code = error["code"]
+        self.data = error.get("data", {})
+        self.kind = self.data.get("kind")
+
+
+class Closed(Exception):
+    """The connection has ended; `code` is 0 where that came without a word."""
+
+    def __init__(self, code, reason):
+        super().__init__(f"closed with {code} {reason}".rstrip())
+        self.code = code
+
+
+class WebSocket:
+    """The client's side of RFC 6455, over TCP."""
+
+    def __init__(self, url, timeout):
+        parts = urlsplit(url)
+        if parts.scheme != "ws" or not parts.hostname:
+            raise ValueError(f"{url!r} is not ws://HOST[:PORT][/PATH]")
+        self.socket = socket.create_connection((parts.hostname, parts.port or 80), timeout)
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.buffer = b""
+        self.message = None  # the opcode and parts of a message that is not whole yet
+        try:
+            self.upgrade(parts)
+        except BaseException:
+            self.socket.close()
+            raise
+
+    def upgrade(self, parts):
+        key = base64.b64encode(os.urandom(16)).decode()
+        path = parts.path if len(parts.path) > 1 else "/ws"
+        self.socket.sendall((
+            f"GET {path} HTTP/1.1\r\nHost: {parts.netloc}\r\nUpgrade: websocket\r\n"
+            f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
+            "Sec-WebSocket-Protocol: vat.v1\r\n\r\n").encode())
+        while b"\r\n\r\n" not in self.buffer:
+            self.fill(None)
+        head, _, self.buffer = self.buffer.partition(b"\r\n\r\n")
+        status, *lines = head.decode("latin-1").split("\r\n")
+        headers = {name.strip().lower(): value.strip()
+                   for name, _, value in (line.partition(":") for line in lines)}
+        accept = base64.b64encode(hashlib.sha1((key + GUID).encode()).digest()).decode()
+        if " 101 " not in status + " " or headers.get("sec-websocket-accept") != accept:
+            raise ConnectionError(f"the server refuses: {status}")
+
+    def fill(self, deadline):
+        """Adds to the buffer what has come. TimeoutError where that is nothing."""
+        if deadline is not None:
+            left = deadline - time.monotonic()
+            if left <= 0:
+                raise TimeoutError("nothing came in time")
+            self.socket.settimeout(left)
+        more = self.socket.recv(1 << 16)
+        if not more:
+            raise Closed(0, "")
+        self.buffer += more
+
+    def send(self, opcode, payload):
+        size = len(payload)
+        if size < 126:
+            head = struct.pack(">BB", 0x80 | opcode, 0x80 | size)
+        elif size < 1 << 16:
+            head = struct.pack(">BBH", 0x80 | opcode, 0x80 | 126, size)
+        else:
+            head = struct.pack(">BBQ", 0x80 | opcode, 0x80 | 127, size)
+        mask = os.urandom(4)
+        stream = (mask * (size // 4 + 1))[:size]
+        masked = int.from_bytes(payload, "big") ^ int.from_bytes(stream, "big")
+        self.socket.settimeout(None)
+        self.socket.sendall(head + mask + masked.to_bytes(size, "big"))
+
+    def frame_size(self):
+        """Bytes of the head and of the payload of the first frame; None while that is unknown."""
+        if len(self.buffer) < 2:
+            return None
+        size = self.buffer[1] & 127
+        extra = {126: 2, 127: 8}.get(size, 0)
+        if len(self.buffer) < 2 + extra:
+            return None
+        return 2 + extra, int.from_bytes(self.buffer[2:2 + extra], "big") if extra else size
+
+    def read_frame(self, deadline):
+        """(whether it is the last of its message, opcode, payload)"""
+        while (found := self.frame_size()) is None or len(self.buffer) < sum(found):
+            self.fill(deadline)
+        head, size = found
+        first = self.buffer[0]
+        payload = self.buffer[head:head + size]
+        self.buffer = self.buffer[head + size:]
+        return bool(first & 0x80), first & 15, payload
+
+    def receive(self, deadline):
+        """The next message: (TEXT or BINARY, bytes). Answers pings."""
+        while True:
+            last, opcode, payload = self.read_frame(deadline)
+            if opcode == PING:
+                self.send(PONG, payload)
+            elif opcode == CLOSE:
+                code = struct.unpack(">H", payload[:2])[0] if len(payload) >= 2 else 0
+                raise Closed(code, payload[2:].decode("utf-8", "replace"))
+            elif opcode in (CONTINUATION, TEXT, BINARY):
+                if opcode != CONTINUATION:
+                    self.message = (opcode, [])
+                self.message[1].append(payload)
+                if last:
+                    opcode, parts = self.message
+                    return opcode, b"".join(parts)
+
+
+class Client:
+    """One connection. Results, events and frames are as in PROTOCOL.md, as dictionaries."""
+
+    def __init__(self, url="ws://127.0.0.1:8080/ws", timeout=10):
+        self.timeout = timeout
+        self.socket = WebSocket(url, timeout)
+        self.last_id = 0
+        self.replies = {}
+        self.events = deque()  # (name, params) of those that came and were not taken
+        self.frames = deque()  # bytes of the same
+        self.decoder = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Ends the connection; what the server still says is not read."""
+        try:
+            self.socket.send(CLOSE, struct.pack(">H", 1000))
+        except OSError:
+            pass  # it has ended already
+        self.socket.socket.close()
+
+    def send(self, method, params, **more):
+        message = {"jsonrpc": "2.0", **more, "method": method}
+        if params:
+            message["params"] = params
+        self.socket.send(TEXT, json.dumps(message).encode())
+
+    def call(self, method, **params):
+        """The result. VatError where the server refuses, TimeoutError where no answer comes."""
+        self.last_id += 1
+        identity = self.last_id
+        self.send(method, params, id=identity)
+        deadline = time.monotonic() + self.timeout
+        while identity not in self.replies:
+            self.take(deadline)
+        reply = self.replies.pop(identity)
+        if "error" in reply:
+            raise VatError(reply["error"])
+        return reply["result"]
+
+    def notify(self, method, **params):
+        """Nobody answers."""
+        self.send(method, params)
+
+    def wait_event(self, name, timeout=None):
+        """The params of the next event of this name; passes over others."""
+        deadline = time.monotonic() + (timeout or self.timeout)
+        while True:
+            while self.events:
+                event, params = self.events.popleft()
+                if event == name:
+                    return params
+            self.take(deadline)
+
+    def next_frame(self, timeout=None):
+        """The next frame, decoded and acknowledged: header, scale and blocks of decode_frame."""
+        if self.decoder is None:
+            from decode_frame import Decoder
+            self.decoder = Decoder()
+        frame = self.decoder.decode(self.next_frame_bytes(timeout))
+        self.notify("frames.ack", number=frame.header.number)
+        return frame
+
+    def next_frame_bytes(self, timeout=None):
+        """The bytes of the next frame; whoever takes it so acknowledges it by frames.ack."""
+        deadline = time.monotonic() + (timeout or self.timeout)
+        while not self.frames:
+            self.take(deadline)
+        return self.frames.popleft()
+
+    def take(self, deadline):
+        """Reads one message and keeps it for who asks."""
+        opcode, payload = self.socket.receive(deadline)
+        if opcode == BINARY:
+            self.frames.append(payload)
+            return
+        message = json.loads(payload)
+        if "method" in message:
+            self.events.append((message["method"], message["params"]))
+        elif message["id"] is None:
+            raise VatError(message["error"])
+        else:
+            self.replies[message["id"]] = message

@@ -1,0 +1,16 @@
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vite';
+
+const folder = (name: string) => fileURLToPath(new URL(`client/${name}`, import.meta.url));
+
+// The package vat-client as one module; its types are written by tsc.
+export default defineConfig({
+  root: folder('.'),
+  build: {
+    outDir: folder('dist'),
+    emptyOutDir: true,
+    target: 'es2022',
+    minify: false,
+    lib: { entry: folder('index.ts'), formats: ['es'], fileName: 'index' },
+  },
+});
