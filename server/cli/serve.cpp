@@ -42,9 +42,9 @@ namespace asio = boost::asio;
 /// Open files beside the connections: refused ones, HTTP requests, the log, the threads' own.
 constexpr std::size_t kOtherFiles = 512;
 
-/// The file's name, and what ./vat check takes.
-constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG",
-                                                "VAT_FUZZ_SECONDS"};
+/// The file's name, and what ./vat check and the tests take.
+constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG", "VAT_FUZZ_SECONDS",
+                                                "VAT_KILLS"};
 
 constexpr const char* kFooter =
     R"(Every setting can also be a variable of the environment (VAT_MAX_CONNECTIONS for
@@ -54,8 +54,8 @@ options count most.
 Prints one line with its URL when it is ready; all else goes to standard error. SIGINT and SIGTERM
 end it cleanly, a second one at once.
 
-Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder or port
-in use, 2 wrong usage, or a variable with a bad value.)";
+Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder, data
+that cannot be used or port in use, 2 wrong usage, or a variable with a bad value.)";
 
 void start_log(const std::string& level) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("vat"));
@@ -122,9 +122,17 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
     settings.instructions = parse_instruction_set(options.instructions).value();
   }
   spdlog::info("instruction set: {}", to_string(settings.instructions));
+  if (options.data == "none") {
+    spdlog::info("sessions are in memory alone (--data FOLDER keeps them)");
+  } else {
+    settings.data_folder = options.data;
+  }
+  settings.storage = options.storage;
   SessionServer sessions(catalogue, settings);
-  const Result<SessionId> session = sessions.create_session(scene.name, scene);
-  if (!session) return fail(options.scene, session.errors());
+  if (sessions.recover() == 0) {
+    const Result<SessionId> session = sessions.create_session(scene.name, scene);
+    if (!session) return fail(options.scene, session.errors());
+  }
 
   const auto transport = make_websocket_transport(
       transport_settings(options), sessions,

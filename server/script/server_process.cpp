@@ -39,7 +39,7 @@ ServerProcess::ServerProcess(const std::string& program,
     port_ = *port;
   } catch (...) {
     if (!reap()) {
-      kill(pid_, SIGKILL);
+      ::kill(pid_, SIGKILL);
       waitpid(pid_, nullptr, 0);
     }
     close(output_);
@@ -48,11 +48,15 @@ ServerProcess::ServerProcess(const std::string& program,
 }
 
 ServerProcess::~ServerProcess() {
-  if (!reap()) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
+  kill();
   close(output_);
+}
+
+void ServerProcess::kill() {
+  if (reap()) return;
+  ::kill(pid_, SIGKILL);
+  waitpid(pid_, &status_, 0);
+  pid_ = -1;
 }
 
 void ServerProcess::start(const std::string& program, const std::vector<std::string>& arguments) {
@@ -110,7 +114,7 @@ bool ServerProcess::is_running() {
 }
 
 int ServerProcess::stop() {
-  if (!reap()) kill(pid_, SIGTERM);
+  if (!reap()) ::kill(pid_, SIGTERM);
   const auto deadline = steady_clock::now() + kStopTime;
   while (!reap()) {
     if (steady_clock::now() > deadline) {

@@ -19,6 +19,8 @@ class ServerProcess {
 
   std::uint16_t port() const { return port_; }
   bool is_running();
+  /// Ends it at once, as no program can prevent.
+  void kill();
   /// Sends SIGTERM and gives the exit status; throws where it does not end in ten seconds or ends
   /// by a signal.
   int stop();

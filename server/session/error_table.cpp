@@ -30,6 +30,10 @@ constexpr ErrorRow kRows[] = {
      "tells."},
     {ErrorKind::not_authenticated, 1007, "not_authenticated",
      "Show a token that is good now by access.enter, or ask for a new one."},
+    {ErrorKind::storage_failed, 1010, "storage_failed",
+     "Nothing was changed; free space on the server's disk, or ask who runs it, and try again."},
+    {ErrorKind::not_recovered, 1011, "not_recovered",
+     "A session that is recovering comes soon; of one that is lost the server's log tells why."},
 };
 
 constexpr bool is_in_order() {

@@ -19,7 +19,9 @@ enum class ErrorKind : std::uint8_t {
   no_such_scene,
   limit_reached,
   not_allowed,
-  not_authenticated
+  not_authenticated,
+  storage_failed,
+  not_recovered
 };
 
 /// What holds for all errors of a kind. Codes and names are stable: a new error gets a new kind.

@@ -10,7 +10,9 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
   const SessionEnvironment& environment = core.environment();
   auto scene = read_client_scene(value, environment.catalogue);
   if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
-  auto simulation = make_simulation(std::get<Scene>(scene), environment);
+  // A session keeps to its instructions, so that its log leads to the same bits.
+  auto simulation = make_simulation(std::get<Scene>(scene), environment,
+                                    core.run().simulation().instruction_set());
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
   core.load(std::get<Simulation>(std::move(simulation)));
   return Json::object();

@@ -41,6 +41,7 @@ ActionResult start(SessionCore& core, Participant& participant, BodyId body, Ind
     if (started.errors().front().code != "limit_reached") return refused(started.errors());
     return limit_reached("grabs_per_session", kMaxGrabs);
   }
+  core.use_grab();
   participant.grabs.emplace(grab, body);
   return Json{{"grab", grab}};
 }

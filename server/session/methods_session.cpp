@@ -28,9 +28,10 @@ ServerAction read_create(ObjectReader& params, Errors&) {
 
 std::optional<RpcResult> list_sessions(const SessionDirectory& directory, const Caller& caller) {
   Json sessions = Json::array();
-  for (const auto& [id, summary] : directory.list(caller)) {
+  for (const auto& [id, summary, state] : directory.list(caller)) {
     sessions.push_back({{"session", id},
                         {"name", summary.name},
+                        {"state", state},
                         {"scene", summary.scene},
                         {"clients", summary.clients},
                         {"playing", summary.playing},

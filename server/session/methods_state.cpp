@@ -68,7 +68,8 @@ SessionAction read_hash(ObjectReader&, Errors&) {
     const Simulation& simulation = core.run().simulation();
     return Json{{"hash", describe_hash(simulation.state_hash())},
                 {"instruction_set", to_string(simulation.instruction_set())},
-                {"time", simulation.time()}};
+                {"time", simulation.time()},
+                {"position", core.run().position()}};
   };
 }
 

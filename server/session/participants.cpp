@@ -75,6 +75,12 @@ void Participants::disconnect(Participant& participant) {
   participant.outbox.reset();
 }
 
+void Participants::send_away(SteadyClock::time_point now) {
+  for (auto& [number, participant] : all_) {
+    if (!participant.is_here()) participant.away_since = now;
+  }
+}
+
 void Participants::send_event(const std::string& text, Role least) {
   for (auto& [number, participant] : all_) {
     if (!participant.is_here() || participant.role < least) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -58,10 +59,15 @@ class Participants {
   /// The one of this number; a ghost where there is none yet.
   Participant& ghost(ParticipantNumber number);
   void remove(ParticipantNumber number);
+  ParticipantNumber last_number() const { return last_number_; }
+  /// Those that come have greater numbers than this.
+  void skip_to(ParticipantNumber number) { last_number_ = std::max(last_number_, number); }
   /// Gives the participant a connection, which must have no other.
   void connect(Participant& participant, std::shared_ptr<ClientOutbox> outbox,
                std::uint64_t membership);
   void disconnect(Participant& participant);
+  /// All who have no connection are away from now on.
+  void send_away(SteadyClock::time_point now);
 
   /// To those of this role and those above.
   void send_event(const std::string& text, Role least = Role::viewer);

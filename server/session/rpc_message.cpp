@@ -101,6 +101,18 @@ RpcError not_authenticated(std::string message) {
   return {ErrorKind::not_authenticated, std::move(message)};
 }
 
+RpcError storage_failed(StorageError::Kind reason) {
+  const bool is_full = reason == StorageError::Kind::full;
+  return {ErrorKind::storage_failed,
+          is_full ? "the server's disk is full" : "the server cannot write what it must keep"};
+}
+
+RpcError not_recovered(std::string_view session, std::string_view state) {
+  return {ErrorKind::not_recovered,
+          "the session " + printable(session) + " is " + std::string(state),
+          {{"state", state}}};
+}
+
 RpcError refused(const Errors& errors) {
   VAT_CHECK(!errors.empty());
   const Error& first = errors.front();

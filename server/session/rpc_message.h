@@ -9,6 +9,7 @@
 #include "protocol/json_reader.h"
 #include "server/session/error_table.h"
 #include "server/session/role.h"
+#include "server/storage/storage_error.h"
 
 /// JSON-RPC 2.0 messages and the errors of PROTOCOL.md.
 namespace vat {
@@ -43,6 +44,10 @@ RpcError not_allowed(std::string message);
 /// The role of who called the method is below the least that may.
 RpcError role_too_low(std::string_view method, Role role, Role least);
 RpcError not_authenticated(std::string message);
+/// A command could not be kept, and was not carried out.
+RpcError storage_failed(StorageError::Kind reason);
+/// `state` is "recovering" or "lost".
+RpcError not_recovered(std::string_view session, std::string_view state);
 /// What the core refused: its no_such_body has an error of its own, all else is invalid_params.
 RpcError refused(const Errors& errors);
 

@@ -39,9 +39,9 @@ std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLi
 }
 
 std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
-                                                   const SessionEnvironment& environment) {
-  Result<Simulation> simulation =
-      Simulation::create(scene, &environment.runner, environment.instructions);
+                                                   const SessionEnvironment& environment,
+                                                   InstructionSet instructions) {
+  Result<Simulation> simulation = Simulation::create(scene, &environment.runner, instructions);
   if (!simulation) return scene_refused(simulation.errors());
   if (auto excess = find_excess(simulation.value(), environment.limits)) return *std::move(excess);
   return std::move(simulation).value();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <variant>
 
 #include "core/simulation.h"
@@ -8,6 +9,9 @@
 #include "server/session/session_environment.h"
 
 namespace vat {
+
+/// The method by which a session gets another scene; its first entry in a log is such a call.
+inline constexpr std::string_view kLoadMethod = "scene.load";
 
 /// Refuses every file: a scene or body from a client holds its meshes itself.
 Result<std::string> refuse_mesh_file(const std::string& name);
@@ -20,6 +24,7 @@ std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLi
 
 /// A simulation within the limits; errors point into the parameter `scene`.
 std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
-                                                   const SessionEnvironment& environment);
+                                                   const SessionEnvironment& environment,
+                                                   InstructionSet instructions);
 
 }  // namespace vat

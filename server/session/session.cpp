@@ -33,13 +33,27 @@ Session::Session(std::string id, SessionSettings settings, Simulation simulation
   update_summary();
 }
 
+void Session::recover(SessionRecovery& recovery, Storage& storage,
+                      const SessionEnvironment& environment) {
+  recovery.finish(core_);
+  core_.set_environment(environment);
+  const std::uint64_t number = recovery.stored().number;
+  core_.keep_in(std::make_unique<SessionLog>(
+      storage, number,
+      SessionLog::Place{storage.sessions().last_sequence(number), core_.run().position(),
+                        core_.has_diverged()}));
+  core_.come_back(SteadyClock::now());
+  update_summary();
+}
+
 void Session::start() {
   schedule(&Session::status_turn);
 }
 
-void Session::close(std::optional<Caller> caller) {
+void Session::close(End end, std::optional<Caller> caller) {
   {
     const std::lock_guard lock(mutex_);
+    end_ = end;
     closer_ = std::move(caller);
   }
   schedule(&Session::close_turn);
@@ -103,6 +117,23 @@ void Session::end_turn() {
   core_.announce();
   follow_clock();
   update_summary();
+  keep_moment();
+}
+
+void Session::keep_moment() {
+  SessionLog* log = core_.log();
+  const auto now = SteadyClock::now();
+  if (log != nullptr && log->is_due(core_.run().position(), now)) log->keep(core_.moment(), now);
+}
+
+void Session::end_log(End end) {
+  const std::unique_ptr<SessionLog> log = core_.end_log();
+  if (log == nullptr) return;
+  if (end == End::closed) {
+    log->close();
+  } else if (!core_.has_diverged()) {
+    log->keep(core_.moment(), SteadyClock::now(), true);
+  }
 }
 
 void Session::update_summary() {
@@ -213,7 +244,9 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
   const bool is_query = command.rules->message_class == MessageClass::query;
   if (!is_query || pointers_.has_of(participant->number)) carry_out_pointers();
   const SessionCore::Given given{participant->number, command};
+  const auto begin = SteadyClock::now();
   ActionResult result = std::move(core_.carry_out({&given, 1}).front());
+  if (core_.log() != nullptr) core_.log()->add_work(SteadyClock::now() - begin);
   if (core_.take_interruption()) end_all_steps();
   update_summary();  // before the answer: who has it finds in session.list what was done
   answer(std::move(caller), std::move(result));
@@ -272,7 +305,11 @@ void Session::end_step(std::deque<StepJob>::iterator job) {
   StepJob ended = std::move(*job);
   steps_.erase(job);
   update_summary();
-  ended.caller.answer(Json{{"tick", core_.run().tick()}});
+  if (auto error = core_.reach()) {
+    ended.caller.answer(*std::move(error));
+  } else {
+    ended.caller.answer(Json{{"tick", core_.run().tick()}});
+  }
   for (Item& item : ended.deferred) carry_out(std::move(item));
 }
 
@@ -296,8 +333,10 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
   carry_out_pointers();
   const auto due = timed ? clock_.due() : now;
   const auto begin = SteadyClock::now();
-  if (!core_.tick(now, timed)) return;
+  const bool done = core_.tick(now, timed);
   const auto stepped = SteadyClock::now();
+  if (core_.log() != nullptr) core_.log()->add_work(stepped - begin);
+  if (!done) return;
   update_summary();  // before the frames: who acknowledges one is told no earlier tick
   core_.publish_tick();
   spdlog::debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id_,
@@ -345,12 +384,15 @@ void Session::close_turn() {
   status_timer_.cancel();
   std::deque<Item> items;
   std::optional<Caller> closer;
+  End end = End::may_come_back;
   {
     const std::lock_guard lock(mutex_);
     inbox_closed_ = true;
+    end = end_;
     items.swap(inbox_);
     closer.swap(closer_);
   }
+  end_log(end);
   for (StepJob& job : steps_) {
     job.caller.answer(no_such_session(id_));
     for (Item& item : job.deferred) item.caller.answer(no_such_session(id_));

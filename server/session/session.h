@@ -14,6 +14,7 @@
 #include "server/session/caller.h"
 #include "server/session/pointer_commands.h"
 #include "server/session/session_core.h"
+#include "server/session/session_recovery.h"
 
 namespace vat {
 
@@ -34,10 +35,17 @@ class Session : public std::enable_shared_from_this<Session> {
   Session(std::string id, SessionSettings settings, Simulation simulation,
           const SessionEnvironment& environment, boost::asio::thread_pool& pool);
 
+  /// Before start(): it is kept from now on.
+  void keep_in(std::unique_ptr<SessionLog> log) { core_.keep_in(std::move(log)); }
+  /// Before start(), in place of that: makes it what it was, and keeps it. It must have been made
+  /// with what the recovery began with.
+  void recover(SessionRecovery& recovery, Storage& storage, const SessionEnvironment& environment);
   void start();
   /// Ends all work soon, at most once: commands that are not carried out yet are answered by
-  /// no_such_session, and then the caller, if there is one, with the tick that was the last.
-  void close(std::optional<Caller> caller);
+  /// no_such_session, and then the caller, if there is one, with the tick that was the last. Where
+  /// it is kept, it may come back from where it was.
+  enum class End { closed, may_come_back };
+  void close(End end, std::optional<Caller> caller);
 
   /// Answered with who it is then, and the description.
   /// Where it is refused, `undo` is called first.
@@ -104,6 +112,9 @@ class Session : public std::enable_shared_from_this<Session> {
   void wait_for_tick();
   void status_turn();
   void wait_for_status();
+  /// Notes where it is, from time to time.
+  void keep_moment();
+  void end_log(End end);
   void close_turn();
 
   const std::string id_;
@@ -114,6 +125,7 @@ class Session : public std::enable_shared_from_this<Session> {
   bool inbox_scheduled_ = false;
   bool inbox_closed_ = false;
   std::optional<Caller> closer_;  // is answered by the last turn
+  End end_ = End::may_come_back;
   SessionSummary summary_;
 
   // Used on the strand only.

@@ -24,7 +24,7 @@ SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation si
                          const SessionEnvironment& environment)
     : id_(std::move(id)),
       settings_(std::move(settings)),
-      environment_(environment),
+      environment_(&environment),
       run_(std::move(simulation), environment.metrics),
       frames_(std::make_shared<FrameFeed>(id_, run_.simulation().scene().vat, environment.metrics,
                                           environment.frame_threads)) {
@@ -46,6 +46,8 @@ void SessionCore::set_speed(double speed) {
 }
 
 void SessionCore::load(Simulation simulation) {
+  loaded_ = sequence_;
+  divergence_.reset();
   run_.load(std::move(simulation));
   participants_.forget_grabs();
   interrupt();
@@ -55,6 +57,7 @@ void SessionCore::load(Simulation simulation) {
 }
 
 void SessionCore::reset() {
+  divergence_.reset();
   run_.reset();
   participants_.forget_grabs();
   interrupt();
@@ -79,23 +82,6 @@ void SessionCore::interrupt() {
 
 bool SessionCore::take_interruption() {
   return std::exchange(interrupted_, false);
-}
-
-std::vector<ActionResult> SessionCore::carry_out(std::span<const Given> commands) {
-  std::vector<ActionResult> results;
-  for (const Given& given : commands) {
-    results.push_back(apply(given.participant, given.command.action));
-  }
-  return results;
-}
-
-ActionResult SessionCore::apply(ParticipantNumber participant, const SessionAction& action) {
-  try {
-    return action(*this, participants_.ghost(participant));
-  } catch (const std::exception& error) {
-    spdlog::error("session {}: a command failed: {}", id_, error.what());
-    return internal_error();
-  }
 }
 
 void SessionCore::subscribe(Participant& participant, const Subscription& subscription,
@@ -147,6 +133,7 @@ void SessionCore::publish_tick() {
 
 void SessionCore::announce() {
   tell_description();
+  tell_divergence();
   if (status_due_) {
     announce_status();
     status_due_ = false;
@@ -178,7 +165,7 @@ void SessionCore::fill_state() {
 }
 
 void SessionCore::close_silent(SteadyClock::time_point now) {
-  participants_.close_silent(now, environment_.limits.frame_patience);
+  participants_.close_silent(now, environment_->limits.frame_patience);
 }
 
 Json SessionCore::status() const {

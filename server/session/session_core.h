@@ -14,7 +14,9 @@
 #include "server/session/participants.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
+#include "server/session/session_log.h"
 #include "server/session/session_run.h"
+#include "server/session/session_settings.h"
 #include "server/session/tick_clock.h"
 
 namespace vat {
@@ -36,14 +38,6 @@ struct Entrant {
   std::optional<std::string> resume;  ///< the token of the participant to be resumed
   std::optional<Role> role;           ///< by invitation; absent: the usual one
   bool passes_lock = false;
-};
-
-/// What an owner decides of a session.
-struct SessionSettings {
-  std::string name;
-  Role default_role = Role::controller;  ///< of who joins without an invitation
-  bool is_locked = false;                ///< nobody joins without an invitation
-  ConnectionId creator = 0;              ///< owner as soon as it joins; 0: nobody
 };
 
 /// What a connection is told of itself when it comes in.
@@ -84,7 +78,8 @@ class SessionCore {
               const SessionEnvironment& environment);
 
   const std::string& id() const { return id_; }
-  const SessionEnvironment& environment() const { return environment_; }
+  const SessionEnvironment& environment() const { return *environment_; }
+  void set_environment(const SessionEnvironment& environment) { environment_ = &environment; }
   SessionRun& run() { return run_; }
   const SessionRun& run() const { return run_; }
   Participants& participants() { return participants_; }
@@ -99,18 +94,49 @@ class SessionCore {
   void bodies_changed();
   /// What the description tells has changed, but not the bodies.
   void description_changed() { description_due_ = true; }
-  std::uint64_t next_grab() { return ++last_grab_; }
+  /// The id of the next grab, to be started, and to be used up where that succeeds.
+  std::uint64_t next_grab() const { return last_grab_ + 1; }
+  void use_grab() { ++last_grab_; }
 
   /// A command that a participant has given.
   struct Given {
     ParticipantNumber participant = 0;
     const SessionCommand& command;
   };
-  /// Carries out commands between two ticks; their results.
+  /// Carries out commands between two ticks, once they are in the log; their results. Where they
+  /// cannot be logged, all of them are refused.
   std::vector<ActionResult> carry_out(std::span<const Given> commands);
-  /// The one way by which commands change a session. The participant is a ghost where it is not
-  /// here.
-  ActionResult apply(ParticipantNumber participant, const SessionAction& action);
+  /// The one way by which commands change a session, now or when a log is carried out again. The
+  /// participant is a ghost where it is not here.
+  ActionResult apply(const LogEntry& entry, const SessionAction& action);
+
+  /// Notes that somebody is told of the present tick: the session does not come back before it.
+  std::optional<RpcError> reach();
+
+  /// From now on commands are logged, and the session is kept.
+  void keep_in(std::unique_ptr<SessionLog> log) { log_ = std::move(log); }
+  /// Null where it is kept nowhere.
+  SessionLog* log() { return log_.get(); }
+  std::unique_ptr<SessionLog> end_log() { return std::move(log_); }
+  std::uint64_t sequence() const { return sequence_; }  ///< of the last entry carried out
+  bool has_diverged() const { return divergence_.has_value(); }
+  SessionMoment moment() const;
+  /// Goes on from a moment of the session's past. `as_loaded` is what it resets to.
+  void resume(const SessionMoment& moment, Simulation simulation, Snapshot as_loaded);
+  /// In a log that is carried out again: where the session was seen last, as far as the log does
+  /// not tell it.
+  void pass(const SessionBeat& beat);
+  /// The log has been carried out again, and the session goes on from here in a new epoch. Those
+  /// who took part are away.
+  void come_back(SteadyClock::time_point now);
+  /// A session that came back in another state than it was in stands still and tells so, until it
+  /// is loaded or reset.
+  struct Divergence {
+    std::uint64_t position = 0;
+    std::uint64_t tick = 0;
+    std::string reason;
+  };
+  void set_divergence(Divergence divergence);
 
   /// A connection comes in, as a further participant or as the one that it resumes, whose other
   /// connection, if it has one, is closed. Ends what the connection was in the session before.
@@ -120,7 +146,11 @@ class SessionCore {
   /// The participant of the connection, if there is one, may be resumed for a while.
   void disconnect(ConnectionId client, SteadyClock::time_point now);
   /// Ends the participant's grabs, and the participant.
+  /// Where that cannot be logged, the participant is away, and leaves later.
   void leave(ParticipantNumber number);
+  /// The same by an entry of the log; and what let_go() does.
+  void carry_out_leave(const LogEntry& entry);
+  void carry_out_let_go(const LogEntry& entry);
   /// Ends its connection too, told why.
   void kick(ParticipantNumber number, const std::string& reason);
   void rename(Participant& participant, std::string name);
@@ -164,14 +194,21 @@ class SessionCore {
   void publish_frame();
   void fill_state();
   Participant& take_in(const ClientOutbox& outbox, const Entrant& entrant, std::string& token);
-  void end_grabs(const Participant& participant);
   void release_connection(const Participant& participant, ConnectionId next);
   /// So that those who come and go at once do not grow without bound.
   void bound_absences();
+  std::optional<RpcError> log(std::span<LogEntry> entries);
+  void refuse(const LogEntry& entry);
+  ActionResult act(ParticipantNumber participant, const SessionAction& action);
+  LogEntry make_entry(ParticipantNumber participant, std::string_view method,
+                      std::string params) const;
+  void tell_divergence();
+  /// Ends the grabs of a participant, who stays.
+  void let_go(const Participant& participant);
 
   const std::string id_;
   SessionSettings settings_;
-  const SessionEnvironment& environment_;
+  const SessionEnvironment* environment_;
   SessionRun run_;
   Participants participants_;
   const std::shared_ptr<FrameFeed> frames_;
@@ -181,6 +218,12 @@ class SessionCore {
   bool playing_ = true;
   double speed_ = 1;  // simulated seconds per second
   std::uint64_t last_grab_ = 0;
+  std::unique_ptr<SessionLog> log_;
+  std::uint64_t sequence_ = 1;  // of the last entry that was carried out; the first has the scene
+  std::uint64_t loaded_ = 1;    // of the entry that has the present scene
+  bool log_fails_ = false;
+  std::optional<Divergence> divergence_;
+  bool divergence_due_ = false;
   bool description_due_ = false;
   bool status_due_ = false;
   bool frame_due_ = false;       // at once

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <exception>
+#include <limits>
 #include <thread>
 
 #include "server/session/scene_loading.h"
@@ -16,6 +17,17 @@ namespace {
 std::size_t thread_count(std::size_t wanted) {
   if (wanted > 0) return wanted;
   return std::max<std::size_t>(2, std::thread::hardware_concurrency());
+}
+
+ServerLimits without_scene_limits(ServerLimits limits) {
+  limits.max_particles = limits.max_particle_steps_per_tick = limits.max_grabs_per_client =
+      std::numeric_limits<std::size_t>::max();
+  return limits;
+}
+
+std::unique_ptr<Storage> open_storage(const ServerSettings& settings) {
+  if (settings.data_folder.empty()) return nullptr;
+  return std::make_unique<Storage>(settings.data_folder, settings.storage);
 }
 
 }  // namespace
@@ -32,6 +44,10 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
       frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
       environment_{catalogue_,     settings_.limits, settings_.instructions, runner_, metrics_,
                    frame_threads_, tokens_},
+      no_limits_(without_scene_limits(settings_.limits)),
+      past_environment_{catalogue_,     no_limits_, settings_.instructions, runner_, metrics_,
+                        frame_threads_, tokens_},
+      storage_(open_storage(settings_)),
       pool_(runner_.thread_count()),
       later_(std::make_shared<Later>(pool_)),
       creations_(boost::asio::make_strand(pool_)) {}
@@ -79,24 +95,39 @@ std::optional<RpcError> SessionDirectory::refuse_session() const {
 
 std::optional<RpcError> SessionDirectory::refuse_session_locked() const {
   if (stopped_) return not_allowed("the server stops");
-  if (sessions_.size() < settings_.limits.max_sessions) return {};
+  if (sessions_.size() + absent_.size() < settings_.limits.max_sessions) return {};
   return limit_reached("sessions", settings_.limits.max_sessions);
+}
+
+Role SessionDirectory::default_role() const {
+  return settings_.access.mode == AccessMode::open ? Role::controller : Role::viewer;
 }
 
 std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene,
                                                            ConnectionId creator) {
   if (auto error = refuse_session()) return *std::move(error);
-  auto simulation = make_simulation(scene, environment_);  // without the lock
+  auto simulation = make_simulation(scene, environment_, environment_.instructions);
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+  std::optional<std::uint64_t> stored;
+  try {
+    stored = store(name, scene);
+  } catch (const StorageError& error) {
+    spdlog::error("a session cannot be kept: {}", error.what());
+    return storage_failed(error.kind());
+  }
 
-  const std::lock_guard lock(mutex_);
-  if (auto error = refuse_session_locked()) return *std::move(error);  // it took long
-  const Sessions::key_type number = ++last_session_;
-  const Role default_role =
-      settings_.access.mode == AccessMode::open ? Role::controller : Role::viewer;
+  const std::lock_guard lock(mutex_);  // from here on only: the above took long
+  if (auto error = refuse_session_locked()) {
+    if (stored) storage_->sessions().close(*stored);
+    return *std::move(error);
+  }
+  const Sessions::key_type number = stored ? *stored : ++last_session_;
   const auto session = std::make_shared<Session>(
-      to_id(number), SessionSettings{std::move(name), default_role, false, creator},
+      to_id(number), SessionSettings{std::move(name), default_role(), false, creator},
       std::get<Simulation>(std::move(simulation)), environment_, pool_);
+  if (stored) {
+    session->keep_in(std::make_unique<SessionLog>(*storage_, number, SessionLog::Place{1, 0}));
+  }
   sessions_.emplace(number, session);
   session->start();
   spdlog::info("session {} created: {}", to_id(number), scene.name);
@@ -134,15 +165,20 @@ RpcResult SessionDirectory::create_from(const Json& scene, std::string name, Con
   return Json{{"session", std::get<SessionId>(created)}, {"tick", 0}};
 }
 
-std::vector<std::pair<SessionId, SessionSummary>> SessionDirectory::list(
-    const Caller& caller) const {
+std::vector<SessionDirectory::Listed> SessionDirectory::list(const Caller& caller) const {
   const std::lock_guard lock(mutex_);
   const Client* client = find_caller(caller);
-  std::vector<std::pair<SessionId, SessionSummary>> list;
+  std::vector<Listed> list;
   for (const auto& [number, session] : sessions_) {
     if (client == nullptr || refuse_access(*client, number)) continue;
-    list.emplace_back(to_id(number), session->summary());
-    list.back().second.clients = client_count(number);
+    list.push_back({to_id(number), session->summary(), "running"});
+    list.back().summary.clients = client_count(number);
+  }
+  for (const auto& [number, absent] : absent_) {
+    if (client == nullptr || refuse_access(*client, number)) continue;
+    SessionSummary summary;
+    summary.name = absent.name;
+    list.push_back({to_id(number), std::move(summary), absent.is_lost ? "lost" : "recovering"});
   }
   return list;
 }
@@ -154,9 +190,12 @@ std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::option
   if (found == clients_.end()) return not_allowed("the connection is closed");
   Client& client = found->second;
   const bool has_own = !id && !client.access.session.empty();
-  const auto session = id        ? find_session(*id)
-                       : has_own ? find_session(client.access.session)
-                                 : sessions_.begin();
+  const std::optional<SessionId> wanted = has_own ? client.access.session : id;
+  if (const auto absent = find_absent(wanted); absent != absent_.end()) {
+    if (auto error = refuse_access(client, absent->first)) return error;
+    return wait_for(absent->second, to_id(absent->first), caller, std::move(entrant));
+  }
+  const auto session = wanted ? find_session(*wanted) : sessions_.begin();
   if (session == sessions_.end()) return no_such_session(id ? *id : "at all", "/session");
   if (auto error = refuse_access(client, session->first)) return error;
   const std::size_t others =
@@ -194,9 +233,15 @@ std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId&
                                                 const std::string& reason) {
   const std::lock_guard lock(mutex_);
   const auto session = find_session(id);
-  if (session == sessions_.end()) return no_such_session(id, "/session");
+  if (session == sessions_.end()) return close_absent(id, caller);
   if (auto error = refuse_role(caller, rules_of("session.close"), session->first)) return error;
-  close_session(session, reason, std::move(caller));
+  try {
+    if (storage_) storage_->sessions().close(session->first);
+  } catch (const StorageError& error) {
+    spdlog::error("session {} cannot be closed: {}", id, error.what());
+    return storage_failed(error.kind());
+  }
+  close_session(session, Session::End::closed, reason, std::move(caller));
   return {};
 }
 
@@ -229,11 +274,15 @@ void SessionDirectory::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    while (!sessions_.empty()) close_session(sessions_.begin(), "the server stops", {});
+    while (!sessions_.empty()) {
+      close_session(sessions_.begin(), Session::End::may_come_back, "the server stops", {});
+    }
   }
   later_->stop();
+  if (recovery_threads_) recovery_threads_->join();
   pool_.join();
   frame_threads_.join();
+  if (storage_) storage_->flush();
 }
 
 SessionDirectory::Sessions::iterator SessionDirectory::find_session(const SessionId& id) {
@@ -253,8 +302,8 @@ void SessionDirectory::leave_session(Client& client, Caller caller) {
   client.session = 0;
 }
 
-void SessionDirectory::close_session(Sessions::iterator session, const std::string& reason,
-                                     std::optional<Caller> caller) {
+void SessionDirectory::close_session(Sessions::iterator session, Session::End end,
+                                     const std::string& reason, std::optional<Caller> caller) {
   const SessionId id = to_id(session->first);
   const std::string event = write_event("session.closed", {{"session", id}, {"reason", reason}});
   for (auto& [connection, client] : clients_) {
@@ -263,7 +312,7 @@ void SessionDirectory::close_session(Sessions::iterator session, const std::stri
     client.outbox->leave();
     client.outbox->send(event);  // the last that it hears of the session
   }
-  session->second->close(std::move(caller));
+  session->second->close(end, std::move(caller));
   tokens_.remove_session(id);
   sessions_.erase(session);
   spdlog::info("session {} closed: {}", id, reason);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <cstddef>
@@ -48,6 +49,11 @@ class SessionDirectory {
   /// A token for one use, soon. Without a session, which is an admin's to give, it is good in all.
   RpcResult issue_ticket(const Caller& caller, Role role, const std::optional<SessionId>& session);
 
+  /// Brings back what is stored, in the background; how many sessions that is.
+  std::size_t recover();
+  /// Whether none is under way to come back.
+  bool is_ready() const;
+
   /// `creator` is its owner once it joins; 0: nobody is.
   std::variant<SessionId, RpcError> create(std::string name, const Scene& scene,
                                            ConnectionId creator);
@@ -55,9 +61,15 @@ class SessionDirectory {
   /// there; or gives the error at once.
   std::optional<RpcError> create_later(Caller& caller, std::string name, Json scene);
 
+  struct Listed {
+    SessionId id;
+    SessionSummary summary;
+    const char* state;  ///< "running", or, with a name and nothing else, "recovering" or "lost"
+  };
   /// Those that are open to the caller.
-  std::vector<std::pair<SessionId, SessionSummary>> list(const Caller& caller) const;
+  std::vector<Listed> list(const Caller& caller) const;
   /// Answered by the session, or by the error that is returned. Without an id: the first session.
+  /// Who asks for one that is coming back waits for it.
   std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id, Entrant entrant);
   std::optional<RpcError> leave(Caller& caller);
   /// Hands the command to the session that the caller is in.
@@ -81,6 +93,25 @@ class SessionDirectory {
     std::size_t wrong_tokens = 0;
   };
 
+  /// A session that is stored and not here.
+  struct Absent {
+    struct Waiting {
+      Caller caller;
+      Entrant entrant;
+    };
+    std::string name;
+    bool is_lost = false;  ///< it could not be brought back, and stays in the storage
+    std::vector<Waiting> waiting;
+  };
+
+  /// The number of a new session that is kept; nothing where it is not.
+  std::optional<std::uint64_t> store(const std::string& name, const Scene& scene);
+  void recover_session(const StoredSession& stored);
+  /// Makes it, or tells why it is lost.
+  std::shared_ptr<Session> make_recovered(const StoredSession& stored);
+  void end_recovery(const StoredSession& stored, std::shared_ptr<Session> session);
+  /// Of who joins a session without an invitation, unless its owner says otherwise.
+  Role default_role() const;
   RpcResult create_from(const Json& scene, std::string name, ConnectionId creator);
   /// Why there can be no further session, if so.
   std::optional<RpcError> refuse_session() const;
@@ -98,22 +129,30 @@ class SessionDirectory {
   std::optional<RpcError> refuse_access(const Client& client, Sessions::key_type session) const;
   Entrant complete(Entrant entrant, const Client& client) const;
   Sessions::iterator find_session(const SessionId& id);
+  std::map<Sessions::key_type, Absent>::iterator find_absent(const std::optional<SessionId>& id);
+  std::optional<RpcError> wait_for(Absent& absent, const SessionId& id, Caller& caller,
+                                   Entrant entrant);
+  std::optional<RpcError> close_absent(const SessionId& id, Caller& caller);
   std::size_t client_count(Sessions::key_type session) const;
   void leave_session(Client& client, Caller caller);
   /// The caller, if there is one, is answered by the session.
-  void close_session(Sessions::iterator session, const std::string& reason,
+  void close_session(Sessions::iterator session, Session::End end, const std::string& reason,
                      std::optional<Caller> caller);
   std::optional<RpcError> refuse_session_locked() const;
 
   const Catalogue& catalogue_;
   const ServerSettings settings_;
-  // Six that outlive the sessions. The runner's threads help with their steps as far as the
+  // What outlives the sessions. The runner's threads help with their steps as far as the
   // pool's have nothing to do.
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
   AccessTokens tokens_;
   boost::asio::thread_pool frame_threads_;
   const SessionEnvironment environment_;
+  // Of sessions that come back: what was within the limits once is let in again.
+  const ServerLimits no_limits_;
+  const SessionEnvironment past_environment_;
+  const std::unique_ptr<Storage> storage_;  // null: sessions are in memory alone
   boost::asio::thread_pool pool_;
   const std::shared_ptr<Later> later_;
   // Creations come one after the other: they take one thread from the sessions at most.
@@ -122,8 +161,10 @@ class SessionDirectory {
   mutable std::mutex mutex_;
   std::map<ConnectionId, Client> clients_;
   Sessions sessions_;
-  Sessions::key_type last_session_ = 0;
-  bool stopped_ = false;
+  std::map<Sessions::key_type, Absent> absent_;
+  Sessions::key_type last_session_ = 0;  // of those in memory alone
+  std::atomic<bool> stopped_ = false;
+  std::unique_ptr<boost::asio::thread_pool> recovery_threads_;
 };
 
 }  // namespace vat

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::uint16_t kKicked = 4003;
 constexpr std::uint16_t kReplaced = 4010;
+// Who is away since then is due to leave at any time of a clock that begins with the machine.
+constexpr auto kLongAgo = SteadyClock::time_point(-std::chrono::hours(24));
 
 }  // namespace
 
@@ -32,6 +34,7 @@ std::variant<Entry, RpcError> SessionCore::join(const std::shared_ptr<ClientOutb
   if (participant.is_here()) release_connection(participant, outbox->id());
   participants_.connect(participant, outbox, membership);
   outbox->start_epoch(membership, run_.epoch());
+  divergence_due_ = divergence_.has_value();
   if (participant.subscription) subscribe(participant, *participant.subscription, now);
   status_due_ = true;
   return Entry{participant, std::move(token), resumed != nullptr};
@@ -45,7 +48,7 @@ Participant& SessionCore::take_in(const ClientOutbox& outbox, const Entrant& ent
   Participant& participant = participants_.add(entrant.name, role);
   if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);
   participant.resume = hash_of_token(token);
-  environment_.tokens.add(*participant.resume, {Role::viewer, id_});
+  environment_->tokens.add(*participant.resume, {Role::viewer, id_});
   return participant;
 }
 
@@ -66,19 +69,39 @@ void SessionCore::disconnect(ConnectionId client, SteadyClock::time_point now) {
 }
 
 void SessionCore::leave(ParticipantNumber number) {
-  const Participant* participant = participants_.find(number);
+  Participant* participant = participants_.find(number);
   if (participant == nullptr) return;
-  end_grabs(*participant);
   if (participant->is_here() && participant->subscription) {
     frames_->remove(participant->outbox->id());
   }
-  if (participant->resume) environment_.tokens.remove(*participant->resume);
-  participants_.remove(number);
+  if (participant->resume) environment_->tokens.remove(*participant->resume);
   status_due_ = true;
+  LogEntry entry = make_entry(number, kLeaveEntry, "{}");
+  if (log({&entry, 1})) {
+    participants_.disconnect(*participant);
+    participant->away_since = kLongAgo;
+    participant->resume.reset();
+    return;
+  }
+  carry_out_leave(entry);
 }
 
-void SessionCore::end_grabs(const Participant& participant) {
-  const auto grabs = participant.grabs;
+void SessionCore::carry_out_leave(const LogEntry& entry) {
+  carry_out_let_go(entry);
+  participants_.remove(entry.participant);
+}
+
+void SessionCore::let_go(const Participant& participant) {
+  if (participant.grabs.empty()) return;
+  LogEntry entry = make_entry(participant.number, kLetGoEntry, "{}");
+  if (!log({&entry, 1})) carry_out_let_go(entry);
+}
+
+void SessionCore::carry_out_let_go(const LogEntry& entry) {
+  sequence_ = entry.sequence;
+  const Participant* participant = participants_.find(entry.participant);
+  if (participant == nullptr) return;
+  const auto grabs = participant->grabs;
   for (const auto& [grab, body] : grabs) {
     const Status ended = run_.simulation().grab_end(grab);
     if (!ended) spdlog::warn("session {}: grab {} was gone already", id_, grab);
@@ -107,10 +130,11 @@ void SessionCore::set_role(Participant& participant, Role role) {
     }
   }
   participants_.set_role(participant, role);
-  if (role < Role::controller) end_grabs(participant);
+  if (role < Role::controller) let_go(participant);
 }
 
 void SessionCore::configure(SessionSettings settings) {
+  if (log_ != nullptr) log_->configure(settings.name, write_settings(settings).dump());
   settings_ = std::move(settings);
   participants_.send_event(write_event("session.configured", describe_settings()));
 }
@@ -124,14 +148,15 @@ Json SessionCore::describe_settings() const {
 void SessionCore::end_absences(SteadyClock::time_point now) {
   std::vector<ParticipantNumber> gone;
   for (const auto& [number, participant] : participants_.all()) {
+    if (participant.role < Role::controller) let_go(participant);  // what could not be logged then
     if (!participant.is_away()) continue;
-    if (now - *participant.away_since >= environment_.limits.resume_time) gone.push_back(number);
+    if (now - *participant.away_since >= environment_->limits.resume_time) gone.push_back(number);
   }
   for (const ParticipantNumber number : gone) leave(number);
 }
 
 void SessionCore::bound_absences() {
-  if (participants_.away() <= environment_.limits.max_clients_per_session) return;
+  if (participants_.away() <= environment_->limits.max_clients_per_session) return;
   const Participant* first = nullptr;
   for (const auto& [number, participant] : participants_.all()) {
     if (!participant.is_away()) continue;

@@ -13,6 +13,9 @@ class SessionRun {
  public:
   SessionRun(Simulation simulation, ServerMetrics& metrics);
 
+  /// Goes on from elsewhere in the history of a session. `as_loaded` is what it resets to.
+  void resume(Simulation simulation, Snapshot as_loaded, std::uint64_t position, std::uint64_t tick,
+              std::uint32_t epoch);
   /// Replaces the simulation; the ticks begin at 0, and a new epoch and profile.
   void load(Simulation simulation);
   /// Back to the scene as loaded, at tick 0 of a new epoch.
@@ -21,12 +24,16 @@ class SessionRun {
   AdvanceReport advance();
   /// The bodies have changed.
   void start_epoch() { ++epoch_; }
+  /// Epochs go on behind those that clients may have seen of a session that comes back.
+  void skip_epochs(std::uint32_t count) { epoch_ += count; }
 
   Simulation& simulation() { return simulation_; }
   const Simulation& simulation() const { return simulation_; }
   /// Of the ticks since the scene was loaded.
   const TickProfile& profile() const { return profile_; }
   std::uint64_t tick() const { return tick_; }  ///< that were run since the start
+  /// All ticks that the session has ever run, whatever was loaded or reset.
+  std::uint64_t position() const { return position_; }
   std::uint32_t epoch() const { return epoch_; }
   double tick_seconds() const { return simulation_.scene().numerics.tick; }
 
@@ -36,6 +43,7 @@ class SessionRun {
   Snapshot as_loaded_;
   TickProfile profile_;
   std::uint64_t tick_ = 0;
+  std::uint64_t position_ = 0;
   std::uint32_t epoch_ = 1;
 };
 

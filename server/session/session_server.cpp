@@ -121,6 +121,14 @@ Result<SessionId> SessionServer::create_session(std::string name, const Scene& s
   return std::get<SessionId>(std::move(created));
 }
 
+std::size_t SessionServer::recover() {
+  return impl_->directory().recover();
+}
+
+bool SessionServer::is_ready() const {
+  return impl_->directory().is_ready();
+}
+
 std::string SessionServer::metrics() const {
   return impl_->directory().metrics();
 }

@@ -11,6 +11,7 @@
 #include "server/access/access.h"
 #include "server/limits.h"
 #include "server/net/transport.h"
+#include "server/storage/storage_limits.h"
 
 namespace vat {
 
@@ -23,6 +24,8 @@ struct ServerSettings {
   InstructionSet instructions = best_instruction_set();
   std::size_t threads = 0;  ///< that step the sessions; 0: as many as the machine has cores
   AccessSettings access;
+  std::string data_folder;  ///< where sessions are kept; empty: in memory alone
+  StorageLimits storage;
 };
 
 /// The server behind the transport: its sessions, its clients, and the methods of PROTOCOL.md.
@@ -32,11 +35,16 @@ struct ServerSettings {
 /// session is never run by two threads at once. Every function may be called from any thread.
 class SessionServer final : public ConnectionHandler {
  public:
-  /// `catalogue` must outlive this.
+  /// `catalogue` must outlive this. Throws StorageError where the data folder cannot be used.
   SessionServer(const Catalogue& catalogue, ServerSettings settings);
   ~SessionServer() override;
   SessionServer(const SessionServer&) = delete;
   SessionServer& operator=(const SessionServer&) = delete;
+
+  /// Brings the sessions back that the data folder has, in the background; how many there are.
+  std::size_t recover();
+  /// Whether all that could be brought back are there.
+  bool is_ready() const;
 
   /// Starts a session, playing. Fails with the scene's errors, or with the code limit_reached.
   Result<SessionId> create_session(std::string name, const Scene& scene);
@@ -45,7 +53,8 @@ class SessionServer final : public ConnectionHandler {
   std::string metrics() const;
 
   /// Ends all sessions, tells their clients by session.closed, and joins the threads; a tick that
-  /// runs is ended first. Nothing that comes in later has an effect.
+  /// runs is ended first. Nothing that comes in later has an effect. What is kept in the data
+  /// folder is whole then.
   void stop();
 
   void opened(std::shared_ptr<Connection> connection) override;

@@ -120,12 +120,31 @@ std::vector<Setting> session_limits(ServerLimits& limits) {
   };
 }
 
+std::vector<Setting> storage_group(ServeSettings& s) {
+  constexpr std::size_t kLeastBytes = 1024 * 1024;
+  constexpr std::size_t kMostBytesKept = std::size_t{1} << 40;
+  return {
+      text_setting("data", s.data, "FOLDER",
+                   "Where sessions are kept, so that they come back after whatever ended the "
+                   "server; none: in memory alone"),
+      time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMostSeconds,
+                   "Of computing between two checkpoints of a session: what is done again after a "
+                   "crash; more where checkpoints would take over a hundredth of the time"),
+      number_setting<std::size_t>("checkpoint_bytes", s.storage.checkpoint_bytes, kLeastBytes,
+                                  kMostBytesKept,
+                                  "Of one session's checkpoints; beyond, older ones are thinned"),
+      number_setting<std::size_t>("log_bytes", s.storage.log_bytes, kLeastBytes, kMostBytesKept,
+                                  "Of one session's commands; beyond, its past is forgotten"),
+  };
+}
+
 }  // namespace
 
 std::vector<Setting> serve_settings(ServeSettings& target) {
   std::vector<Setting> all;
   add_group(all, "Server", server_group(target));
   add_group(all, "Access", access_group(target));
+  add_group(all, "Storage", storage_group(target));
   add_group(all, "Limits of connections", connection_limits(target));
   add_group(all, "Limits of sessions", session_limits(target.limits));
   return all;

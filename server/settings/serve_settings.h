@@ -8,6 +8,7 @@
 
 #include "server/limits.h"
 #include "server/settings/setting.h"
+#include "server/storage/storage_limits.h"
 
 namespace vat {
 
@@ -27,6 +28,8 @@ struct ServeSettings {
   std::chrono::milliseconds handshake_timeout{10'000};
   std::chrono::milliseconds ping_interval{20'000};
   ServerLimits limits;
+  std::string data = "none";  ///< folder where sessions are kept, or "none"
+  StorageLimits storage;
 };
 
 /// The one table of them: options, variables of the environment, members of a configuration file

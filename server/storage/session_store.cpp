@@ -116,19 +116,13 @@ std::vector<StoredSession> SessionStore::sessions() {
   return sessions;
 }
 
-void SessionStore::rename(std::uint64_t session, const std::string& name) {
+void SessionStore::configure(std::uint64_t session, const std::string& name,
+                             const std::string& settings) {
   const std::lock_guard lock(mutex_);
-  database_.prepare("UPDATE sessions SET name = ? WHERE number = ?")
-      .bind(0, name)
-      .bind(1, session)
-      .run();
-}
-
-void SessionStore::configure(std::uint64_t session, const std::string& settings) {
-  const std::lock_guard lock(mutex_);
-  database_.prepare("UPDATE sessions SET settings = ? WHERE number = ?")
-      .bind(0, settings)
-      .bind(1, session)
+  database_.prepare("UPDATE sessions SET name = ?, settings = ? WHERE number = ?")
+      .bind(0, std::string_view(name))
+      .bind(1, std::string_view(settings))
+      .bind(2, session)
       .run();
 }
 
@@ -199,6 +193,14 @@ std::optional<LogEntry> SessionStore::find(std::uint64_t session, std::uint64_t 
   query.bind(0, session).bind(1, sequence);
   if (!query.step()) return {};
   return to_entry(query);
+}
+
+std::uint64_t SessionStore::last_sequence(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  Statement query =
+      database_.prepare("SELECT coalesce(max(sequence), 0) FROM log WHERE session = ?");
+  query.bind(0, session);
+  return query.step() ? query.count(0) : 0;
 }
 
 std::size_t SessionStore::log_bytes(std::uint64_t session) {

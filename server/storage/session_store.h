@@ -45,8 +45,7 @@ class SessionStore {
   std::uint64_t create(const StoredSession& session, const LogEntry& first);
   /// All that are not closed, in the order of their numbers.
   std::vector<StoredSession> sessions();
-  void rename(std::uint64_t session, const std::string& name);
-  void configure(std::uint64_t session, const std::string& settings);
+  void configure(std::uint64_t session, const std::string& name, const std::string& settings);
   /// It does not come back from now on; what it takes is freed by remove_closed(), which takes its
   /// time.
   void close(std::uint64_t session);
@@ -61,6 +60,7 @@ class SessionStore {
   /// end of the log.
   std::vector<LogEntry> read(std::uint64_t session, std::uint64_t after);
   std::optional<LogEntry> find(std::uint64_t session, std::uint64_t sequence);
+  std::uint64_t last_sequence(std::uint64_t session);  ///< 0: it has no entry
   std::size_t log_bytes(std::uint64_t session);
   /// Removes entries up to `last`, but `kept`, which later ones build on.
   void trim(std::uint64_t session, std::uint64_t last, std::uint64_t kept);

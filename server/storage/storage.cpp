@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <exception>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,7 @@ void move_log(Store& store) {
 
 }  // namespace
 
-Storage::Storage(const std::string& folder, const Limits& limits)
+Storage::Storage(const std::string& folder, const StorageLimits& limits)
     : folder_(folder),
       limits_(limits),
       sessions_(folder_.file("vat.db")),
@@ -39,6 +40,12 @@ Storage::~Storage() {
 
 void Storage::post(std::function<void()> task) {
   boost::asio::post(thread_, [this, task = std::move(task)] { run(task); });
+}
+
+void Storage::flush() {
+  std::promise<void> done;
+  boost::asio::post(thread_, [&done] { done.set_value(); });
+  done.get_future().wait();
 }
 
 void Storage::run(const std::function<void()>& task) {

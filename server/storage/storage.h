@@ -10,6 +10,7 @@
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/session_store.h"
+#include "server/storage/storage_limits.h"
 
 namespace vat {
 
@@ -18,25 +19,22 @@ namespace vat {
 /// with the waiting for the disk that belongs to it. Nobody else waits for the disk.
 class Storage {
  public:
-  struct Limits {
-    std::size_t checkpoint_bytes = std::size_t{64} << 20;  ///< of one session
-    std::size_t log_bytes = std::size_t{64} << 20;         ///< of one session's commands
-  };
-
   /// Opens the folder, or makes it. Throws StorageError.
-  Storage(const std::string& folder, const Limits& limits);
+  Storage(const std::string& folder, const StorageLimits& limits);
   /// Ends what was posted first.
   ~Storage();
   Storage(const Storage&) = delete;
   Storage& operator=(const Storage&) = delete;
 
   const std::string& folder() const { return folder_.path(); }
-  const Limits& limits() const { return limits_; }
+  const StorageLimits& limits() const { return limits_; }
   SessionStore& sessions() { return sessions_; }
   CheckpointStore& checkpoints() { return checkpoints_; }
 
   /// Runs a task on the thread, in the order of the calls; what it throws is logged.
   void post(std::function<void()> task);
+  /// Waits until all that was posted has run.
+  void flush();
   /// Frees what closed sessions take.
   void remove_closed();
   /// How often something could not be written.
@@ -49,7 +47,7 @@ class Storage {
   void wait_to_move();
 
   const DataFolder folder_;
-  const Limits limits_;
+  const StorageLimits limits_;
   SessionStore sessions_;
   CheckpointStore checkpoints_;
   std::atomic<std::uint64_t> failures_ = 0;

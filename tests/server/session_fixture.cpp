@@ -68,6 +68,14 @@ const std::string& unstable_scene_text() {
   return kText;
 }
 
+Catalogue make_catalogue() {
+  const TemporaryFolder folder;
+  folder.write("mixed.json", mixed_scene_text());
+  folder.write("unstable.json", unstable_scene_text());
+  Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
+  return std::move(catalogue).value();
+}
+
 Scene to_scene(const std::string& text) {
   const auto no_meshes = [](const std::string&) -> Result<std::string> {
     return Error{"no_mesh", "", "there are no meshes"};

@@ -19,6 +19,8 @@ namespace vat::test {
 const std::string& mixed_scene_text();
 /// Two particles on a spring so stiff that no step of the guard holds it.
 const std::string& unstable_scene_text();
+/// Has `mixed` and `unstable`.
+Catalogue make_catalogue();
 Scene to_scene(const std::string& text);
 /// With both of them, as `mixed` and `unstable`.
 Catalogue test_catalogue();

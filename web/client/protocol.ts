@@ -54,7 +54,9 @@ export type ReplyError =
   | NoSuchScene
   | LimitReached
   | NotAllowed
-  | NotAuthenticated;
+  | NotAuthenticated
+  | StorageFailed
+  | NotRecovered;
 
 /** Shows a token: an admin's, an invitation, a ticket, or that of a participant */
 export interface AccessEnterParams {
@@ -271,6 +273,25 @@ export interface NotAuthenticated {
     hint: Hint;
   };
 }
+
+export interface StorageFailed {
+  code: 1010;
+  message: string;
+  data: {
+    kind: 'storage_failed';
+    hint: Hint;
+  };
+}
+
+export interface NotRecovered {
+  code: 1011;
+  message: string;
+  data: {
+    kind: 'not_recovered';
+    hint: Hint;
+    state: 'recovering' | 'lost';
+  };
+}
 /** Twice a second and after each change */
 export interface SessionStatus {
   tick: Tick;
@@ -293,6 +314,13 @@ export interface SessionGuard {
   particle: number;
   /** If false, the session has paused at the last good state */
   recovered: boolean;
+}
+/** The session has come back in another state than it was in, and stands still */
+export interface SessionDiverged {
+  /** Ticks that it had ever run */
+  position: number;
+  tick: Tick;
+  reason: string;
 }
 
 export interface SessionClosed {
@@ -418,6 +446,8 @@ export interface SessionListResult {
 export interface SessionEntry {
   session: SessionId;
   name: string;
+  /** Of one that is not running only the name is known */
+  state: 'running' | 'recovering' | 'lost';
   scene: string;
   /** Participants that are connected */
   clients: number;
@@ -485,6 +515,8 @@ export interface SessionHashResult {
   instruction_set: InstructionSet;
   /** Simulated time [s] */
   time: number;
+  /** Ticks that the session has ever run */
+  position: number;
 }
 
 export interface SessionStatsResult {
@@ -625,6 +657,7 @@ export interface Events {
   'session.description': SessionDescription;
   'session.status': SessionStatus;
   'session.guard': SessionGuard;
+  'session.diverged': SessionDiverged;
   'session.closed': SessionClosed;
   'session.configured': Settings;
   'control.requested': ControlRequested;
@@ -634,6 +667,7 @@ export const kEventNames = [
   'session.description',
   'session.status',
   'session.guard',
+  'session.diverged',
   'session.closed',
   'session.configured',
   'control.requested',

@@ -9,8 +9,8 @@ from pathlib import Path
 import schemas
 
 LEAST_SCRIPTS = 40
-# Kinds of errors that no client can bring about.
-NOT_SHOWN = {"internal_error"}
+# Kinds of errors and events that no client can bring about.
+NOT_SHOWN = {"internal_error", "storage_failed", "not_recovered", "session.diverged"}
 # What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
 # error; a number: the code that a connection is closed with; a script: it is all about that.
 LIMITS = {
@@ -70,7 +70,7 @@ class Seen:
         """What no script shows, in words."""
         yield from (f"no result of {m}" for m in sorted(set(schemas.methods()) - self.results))
         events = set(schemas.definitions("events"))
-        yield from (f"no event {name}" for name in sorted(events - self.events))
+        yield from (f"no event {name}" for name in sorted(events - NOT_SHOWN - self.events))
         yield from (f"no error {kind}" for kind in sorted(kinds() - NOT_SHOWN - self.kinds))
         yield from (f"no word here on the limit {name}" for name in sorted(self.limits - set(LIMITS)))
         yield from (f"no limit {name} in server.info" for name in sorted(set(LIMITS) - self.limits))

@@ -1,0 +1,130 @@
+// Sessions that are kept, and how they come back.
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <utility>
+
+#include "server/session/scene_loading.h"
+#include "server/session/session_directory.h"
+
+namespace vat {
+
+std::optional<std::uint64_t> SessionDirectory::store(const std::string& name, const Scene& scene) {
+  if (storage_ == nullptr) return {};
+  StoredSession session;
+  session.name = name;
+  session.instruction_set = to_string(environment_.instructions);
+  session.settings = write_settings({name, default_role(), false, 0}).dump();
+  const Json params{{"scene", write_scene(scene)}};
+  return storage_->sessions().create(session,
+                                     {1, 0, 0, 0, std::string(kLoadMethod), params.dump(), false});
+}
+
+std::size_t SessionDirectory::recover() {
+  if (storage_ == nullptr) return 0;
+  std::vector<StoredSession> stored = storage_->sessions().sessions();
+  const std::lock_guard lock(mutex_);
+  if (stored.empty() || stopped_) return stored.size();
+  recovery_threads_ =
+      std::make_unique<boost::asio::thread_pool>(std::min(stored.size(), runner_.thread_count()));
+  for (const StoredSession& session : stored) absent_[session.number].name = session.name;
+  for (StoredSession& session : stored) {
+    boost::asio::post(*recovery_threads_,
+                      [this, session = std::move(session)] { recover_session(session); });
+  }
+  return absent_.size();
+}
+
+bool SessionDirectory::is_ready() const {
+  const std::lock_guard lock(mutex_);
+  return !stopped_ && std::ranges::all_of(absent_, [](const auto& a) { return a.second.is_lost; });
+}
+
+void SessionDirectory::recover_session(const StoredSession& stored) {
+  const ThreadPoolRunner::Guest guest(runner_);
+  try {
+    end_recovery(stored, make_recovered(stored));
+  } catch (const Cancelled&) {
+    spdlog::info("session {} stays where it was", to_id(stored.number));
+  } catch (const std::exception& error) {
+    spdlog::error("session {} ({}) cannot be brought back, and stays in {} as it is: {}",
+                  to_id(stored.number), stored.name, storage_->folder(), error.what());
+    end_recovery(stored, nullptr);
+  }
+}
+
+std::shared_ptr<Session> SessionDirectory::make_recovered(const StoredSession& stored) {
+  const auto begin = SteadyClock::now();
+  SessionRecovery recovery(*storage_, stored, past_environment_, stopped_);
+  auto session =
+      std::make_shared<Session>(to_id(stored.number), read_settings(stored.name, stored.settings),
+                                recovery.begin(), past_environment_, pool_);
+  session->recover(recovery, *storage_, environment_);
+  const std::chrono::duration<double> time = SteadyClock::now() - begin;
+  spdlog::info("session {} is back at tick {}, in {:.2f} s", to_id(stored.number),
+               session->summary().tick, time.count());
+  return session;
+}
+
+void SessionDirectory::end_recovery(const StoredSession& stored, std::shared_ptr<Session> session) {
+  std::vector<Absent::Waiting> waiting;
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopped_) return;
+    Absent& absent = absent_.at(stored.number);
+    waiting = std::move(absent.waiting);
+    if (session == nullptr) {
+      absent.is_lost = true;
+    } else {
+      absent_.erase(stored.number);
+      sessions_.emplace(stored.number, session);
+      session->start();
+    }
+  }
+  for (Absent::Waiting& one : waiting) {
+    if (auto error = join(one.caller, to_id(stored.number), std::move(one.entrant))) {
+      one.caller.answer(*std::move(error));
+    }
+  }
+}
+
+std::map<std::uint64_t, SessionDirectory::Absent>::iterator SessionDirectory::find_absent(
+    const std::optional<SessionId>& id) {
+  if (id) {
+    return std::ranges::find_if(absent_,
+                                [&](const auto& entry) { return to_id(entry.first) == *id; });
+  }
+  // The first session, if it is among them.
+  const auto first =
+      std::ranges::find_if(absent_, [](const auto& entry) { return !entry.second.is_lost; });
+  if (first == absent_.end() || sessions_.empty()) return first;
+  return first->first < sessions_.begin()->first ? first : absent_.end();
+}
+
+std::optional<RpcError> SessionDirectory::wait_for(Absent& absent, const SessionId& id,
+                                                   Caller& caller, Entrant entrant) {
+  if (absent.is_lost) return not_recovered(id, "lost");
+  absent.waiting.push_back({std::move(caller), std::move(entrant)});
+  return {};
+}
+
+std::optional<RpcError> SessionDirectory::close_absent(const SessionId& id, Caller& caller) {
+  const auto absent = find_absent(id);
+  if (absent == absent_.end()) return no_such_session(id, "/session");
+  if (auto error = refuse_role(caller, rules_of("session.close"), absent->first)) return error;
+  if (!absent->second.is_lost) return not_recovered(id, "recovering");
+  try {
+    storage_->sessions().close(absent->first);
+  } catch (const StorageError& error) {
+    return storage_failed(error.kind());
+  }
+  storage_->remove_closed();
+  absent_.erase(absent);
+  caller.answer(Json{{"tick", 0}});
+  return {};
+}
+
+}  // namespace vat

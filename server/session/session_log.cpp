@@ -1,0 +1,103 @@
+#include "server/session/session_log.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace vat {
+namespace {
+
+constexpr auto kBeatInterval = std::chrono::seconds(1);
+
+std::size_t bytes_of(std::span<const LogEntry> entries) {
+  std::size_t bytes = 0;
+  for (const LogEntry& entry : entries) bytes += entry.params.size();
+  return bytes;
+}
+
+}  // namespace
+
+bool CheckpointPace::is_due(Seconds cost) const {
+  return work_ >= std::min(std::max(wanted_, cost / kGreatestShare), kMostWork);
+}
+
+SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& place)
+    : storage_(storage),
+      session_(session),
+      last_(place.last),
+      pace_(storage.limits().checkpoint_after),
+      kept_position_(place.position),
+      kept_last_(place.last),
+      is_bent_(place.is_bent) {
+  writing_->log_bytes = storage.sessions().log_bytes(session);
+}
+
+void SessionLog::append(std::span<LogEntry> entries) {
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].sequence = last_ + 1 + i;
+  storage_.sessions().append(session_, entries);
+  last_ += entries.size();
+  writing_->log_bytes += bytes_of(entries);
+}
+
+void SessionLog::refuse(std::uint64_t sequence) {
+  storage_.sessions().refuse(session_, sequence);
+}
+
+void SessionLog::configure(const std::string& name, const std::string& settings) {
+  storage_.sessions().configure(session_, name, settings);
+}
+
+void SessionLog::reach(std::uint64_t position) {
+  storage_.sessions().reach(session_, position);
+}
+
+bool SessionLog::is_checkpoint_due() const {
+  return is_bent_ || pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost));
+}
+
+bool SessionLog::is_due(std::uint64_t position, SteadyClock::time_point now) const {
+  if (writing_->under_way) return false;
+  if (position == kept_position_ && last_ == kept_last_) return false;
+  return now - kept_at_ >= kBeatInterval || is_checkpoint_due();
+}
+
+void SessionLog::keep(SessionMoment moment, SteadyClock::time_point now, bool always) {
+  const bool with_checkpoint = always || is_checkpoint_due();
+  if (with_checkpoint) {
+    pace_.begin();
+    is_bent_ = false;
+  }
+  kept_position_ = moment.position;
+  kept_last_ = last_;
+  kept_at_ = now;
+  writing_->under_way = true;
+  storage_.post([&storage = storage_, session = session_, moment = std::move(moment),
+                 with_checkpoint, writing = writing_] {
+    // Whatever comes of it, the next one may be written.
+    const std::shared_ptr<void> end(nullptr, [&](void*) { writing->under_way = false; });
+    write(storage, session, moment, with_checkpoint, *writing);
+  });
+}
+
+void SessionLog::write(Storage& storage, std::uint64_t session, const SessionMoment& moment,
+                       bool with_checkpoint, Writing& writing) {
+  storage.sessions().beat(session, moment.beat());
+  if (!with_checkpoint) return;
+  const auto begin = SteadyClock::now();
+  storage.checkpoints().write(
+      {session, moment.position, moment.sequence, moment.fields(), moment.snapshot.to_bytes()});
+  writing.checkpoint_cost = CheckpointPace::Seconds(SteadyClock::now() - begin).count();
+  bound_log(storage, session, moment, writing);
+}
+
+void SessionLog::bound_log(Storage& storage, std::uint64_t session, const SessionMoment& moment,
+                           Writing& writing) {
+  if (writing.log_bytes <= storage.limits().log_bytes) return;
+  storage.sessions().trim(session, moment.sequence, moment.loaded);
+  // What came meanwhile is counted in both; that is made good at the next time.
+  writing.log_bytes = storage.sessions().log_bytes(session);
+  spdlog::info("session s{}: its log was full, and begins at its newest checkpoint now", session);
+}
+
+}  // namespace vat

@@ -1,0 +1,68 @@
+#include "tests/recovery/past.h"
+
+#include <algorithm>
+#include <boost/asio/thread_pool.hpp>
+#include <limits>
+
+#include "server/session/describe.h"
+#include "server/session/scene_loading.h"
+#include "server/session/session_recovery.h"
+
+namespace vat::test {
+
+std::map<std::string, StoredPast> read_past(const std::string& data_folder) {
+  std::map<std::string, StoredPast> all;
+  SessionStore store(data_folder + "/vat.db");
+  for (const StoredSession& session : store.sessions()) {
+    StoredPast& past = all["s" + std::to_string(session.number)];
+    past.name = session.name;
+    past.position = session.reached;
+    for (auto part = store.read(session.number, 0); !part.empty();
+         part = store.read(session.number, past.log.back().sequence)) {
+      past.log.insert(past.log.end(), part.begin(), part.end());
+    }
+    past.position = std::max(past.position, past.log.back().position);
+  }
+  return all;
+}
+
+std::map<std::uint64_t, std::set<std::string>> hashes_of(const StoredPast& past,
+                                                         const Catalogue& catalogue) {
+  ServerLimits limits;
+  limits.max_particles = limits.max_particle_steps_per_tick = limits.max_grabs_per_client =
+      std::numeric_limits<std::size_t>::max();
+  ThreadPoolRunner runner(1);
+  ServerMetrics metrics;
+  boost::asio::thread_pool threads(1);
+  AccessTokens tokens(1);
+  const SessionEnvironment environment{catalogue, limits, best_instruction_set(), runner, metrics,
+                                       threads,   tokens};
+  const std::atomic<bool> never = false;
+  const Json params = Json::parse(past.log.front().params);
+  const Scene scene = std::get<Scene>(read_client_scene(params.at("scene"), catalogue));
+  SessionCore core(
+      "s", {past.name, Role::controller, false, 0},
+      std::get<Simulation>(make_simulation(scene, environment, environment.instructions)),
+      environment);
+
+  std::map<std::uint64_t, std::set<std::string>> hashes;
+  const auto note = [&] {
+    hashes[core.run().position()].insert(describe_hash(core.run().simulation().state_hash()));
+  };
+  const auto run = [&](std::uint64_t position) {
+    while (core.run().position() < position) {
+      run_to(core, core.run().position() + 1, never);
+      note();
+    }
+  };
+  note();
+  for (std::size_t i = 1; i < past.log.size(); ++i) {
+    run(past.log[i].position);
+    carry_out_again(core, past.log[i]);
+    note();
+  }
+  run(past.position);
+  return hashes;
+}
+
+}  // namespace vat::test

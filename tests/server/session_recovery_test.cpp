@@ -1,0 +1,338 @@
+// Sessions that come back: a second server on the data folder of a first one that was not asked to
+// end its sessions, as after a crash; what it kept is copied while it runs.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/simulation.h"
+#include "server/storage/database.h"
+#include "tests/server/session_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+/// A server on a data folder, with one client in its session s1.
+class Life {
+ public:
+  Life(const Catalogue& catalogue, const std::string& folder, ServerLimits limits = {},
+       StorageLimits storage = {})
+      : server_(catalogue, settings(folder, limits, storage)), recovered(server_.recover()) {
+    if (recovered == 0 && !server_.create_session("first", to_scene(mixed_scene_text()))) {
+      throw std::runtime_error("the first session was refused");
+    }
+    client.emplace(server_, 1);
+    joined = client->result("session.join", {{"session", "s1"}});
+  }
+
+  std::string hash() { return client->result("session.hash").at("hash"); }
+  std::uint64_t tick() { return client->result("session.hash").at("tick"); }
+
+ private:
+  static ServerSettings settings(const std::string& folder, const ServerLimits& limits,
+                                 const StorageLimits& storage) {
+    ServerSettings settings;
+    settings.limits = limits;
+    settings.threads = 2;
+    settings.data_folder = folder;
+    settings.storage = storage;
+    return settings;
+  }
+  SessionServer server_;
+
+ public:
+  const std::size_t recovered;
+  std::optional<TestClient> client;
+  Json joined;
+};
+
+/// What is written at this moment, as a crash leaves it.
+void copy_data(const std::string& from, const std::string& to) {
+  fs::create_directories(to);
+  for (const std::string name : {"/checkpoints.db", "/vat.db"}) {  // no checkpoint before its log
+    Database(from + name, Database::Mode::create)
+        .execute(("VACUUM INTO '" + to + name + "'").c_str());
+  }
+}
+
+class SessionRecoveryTest : public testing::Test {
+ protected:
+  SessionRecoveryTest() : catalogue(make_catalogue()) {}
+
+  /// Ends the present life as a crash does, and begins the next.
+  void crash(ServerLimits limits = {}) {
+    const std::string next = folder.file("data" + std::to_string(++lives_));
+    copy_data(data, next);
+    life.reset();
+    data = next;
+    life.emplace(catalogue, data, limits, storage);
+  }
+  void begin() { life.emplace(catalogue, data, ServerLimits{}, storage); }
+  TestClient& client() { return *life->client; }
+  void execute(const char* sql, const char* file = "/vat.db") {
+    Database(data + file, Database::Mode::create).execute(sql);
+  }
+
+  const TemporaryFolder folder;
+  const Catalogue catalogue;
+  StorageLimits storage;
+  std::string data = folder.file("data0");
+  std::optional<Life> life;
+
+ private:
+  int lives_ = 0;
+};
+
+const Json kBall = {{"name", "second"},
+                    {"kind", "rigid"},
+                    {"material", "wood"},
+                    {"spacing", 0.1},
+                    {"shape", {{"type", "sphere"}, {"radius", 0.12}}},
+                    {"position", {0.3, 0.7, 0.8}}};
+
+TEST_F(SessionRecoveryTest, CommandsAndTicksThatWereAnsweredAreThere) {
+  begin();
+  client().result("control.pause");
+  client().result("control.reset");
+  client().result("control.step", {{"ticks", 7}});
+  client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});
+  client().result("world.add_body", {{"body", kBall}});
+  client().result("control.step", {{"ticks", 5}});
+  client().result("world.set_interface",
+                  {{"interface", {{"materials", {"wood", "wood"}}, {"stiffness", 500}}}});
+  client().result("world.apply_force", {{"body", 3}, {"force", {0, 5, 0}}, {"duration", 1}});
+  client().result("control.step", {{"ticks", 3}});
+  const std::string before = life->hash();
+  const int epoch = life->joined.at("description").at("epoch");
+  crash();
+  EXPECT_EQ(life->recovered, 1U);
+  EXPECT_EQ(life->tick(), 15U);
+  EXPECT_EQ(life->hash(), before);
+  EXPECT_FALSE(life->joined.at("description").at("playing"));
+  EXPECT_EQ(life->joined.at("description").at("name"), "first");
+  EXPECT_GT(life->joined.at("description").at("epoch"), epoch);
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  // And it goes on as it would have.
+  client().result("control.step", {{"ticks", 4}});
+  const std::string later = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), later);
+}
+
+TEST_F(SessionRecoveryTest, AResetGoesToTheSceneAndOnFromThere) {
+  begin();
+  client().result("control.pause");
+  client().result("control.reset");
+  const std::string start = life->hash();
+  client().result("scene.load", {{"scene", "mixed"}});
+  client().result("world.remove_body", {{"body", 2}});
+  client().result("control.step", {{"ticks", 20}});
+  crash();
+  EXPECT_EQ(life->tick(), 20U);
+  client().result("control.reset");
+  EXPECT_EQ(life->hash(), start);
+  client().result("control.step", {{"ticks", 3}});
+  const std::string later = life->hash();
+  crash();
+  EXPECT_EQ(life->tick(), 3U);
+  EXPECT_EQ(life->hash(), later);
+}
+
+TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
+  ServerLimits impatient;
+  impatient.resume_time = 0ms;
+  begin();
+  client().result("control.pause");
+  client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  client().result("grab.move", {{"grab", 1}, {"target", {0.2, 0.5, 0.9}}});
+  client().result("control.step", {{"ticks", 5}});
+  const std::string held = life->hash();
+  crash(impatient);
+  EXPECT_TRUE(client().call("grab.move", {{"grab", 1}, {"target", {0, 0, 0}}}).contains("error"));
+  for (int i = 0; i < 200 && life->hash() == held; ++i) std::this_thread::sleep_for(20ms);
+  EXPECT_NE(life->hash(), held) << "the grab still pulls";
+  const std::string free = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), free);
+}
+
+TEST_F(SessionRecoveryTest, WhatWasAcceptedIsAcceptedAgainAndWhatWasRefusedIsNot) {
+  ServerLimits few;
+  const Simulation alone = Simulation::create(to_scene(mixed_scene_text())).value();
+  few.max_particles = alone.particle_count() + 2;  // too few for a second ball
+  life.emplace(catalogue, data, few);
+  client().result("control.pause");
+  EXPECT_EQ(client().error("world.add_body", {{"body", kBall}}).at("data").at("kind"),
+            "limit_reached");
+  crash();  // without the limit
+  client().result("control.reset");
+  EXPECT_EQ(client().result("state.query").at("bodies").size(), 3U);
+  const int id = client().result("world.add_body", {{"body", kBall}}).at("body");
+  const std::string with = life->hash();
+  crash(few);
+  EXPECT_EQ(life->hash(), with);
+  EXPECT_EQ(client().result("state.query", {{"bodies", {id}}}).at("bodies")[0].at("name"),
+            "second");
+}
+
+TEST_F(SessionRecoveryTest, ASessionThatPlaysIsBackAtMostASecondEarlierAndPlays) {
+  begin();
+  client().result("control.set_speed", {{"speed", 2}});
+  const std::uint64_t seen =
+      client()
+          .wait_event("session.status", [](const Json& s) { return s.at("tick") > 200; })
+          .at("tick");  // two seconds
+  crash();
+  const Json& description = life->joined.at("description");
+  EXPECT_TRUE(description.at("playing"));
+  EXPECT_EQ(description.at("speed"), 2);
+  EXPECT_GE(description.at("tick").get<std::uint64_t>() + 150, seen);  // a beat and its writing
+}
+
+TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
+  storage.checkpoint_after = 1ms;
+  begin();
+  client().result("control.pause");
+  client().result("control.reset");
+  for (int i = 0; i < 20; ++i) {
+    client().result("control.step", {{"ticks", 10}});
+    client().result("world.set_gravity", {{"gravity", {0, 0.1 * i, -9}}});
+  }
+  const std::string before = life->hash();
+  std::this_thread::sleep_for(100ms);  // for what was posted to be written
+  copy_data(data, folder.file("look"));
+  Database look(folder.file("look/checkpoints.db"), Database::Mode::create);
+  ASSERT_GE(look.number("SELECT count(*) FROM checkpoints"), 2);
+  const std::int64_t newest = look.number("SELECT max(sequence) FROM checkpoints");
+  ASSERT_GE(newest, 5);
+  crash();
+  EXPECT_EQ(life->hash(), before);
+  client().result("control.reset");
+  const std::string start = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), start);
+
+  // The way before the newest checkpoint is not gone again: it may be damaged.
+  life.reset();
+  execute("UPDATE log SET params = 'damaged' WHERE sequence BETWEEN 3 AND 5");
+  begin();
+  EXPECT_EQ(life->hash(), start);
+}
+
+TEST_F(SessionRecoveryTest, ADamagedCheckpointIsPassedOver) {
+  storage.checkpoint_after = 1ms;
+  begin();
+  client().result("control.pause");
+  for (int i = 0; i < 5; ++i) client().result("control.step", {{"ticks", 10}});
+  const std::string before = life->hash();
+  life.reset();
+  execute("UPDATE checkpoints SET state = CAST(substr(state, 1, 500) AS BLOB)", "/checkpoints.db");
+  begin();
+  EXPECT_EQ(life->hash(), before);
+}
+
+TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTellsSo) {
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 10}});
+  client().result("control.play");
+  client().wait_event("session.status", [](const Json& s) { return s.at("tick") > 80; });
+  life.reset();
+  execute("DELETE FROM checkpoints", "/checkpoints.db");
+  execute("UPDATE sessions SET hash = hash + 1");
+  begin();
+  const Json told = client().wait_event("session.diverged");
+  EXPECT_NE(told.at("reason").get<std::string>().find("hash"), std::string::npos) << told;
+  EXPECT_FALSE(life->joined.at("description").at("playing"));
+  life.reset();  // nobody has touched it
+  begin();
+  client().wait_event("session.diverged");
+  client().result("control.reset");
+  client().result("control.step", {{"ticks", 2}});
+  const std::string after = life->hash();
+  crash();  // it goes on from there
+  EXPECT_EQ(life->hash(), after);
+  EXPECT_TRUE(client().events("session.diverged").empty());
+}
+
+TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
+  begin();
+  client().result("control.pause");
+  life.reset();
+  execute("DELETE FROM checkpoints", "/checkpoints.db");
+  execute("DELETE FROM log WHERE sequence = 1");
+  ServerSettings settings;
+  settings.data_folder = data;
+  {
+    SessionServer server(catalogue, settings);
+    EXPECT_EQ(server.recover(), 1U);
+    for (int i = 0; i < 100 && !server.is_ready(); ++i) std::this_thread::sleep_for(20ms);
+    TestClient visitor(server, 1);
+    const Json sessions = visitor.result("session.list").at("sessions");
+    ASSERT_EQ(sessions.size(), 1U);
+    EXPECT_EQ(sessions[0].at("state"), "lost");
+    EXPECT_EQ(sessions[0].at("name"), "first");
+    const Json error = visitor.error("session.join", {{"session", "s1"}});
+    EXPECT_EQ(error.at("code"), 1011);
+    EXPECT_EQ(error.at("data").at("state"), "lost");
+  }
+  SessionServer server(catalogue, settings);
+  EXPECT_EQ(server.recover(), 1U);
+}
+
+TEST_F(SessionRecoveryTest, AClosedSessionStaysAwayAndANewOneGetsAnotherId) {
+  begin();
+  client().result("session.create", {{"name", "second"}, {"scene", "mixed"}});
+  client().result("session.join", {{"session", "s2"}});  // as its owner
+  client().result("session.close", {{"session", "s2"}});
+  crash();
+  const Json sessions = client().result("session.list").at("sessions");
+  ASSERT_EQ(sessions.size(), 1U);
+  EXPECT_EQ(sessions[0].at("session"), "s1");
+  EXPECT_EQ(client().result("session.create", {{"name", "c"}, {"scene", "mixed"}}).at("session"),
+            "s3");
+}
+
+TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
+  begin();
+  const Json made = client().result("session.create", {{"name", "own"}, {"scene", "mixed"}});
+  const Json before =
+      client().result("session.join", {{"session", made.at("session")}, {"name", "Ada"}});
+  EXPECT_EQ(before.at("role"), "owner");
+  client().result("session.configure", {{"name", "hers"}, {"locked", true}});
+  client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  std::this_thread::sleep_for(1500ms);  // within a second it is noted who is there
+  crash();
+  const Json after = client().result(
+      "session.join", {{"session", made.at("session")}, {"resume", before.at("resume")}});
+  EXPECT_EQ(after.at("resumed"), true);
+  EXPECT_EQ(after.at("participant"), before.at("participant"));
+  EXPECT_EQ(after.at("name"), "Ada");
+  EXPECT_EQ(after.at("role"), "owner");
+  EXPECT_EQ(after.at("settings").at("locked"), true);
+  EXPECT_EQ(after.at("settings").at("name"), "hers");
+  client().result("grab.move", {{"grab", 1}, {"target", {0.5, 0.4, 0.9}}});
+}
+
+TEST_F(SessionRecoveryTest, WhatCannotBeLoggedIsRefusedAndChangesNothing) {
+  begin();
+  client().result("control.pause");
+  const std::string before = life->hash();
+  Database other(data + "/vat.db", Database::Mode::create);
+  other.execute("DROP TABLE log");
+  const Json error = client().error("world.set_gravity", {{"gravity", {0, 0, 0}}});
+  EXPECT_EQ(error.at("code"), 1010);
+  EXPECT_EQ(error.at("data").at("kind"), "storage_failed");
+  EXPECT_EQ(life->hash(), before);
+}
+
+}  // namespace
+}  // namespace vat::test
