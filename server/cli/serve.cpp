@@ -52,7 +52,7 @@ constexpr const char* kFooter =
 options count most.
 
 Prints one line with its URL when it is ready; all else goes to standard error. SIGINT and SIGTERM
-end it cleanly, a second one at once.
+end it cleanly, SIGTERM after --drain-seconds for those who are connected, a second one at once.
 
 Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder, data
 that cannot be used or port in use, 2 wrong usage, or a variable with a bad value.)";
@@ -67,13 +67,17 @@ class StopSignal {
  public:
   StopSignal() : signals_(io_, SIGINT, SIGTERM) {
     signals_.async_wait([this](boost::system::error_code, int signal) {
-      spdlog::info("stopping: {}", signal == SIGINT ? "SIGINT" : "SIGTERM");
+      is_term_ = signal == SIGTERM;
+      spdlog::info("stopping: {}", is_term_ ? "SIGTERM" : "SIGINT");
       signals_.clear();  // the next one ends the process
     });
   }
   void wait() { io_.run(); }
+  /// Whether it was SIGTERM, by which operators end a server that others use.
+  bool is_term() const { return is_term_; }
 
  private:
+  bool is_term_ = false;
   asio::io_context io_;
   asio::signal_set signals_;
 };
@@ -143,6 +147,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   tell_access(options, access, url);
   std::cout << "vat is at " << url << " (Ctrl-C stops it)" << std::endl;
   stop_signal.wait();
+  sessions.drain(stop_signal.is_term() ? options.drain_time : std::chrono::milliseconds(0));
   sessions.stop();
   transport->stop();
   return kExitOk;

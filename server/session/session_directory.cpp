@@ -58,7 +58,7 @@ SessionDirectory::~SessionDirectory() {
 
 bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   const std::lock_guard lock(mutex_);
-  if (stopped_ || clients_.size() >= settings_.limits.max_connections) return false;
+  if (stopped_ || draining_ || clients_.size() >= settings_.limits.max_connections) return false;
   const ConnectionId id = connection->id();
   Client& client = clients_[id];
   client.outbox = std::make_shared<ClientOutbox>(std::move(connection));
@@ -94,7 +94,7 @@ std::optional<RpcError> SessionDirectory::refuse_session() const {
 }
 
 std::optional<RpcError> SessionDirectory::refuse_session_locked() const {
-  if (stopped_) return not_allowed("the server stops");
+  if (stopped_ || draining_) return not_allowed("the server stops");
   if (sessions_.size() + absent_.size() < settings_.limits.max_sessions) return {};
   return limit_reached("sessions", settings_.limits.max_sessions);
 }
@@ -188,6 +188,7 @@ std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::option
   const std::lock_guard lock(mutex_);
   const auto found = clients_.find(caller.client()->id());
   if (found == clients_.end()) return not_allowed("the connection is closed");
+  if (draining_) return not_allowed("the server stops");
   Client& client = found->second;
   const bool has_own = !id && !client.access.session.empty();
   const std::optional<SessionId> wanted = has_own ? client.access.session : id;
@@ -268,6 +269,19 @@ std::string SessionDirectory::metrics() const {
     }
   }
   return metrics_.to_text(present);
+}
+
+void SessionDirectory::drain(std::chrono::milliseconds time) {
+  const std::chrono::duration<double> seconds = time;
+  const std::string event = write_event("server.draining", {{"seconds", seconds.count()}});
+  const std::lock_guard lock(mutex_);
+  draining_ = true;
+  for (auto& [connection, client] : clients_) client.outbox->send(event);
+}
+
+std::size_t SessionDirectory::connection_count() const {
+  const std::lock_guard lock(mutex_);
+  return clients_.size();
 }
 
 void SessionDirectory::stop() {

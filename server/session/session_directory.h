@@ -3,6 +3,7 @@
 #include <atomic>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -82,6 +83,10 @@ class SessionDirectory {
   /// What Prometheus is told.
   std::string metrics() const;
 
+  /// From now on there are no new connections, sessions and joins; clients are told how long they
+  /// may stay at most.
+  void drain(std::chrono::milliseconds time);
+  std::size_t connection_count() const;
   void stop();
 
  private:
@@ -163,6 +168,7 @@ class SessionDirectory {
   Sessions sessions_;
   std::map<Sessions::key_type, Absent> absent_;
   Sessions::key_type last_session_ = 0;  // of those in memory alone
+  bool draining_ = false;
   std::atomic<bool> stopped_ = false;
   std::unique_ptr<boost::asio::thread_pool> recovery_threads_;
 };

@@ -40,7 +40,8 @@ std::size_t SessionDirectory::recover() {
 
 bool SessionDirectory::is_ready() const {
   const std::lock_guard lock(mutex_);
-  return !stopped_ && std::ranges::all_of(absent_, [](const auto& a) { return a.second.is_lost; });
+  return !stopped_ && !draining_ &&
+         std::ranges::all_of(absent_, [](const auto& a) { return a.second.is_lost; });
 }
 
 void SessionDirectory::recover_session(const StoredSession& stored) {

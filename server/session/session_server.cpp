@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
+#include <thread>
 #include <utility>
 
 #include "server/session/method_table.h"
@@ -131,6 +132,15 @@ bool SessionServer::is_ready() const {
 
 std::string SessionServer::metrics() const {
   return impl_->directory().metrics();
+}
+
+void SessionServer::drain(std::chrono::milliseconds time) {
+  constexpr auto kLook = std::chrono::milliseconds(20);
+  impl_->directory().drain(time);
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (impl_->directory().connection_count() > 0 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(kLook);
+  }
 }
 
 void SessionServer::stop() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -51,6 +52,10 @@ class SessionServer final : public ConnectionHandler {
 
   /// What the server has counted and has now, in Prometheus' text format.
   std::string metrics() const;
+
+  /// No new connections, sessions and joins from now on. Clients are told that they may stay for
+  /// `time` at most; returns when that is over, or the last one has gone.
+  void drain(std::chrono::milliseconds time);
 
   /// Ends all sessions, tells their clients by session.closed, and joins the threads; a tick that
   /// runs is ended first. Nothing that comes in later has an effect. What is kept in the data

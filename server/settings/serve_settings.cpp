@@ -130,6 +130,9 @@ std::vector<Setting> storage_group(ServeSettings& s) {
       time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMostSeconds,
                    "Of computing between two checkpoints of a session: what is done again after a "
                    "crash; more where checkpoints would take over a hundredth of the time"),
+      time_setting("drain_seconds", s.drain_time, 0, kMostSeconds,
+                   "How long clients may stay after SIGTERM, before sessions are written and the "
+                   "server ends"),
       number_setting<std::size_t>("checkpoint_bytes", s.storage.checkpoint_bytes, kLeastBytes,
                                   kMostBytesKept,
                                   "Of one session's checkpoints; beyond, older ones are thinned"),

@@ -28,6 +28,7 @@ struct ServeSettings {
   std::chrono::milliseconds handshake_timeout{10'000};
   std::chrono::milliseconds ping_interval{20'000};
   ServerLimits limits;
+  std::chrono::milliseconds drain_time{0};
   std::string data = "none";  ///< folder where sessions are kept, or "none"
   StorageLimits storage;
 };

@@ -315,6 +315,11 @@ export interface SessionGuard {
   /** If false, the session has paused at the last good state */
   recovered: boolean;
 }
+/** The server ends soon: no new connections, sessions and joins */
+export interface ServerDraining {
+  /** For which clients may stay at most */
+  seconds: number;
+}
 /** The session has come back in another state than it was in, and stands still */
 export interface SessionDiverged {
   /** Ticks that it had ever run */
@@ -657,6 +662,7 @@ export interface Events {
   'session.description': SessionDescription;
   'session.status': SessionStatus;
   'session.guard': SessionGuard;
+  'server.draining': ServerDraining;
   'session.diverged': SessionDiverged;
   'session.closed': SessionClosed;
   'session.configured': Settings;
@@ -667,6 +673,7 @@ export const kEventNames = [
   'session.description',
   'session.status',
   'session.guard',
+  'server.draining',
   'session.diverged',
   'session.closed',
   'session.configured',

@@ -10,7 +10,9 @@ import schemas
 
 LEAST_SCRIPTS = 40
 # Kinds of errors and events that no client can bring about.
-NOT_SHOWN = {"internal_error", "storage_failed", "not_recovered", "session.diverged"}
+NOT_SHOWN = {
+    "internal_error", "storage_failed", "not_recovered", "session.diverged", "server.draining",
+}
 # What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
 # error; a number: the code that a connection is closed with; a script: it is all about that.
 LIMITS = {
