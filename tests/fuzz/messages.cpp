@@ -1,12 +1,16 @@
 #include <spdlog/spdlog.h>
 
-#include <atomic>
+#include <array>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
+#include <mutex>
+#include <string>
 
 #include "protocol/frame_codec.h"
 #include "protocol/scene_json.h"
+#include "server/access/token.h"
 #include "server/session/session_server.h"
 #include "tests/fuzz/target.h"
 
@@ -14,10 +18,35 @@ namespace {
 
 using namespace vat;
 
+constexpr std::string_view kAdminToken = "admin";
+/// Of a client's last message: what came before it has been carried out when it is answered.
+constexpr std::string_view kLastId = "the last";
+
+/// The newest token that a client was told, for messages that show one: chance finds none.
+class NewestToken {
+ public:
+  void keep(const Json& result) {
+    for (const char* key : {"token", "resume"}) {
+      const std::lock_guard lock(mutex_);
+      if (result.is_object() && result.contains(key)) token_ = result[key].get<std::string>();
+    }
+  }
+  std::string get() const {
+    const std::lock_guard lock(mutex_);
+    return token_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string token_;
+};
+
 /// A client that checks what it is sent.
 class CheckingConnection final : public Connection {
  public:
-  ConnectionId id() const override { return 1; }
+  CheckingConnection(ConnectionId id, NewestToken& token) : id_(id), token_(token) {}
+
+  ConnectionId id() const override { return id_; }
   void send_text(std::string message) override {
     const Json json = Json::parse(message, nullptr, false);
     VAT_CHECK(json.is_object() && json.value("jsonrpc", "") == "2.0");
@@ -25,16 +54,39 @@ class CheckingConnection final : public Connection {
     VAT_CHECK(is_reply ? json.contains("result") != json.contains("error")
                        : json.contains("method") && json.contains("params"));
     VAT_CHECK(!json.contains("error") || json["error"]["code"] != kInternalError);
+    token_.keep(json.value("result", Json()));
+    if (is_reply && json["id"] == kLastId) finish();
   }
   void send_binary(std::shared_ptr<const std::string> bytes) override {
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes->data());
-    VAT_CHECK(decode_key_frame({data, bytes->size()}).ok());
+    const std::lock_guard lock(mutex_);
+    VAT_CHECK(decoder_.decode({data, bytes->size()}).ok());
   }
   std::size_t queued_bytes() const override { return 0; }
-  void close(std::uint16_t, std::string_view) override {}
+  void close(std::uint16_t, std::string_view) override { finish(); }
+
+  /// Waits for the reply to kLastId, or not so long: what takes longer is cut short.
+  void wait_for_last() {
+    std::unique_lock lock(mutex_);
+    finished_.wait_for(lock, kPatience, [&] { return is_finished_; });
+  }
 
  private:
   static constexpr int kInternalError = -32603;
+  static constexpr std::chrono::milliseconds kPatience{200};
+
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    is_finished_ = true;
+    finished_.notify_all();
+  }
+
+  const ConnectionId id_;
+  NewestToken& token_;
+  std::mutex mutex_;
+  std::condition_variable finished_;
+  bool is_finished_ = false;
+  FrameDecoder decoder_;
 };
 
 /// A small scene, so that an input takes no longer than its messages.
@@ -54,39 +106,92 @@ Scene first_scene() {
   return scene.value();
 }
 
-Catalogue empty_catalogue() {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / "vat-fuzz-empty-catalogue";
-  std::filesystem::create_directories(folder);
-  return Catalogue::open(folder.string()).value();
-}
-
-ServerSettings small_settings() {
+ServerSettings small_settings(bool needs_token) {
   ServerSettings settings;
   settings.threads = 1;
   settings.limits.max_particles = 1000;
   settings.limits.max_particle_steps_per_tick = 2000;
   settings.limits.max_sessions = 3;
+  settings.access.mode = needs_token ? AccessMode::token : AccessMode::open;
+  settings.access.admin = hash_of_token(kAdminToken);
+  settings.access.refusal_delay = std::chrono::milliseconds(0);
   return settings;
 }
 
+/// Three clients of a server, each of which may go and come again.
+class Clients {
+ public:
+  Clients(SessionServer& server, NewestToken& token) : server_(server), token_(token) {
+    for (auto& client : clients_) open(client);
+  }
+  /// Lets the server carry out all that was sent.
+  ~Clients() {
+    const Json last{{"jsonrpc", "2.0"}, {"id", kLastId}, {"method", "session.hash"}};
+    for (const auto& client : clients_) server_.text_received(client->id(), last.dump());
+    for (const auto& client : clients_) client->wait_for_last();
+    for (const auto& client : clients_) server_.closed(client->id());
+  }
+  Clients(const Clients&) = delete;
+  Clients& operator=(const Clients&) = delete;
+
+  /// '2' and '3' at the begin of a line name the client; "~" ends its connection and opens another,
+  /// "!" sends the rest as a binary message. "@token" is the newest token that was told.
+  void play(std::string_view line) {
+    auto& client = clients_[take(line, '2') ? 1 : take(line, '3') ? 2 : 0];
+    if (take(line, '~')) {
+      server_.closed(client->id());
+      open(client);
+    } else if (take(line, '!')) {
+      server_.binary_received(client->id(), line);
+    } else {
+      server_.text_received(client->id(), with_token(std::string(line)));
+    }
+  }
+
+ private:
+  static bool take(std::string_view& line, char first) {
+    if (!line.starts_with(first)) return false;
+    line.remove_prefix(1);
+    return true;
+  }
+  void open(std::shared_ptr<CheckingConnection>& client) {
+    client = std::make_shared<CheckingConnection>(++last_, token_);
+    server_.opened(client);
+  }
+  std::string with_token(std::string text) const {
+    constexpr std::string_view kName = "@token";
+    const std::size_t at = text.find(kName);
+    if (at != std::string::npos) text.replace(at, kName.size(), token_.get());
+    return text;
+  }
+
+  SessionServer& server_;
+  NewestToken& token_;
+  ConnectionId last_ = 0;
+  std::array<std::shared_ptr<CheckingConnection>, 3> clients_;
+};
+
 }  // namespace
 
-/// The messages of one client to a server of its own, one a line. Every answer is well formed, none
-/// is a fault of the server, and the server can be stopped.
+/// The messages of three clients to a server of their own, one a line; the first line may be
+/// "token", so that clients have to enter. Every answer is well formed, none is a fault of the
+/// server, every frame can be decoded, and the server can be stopped.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const Catalogue catalogue = empty_catalogue();
+  static const Catalogue catalogue = Catalogue::open(VAT_FUZZ_SCENES).value();
   static const Scene scene = first_scene();
   spdlog::set_level(spdlog::level::off);
-  SessionServer server(catalogue, small_settings());
+  std::string_view text = fuzz::to_text(data, size);
+  NewestToken token;
+  SessionServer server(catalogue, small_settings(text.starts_with("token\n")));
   VAT_CHECK(server.create_session("first", scene).ok());
-  server.opened(std::make_shared<CheckingConnection>());
-  for (std::string_view text = fuzz::to_text(data, size); !text.empty();) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    server.text_received(1, line);
+  {
+    Clients clients(server, token);
+    while (!text.empty()) {
+      const std::string_view line = text.substr(0, text.find('\n'));
+      text.remove_prefix(std::min(line.size() + 1, text.size()));
+      clients.play(line);
+    }
   }
-  server.closed(1);
   server.stop();
   return 0;
 }
