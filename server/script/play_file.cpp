@@ -31,10 +31,14 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// Named as the file is, and the heading in it.
 std::unique_ptr<Transcript> open_transcript(const std::string& path, const PlaySettings& settings) {
   if (settings.transcript_folder.empty()) return {};
-  return std::make_unique<Transcript>(settings.transcript_folder,
-                                      std::filesystem::path(path).stem().string());
+  std::string name = std::filesystem::path(path).stem().string();
+  for (const char c : settings.heading) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
+  }
+  return std::make_unique<Transcript>(settings.transcript_folder, name);
 }
 
 void play_lines(const std::string& path, const std::vector<Line>& lines, const WebSocketUrl& url,

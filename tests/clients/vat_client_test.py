@@ -15,12 +15,16 @@ from vat_client import Client, Closed, VatError
 PROGRAM = sys.argv.pop(1)
 
 
-class VatClient(unittest.TestCase):
+class ServerTest(unittest.TestCase):
+    """Tests that share a server."""
+
+    arguments = ()
+
     @classmethod
     def setUpClass(cls):
         cls.server = subprocess.Popen(
             [PROGRAM, "serve", "--port", "0", "--scenes", SCENES, "--scene", "pool",
-             "--max-connections", "3", "--log-level", "error"], stdout=subprocess.PIPE, text=True)
+             "--log-level", "error", *cls.arguments], stdout=subprocess.PIPE, text=True)
         port = re.search(r"http://127\.0\.0\.1:(\d+)/", cls.server.stdout.readline())[1]
         cls.url = f"ws://127.0.0.1:{port}/ws"
 
@@ -30,6 +34,8 @@ class VatClient(unittest.TestCase):
         cls.server.wait()
         cls.server.stdout.close()
 
+
+class VatClient(ServerTest):
     def test_messages_of_every_length(self):
         with Client(self.url) as client:
             for length in (0, 100, 125, 126, 200, 60000):
@@ -64,6 +70,16 @@ class VatClient(unittest.TestCase):
         with Client(self.url) as client, self.assertRaises(TimeoutError):
             client.wait_event("session.status", timeout=0.05)
 
+    def test_what_is_no_server_is_refused(self):
+        with self.assertRaises(ValueError):
+            Client("http://127.0.0.1")
+        with self.assertRaises(ConnectionError):
+            Client(self.url.replace("/ws", "/elsewhere"))
+
+
+class FullServer(ServerTest):
+    arguments = ("--max-connections", "3")
+
     def test_the_end_of_a_connection_is_told(self):
         clients = [Client(self.url) for _ in range(3)]
         extra = Client(self.url)
@@ -72,12 +88,6 @@ class VatClient(unittest.TestCase):
         self.assertEqual(closed.exception.code, 1013)
         for client in [*clients, extra]:
             client.close()
-
-    def test_what_is_no_server_is_refused(self):
-        with self.assertRaises(ValueError):
-            Client("http://127.0.0.1")
-        with self.assertRaises(ConnectionError):
-            Client(self.url.replace("/ws", "/elsewhere"))
 
 
 if __name__ == "__main__":
