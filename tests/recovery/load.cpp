@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "protocol/json_reader.h"
-#include "server/script/client.h"
+#include "tests/recovery/client.h"
 
 namespace vat::test {
 namespace {
@@ -23,43 +23,26 @@ class Gone : public std::runtime_error {
 /// A client that waits for each answer.
 class Caller {
  public:
-  explicit Caller(std::uint16_t port) {
-    const std::string url = "ws://127.0.0.1:" + std::to_string(port) + "/ws";
-    client_ = connect_websocket(script::read_websocket_url(url), {}, deadline()).client;
-    if (client_ == nullptr) throw Gone("no connection");
+  explicit Caller(std::uint16_t port) : client_(port) {
+    if (!client_.is_connected()) throw Gone("no connection");
   }
 
   /// The result, or nothing where it is an error. Throws Gone.
   std::optional<Json> call(const std::string& method, const Json& params = Json::object()) {
-    const Json request{{"jsonrpc", "2.0"}, {"id", ++id_}, {"method", method}, {"params", params}};
-    client_->send_text(request.dump());
-    for (;;) {
-      const std::optional<script::Message> message = client_->next(deadline());
-      if (!message) throw std::runtime_error(method + " was not answered in 20 s");
-      if (message->kind == script::Message::Kind::closed) throw Gone(message->bytes);
-      if (message->kind != script::Message::Kind::text) continue;
-      Json json = Json::parse(message->bytes);
-      if (json.value("method", "") == "session.diverged") throw std::runtime_error(json.dump());
-      if (json.value("id", Json()) != id_) continue;
-      if (json.contains("error")) {
-        last_error_ = json.at("error").dump();
-        return {};
-      }
-      return json.at("result");
-    }
+    last_reply_ = client_.call(method, params);
+    if (last_reply_.contains("closed")) throw Gone("closed");
+    if (last_reply_.contains("error")) return {};
+    return last_reply_.at("result");
   }
   Json result(const std::string& method, const Json& params = Json::object()) {
     auto result = call(method, params);
-    if (!result) throw std::runtime_error(method + ": " + last_error_);
+    if (!result) throw std::runtime_error(method + ": " + last_reply_.dump());
     return *std::move(result);
   }
 
  private:
-  static script::Deadline deadline() { return std::chrono::steady_clock::now() + 20s; }
-
-  std::unique_ptr<script::Client> client_;
-  int id_ = 0;
-  std::string last_error_;
+  WaitingClient client_;
+  Json last_reply_;
 };
 
 /// One client at work.
