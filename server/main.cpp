@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "server/cli/command.h"
+#include "server/cli/replay.h"
 #include "server/cli/script.h"
 #include "server/cli/serve.h"
 #include "server/cli/simulate.h"
@@ -23,6 +24,7 @@ int run(int argc, char** argv) {
   vat::add_simulate_command(app, exit_code);
   vat::add_validate_command(app, exit_code);
   vat::add_script_command(app, exit_code);
+  vat::add_replay_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

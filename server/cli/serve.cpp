@@ -26,6 +26,7 @@
 #include "server/cli/open_files.h"
 #include "server/cli/scene_argument.h"
 #include "server/cli/serve_access.h"
+#include "server/http/downloads.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
 #include "server/net/transport.h"
@@ -140,7 +141,8 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
 
   const auto transport = make_websocket_transport(
       transport_settings(options), sessions,
-      make_http_site(std::move(viewer), [&] { return sessions.metrics(); }));
+      with_downloads(make_http_site(std::move(viewer), [&] { return sessions.metrics(); }),
+                     sessions.downloads()));
   raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
   const std::string url = viewer_url(options.host, port);

@@ -50,6 +50,7 @@ constexpr MethodRules kRules[] = {
     {"control.hand_over", Role::controller, MessageClass::control, kNotLogged},
     {"access.enter", Role::none, MessageClass::control, kNotLogged},
     {"access.ticket", Role::owner, MessageClass::control, kNotLogged, kOfNamedSession},
+    {"recording.export", Role::controller, MessageClass::scene, kNotLogged},
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <chrono>
 
 #include "core/limits.h"
+#include "server/http/downloads.h"
+#include "server/replay/recording.h"
 #include "server/session/method_table.h"
 
 namespace vat {
@@ -38,6 +40,8 @@ Json describe_limits(const ServerLimits& limits) {
       {"tokens", limits.max_tokens},
       {"resume_seconds", std::chrono::duration<double>(limits.resume_time).count()},
       {"control_queue_bytes", kMaxControlQueueBytes},
+      {"recording_bytes", kMaxRecordingBytes},
+      {"download_bytes", Downloads::kMostBytes},
   };
 }
 

@@ -102,10 +102,19 @@ SessionAction read_stats(ObjectReader&, Errors&) {
   };
 }
 
+SessionAction read_export(ObjectReader&, Errors&) {
+  return [](SessionCore& core, Participant&) -> ActionResult {
+    if (core.log() == nullptr) return not_allowed("the server keeps no sessions; see --data");
+    if (core.has_diverged()) return not_allowed("the session is not what its log leads to");
+    return MakeRecording{};
+  };
+}
+
 constexpr Method kMethods[] = {
     {"state.query", read_query},
     {"session.hash", read_hash},
     {"session.stats", read_stats},
+    {"recording.export", read_export},
 };
 
 }  // namespace

@@ -256,6 +256,8 @@ void Session::answer(Caller caller, ActionResult result) {
   if (const auto* run = std::get_if<RunTicks>(&result)) {
     steps_.push_back({std::move(caller), run->count, {}});
     schedule_step();
+  } else if (std::holds_alternative<MakeRecording>(result)) {
+    record(std::move(caller));
   } else if (auto* error = std::get_if<RpcError>(&result)) {
     caller.answer(std::move(*error));
   } else {

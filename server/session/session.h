@@ -101,6 +101,8 @@ class Session : public std::enable_shared_from_this<Session> {
 
   void step_turn();
   std::deque<StepJob>::iterator find_step(ConnectionId client);
+  /// Makes a recording of what is kept, and answers where it is.
+  void record(Caller caller);
   void schedule_step();
   /// Answers the job and carries out what was deferred.
   void end_step(std::deque<StepJob>::iterator job);

@@ -54,8 +54,11 @@ struct RunTicks {
   std::uint64_t count = 0;
 };
 
+/// A recording that a command asks for.
+struct MakeRecording {};
+
 /// A command's reply; a result gets its `tick` afterwards.
-using ActionResult = std::variant<Json, RpcError, RunTicks>;
+using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording>;
 
 /// What a command does once its parameters are read.
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "server/access/access.h"
+#include "server/http/downloads.h"
 #include "server/session/later.h"
 #include "server/session/session.h"
 #include "server/session/session_server.h"
@@ -87,6 +88,10 @@ class SessionDirectory {
   /// may stay at most.
   void drain(std::chrono::milliseconds time);
   std::size_t connection_count() const;
+
+  /// Files that were made for clients.
+  Downloads& downloads() { return downloads_; }
+
   void stop();
 
  private:
@@ -153,6 +158,7 @@ class SessionDirectory {
   ServerMetrics metrics_;
   AccessTokens tokens_;
   boost::asio::thread_pool frame_threads_;
+  Downloads downloads_;
   const SessionEnvironment environment_;
   // Of sessions that come back: what was within the limits once is let in again.
   const ServerLimits no_limits_;

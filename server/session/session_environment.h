@@ -11,6 +11,8 @@
 
 namespace vat {
 
+class Downloads;
+
 /// What all sessions share.
 struct SessionEnvironment {
   const Catalogue& catalogue;
@@ -20,6 +22,7 @@ struct SessionEnvironment {
   ServerMetrics& metrics;
   boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send all sessions' frames
   AccessTokens& tokens;
+  Downloads* downloads = nullptr;  ///< null: nobody fetches files
 };
 
 }  // namespace vat

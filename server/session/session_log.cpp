@@ -80,6 +80,14 @@ void SessionLog::keep(SessionMoment moment, SteadyClock::time_point now, bool al
   });
 }
 
+void SessionLog::keep_and(SessionMoment moment, SteadyClock::time_point now,
+                          std::function<void(Storage&, std::uint64_t)> task) {
+  keep(std::move(moment), now, true);
+  storage_.post([&storage = storage_, session = session_, task = std::move(task)] {
+    task(storage, session);
+  });
+}
+
 void SessionLog::write(Storage& storage, std::uint64_t session, const SessionMoment& moment,
                        bool with_checkpoint, Writing& writing) {
   storage.sessions().beat(session, moment.beat());

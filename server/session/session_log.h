@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -70,6 +71,9 @@ class SessionLog {
   bool is_due(std::uint64_t position, SteadyClock::time_point now) const;
   /// Writes where the session is, and a checkpoint if one is due, or `always`.
   void keep(SessionMoment moment, SteadyClock::time_point now, bool always = false);
+  /// The same, always with a checkpoint; what is kept is then for `task`, on the storage's thread.
+  void keep_and(SessionMoment moment, SteadyClock::time_point now,
+                std::function<void(Storage&, std::uint64_t session)> task);
   /// The session has been closed: frees what it took, soon.
   void close() { storage_.remove_closed(); }
 

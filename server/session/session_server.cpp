@@ -143,6 +143,10 @@ void SessionServer::drain(std::chrono::milliseconds time) {
   }
 }
 
+Downloads& SessionServer::downloads() {
+  return impl_->directory().downloads();
+}
+
 void SessionServer::stop() {
   impl_->directory().stop();
 }

@@ -16,6 +16,8 @@
 
 namespace vat {
 
+class Downloads;
+
 /// Names a session for the life of the server; never used twice.
 using SessionId = std::string;
 
@@ -56,6 +58,9 @@ class SessionServer final : public ConnectionHandler {
   /// No new connections, sessions and joins from now on. Clients are told that they may stay for
   /// `time` at most; returns when that is over, or the last one has gone.
   void drain(std::chrono::milliseconds time);
+
+  /// Files that were made for clients, who fetch them by HTTP.
+  Downloads& downloads();
 
   /// Ends all sessions, tells their clients by session.closed, and joins the threads; a tick that
   /// runs is ended first. Nothing that comes in later has an effect. What is kept in the data

@@ -402,6 +402,17 @@ export interface ParticipantKickParams {
   reason?: string;
 }
 
+export interface RecordingExportResult {
+  tick: Tick;
+  /** On the server's host and port, for one GET */
+  path: string;
+  bytes: number;
+  /** That it covers */
+  ticks: number;
+  /** Until when it can be fetched [s] */
+  expires: number;
+}
+
 export interface SceneListResult {
   /** Of the catalogue */
   scenes: SceneEntry[];
@@ -635,6 +646,7 @@ export interface Methods {
   'participant.rename': { params: ParticipantRenameParams; result: InEffect };
   'participant.set_role': { params: ParticipantSetRoleParams; result: InEffect };
   'participant.kick': { params: ParticipantKickParams; result: InEffect };
+  'recording.export': { params: Nothing; result: RecordingExportResult };
   'scene.list': { params: Nothing; result: SceneListResult };
   'scene.load': { params: SceneLoadParams; result: InEffect };
   'server.info': { params: Nothing; result: ServerInfoResult };

@@ -9,9 +9,10 @@ from pathlib import Path
 import schemas
 
 LEAST_SCRIPTS = 40
-# Kinds of errors and events that no client can bring about.
+# Kinds of errors and events that no client can bring about, and what needs a data folder.
 NOT_SHOWN = {
     "internal_error", "storage_failed", "not_recovered", "session.diverged", "server.draining",
+    "recording.export",
 }
 # What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
 # error; a number: the code that a connection is closed with; a script: it is all about that.
@@ -23,7 +24,8 @@ LIMITS = {
     "frame_window": ("script", "acknowledging"), "grabs_per_client": "limit",
     "grabs_per_session": "limit", "message_bytes": "limit", "message_depth": ("reason", "too_deep"),
     "message_values": ("reason", "too_many_values"), "name_bytes": ("path", "/name"),
-    "particle_steps_per_tick": "limit", "particles": "limit",
+    "download_bytes": ("script", "recordings"), "particle_steps_per_tick": "limit",
+    "particles": "limit", "recording_bytes": ("script", "recordings"),
     "resume_seconds": ("script", "coming-back"), "scene_message_bytes": ("closed", 1009),
     "sessions": "limit", "ticks_per_step": ("path", "/ticks"), "tokens": "limit",
 }
@@ -70,7 +72,7 @@ class Seen:
 
     def lacks(self):
         """What no script shows, in words."""
-        yield from (f"no result of {m}" for m in sorted(set(schemas.methods()) - self.results))
+        yield from (f"no result of {m}" for m in sorted(set(schemas.methods()) - NOT_SHOWN - self.results))
         events = set(schemas.definitions("events"))
         yield from (f"no event {name}" for name in sorted(events - NOT_SHOWN - self.events))
         yield from (f"no error {kind}" for kind in sorted(kinds() - NOT_SHOWN - self.kinds))

@@ -1,0 +1,120 @@
+#include "server/cli/replay.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "core/limits.h"
+#include "server/cli/command.h"
+#include "server/replay/replay_player.h"
+#include "server/session/describe.h"
+
+namespace vat {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  bool verify = false;
+};
+
+/// What sessions share, for one that nobody joins.
+class LonelyEnvironment {
+ public:
+  explicit LonelyEnvironment(const Catalogue& catalogue, InstructionSet instructions)
+      : runner_(std::max(1U, std::thread::hardware_concurrency())),
+        environment_{catalogue, limits_, instructions, runner_, metrics_, frame_threads_, tokens_} {
+    limits_.max_particles = kMaxParticles;
+    limits_.max_particle_steps_per_tick = kMaxParticles * kMaxStepsPerTick;
+  }
+  const SessionEnvironment& get() const { return environment_; }
+
+ private:
+  ServerLimits limits_;
+  ThreadPoolRunner runner_;
+  ServerMetrics metrics_;
+  boost::asio::thread_pool frame_threads_{1};
+  AccessTokens tokens_{1};
+  const SessionEnvironment environment_;
+};
+
+Result<Recording> read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file.good() && !file.eof()) return Error{"not_readable", "", "cannot be read"};
+  return read_recording({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+void print_place(const SessionCore& core, std::uint64_t hash) {
+  std::cout << "position " << core.run().position() << ", tick " << core.run().tick() << ", hash "
+            << describe_hash(hash) << '\n';
+}
+
+int play(const Options& options, const Recording& recording, const Catalogue& catalogue) {
+  const LonelyEnvironment environment(catalogue, recording.instructions);
+  ReplayPlayer player(recording, environment.get());
+  SessionCore core("replay", {recording.name}, player.begin(), environment.get());
+  std::size_t compared = 0;
+  player.on_same = [&](const RecordedHash& same) {
+    ++compared;
+    if (options.verify) print_place(core, same.hash);
+  };
+  if (options.verify) player.compare_moments();
+  const std::atomic<bool> cancelled = false;
+  const auto begin = std::chrono::steady_clock::now();
+  player.go_to_begin(core);
+  player.play_to(core, recording.end, cancelled);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  if (!options.verify) print_place(core, core.run().simulation().state_hash());
+  std::cout << recording.end - recording.begin << " ticks, " << recording.log.size() << " entries, "
+            << compared << " hashes the same, in " << time.count() << " s\n";
+  if (!options.verify || compared > 0) return kExitOk;
+  std::cerr << options.file << ": there is no hash to compare with\n";
+  return kExitFailed;
+}
+
+int replay(const Options& options) {
+  spdlog::set_level(spdlog::level::err);
+  const Result<Recording> recording = read_file(options.file);
+  if (!recording) return fail(options.file, recording.errors());
+  const Result<Catalogue> catalogue = Catalogue::open(options.scenes_folder);
+  if (!catalogue) return fail(options.scenes_folder, catalogue.errors());
+  try {
+    return play(options, recording.value(), catalogue.value());
+  } catch (const Diverged& difference) {
+    std::cerr << options.file << ": differs: " << difference.what() << '\n';
+  } catch (const StorageError& error) {
+    std::cerr << options.file << ": " << error.what() << '\n';
+  }
+  return kExitFailed;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "replay",
+      "Run a recording of a session again, and compare its states with the recorded ones");
+  const auto options = std::make_shared<Options>();
+  command->add_option("file", options->file, "Recording, in .vatrec")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_flag("--verify", options->verify,
+                    "Compare all states that it holds, and print their hashes");
+  command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
+  command->footer(
+      "Exit codes: 0 played to its end, 1 not a recording, or one that leads elsewhere: the tick "
+      "is "
+      "told; 2 wrong usage.");
+  command->callback([options, &exit_code] { exit_code = replay(*options); });
+}
+
+}  // namespace vat

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace vat {
+
+/// Adds `vat replay`; it runs during the parse and leaves its result in `exit_code`.
+void add_replay_command(CLI::App& app, int& exit_code);
+
+}  // namespace vat

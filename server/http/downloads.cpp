@@ -1,0 +1,53 @@
+#include "server/http/downloads.h"
+
+#include <utility>
+
+#include "server/access/token.h"
+
+namespace vat {
+
+std::optional<std::string> Downloads::add(File file, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  forget_old(now);
+  const std::size_t size = file.content.size();
+  if (bytes_ + size > kMostBytes) return {};
+  std::string path = std::string(kFolder) + make_token();
+  bytes_ += size;
+  files_.emplace(path, Waiting{std::move(file), now + kPatience});
+  return path;
+}
+
+std::optional<Downloads::File> Downloads::take(std::string_view path, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  forget_old(now);
+  const auto found = files_.find(path);
+  if (found == files_.end()) return {};
+  File file = std::move(found->second.file);
+  bytes_ -= file.content.size();
+  files_.erase(found);
+  return file;
+}
+
+void Downloads::forget_old(Clock::time_point now) {
+  std::erase_if(files_, [&](const auto& entry) {
+    if (entry.second.end > now) return false;
+    bytes_ -= entry.second.file.content.size();
+    return true;
+  });
+}
+
+HttpHandler with_downloads(HttpHandler site, Downloads& downloads) {
+  return [site = std::move(site), &downloads](std::string_view method, std::string_view target) {
+    if (method != "GET" || !target.starts_with(Downloads::kFolder)) return site(method, target);
+    std::optional<Downloads::File> file = downloads.take(target, Downloads::Clock::now());
+    if (!file) return site(method, target);
+    return HttpResponse{200,
+                        "application/octet-stream",
+                        std::move(file->content),
+                        {{"Cache-Control", "no-store"},
+                         {"Content-Disposition", "attachment; filename=\"" + file->name + "\""},
+                         {"X-Content-Type-Options", "nosniff"}}};
+  };
+}
+
+}  // namespace vat

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/net/transport.h"
+
+namespace vat {
+
+/// Files that were made for one client each, for a while: whoever knows a file's path gets it,
+/// once. Safe to use from any thread.
+class Downloads {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::string_view kFolder = "/downloads/";
+  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;  ///< of all that wait
+  static constexpr std::chrono::seconds kPatience{60};
+
+  struct File {
+    std::string name;  ///< that a browser gives it
+    std::string content;
+  };
+
+  /// A path that nobody can guess; nothing where too much waits already.
+  std::optional<std::string> add(File file, Clock::time_point now);
+  std::optional<File> take(std::string_view path, Clock::time_point now);
+
+ private:
+  struct Waiting {
+    File file;
+    Clock::time_point end;
+  };
+  void forget_old(Clock::time_point now);
+
+  std::mutex mutex_;
+  std::map<std::string, Waiting, std::less<>> files_;
+  std::size_t bytes_ = 0;
+};
+
+/// Answers GET for those files, and all else as `site` does.
+HttpHandler with_downloads(HttpHandler site, Downloads& downloads);
+
+}  // namespace vat

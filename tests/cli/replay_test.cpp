@@ -1,0 +1,95 @@
+// `vat replay` as a user runs it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/simulation.h"
+#include "protocol/scene_json.h"
+#include "server/replay/recording.h"
+#include "tests/cli/program.h"
+
+namespace vat::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class VatReplay : public testing::Test {
+ protected:
+  /// A scene that runs for five ticks, then with another gravity for five more.
+  static Recording make_recording() {
+    const Scene scene = read_scene_file(test_scene("pair")).value();
+    Recording recording;
+    recording.program = "0.1.0";
+    recording.instructions = best_instruction_set();
+    recording.name = "pair";
+    recording.end = 10;
+    recording.log = {{1, 0, 0, 0, "scene.load", Json{{"scene", write_scene(scene)}}.dump(), false},
+                     {2, 5, 5, 1, "world.set_gravity", R"({"gravity":[0,0,3]})", false}};
+    Simulation simulation = Simulation::create(scene).value();
+    simulation.advance(5 * simulation.steps_per_tick());
+    recording.hashes.push_back({5, 1, simulation.state_hash()});
+    EXPECT_TRUE(simulation.set_gravity({0, 0, 3}).ok());
+    simulation.advance(5 * simulation.steps_per_tick());
+    recording.hashes.push_back({10, 2, simulation.state_hash()});
+    return recording;
+  }
+  std::string write(const std::vector<std::uint8_t>& bytes) {
+    folder_.write("a.vatrec", std::string(bytes.begin(), bytes.end()));
+    return folder_.file("a.vatrec");
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(VatReplay, ComparesEveryStateAndSucceeds) {
+  const ProgramResult result =
+      run_vat({"replay", "--verify", write(write_recording(make_recording()))});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("position 5, tick 5, hash "));
+  EXPECT_THAT(result.out, HasSubstr("position 10, tick 10, hash "));
+  EXPECT_THAT(result.out, HasSubstr("10 ticks, 2 entries, 2 hashes the same, in "));
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {
+  Recording recording = make_recording();
+  recording.hashes[1].hash ^= 1;
+  const ProgramResult result = run_vat({"replay", write(write_recording(recording))});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("a.vatrec: differs: at tick 10 the state has the hash "));
+  EXPECT_THAT(result.err, HasSubstr("; it was the same up to tick 5\n"));
+}
+
+TEST_F(VatReplay, VerifiesNothingWhereThereIsNothingToCompare) {
+  Recording recording = make_recording();
+  recording.hashes.clear();
+  const std::string file = write(write_recording(recording));
+  EXPECT_EQ(run_vat({"replay", file}).exit_code, 0);
+  const ProgramResult result = run_vat({"replay", "--verify", file});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("there is no hash to compare with"));
+}
+
+TEST_F(VatReplay, RefusesWhatIsNoRecording) {
+  std::vector<std::uint8_t> bytes = write_recording(make_recording());
+  bytes.pop_back();
+  const ProgramResult cut = run_vat({"replay", write(bytes)});
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_THAT(cut.err, HasSubstr("a recording has "));
+  const ProgramResult other = run_vat({"replay", test_scene("pair")});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("these are not the bytes of a recording"));
+  EXPECT_EQ(run_vat({"replay", folder_.file("none")}).exit_code, 2);
+}
+
+TEST_F(VatReplay, RefusesACommandThatItCannotRead) {
+  Recording recording = make_recording();
+  recording.log[1].params = R"({"gravity":"up"})";
+  const ProgramResult result = run_vat({"replay", write(write_recording(recording))});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("entry 2 (world.set_gravity): /gravity"));
+}
+
+}  // namespace
+}  // namespace vat::test
