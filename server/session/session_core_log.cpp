@@ -60,6 +60,11 @@ std::optional<RpcError> SessionCore::log(std::span<LogEntry> entries) {
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].sequence = sequence_ + 1 + i;
     return {};
   }
+  if (divergence_) {
+    // Somebody goes on from here: the log does not lead here, so that a checkpoint has to.
+    sequence_ = log_->last();
+    log_->keep(moment(), SteadyClock::now(), true);
+  }
   try {
     log_->append(entries);
   } catch (const StorageError& error) {

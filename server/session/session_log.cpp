@@ -64,6 +64,7 @@ bool SessionLog::is_due(std::uint64_t position, SteadyClock::time_point now) con
 
 void SessionLog::keep(SessionMoment moment, SteadyClock::time_point now, bool always) {
   const bool with_checkpoint = always || is_checkpoint_due();
+  const bool was_bent = is_bent_;
   if (with_checkpoint) {
     pace_.begin();
     is_bent_ = false;
@@ -78,6 +79,7 @@ void SessionLog::keep(SessionMoment moment, SteadyClock::time_point now, bool al
     const std::shared_ptr<void> end(nullptr, [&](void*) { writing->under_way = false; });
     write(storage, session, moment, with_checkpoint, *writing);
   });
+  if (was_bent) storage_.flush();  // what is logged from now on builds on it
 }
 
 void SessionLog::keep_and(SessionMoment moment, SteadyClock::time_point now,
