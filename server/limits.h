@@ -25,6 +25,8 @@ struct ServerLimits {
   std::chrono::seconds frame_patience{30};
   /// In which a participant whose connection has ended can be resumed by another one.
   std::chrono::milliseconds resume_time{30'000};
+  /// Without a move, after which a grab ends: the body is somebody else's to hold.
+  std::chrono::milliseconds grab_idle{30'000};
   std::size_t max_tokens = 10'000;  ///< invitations and tickets that are good at once
 };
 
@@ -39,6 +41,7 @@ inline constexpr std::uint32_t kFrameWindow = 3;       // frames sent and not ac
 inline constexpr std::size_t kMaxFrameGroups = 8;      // frames that are made of one state
 inline constexpr std::size_t kMaxControlQueueBytes = 1024 * 1024;
 inline constexpr std::uint64_t kMaxExactCount = 9'007'199'254'740'992;  // 2^53: JSON's numbers
+inline constexpr std::size_t kMaxPresence = 100;    // participants that others are told of
 inline constexpr std::size_t kMaxTokenBytes = 256;  // of what a client shows to be let in
 inline constexpr std::size_t kMaxLongMessages = 2;  // longer than that, in the control queue
 

@@ -20,6 +20,7 @@ enum class ErrorKind : std::uint8_t {
   limit_reached,
   not_allowed,
   not_authenticated,
+  busy,
   storage_failed,
   not_recovered
 };

@@ -48,6 +48,8 @@ constexpr MethodRules kRules[] = {
     {"participant.kick", Role::owner, MessageClass::control, kNotLogged},
     {"control.request", Role::viewer, MessageClass::control, kNotLogged},
     {"control.hand_over", Role::controller, MessageClass::control, kNotLogged},
+    {"presence.list", Role::viewer, MessageClass::query, kNotLogged},
+    {"presence.point", Role::viewer, MessageClass::pointer, kNotLogged},
     {"access.enter", Role::none, MessageClass::control, kNotLogged},
     {"access.ticket", Role::owner, MessageClass::control, kNotLogged, kOfNamedSession},
     {"recording.export", Role::controller, MessageClass::scene, kNotLogged},

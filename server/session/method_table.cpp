@@ -6,9 +6,9 @@ namespace vat {
 const std::vector<Method>& all_methods() {
   static const std::vector<Method> kMethods = [] {
     std::vector<Method> all;
-    for (const auto group :
-         {server_methods(), session_methods(), control_methods(), world_methods(), grab_methods(),
-          frame_methods(), state_methods(), people_methods(), access_methods()}) {
+    for (const auto group : {server_methods(), session_methods(), control_methods(),
+                             world_methods(), grab_methods(), frame_methods(), state_methods(),
+                             people_methods(), presence_methods(), access_methods()}) {
       all.insert(all.end(), group.begin(), group.end());
     }
     for (Method& method : all) {
@@ -18,6 +18,19 @@ const std::vector<Method>& all_methods() {
     return all;
   }();
   return kMethods;
+}
+
+SessionCommand make_command(std::string_view method, Json params) {
+  const Method* found = find_method(method);
+  VAT_CHECK(found != nullptr);
+  Errors errors;
+  ObjectReader reader(params, "", errors);
+  SessionCommand command;
+  command.rules = &found->rules;
+  command.action = std::get<Method::ForSession>(found->read)(reader, errors);
+  VAT_CHECK(errors.empty());
+  command.params = std::move(params);
+  return command;
 }
 
 const Method* find_method(std::string_view name) {

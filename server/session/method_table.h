@@ -34,11 +34,14 @@ std::span<const Method> grab_methods();
 std::span<const Method> frame_methods();
 std::span<const Method> state_methods();
 std::span<const Method> people_methods();
+std::span<const Method> presence_methods();
 std::span<const Method> access_methods();
 
 /// All of them, in the order of PROTOCOL.md.
 const std::vector<Method>& all_methods();
 /// Null if there is none.
 const Method* find_method(std::string_view name);
+/// A call of a session's method that the server makes itself; its params must be right.
+SessionCommand make_command(std::string_view method, Json params);
 
 }  // namespace vat

@@ -33,6 +33,10 @@ ActionResult start(SessionCore& core, Participant& participant, BodyId body, Ind
                    const Vec3& target) {
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
   if (participant.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
+  const Participant* holder = core.participants().holder_of_body(body);
+  if (holder != nullptr && holder->number != participant.number) {
+    return held_by_other(holder->number, holder->name);
+  }
   const std::uint64_t grab = core.next_grab();
   Simulation& simulation = core.run().simulation();
   const Index particle = index_of(simulation, body, number);
@@ -43,6 +47,7 @@ ActionResult start(SessionCore& core, Participant& participant, BodyId body, Ind
   }
   core.use_grab();
   participant.grabs.emplace(grab, body);
+  participant.grab_uses[grab] = SteadyClock::now();
   return Json{{"grab", grab}};
 }
 
@@ -74,6 +79,7 @@ SessionAction read_move(ObjectReader& params, Errors&) {
     if (auto error = refuse_grab(core, participant, grab)) return *std::move(error);
     const Status moved = core.run().simulation().grab_move(grab, target);
     if (!moved) return refused(moved.errors());
+    participant.grab_uses[grab] = SteadyClock::now();
     return Json::object();
   };
 }
@@ -84,7 +90,7 @@ SessionAction read_end(ObjectReader& params, Errors&) {
     if (auto error = refuse_grab(core, participant, grab)) return *std::move(error);
     const Status ended = core.run().simulation().grab_end(grab);
     if (!ended) return refused(ended.errors());
-    participant.grabs.erase(grab);
+    core.participants().forget_grab(grab);
     return Json::object();
   };
 }

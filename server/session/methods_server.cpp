@@ -37,6 +37,8 @@ Json describe_limits(const ServerLimits& limits) {
       {"frame_window", kFrameWindow},
       {"frame_groups", kMaxFrameGroups},
       {"frame_patience_seconds", limits.frame_patience.count()},
+      {"grab_idle_seconds", std::chrono::duration<double>(limits.grab_idle).count()},
+      {"presence", kMaxPresence},
       {"tokens", limits.max_tokens},
       {"resume_seconds", std::chrono::duration<double>(limits.resume_time).count()},
       {"control_queue_bytes", kMaxControlQueueBytes},

@@ -34,6 +34,15 @@ Participant* Participants::holder_of(std::uint64_t grab) {
   return nullptr;
 }
 
+const Participant* Participants::holder_of_body(BodyId body) const {
+  for (const auto& [number, participant] : all_) {
+    for (const auto& [grab, held] : participant.grabs) {
+      if (held == body) return &participant;
+    }
+  }
+  return nullptr;
+}
+
 Participant& Participants::add(std::string name, Role role) {
   Participant& added = all_[++last_number_];
   added.number = last_number_;
@@ -73,6 +82,7 @@ void Participants::disconnect(Participant& participant) {
   if (!participant.is_here()) return;
   by_client_.erase(participant.outbox->id());
   participant.outbox.reset();
+  participant.pointer.reset();
 }
 
 void Participants::send_away(SteadyClock::time_point now) {
@@ -125,16 +135,24 @@ void Participants::close_silent(SteadyClock::time_point now, std::chrono::second
 }
 
 void Participants::forget_grabs() {
-  for (auto& [number, participant] : all_) participant.grabs.clear();
+  for (auto& [number, participant] : all_) {
+    participant.grabs.clear();
+    participant.grab_uses.clear();
+  }
 }
 
 void Participants::forget_grab(std::uint64_t grab) {
-  for (auto& [number, participant] : all_) participant.grabs.erase(grab);
+  for (auto& [number, participant] : all_) {
+    participant.grabs.erase(grab);
+    participant.grab_uses.erase(grab);
+  }
 }
 
 void Participants::forget_grabs_of(BodyId body) {
   for (auto& [number, participant] : all_) {
     std::erase_if(participant.grabs, [&](const auto& grab) { return grab.second == body; });
+    std::erase_if(participant.grab_uses,
+                  [&](const auto& use) { return !participant.grabs.contains(use.first); });
   }
 }
 

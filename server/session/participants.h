@@ -20,6 +20,13 @@ namespace vat {
 /// Names a participant of a session; never used twice in it. The first is 1.
 using ParticipantNumber = std::uint64_t;
 
+/// Where somebody points: at a place, or from one in a direction.
+struct Pointer {
+  Vec3 position;
+  std::optional<Vec3> direction;
+  bool operator==(const Pointer&) const = default;
+};
+
 /// Who takes part in a session. Outlives its connection for a while, in which another one may
 /// resume it. A participant that has no connection and was never one's is a ghost: it stands for
 /// whoever gave the commands of a log that is carried out again.
@@ -33,9 +40,12 @@ struct Participant {
   std::map<std::uint64_t, BodyId> grabs;     ///< by the ids that the session gave
   std::optional<TokenHash> resume;  ///< of the token by which another connection takes over
   std::optional<SteadyClock::time_point> away_since;
+  std::optional<Pointer> pointer;
+  std::map<std::uint64_t, SteadyClock::time_point> grab_uses;  ///< the last of each
 
   bool is_here() const { return outbox != nullptr; }
   bool is_away() const { return away_since.has_value(); }
+  bool is_ghost() const { return !is_here() && !is_away(); }
 };
 
 /// The participants of a session; used by one thread at a time. References to one are valid until
@@ -52,6 +62,8 @@ class Participants {
   Participant* find_resume(const TokenHash& token);
   /// The one that has this grab, or null.
   Participant* holder_of(std::uint64_t grab);
+  /// The one that holds the body by some grab, or null.
+  const Participant* holder_of_body(BodyId body) const;
 
   /// A further one, with the next number.
   Participant& add(std::string name, Role role);

@@ -101,6 +101,12 @@ RpcError not_authenticated(std::string message) {
   return {ErrorKind::not_authenticated, std::move(message)};
 }
 
+RpcError held_by_other(std::uint64_t participant, const std::string& name) {
+  return {ErrorKind::busy,
+          name + " holds this body",
+          {{"path", "/body"}, {"holder", {{"participant", participant}, {"name", name}}}}};
+}
+
 RpcError storage_failed(StorageError::Kind reason) {
   const bool is_full = reason == StorageError::Kind::full;
   return {ErrorKind::storage_failed,

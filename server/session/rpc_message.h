@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,6 +45,8 @@ RpcError not_allowed(std::string message);
 /// The role of who called the method is below the least that may.
 RpcError role_too_low(std::string_view method, Role role, Role least);
 RpcError not_authenticated(std::string message);
+/// Another participant holds the body.
+RpcError held_by_other(std::uint64_t participant, const std::string& name);
 /// A command could not be kept, and was not carried out.
 RpcError storage_failed(StorageError::Kind reason);
 /// `state` is "recovering" or "lost".

@@ -29,7 +29,8 @@ Session::Session(std::string id, SessionSettings settings, Simulation simulation
       strand_(boost::asio::make_strand(pool.get_executor())),
       core_(std::move(id), std::move(settings), std::move(simulation), environment),
       tick_timer_(strand_),
-      status_timer_(strand_) {
+      status_timer_(strand_),
+      presence_timer_(strand_) {
   update_summary();
 }
 
@@ -115,6 +116,7 @@ void Session::end_turn() {
   if (core_.take_interruption()) end_all_steps();
   if (!tick_is_coming()) carry_out_pointers();
   core_.announce();
+  follow_presence();
   follow_clock();
   update_summary();
   keep_moment();
@@ -143,6 +145,7 @@ void Session::update_summary() {
 }
 
 void Session::inbox_turn() {
+  core_.presence().touch();
   const auto end = SteadyClock::now() + kTurnTime;
   std::optional<Item> item;
   for (std::size_t i = 0; i < kCommandsPerTurn && SteadyClock::now() < end; ++i) {
@@ -203,6 +206,7 @@ void Session::carry_out_join(Caller caller, const Join& join) {
                      {"resume", entry.resume},
                      {"resumed", entry.resumed},
                      {"settings", core_.describe_settings()},
+                     {"participants", describe_participants(core_.participants())},
                      {"description", core_.description()}});
 }
 
@@ -241,8 +245,9 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
     return;
   }
   // What came before it: to the session, or from this client.
-  const bool is_query = command.rules->message_class == MessageClass::query;
-  if (!is_query || pointers_.has_of(participant->number)) carry_out_pointers();
+  const bool is_in_order =
+      command.rules->is_logged || command.rules->message_class == MessageClass::control;
+  if (is_in_order || pointers_.has_of(participant->number)) carry_out_pointers();
   const SessionCore::Given given{participant->number, command};
   const auto begin = SteadyClock::now();
   ActionResult result = std::move(core_.carry_out({&given, 1}).front());
@@ -368,6 +373,9 @@ void Session::wait_for_tick() {
 
 void Session::status_turn() {
   wait_for_status();  // first, so that a fault does not end the statuses
+  core_.presence().touch();
+  carry_out_pointers();  // they are uses of what they move
+  core_.end_idle_grabs(SteadyClock::now());
   core_.end_absences(SteadyClock::now());
   core_.announce_status();
   core_.close_silent(SteadyClock::now());
@@ -380,10 +388,26 @@ void Session::wait_for_status() {
   });
 }
 
+void Session::follow_presence() {
+  if (!core_.presence().is_touched() || presence_waits_) return;
+  const auto now = SteadyClock::now();
+  if (now >= core_.presence().due()) {
+    core_.tell_presence(now);
+    return;
+  }
+  presence_waits_ = true;
+  presence_timer_.expires_at(core_.presence().due());
+  presence_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
+    self->presence_waits_ = false;
+    if (!failure) self->run_turn(&Session::presence_turn);
+  });
+}
+
 void Session::close_turn() {
   closed_ = true;
   tick_timer_.cancel();
   status_timer_.cancel();
+  presence_timer_.cancel();
   std::deque<Item> items;
   std::optional<Caller> closer;
   End end = End::may_come_back;

@@ -117,6 +117,9 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Notes where it is, from time to time.
   void keep_moment();
   void end_log(End end);
+  /// Tells of changes at once or, where others were told just before, later.
+  void follow_presence();
+  void presence_turn() {}  // what is due is told at the end of every turn
   void close_turn();
 
   const std::string id_;
@@ -136,6 +139,8 @@ class Session : public std::enable_shared_from_this<Session> {
   SteadyClock::duration period_{};  // of the clock; zero: it stands still
   boost::asio::steady_timer tick_timer_;
   boost::asio::steady_timer status_timer_;
+  boost::asio::steady_timer presence_timer_;
+  bool presence_waits_ = false;
   PointerCommands pointers_;
   std::deque<StepJob> steps_;
   bool step_scheduled_ = false;

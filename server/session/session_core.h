@@ -12,6 +12,7 @@
 #include "server/session/frame_feed.h"
 #include "server/session/method_rules.h"
 #include "server/session/participants.h"
+#include "server/session/presence.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
 #include "server/session/session_log.h"
@@ -160,6 +161,10 @@ class SessionCore {
   /// Who may no longer change things lets go of what it held. A session has one owner at most: a
   /// further one takes the place of the one before, who becomes a controller.
   void set_role(Participant& participant, Role role);
+  /// Grabs that nobody has moved for too long end, as by a command of their participants.
+  void end_idle_grabs(SteadyClock::time_point now);
+  Presence& presence() { return presence_; }
+  void tell_presence(SteadyClock::time_point now);
   const SessionSettings& settings() const { return settings_; }
   void configure(SessionSettings settings);
   Json describe_settings() const;
@@ -197,6 +202,8 @@ class SessionCore {
   void publish_frame();
   void fill_state();
   Participant& take_in(const ClientOutbox& outbox, const Entrant& entrant, std::string& token);
+  /// As by a command of the participant, so that it is where commands are.
+  void end_grab(ParticipantNumber participant, std::uint64_t grab);
   void release_connection(const Participant& participant, ConnectionId next);
   /// So that those who come and go at once do not grow without bound.
   void bound_absences();
@@ -214,6 +221,7 @@ class SessionCore {
   const SessionEnvironment* environment_;
   SessionRun run_;
   Participants participants_;
+  Presence presence_;
   const std::shared_ptr<FrameFeed> frames_;
   StatePublisher publisher_;
   PublishedState state_;  // the next, or what another has left in its place

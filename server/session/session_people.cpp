@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/session/method_table.h"
 #include "server/session/session_core.h"
 
 namespace vat {
@@ -131,6 +132,42 @@ void SessionCore::set_role(Participant& participant, Role role) {
   }
   participants_.set_role(participant, role);
   if (role < Role::controller) let_go(participant);
+}
+
+void SessionCore::end_grab(ParticipantNumber participant, std::uint64_t grab) {
+  const SessionCommand command = make_command("grab.end", {{"grab", grab}});
+  const Given given{participant, command};
+  carry_out({&given, 1});
+}
+
+void SessionCore::end_idle_grabs(SteadyClock::time_point now) {
+  struct Idle {
+    ParticipantNumber participant;
+    std::uint64_t grab;
+    BodyId body;
+  };
+  std::vector<Idle> idle;
+  for (const auto& [number, holder] : participants_.all()) {
+    auto& uses = participants_.find(number)->grab_uses;
+    for (const auto& [grab, body] : holder.grabs) {
+      // One of before a restart was used just now, as far as anybody knows.
+      const auto used = uses.try_emplace(grab, now).first->second;
+      if (now - used >= environment_->limits.grab_idle) idle.push_back({number, grab, body});
+    }
+  }
+  for (const auto& [number, grab, body] : idle) {
+    end_grab(number, grab);
+    if (participants_.holder_of(grab) != nullptr) continue;  // it could not be logged: later
+    const Json event{{"grab", grab}, {"body", body}, {"participant", number}, {"reason", "idle"}};
+    participants_.send_event(write_event("grab.ended", event));
+  }
+}
+
+void SessionCore::tell_presence(SteadyClock::time_point now) {
+  Json changes = presence_.take_changes(participants_, now);
+  if (!changes.is_null()) {
+    participants_.send_event(write_event("presence.changed", std::move(changes)));
+  }
 }
 
 void SessionCore::configure(SessionSettings settings) {

@@ -99,6 +99,8 @@ std::vector<Setting> connection_limits(ServeSettings& s) {
                    "Without an acknowledgement, after which a viewer is closed"),
       time_setting("resume_seconds", limits.resume_time, 0, kMostSeconds,
                    "In which a participant whose connection has ended can be resumed"),
+      time_setting("grab_idle_seconds", limits.grab_idle, 0.1, kMostSeconds,
+                   "Without a move, after which a grab ends"),
       number_setting<std::size_t>("max_tokens", limits.max_tokens, 1, 1'000'000,
                                   "Invitations and tickets that are good at once"),
       time_setting("handshake_seconds", s.handshake_timeout, 0.001, kMostSeconds,

@@ -84,7 +84,7 @@ TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
 
 TEST_F(SessionGrabs, HaveIdsOfTheirOwn) {
   const auto other = join();
-  EXPECT_NE(start(*client), start(*other));
+  EXPECT_NE(start(*client), start(*other, 2));
 }
 
 TEST_F(SessionGrabs, StayWhileTheirClientIsAway) {
@@ -140,21 +140,38 @@ TEST_F(SessionGrabs, OfAClientAreAtMostTen) {
   EXPECT_EQ(error.at("data").at("limit"), "grabs_per_client");
   EXPECT_EQ(error.at("data").at("maximum"), 10);
   const auto other = join();
-  start(*other);
+  start(*other, 2);
 }
 
+// A body for each client: one is held by one client at a time.
 TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
+  Json ball = {{"name", ""},
+               {"kind", "rigid"},
+               {"material", "steel"},
+               {"spacing", 0.1},
+               {"shape", {{"type", "sphere"}, {"radius", 0.1}}}};
+  const auto add_ball = [&](double x) {
+    ball["name"] = "ball at " + std::to_string(x);
+    ball["position"] = {x, 5, 5};
+    return client->result("world.add_body", {{"body", ball}}).at("body").get<BodyId>();
+  };
+  client->result("scene.load", {{"scene", "unstable"}});  // without a vat to be outside of
   std::vector<std::unique_ptr<TestClient>> clients;
+  BodyId body = 0;
   for (std::size_t i = 0; i < kMaxGrabs; ++i) {
-    if (i % 10 == 0) clients.push_back(join());
-    start(*clients.back());
+    if (i % 10 == 0) {
+      clients.push_back(join());
+      body = add_ball(static_cast<double>(i));
+    }
+    start(*clients.back(), body);
   }
-  const auto params = Json{{"body", kBall}, {"particle", 0}, {"target", kTarget}};
+  const BodyId free = add_ball(-10);
+  const auto params = Json{{"body", free}, {"particle", 0}, {"target", kTarget}};
   const Json error = client->error("grab.start", params);
   EXPECT_EQ(error.at("data").at("limit"), "grabs_per_session");
   EXPECT_EQ(error.at("data").at("maximum"), kMaxGrabs);
   clients.front()->result("session.leave");
-  start(*client);
+  start(*client, free);
 }
 
 TEST_F(SessionGrabs, ForcesOfASessionAreBoundedToo) {

@@ -214,6 +214,8 @@ TEST_F(BadParameters, MethodsOfASessionNeedOne) {
       {"participant.kick", {{"participant", 1}}},
       {"control.request", nullptr},
       {"control.hand_over", {{"participant", 1}}},
+      {"presence.list", nullptr},
+      {"presence.point", nullptr},
   };
   for (const auto& [method, params] : calls) {
     const Json error = outsider->error(method, params);
@@ -263,6 +265,8 @@ TEST_F(GoodParameters, EveryMethodOfTheProtocolIsThere) {
                                       "participant.kick",
                                       "control.request",
                                       "control.hand_over",
+                                      "presence.list",
+                                      "presence.point",
                                       "access.enter",
                                       "access.ticket"}));
   EXPECT_EQ(info.at("name"), "vat");

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Texts, BadRequests, testing::ValuesIn(bad_texts()),
 TEST_P(BadRequests, AreAnsweredOnceByTheirCodeAndChangeNothing) {
   const std::string before = hash();
   client->mark();
-  client->send_raw(GetParam().text);
+  client->send_raw(GetParam().text, true);
   const Json reply =
       client->connection->wait_text([](const Json& text) { return text.contains("error"); });
   EXPECT_EQ(reply.at("jsonrpc"), "2.0");

@@ -19,14 +19,14 @@ export type Point = [number, number, number];
 export type Name = string;
 /** At most 64 bytes of UTF-8: something to see, and neither control characters nor marks of direction */
 export type PersonName = string;
+/** Numbers a participant of a session, and no other one of it */
+export type ParticipantId = number;
 /** Names a body for the life of its session; 0 is the vat's */
 export type BodyId = number;
 /** A particle's number within its body */
 export type ParticleNumber = number;
 /** Names a grab for the life of its session */
 export type GrabId = number;
-/** Numbers a participant of a session, and no other one of it */
-export type ParticipantId = number;
 
 export type BodyKind = 'liquid' | 'deformable' | 'rigid';
 /** Hashes can be compared where it is the same */
@@ -55,6 +55,7 @@ export type ReplyError =
   | LimitReached
   | NotAllowed
   | NotAuthenticated
+  | Busy
   | StorageFailed
   | NotRecovered;
 
@@ -79,6 +80,23 @@ export interface AccessTicketResult {
   role: Role;
   /** For which it is good */
   seconds: number;
+}
+/** Who takes part, as others are told */
+export interface Participant {
+  participant: ParticipantId;
+  name: string;
+  role: Role;
+  /** Its connection has ended; it may be resumed */
+  away: boolean;
+  /** The bodies that it holds */
+  grabs: BodyId[];
+  /** Where it points */
+  pointer: null | Pointer;
+}
+/** A place, or from there a direction */
+export interface Pointer {
+  position: Point;
+  direction?: Vector;
 }
 /** What an owner decides of a session */
 export interface Settings {
@@ -274,6 +292,21 @@ export interface NotAuthenticated {
   };
 }
 
+export interface Busy {
+  code: 1008;
+  message: string;
+  data: {
+    kind: 'busy';
+    hint: Hint;
+    path: Path;
+    /** Who has it */
+    holder: {
+      participant: ParticipantId;
+      name: string;
+    };
+  };
+}
+
 export interface StorageFailed {
   code: 1010;
   message: string;
@@ -331,6 +364,18 @@ export interface SessionDiverged {
 export interface SessionClosed {
   session: SessionId;
   reason: string;
+}
+/** Who has come, changed or gone; at most ten times a second */
+export interface PresenceChanged {
+  participants: Participant[];
+  left: ParticipantId[];
+}
+/** The server has ended a grab that nobody moved any more */
+export interface GrabEnded {
+  grab: GrabId;
+  body: BodyId;
+  participant: ParticipantId;
+  reason: 'idle';
 }
 /** Somebody asks for control; sent to those who can hand it over */
 export interface ControlRequested {
@@ -400,6 +445,16 @@ export interface ParticipantKickParams {
   participant: ParticipantId;
   /** What the close frame tells */
   reason?: string;
+}
+
+export interface PresenceListResult {
+  tick: Tick;
+  participants: Participant[];
+}
+/** Shows others where one points; without a position, nowhere */
+export interface PresencePointParams {
+  position?: Point;
+  direction?: Vector;
 }
 
 export interface RecordingExportResult {
@@ -489,6 +544,7 @@ export interface SessionJoinResult {
   /** Whether it is one that was there before */
   resumed: boolean;
   settings: Settings;
+  participants: Participant[];
   description: SessionDescription;
 }
 /** Decides who may join, and as what */
@@ -646,6 +702,8 @@ export interface Methods {
   'participant.rename': { params: ParticipantRenameParams; result: InEffect };
   'participant.set_role': { params: ParticipantSetRoleParams; result: InEffect };
   'participant.kick': { params: ParticipantKickParams; result: InEffect };
+  'presence.list': { params: Nothing; result: PresenceListResult };
+  'presence.point': { params: PresencePointParams; result: InEffect };
   'recording.export': { params: Nothing; result: RecordingExportResult };
   'scene.list': { params: Nothing; result: SceneListResult };
   'scene.load': { params: SceneLoadParams; result: InEffect };
@@ -678,6 +736,8 @@ export interface Events {
   'session.diverged': SessionDiverged;
   'session.closed': SessionClosed;
   'session.configured': Settings;
+  'presence.changed': PresenceChanged;
+  'grab.ended': GrabEnded;
   'control.requested': ControlRequested;
 }
 
@@ -689,5 +749,7 @@ export const kEventNames = [
   'session.diverged',
   'session.closed',
   'session.configured',
+  'presence.changed',
+  'grab.ended',
   'control.requested',
 ] as const;

@@ -121,6 +121,8 @@ export class App {
         break;
       case 'session.configured':
       case 'control.requested':
+      case 'presence.changed':
+      case 'grab.ended':
       case 'session.description': // comes as a report of its own
         break;
     }
