@@ -9,10 +9,15 @@
 namespace vat {
 
 struct ServerLimits {
-  std::size_t max_connections = 1024;          ///< WebSockets; a file descriptor each
-  std::size_t max_sessions = 16;               ///< each holds a simulation and steps it
-  std::size_t max_clients_per_session = 1024;  ///< each frame is sent once a client
-  std::size_t max_particles = 200'000;         ///< of one session; memory: up to 2 kB each
+  std::size_t max_connections = 1024;             ///< WebSockets; a file descriptor each
+  std::size_t max_connections_per_address = 256;  ///< so that one host does not take all
+  std::size_t max_sessions = 16;                  ///< each holds a simulation and steps it
+  std::size_t max_sessions_per_address = 8;       ///< that clients of an address have created
+  std::size_t max_clients_per_session = 1024;     ///< each frame is sent once a client
+  std::size_t max_particles = 200'000;            ///< of one session; memory: up to 2 kB each
+  std::size_t max_springs = 2'000'000;            ///< of one session; 13 per particle of a lattice
+  std::size_t max_particles_in_all = 1'000'000;   ///< of all sessions
+  std::size_t max_springs_in_all = 8'000'000;     ///< the same
   /// Particles times steps of one tick: a tick is not interrupted, and commands wait for it. About
   /// a second at the limit.
   std::size_t max_particle_steps_per_tick = 4'000'000;
@@ -21,6 +26,15 @@ struct ServerLimits {
   std::size_t max_commands_in_flight = 256;               ///< of one client: not answered yet
   std::size_t max_bytes_in_flight = 8'000'000;            ///< of these commands' messages
   std::size_t max_grabs_per_client = 10;                  ///< one a finger
+  // Messages a second of one connection, by what they count as: several times what a viewer sends.
+  double max_queries_per_second = 500;  ///< acknowledgements included, one a frame
+  double max_controls_per_second = 200;
+  double max_pointer_moves_per_second = 250;
+  double max_scenes_per_second = 5;                 ///< each may be long, and is checked as a whole
+  double max_message_bytes_per_second = 8'000'000;  ///< reading them takes a fifth of a core
+  double burst_seconds = 4;                         ///< so much of these may come at once
+  /// Refused messages a second, and at once as above, after which a connection is closed.
+  double max_refusals_per_second = 100;
   /// For the acknowledgement of a frame: a viewer that has stopped reading holds memory.
   std::chrono::seconds frame_patience{30};
   /// In which a participant whose connection has ended can be resumed by another one.
@@ -28,6 +42,10 @@ struct ServerLimits {
   /// Without a move, after which a grab ends: the body is somebody else's to hold.
   std::chrono::milliseconds grab_idle{30'000};
   std::size_t max_tokens = 10'000;  ///< invitations and tickets that are good at once
+  /// A session without participants stands still after so long; 0: never.
+  std::chrono::milliseconds hibernate_after{60'000};
+  /// And ends after so long, unless it is the first; 0: never.
+  std::chrono::milliseconds expire_after{24 * 3'600'000};
 };
 
 /// Fixed by PROTOCOL.md.

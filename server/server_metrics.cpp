@@ -1,12 +1,17 @@
 #include "server/server_metrics.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/output/text.h"
 
 namespace vat {
 namespace {
+
+/// Of PROTOCOL.md. A client may close with any code, and metrics must not grow by that.
+constexpr std::uint16_t kCloseCodes[] = {1000, 1001, 1002, 1005, 1006, 1007, 1009,
+                                         1011, 1013, 4001, 4003, 4008, 4009, 4010};
 
 void append_head(std::string& text, const char* name, const char* type, const char* help) {
   text += std::string("# HELP ") + name + ' ' + help + "\n# TYPE " + name + ' ' + type + '\n';
@@ -44,9 +49,11 @@ void append_present(std::string& text, const ServerMetrics::Present& now) {
       label("version", now.version) + ',' + label("instruction_set", to_string(now.instructions)),
       1);
   append_gauge(text, "vat_threads", "Threads that step sessions.", now.threads);
-  append_head(text, "vat_sessions", "gauge", "Sessions, playing or paused.");
+  append_head(text, "vat_sessions", "gauge",
+              "Sessions, playing, paused, or playing with nobody in them.");
   append_sample(text, "vat_sessions", label("state", "playing"), now.playing_sessions);
   append_sample(text, "vat_sessions", label("state", "paused"), now.paused_sessions);
+  append_sample(text, "vat_sessions", label("state", "hibernating"), now.hibernating_sessions);
   append_gauge(text, "vat_connections", "Open WebSockets.", now.connections);
   append_gauge(text, "vat_clients", "Connections that have joined a session.", now.clients);
   append_gauge(text, "vat_particles", "Particles of all sessions.", now.particles);
@@ -99,6 +106,22 @@ void ServerMetrics::add_missed_frames(std::size_t count) {
   missed_frames_ += count;
 }
 
+void ServerMetrics::add_refusal(std::string_view limit) {
+  const std::lock_guard lock(mutex_);
+  ++refusals_[std::string(limit)];
+}
+
+void ServerMetrics::add_rate_limited(std::string_view limit) {
+  const std::lock_guard lock(mutex_);
+  ++rate_limited_[std::string(limit)];
+}
+
+void ServerMetrics::add_close(std::uint16_t code) {
+  const bool is_ours = std::ranges::find(kCloseCodes, code) != std::end(kCloseCodes);
+  const std::lock_guard lock(mutex_);
+  ++closes_[is_ours ? code : 0];
+}
+
 std::string ServerMetrics::to_text(const Present& present) const {
   std::string text;
   append_present(text, present);
@@ -111,6 +134,7 @@ std::string ServerMetrics::to_text(const Present& present) const {
                  "Steps that the guard has undone and repeated in shorter ones.", undone_substeps_);
   append_stages(text);
   append_frames(text);
+  append_refusals(text);
   return text;
 }
 
@@ -146,6 +170,25 @@ void ServerMetrics::append_frames(std::string& text) const {
   append_counter(text, "vat_frames_missed_total",
                  "Frames that were due to a client and not sent: it was not ready for them.",
                  missed_frames_);
+}
+
+void ServerMetrics::append_refusals(std::string& text) const {
+  append_head(text, "vat_refused_total", "counter",
+              "What was refused because of a limit, by its name in server.info.");
+  for (const auto& [limit, count] : refusals_) {
+    append_sample(text, "vat_refused_total", label("limit", limit), count);
+  }
+  append_head(text, "vat_rate_limited_total", "counter",
+              "Messages that were refused for coming too soon, by the limit's name.");
+  for (const auto& [limit, count] : rate_limited_) {
+    append_sample(text, "vat_rate_limited_total", label("limit", limit), count);
+  }
+  append_head(text, "vat_connections_closed_total", "counter",
+              "WebSockets that have ended, by close code; 1006: without one.");
+  for (const auto& [code, count] : closes_) {
+    append_sample(text, "vat_connections_closed_total",
+                  label("code", code == 0 ? "other" : std::to_string(code)), count);
+  }
 }
 
 void ServerMetrics::append_recent_ticks(std::string& text) const {

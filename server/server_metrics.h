@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <span>
@@ -34,6 +35,12 @@ class ServerMetrics {
   void add_sent_frames(std::size_t count, std::size_t bytes_each);
   /// That were due to clients which were not ready or not served.
   void add_missed_frames(std::size_t count);
+  /// Something was refused because of a limit: its name in server.info's `limits`.
+  void add_refusal(std::string_view limit);
+  /// A message was refused for coming too soon: the limit's name.
+  void add_rate_limited(std::string_view limit);
+  /// A WebSocket has ended. Codes that are none of PROTOCOL.md count as one.
+  void add_close(std::uint16_t code);
 
   /// What is so now.
   struct Present {
@@ -42,6 +49,7 @@ class ServerMetrics {
     std::size_t threads = 0;
     std::size_t playing_sessions = 0;
     std::size_t paused_sessions = 0;
+    std::size_t hibernating_sessions = 0;  ///< play, but nobody is in them
     std::size_t connections = 0;
     std::size_t clients = 0;    ///< connections that have joined a session
     std::size_t particles = 0;  ///< of all sessions
@@ -67,6 +75,7 @@ class ServerMetrics {
   void append_recent_ticks(std::string& text) const;
   void append_stages(std::string& text) const;
   void append_frames(std::string& text) const;
+  void append_refusals(std::string& text) const;
 
   mutable std::mutex mutex_;
   std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound, those above all last
@@ -83,6 +92,9 @@ class ServerMetrics {
   std::uint64_t sent_frames_ = 0;
   std::uint64_t sent_bytes_ = 0;
   std::uint64_t missed_frames_ = 0;
+  std::map<std::string, std::uint64_t, std::less<>> refusals_;      // by limit
+  std::map<std::string, std::uint64_t, std::less<>> rate_limited_;  // by limit
+  std::map<std::uint16_t, std::uint64_t> closes_;                   // by code, 0: another
   std::map<std::string_view, StageTotal> stages_;  // as many as there are names in the program
 };
 

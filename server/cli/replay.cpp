@@ -31,8 +31,10 @@ class LonelyEnvironment {
  public:
   explicit LonelyEnvironment(const Catalogue& catalogue, InstructionSet instructions)
       : runner_(std::max(1U, std::thread::hardware_concurrency())),
-        environment_{catalogue, limits_, instructions, runner_, metrics_, frame_threads_, tokens_} {
+        environment_{catalogue, limits_,    instructions,   runner_,
+                     metrics_,  resources_, frame_threads_, tokens_} {
     limits_.max_particles = kMaxParticles;
+    limits_.max_springs = kMaxSprings;
     limits_.max_particle_steps_per_tick = kMaxParticles * kMaxStepsPerTick;
   }
   const SessionEnvironment& get() const { return environment_; }
@@ -41,6 +43,7 @@ class LonelyEnvironment {
   ServerLimits limits_;
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
+  ResourceBudget resources_{kUnlimitedResources};
   boost::asio::thread_pool frame_threads_{1};
   AccessTokens tokens_{1};
   const SessionEnvironment environment_;

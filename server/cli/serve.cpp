@@ -1,6 +1,5 @@
 #include "server/cli/serve.h"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -29,6 +28,7 @@
 #include "server/http/downloads.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
+#include "server/log_format.h"
 #include "server/net/transport.h"
 #include "server/session/session_server.h"
 #include "server/settings/serve_settings.h"
@@ -57,11 +57,6 @@ end it cleanly, SIGTERM after --drain-seconds for those who are connected, a sec
 
 Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder, data
 that cannot be used or port in use, 2 wrong usage, or a variable with a bad value.)";
-
-void start_log(const std::string& level) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("vat"));
-  spdlog::set_level(spdlog::level::from_str(level));
-}
 
 /// Waits for SIGINT or SIGTERM, also for one that came since the construction.
 class StopSignal {
@@ -101,23 +96,40 @@ void raise_file_limit(std::size_t connections) {
       allowed, connections, allowed - std::min(allowed, kOtherFiles));
 }
 
-TransportSettings transport_settings(const ServeSettings& options) {
+TransportSettings transport_settings(const ServeSettings& options, SessionServer& sessions) {
   TransportSettings settings;
   settings.endpoints = options.endpoints;
   settings.host = options.host;
   settings.port = options.port;
   settings.max_connections = options.limits.max_connections;
+  settings.max_connections_per_address = options.limits.max_connections_per_address;
   settings.max_message_bytes = options.limits.max_scene_message_bytes;
   settings.handshake_timeout = options.handshake_timeout;
   settings.ping_interval = options.ping_interval;
   settings.report = [](std::string_view fault) { spdlog::error("internal error: {}", fault); };
+  settings.count_refusal = [&](std::string_view limit) { sessions.count_refusal(limit); };
+  settings.count_close = [&](std::uint16_t code) { sessions.count_close(code); };
   return settings;
+}
+
+std::string version_json(const ServerSettings& settings) {
+  return Json{{"name", "vat"},
+              {"version", settings.version},
+              {"protocol", "vat.v1"},
+              {"instruction_set", to_string(settings.instructions)}}
+      .dump();
+}
+
+ServerPhase phase_of(const SharedPhase& phase, const SessionServer& sessions) {
+  const bool recovers = phase == ServerPhase::ready && !sessions.is_ready();
+  return recovers ? ServerPhase::recovering : phase.load();
 }
 
 /// Serves until a signal comes.
 int serve(const ServeSettings& options, const ServeAccess& access, const Catalogue& catalogue,
           const Scene& scene, StaticFiles viewer) {
   StopSignal stop_signal;
+  SharedPhase phase = ServerPhase::starting;
   ServerSettings settings;
   settings.version = VAT_VERSION;
   settings.threads = options.threads;
@@ -140,15 +152,19 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   }
 
   const auto transport = make_websocket_transport(
-      transport_settings(options), sessions,
-      with_downloads(make_http_site(std::move(viewer), [&] { return sessions.metrics(); }),
+      transport_settings(options, sessions), sessions,
+      with_downloads(make_http_site(std::move(viewer), {[&] { return sessions.metrics(); },
+                                                        [&] { return phase_of(phase, sessions); },
+                                                        version_json(settings)}),
                      sessions.downloads()));
   raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
   const std::string url = viewer_url(options.host, port);
   tell_access(options, access, url);
+  phase = ServerPhase::ready;
   std::cout << "vat is at " << url << " (Ctrl-C stops it)" << std::endl;
   stop_signal.wait();
+  phase = ServerPhase::draining;
   sessions.drain(stop_signal.is_term() ? options.drain_time : std::chrono::milliseconds(0));
   sessions.stop();
   transport->stop();
@@ -238,7 +254,7 @@ int run(CommandLine& line) {
     std::cout << describe(line.table, sources).dump(2) << '\n';
     return kExitOk;
   }
-  start_log(line.settings.log_level);
+  start_log(line.settings.log_level, line.settings.log_format == "json");
   for (const std::string& unknown : unknown_variables(line.table, variables)) {
     spdlog::warn("a variable is no setting: {}", unknown);
   }

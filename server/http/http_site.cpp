@@ -12,6 +12,7 @@ namespace vat {
 namespace {
 
 constexpr const char* kPlainText = "text/plain; charset=utf-8";
+constexpr const char* kJson = "application/json";
 constexpr const char* kPrometheusText = "text/plain; version=0.0.4; charset=utf-8";
 
 /// Vite puts a hash of the content into the names of these.
@@ -51,8 +52,13 @@ HttpResponse viewer_file(const StaticFiles& viewer, const std::string& path) {
   return text(404, "Not found.\n");
 }
 
-HttpResponse answer(const StaticFiles& viewer, const MetricsSource& metrics,
-                    std::string_view method, std::string_view target) {
+HttpResponse readiness(ServerPhase phase) {
+  const std::string body = std::string("{\"status\":\"") + to_string(phase) + "\"}\n";
+  return {phase == ServerPhase::ready ? 200 : 503, kJson, body, {}};
+}
+
+HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources, std::string_view method,
+                    std::string_view target) {
   if (method != "GET" && method != "HEAD") {
     HttpResponse response = text(405, "Only GET and HEAD are served here.\n");
     response.headers.emplace_back("Allow", "GET, HEAD");
@@ -60,8 +66,10 @@ HttpResponse answer(const StaticFiles& viewer, const MetricsSource& metrics,
   }
   const std::optional<std::string> path = request_path(target);
   if (!path) return text(400, "The path is malformed.\n");
-  if (*path == "/healthz") return {200, "application/json", "{\"status\":\"ok\"}\n", {}};
-  if (*path == "/metrics") return {200, kPrometheusText, metrics(), {}};
+  if (*path == "/healthz") return {200, kJson, "{\"status\":\"ok\"}\n", {}};
+  if (*path == "/readyz") return readiness(sources.phase());
+  if (*path == "/version") return {200, kJson, sources.version + '\n', {}};
+  if (*path == "/metrics") return {200, kPrometheusText, sources.metrics(), {}};
   return viewer_file(viewer, *path);
 }
 
@@ -76,9 +84,9 @@ void add_common_headers(HttpResponse& response) {
 
 }  // namespace
 
-HttpHandler make_http_site(StaticFiles viewer, MetricsSource metrics) {
+HttpHandler make_http_site(StaticFiles viewer, SiteSources sources) {
   return [files = std::make_shared<const StaticFiles>(std::move(viewer)),
-          source = std::move(metrics)](std::string_view method, std::string_view target) {
+          source = std::move(sources)](std::string_view method, std::string_view target) {
     HttpResponse response = answer(*files, source, method, target);
     add_common_headers(response);
     return response;

@@ -23,6 +23,9 @@ class Connection {
  public:
   virtual ~Connection() = default;
   virtual ConnectionId id() const = 0;
+  /// Of the peer, as its connections and sessions are counted: the host, or of IPv6 the network of
+  /// 64 bits, of which one host has many.
+  virtual const std::string& address() const = 0;
   virtual void send_text(std::string message) = 0;
   /// The bytes are shared, not copied, until they are handed to the socket.
   virtual void send_binary(std::shared_ptr<const std::string> bytes) = 0;
@@ -61,6 +64,7 @@ struct TransportSettings {
   std::uint16_t port = 8080;                       ///< 0: any free port
   std::size_t endpoints = 1;                       ///< threads that share the port's connections
   std::size_t max_connections = 1024;              ///< WebSockets; the next is closed with 1013
+  std::size_t max_connections_per_address = 256;   ///< the same
   std::size_t max_message_bytes = 1024 * 1024;     ///< a longer one closes with 1009
   std::size_t max_http_request_bytes = 16 * 1024;  ///< of the body; a longer one gets 413
   std::chrono::milliseconds handshake_timeout{10'000};  ///< for a whole request or upgrade
@@ -69,6 +73,10 @@ struct TransportSettings {
   std::chrono::milliseconds ping_interval{20'000};  ///< a peer silent for two of them is dropped
   /// Told of faults of this program (a handler that throws); called on the transport's threads.
   std::function<void(std::string_view)> report;
+  /// Told of each connection that a limit refuses, by its name in server.info's `limits`.
+  std::function<void(std::string_view limit)> count_refusal;
+  /// Told of each WebSocket that has ended, with its close code; 1006 where there was none.
+  std::function<void(std::uint16_t code)> count_close;
 };
 
 /// One port for HTTP and WebSocket, served from start() to stop() by as many threads of its own as

@@ -24,9 +24,10 @@ class QueuedBytes {
 
 }  // namespace
 
-WsConnection::WsConnection(ConnectionId id, std::shared_ptr<WsLane> lane,
+WsConnection::WsConnection(ConnectionId id, std::string address, std::shared_ptr<WsLane> lane,
                            std::weak_ptr<WsStream> stream)
     : id_(id),
+      address_(std::move(address)),
       lane_(std::move(lane)),
       stream_(std::move(stream)),
       queued_bytes_(std::make_shared<std::atomic<std::size_t>>(0)) {}

@@ -15,9 +15,11 @@ namespace vat {
 /// Hands every call over to the endpoint's thread, the only one that touches the stream.
 class WsConnection final : public Connection {
  public:
-  WsConnection(ConnectionId id, std::shared_ptr<WsLane> lane, std::weak_ptr<WsStream> stream);
+  WsConnection(ConnectionId id, std::string address, std::shared_ptr<WsLane> lane,
+               std::weak_ptr<WsStream> stream);
 
   ConnectionId id() const override { return id_; }
+  const std::string& address() const override { return address_; }
   void send_text(std::string message) override;
   void send_binary(std::shared_ptr<const std::string> bytes) override;
   std::size_t queued_bytes() const override { return *queued_bytes_; }
@@ -30,6 +32,7 @@ class WsConnection final : public Connection {
   void send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode);
 
   ConnectionId id_;
+  std::string address_;
   std::shared_ptr<WsLane> lane_;
   std::weak_ptr<WsStream> stream_;
   std::shared_ptr<std::atomic<std::size_t>> queued_bytes_;

@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/socket_base.hpp>
@@ -28,6 +29,7 @@ constexpr std::chrono::seconds kResponseTimeout{60};  ///< for a peer to take a 
 constexpr long kClosingHandshakeTimeout = 5000;       // [ms]
 /// Sockets beyond the WebSockets: HTTP requests, upgrades under way, connections refused or ending.
 constexpr std::size_t kMaxOtherSockets = 256;
+constexpr std::size_t kMaxOtherSocketsPerAddress = 64;
 
 constexpr std::uint16_t kGoingAway = 1001;
 constexpr std::uint16_t kInternalError = 1011;
@@ -57,6 +59,21 @@ boost::system::error_code try_to_listen(boost::asio::io_context& io,
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
   return error;
+}
+
+/// See Connection::address(). Empty where the peer has gone already.
+std::string address_of(const tcp::socket& socket) {
+  boost::system::error_code error;
+  const auto address = socket.remote_endpoint(error).address();
+  if (error) return {};
+  if (address.is_v4()) return address.to_string();
+  auto bytes = address.to_v6().to_bytes();
+  if (address.to_v6().is_v4_mapped()) {
+    return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, address.to_v6())
+        .to_string();
+  }
+  std::fill(bytes.begin() + bytes.size() / 2, bytes.end(), std::uint8_t{0});
+  return boost::asio::ip::make_address_v6(bytes).to_string() + "/64";
 }
 
 /// The library keeps the reason to itself, so the same is tried without it.
@@ -193,8 +210,18 @@ void WsEndpoint::accepted(WsStream& stream) {
   stream.socket_slot = std::shared_ptr<void>(
       nullptr, [counter = shared_.socket_count](std::nullptr_t) { --*counter; });
   boost::system::error_code ignored;  // a socket that is closed already is found by the first read
+  stream.address = address_of(stream.get_raw_socket());
+  const char* passed = nullptr;
   if (count > shared_.settings.max_connections + kMaxOtherSockets) {
+    passed = "connections";
+  } else {
+    stream.address_slot = shared_.sockets_by_address.take(
+        stream.address, shared_.settings.max_connections_per_address + kMaxOtherSocketsPerAddress);
+    if (!stream.address_slot) passed = "connections_per_address";
+  }
+  if (passed != nullptr) {
     stream.get_raw_socket().close(ignored);
+    count_refusal(passed);
     return;
   }
   stream.get_raw_socket().set_option(tcp::no_delay(true), ignored);
@@ -220,12 +247,20 @@ bool WsEndpoint::validate(WsStream& stream) {
 
 void WsEndpoint::opened(const StreamPtr& stream) {
   if (stopping_) return close_stream(*stream, kGoingAway, "the server is stopping");
+  stream->peer_slot =
+      shared_.open_by_address.take(stream->address, shared_.settings.max_connections_per_address);
+  if (!stream->peer_slot) {
+    count_refusal("connections_per_address");
+    return close_stream(*stream, kTryAgainLater, "too many connections from this address");
+  }
   if (++shared_.open_count > shared_.settings.max_connections) {
     --shared_.open_count;
+    stream->peer_slot.reset();
+    count_refusal("connections");
     return close_stream(*stream, kTryAgainLater, "too many connections");
   }
   stream->id = ++shared_.last_id;
-  stream->peer = std::make_shared<WsConnection>(stream->id, lane_, stream);
+  stream->peer = std::make_shared<WsConnection>(stream->id, stream->address, lane_, stream);
   open_.emplace(stream->id, stream);
   shared_.connections.opened(stream->peer);
 }
@@ -254,12 +289,18 @@ void WsEndpoint::answer_ping(WsStream& stream, const std::string& payload) {
 void WsEndpoint::closed(WsStream& stream) {
   if (stream.id == 0) return;
   const ConnectionId id = std::exchange(stream.id, 0);
+  stream.peer_slot.reset();
+  if (shared_.settings.count_close) shared_.settings.count_close(stream.get_local_close_code());
   stream.peer->set_gone();
   stream.peer.reset();
   open_.erase(id);
   --shared_.open_count;
   if (stopping_ && open_.empty()) io_.stop();
   shared_.connections.closed(id);
+}
+
+void WsEndpoint::count_refusal(std::string_view limit) const {
+  if (shared_.settings.count_refusal) shared_.settings.count_refusal(limit);
 }
 
 void WsEndpoint::answer_http(const StreamPtr& stream) {

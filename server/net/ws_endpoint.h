@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "server/net/address_counts.h"
 #include "server/net/transport.h"
 #include "server/net/ws_lane.h"
 #include "server/net/ws_server.h"
@@ -29,6 +31,8 @@ struct WsShared {
   const HttpHandler http;
   std::atomic<ConnectionId> last_id = 0;
   std::atomic<std::size_t> open_count = 0;  ///< WebSockets
+  AddressCounts open_by_address;
+  AddressCounts sockets_by_address;
   /// All sockets; shared with the streams, which may outlive the transport.
   const std::shared_ptr<std::atomic<std::size_t>> socket_count =
       std::make_shared<std::atomic<std::size_t>>(0);
@@ -66,6 +70,7 @@ class WsEndpoint {
   void forget_all();
 
   void accepted(WsStream& stream);
+  void count_refusal(std::string_view limit) const;
   bool validate(WsStream& stream);
   void opened(const StreamPtr& stream);
   void received(WsStream& stream, const WsMessage& message);

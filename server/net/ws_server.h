@@ -3,6 +3,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <memory>
 #include <optional>
+#include <string>
 #include <websocketpp/concurrency/none.hpp>
 #include <websocketpp/config/asio_no_tls.hpp>
 #include <websocketpp/logger/stub.hpp>
@@ -20,7 +21,10 @@ class WsConnection;
 struct WsPeer {
   ConnectionId id = 0;  ///< 0: not a WebSocket that the handler knows of
   std::shared_ptr<WsConnection> peer;
-  std::shared_ptr<void> socket_slot;  ///< counts the open sockets
+  std::shared_ptr<void> socket_slot;   ///< counts the open sockets
+  std::string address;                 ///< see Connection::address()
+  std::shared_ptr<void> address_slot;  ///< counts the address's sockets
+  std::shared_ptr<void> peer_slot;     ///< counts its WebSockets
   std::weak_ptr<void> unsent_pong;
   std::optional<boost::asio::steady_timer> response_deadline;
   int unanswered_pings = 0;

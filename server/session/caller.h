@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/server_metrics.h"
 #include "server/session/client_outbox.h"
 #include "server/session/rpc_message.h"
 
@@ -15,15 +16,18 @@ namespace vat {
 class Caller {
  public:
   /// Without an id nothing is sent: a notification.
-  Caller(std::shared_ptr<ClientOutbox> client, std::optional<Json> id)
-      : client_(std::move(client)), id_(std::move(id)) {}
+  Caller(std::shared_ptr<ClientOutbox> client, std::optional<Json> id,
+         ServerMetrics* metrics = nullptr)
+      : client_(std::move(client)), id_(std::move(id)), metrics_(metrics) {}
   Caller(Caller&& other) noexcept
       : client_(std::move(other.client_)),
         id_(std::move(other.id_)),
+        metrics_(other.metrics_),
         counted_bytes_(std::exchange(other.counted_bytes_, std::nullopt)) {}
   Caller& operator=(Caller&& other) noexcept {
     std::swap(client_, other.client_);
     std::swap(id_, other.id_);
+    std::swap(metrics_, other.metrics_);
     std::swap(counted_bytes_, other.counted_bytes_);
     return *this;
   }
@@ -46,17 +50,24 @@ class Caller {
   bool wants_answer() const { return id_.has_value(); }
 
   void answer(const RpcResult& result) {
+    if (metrics_ != nullptr) count_refusal(result);
     uncount();  // first: the client may send the next command as soon as it has the answer
     if (id_) client_->send(write_reply(*id_, result));
   }
 
  private:
+  void count_refusal(const RpcResult& result) {
+    const auto* error = std::get_if<RpcError>(&result);
+    if (error == nullptr || error->kind != ErrorKind::limit_reached) return;
+    metrics_->add_refusal(error->data.at("limit").get_ref<const std::string&>());
+  }
   void uncount() {
     if (counted_bytes_) client_->end_command(*std::exchange(counted_bytes_, std::nullopt));
   }
 
   std::shared_ptr<ClientOutbox> client_;
   std::optional<Json> id_;
+  ServerMetrics* metrics_;  // null: what is refused is not counted
   std::optional<std::size_t> counted_bytes_;
 };
 

@@ -8,8 +8,10 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "server/admission/message_meter.h"
 #include "server/net/transport.h"
 #include "server/session/frame_window.h"
 #include "server/session/role.h"
@@ -71,6 +73,11 @@ class ClientOutbox {
   explicit ClientOutbox(std::shared_ptr<Connection> connection);
 
   ConnectionId id() const { return connection_->id(); }
+  const std::string& address() const { return connection_->address(); }
+  /// Counts what the client sends; used by the transport's thread of the connection only. Null
+  /// where nothing is counted.
+  MessageMeter* meter() const { return meter_.get(); }
+  void set_meter(std::unique_ptr<MessageMeter> meter) { meter_ = std::move(meter); }
   /// Ends the connection with a code of PROTOCOL.md; nothing is sent or read any more.
   void close(std::uint16_t code, std::string_view reason);
   bool is_closed();
@@ -114,6 +121,7 @@ class ClientOutbox {
   void close_as_too_slow(std::string_view reason);
 
   const std::shared_ptr<Connection> connection_;
+  std::unique_ptr<MessageMeter> meter_;
   std::mutex mutex_;
   ControlQueue queue_;
   bool closed_ = false;

@@ -31,6 +31,8 @@ constexpr ErrorRow kRows[] = {
     {ErrorKind::not_authenticated, 1007, "not_authenticated",
      "Show a token that is good now by access.enter, or ask for a new one."},
     {ErrorKind::busy, 1008, "busy", "Wait until data.holder lets go, or take another body."},
+    {ErrorKind::rate_limited, 1009, "rate_limited",
+     "Send less often; try again after data.retry_after seconds."},
     {ErrorKind::storage_failed, 1010, "storage_failed",
      "Nothing was changed; free space on the server's disk, or ask who runs it, and try again."},
     {ErrorKind::not_recovered, 1011, "not_recovered",

@@ -21,6 +21,7 @@ enum class ErrorKind : std::uint8_t {
   not_allowed,
   not_authenticated,
   busy,
+  rate_limited,
   storage_failed,
   not_recovered
 };

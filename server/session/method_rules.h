@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@ enum class MessageClass : std::uint8_t {
   pointer,  ///< follows a pointer; the newest counts
   scene     ///< carries a scene or a body, and may be long
 };
+inline constexpr std::size_t kMessageClasses = 4;
 const char* to_string(MessageClass message_class);
 
 /// What holds for a method whatever its parameters are: who may call it, what it counts as, and

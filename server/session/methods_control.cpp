@@ -14,6 +14,9 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
   auto simulation = make_simulation(std::get<Scene>(scene), environment,
                                     core.run().simulation().instruction_set());
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+  if (const auto excess = core.run().admit(std::get<Simulation>(simulation))) {
+    return limit_reached(*excess);
+  }
   core.load(std::get<Simulation>(std::move(simulation)));
   return Json::object();
 }

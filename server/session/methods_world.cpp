@@ -25,6 +25,10 @@ ActionResult add_body(SessionCore& core, const Json& value) {
     simulation.restore(before);
     return *std::move(excess);
   }
+  if (const auto excess = core.run().admit_change()) {
+    simulation.restore(before);
+    return limit_reached(*excess);
+  }
   core.bodies_changed();
   return Json{{"body", id.value()}};
 }
@@ -40,6 +44,7 @@ SessionAction read_remove_body(ObjectReader& params, Errors&) {
   return [body](SessionCore& core, Participant&) -> ActionResult {
     const Status removed = core.run().simulation().remove_body(body);
     if (!removed) return refused(removed.errors());
+    core.run().admit_change();  // less
     core.participants().forget_grabs_of(body);
     core.bodies_changed();
     return Json::object();

@@ -119,6 +119,13 @@ RpcError not_recovered(std::string_view session, std::string_view state) {
           {{"state", state}}};
 }
 
+RpcError rate_limited(std::string_view limit, double maximum, double retry_after) {
+  const Json number(maximum);
+  return {ErrorKind::rate_limited,
+          "at most " + number.dump() + " " + std::string(limit),
+          {{"limit", limit}, {"maximum", number}, {"retry_after", retry_after}}};
+}
+
 RpcError refused(const Errors& errors) {
   VAT_CHECK(!errors.empty());
   const Error& first = errors.front();

@@ -51,6 +51,8 @@ RpcError held_by_other(std::uint64_t participant, const std::string& name);
 RpcError storage_failed(StorageError::Kind reason);
 /// `state` is "recovering" or "lost".
 RpcError not_recovered(std::string_view session, std::string_view state);
+/// `limit` is the name in server.info's `limits`, `maximum` its value, `retry_after` in seconds.
+RpcError rate_limited(std::string_view limit, double maximum, double retry_after);
 /// What the core refused: its no_such_body has an error of its own, all else is invalid_params.
 RpcError refused(const Errors& errors);
 

@@ -32,10 +32,21 @@ std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalog
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits) {
   const std::size_t particles = simulation.greatest_particle_count();
   if (particles > limits.max_particles) return limit_reached("particles", limits.max_particles);
+  if (simulation.spring_count() > limits.max_springs) {
+    return limit_reached("springs", limits.max_springs);
+  }
   if (particles * simulation.steps_per_tick() > limits.max_particle_steps_per_tick) {
     return limit_reached("particle_steps_per_tick", limits.max_particle_steps_per_tick);
   }
   return {};
+}
+
+Resources resources_of(const Simulation& simulation) {
+  return {simulation.greatest_particle_count(), simulation.spring_count()};
+}
+
+RpcError limit_reached(const ResourceExcess& excess) {
+  return limit_reached(excess.limit, excess.maximum);
 }
 
 std::variant<Simulation, RpcError> make_simulation(const Scene& scene,

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/simulation.h"
+#include "server/admission/resource_budget.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"
 
@@ -22,7 +23,12 @@ std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalog
 /// What a simulation has more of than one session may, if anything.
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits);
 
-/// A simulation within the limits; errors point into the parameter `scene`.
+/// What it takes of the budget of all sessions; what its emitters may add included.
+Resources resources_of(const Simulation& simulation);
+/// The error that tells of the excess.
+RpcError limit_reached(const ResourceExcess& excess);
+
+/// A simulation within the limits of one session; errors point into the parameter `scene`.
 std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
                                                    const SessionEnvironment& environment,
                                                    InstructionSet instructions);

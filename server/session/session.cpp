@@ -24,10 +24,12 @@ double seconds(SteadyClock::duration time) {
 }  // namespace
 
 Session::Session(std::string id, SessionSettings settings, Simulation simulation,
-                 const SessionEnvironment& environment, boost::asio::thread_pool& pool)
+                 ResourceShare share, const SessionEnvironment& environment,
+                 boost::asio::thread_pool& pool)
     : id_(id),
       strand_(boost::asio::make_strand(pool.get_executor())),
-      core_(std::move(id), std::move(settings), std::move(simulation), environment),
+      core_(std::move(id), std::move(settings), std::move(simulation), std::move(share),
+            environment),
       tick_timer_(strand_),
       status_timer_(strand_),
       presence_timer_(strand_) {
@@ -38,6 +40,7 @@ void Session::recover(SessionRecovery& recovery, Storage& storage,
                       const SessionEnvironment& environment) {
   recovery.finish(core_);
   core_.set_environment(environment);
+  core_.run().move_share(environment.resources);
   const std::uint64_t number = recovery.stored().number;
   core_.keep_in(std::make_unique<SessionLog>(
       storage, number,
@@ -117,6 +120,7 @@ void Session::end_turn() {
   if (!tick_is_coming()) carry_out_pointers();
   core_.announce();
   follow_presence();
+  note_emptiness(SteadyClock::now());
   follow_clock();
   update_summary();
   keep_moment();
@@ -140,6 +144,8 @@ void Session::end_log(End end) {
 
 void Session::update_summary() {
   SessionSummary summary = core_.summary();
+  summary.hibernating = hibernating_ && summary.playing;
+  summary.empty_since = empty_since_;
   const std::lock_guard lock(mutex_);
   summary_ = std::move(summary);
 }
@@ -351,9 +357,21 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
                 seconds(now - due));
 }
 
+void Session::note_emptiness(SteadyClock::time_point now) {
+  if (!core_.is_empty()) {
+    empty_since_.reset();
+  } else if (!empty_since_) {
+    empty_since_ = now;
+  }
+  const auto after = core_.environment().limits.hibernate_after;
+  const bool hibernates = empty_since_ && after.count() > 0 && now - *empty_since_ >= after;
+  if (std::exchange(hibernating_, hibernates) && !hibernates) core_.forget_rate();
+}
+
 void Session::follow_clock() {
-  const auto wanted = core_.playing() ? tick_period(core_.run().tick_seconds(), core_.speed())
-                                      : SteadyClock::duration::zero();
+  const auto wanted = core_.playing() && !hibernating_
+                          ? tick_period(core_.run().tick_seconds(), core_.speed())
+                          : SteadyClock::duration::zero();
   if (wanted == period_) return;
   period_ = wanted;
   if (period_ == SteadyClock::duration::zero()) {
@@ -428,6 +446,7 @@ void Session::close_turn() {
     for (Caller& pointer_caller : newest.callers) pointer_caller.answer(no_such_session(id_));
   }
   for (Item& item : items) item.caller.answer(no_such_session(id_));
+  core_.run().end();
   if (closer) closer->answer(Json{{"tick", core_.run().tick()}});
 }
 

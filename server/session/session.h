@@ -32,7 +32,7 @@ namespace vat {
 /// all else of a session is used on its strand alone.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(std::string id, SessionSettings settings, Simulation simulation,
+  Session(std::string id, SessionSettings settings, Simulation simulation, ResourceShare share,
           const SessionEnvironment& environment, boost::asio::thread_pool& pool);
 
   /// Before start(): it is kept from now on.
@@ -110,6 +110,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   void tick_turn();
   void run_tick(SteadyClock::time_point now, bool timed);
+  void note_emptiness(SteadyClock::time_point now);
   void follow_clock();
   void wait_for_tick();
   void status_turn();
@@ -136,6 +137,8 @@ class Session : public std::enable_shared_from_this<Session> {
   // Used on the strand only.
   SessionCore core_;
   TickClock clock_;
+  std::optional<SteadyClock::time_point> empty_since_;
+  bool hibernating_ = false;
   SteadyClock::duration period_{};  // of the clock; zero: it stands still
   boost::asio::steady_timer tick_timer_;
   boost::asio::steady_timer status_timer_;

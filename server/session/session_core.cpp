@@ -22,10 +22,17 @@ double wall_clock() {
 
 SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
                          const SessionEnvironment& environment)
+    : SessionCore(std::move(id), std::move(settings), std::move(simulation),
+                  environment.resources.take_anyway({}), environment) {
+  run_.resize_share_anyway();
+}
+
+SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
+                         ResourceShare share, const SessionEnvironment& environment)
     : id_(std::move(id)),
       settings_(std::move(settings)),
       environment_(&environment),
-      run_(std::move(simulation), environment.metrics),
+      run_(std::move(simulation), std::move(share), environment.metrics),
       frames_(std::make_shared<FrameFeed>(id_, run_.simulation().scene().vat, environment.metrics,
                                           environment.frame_threads)) {
   frames_->set_default_error(default_max_error(run_.simulation()));
@@ -199,8 +206,15 @@ Json SessionCore::description() const {
 }
 
 SessionSummary SessionCore::summary() const {
-  return {settings_.name, run_.simulation().scene().name,     participants_.connected(), playing_,
-          run_.tick(),    run_.simulation().particle_count(), settings_.creator};
+  return {settings_.name,
+          run_.simulation().scene().name,
+          participants_.connected(),
+          playing_,
+          run_.tick(),
+          run_.simulation().particle_count(),
+          settings_.creator,
+          false,
+          {}};
 }
 
 }  // namespace vat

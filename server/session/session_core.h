@@ -31,6 +31,8 @@ struct SessionSummary {
   std::uint64_t tick = 0;
   std::size_t particles = 0;
   ConnectionId creator = 0;  ///< who is its owner once it joins; 0: nobody
+  bool hibernating = false;  ///< plays, but nobody is in it
+  std::optional<SteadyClock::time_point> empty_since;  ///< where nobody is in it, or away
 };
 
 /// Who asks to take part.
@@ -78,6 +80,10 @@ struct SessionCommand {
 /// many commands at once make one description, one status and one frame.
 class SessionCore {
  public:
+  SessionCore(std::string id, SessionSettings settings, Simulation simulation, ResourceShare share,
+              const SessionEnvironment& environment);
+
+  /// The same with what it needs of the environment's budget, also beyond its limits.
   SessionCore(std::string id, SessionSettings settings, Simulation simulation,
               const SessionEnvironment& environment);
 
@@ -88,6 +94,7 @@ class SessionCore {
   const SessionRun& run() const { return run_; }
   Participants& participants() { return participants_; }
 
+  bool is_empty() const { return participants_.connected() == 0 && participants_.away() == 0; }
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
   void set_playing(bool playing);
@@ -181,6 +188,8 @@ class SessionCore {
   /// The rate is measured where `timed`: ticks of control.step keep no pace.
   bool tick(SteadyClock::time_point now, bool timed);
   void publish_tick();
+  /// The rate is measured anew: the clock has stood still.
+  void forget_rate() { rate_ = {}; }
   /// Tells what is due.
   void announce();
   void announce_status();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <chrono>
 #include <exception>
 #include <limits>
 #include <thread>
@@ -13,6 +14,9 @@
 namespace vat {
 namespace {
 
+constexpr std::chrono::milliseconds kShortestExpiryCheck(50);
+constexpr std::chrono::milliseconds kLongestExpiryCheck(60'000);
+
 // Two at least: the system then shares even a single core between a long tick and a short one.
 std::size_t thread_count(std::size_t wanted) {
   if (wanted > 0) return wanted;
@@ -20,8 +24,8 @@ std::size_t thread_count(std::size_t wanted) {
 }
 
 ServerLimits without_scene_limits(ServerLimits limits) {
-  limits.max_particles = limits.max_particle_steps_per_tick = limits.max_grabs_per_client =
-      std::numeric_limits<std::size_t>::max();
+  limits.max_springs = limits.max_particles = limits.max_particle_steps_per_tick =
+      limits.max_grabs_per_client = std::numeric_limits<std::size_t>::max();
   return limits;
 }
 
@@ -41,18 +45,24 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
       settings_(std::move(settings)),
       runner_(thread_count(settings_.threads)),
       tokens_(settings_.limits.max_tokens),
+      resources_({settings_.limits.max_particles_in_all, settings_.limits.max_springs_in_all}),
       frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
-      environment_{catalogue_, settings_.limits, settings_.instructions,
-                   runner_,    metrics_,         frame_threads_,
-                   tokens_,    &downloads_},
+      environment_{catalogue_,     settings_.limits, settings_.instructions,
+                   runner_,        metrics_,         resources_,
+                   frame_threads_, tokens_,          &downloads_},
       no_limits_(without_scene_limits(settings_.limits)),
-      past_environment_{catalogue_, no_limits_, settings_.instructions,
-                        runner_,    metrics_,   frame_threads_,
-                        tokens_,    &downloads_},
+      past_resources_(kUnlimitedResources),
+      past_environment_{catalogue_,     no_limits_, settings_.instructions,
+                        runner_,        metrics_,   past_resources_,
+                        frame_threads_, tokens_,    &downloads_},
       storage_(open_storage(settings_)),
       pool_(runner_.thread_count()),
       later_(std::make_shared<Later>(pool_)),
-      creations_(boost::asio::make_strand(pool_)) {}
+      creations_(boost::asio::make_strand(pool_)),
+      expiry_timer_(pool_) {
+  const std::lock_guard lock(mutex_);
+  wait_for_expiry();
+}
 
 SessionDirectory::~SessionDirectory() {
   stop();
@@ -64,6 +74,7 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   const ConnectionId id = connection->id();
   Client& client = clients_[id];
   client.outbox = std::make_shared<ClientOutbox>(std::move(connection));
+  client.outbox->set_meter(std::make_unique<MessageMeter>(settings_.limits, SteadyClock::now()));
   if (settings_.access.mode == AccessMode::open) {
     client.access.role = Role::controller;
   } else {
@@ -106,10 +117,12 @@ Role SessionDirectory::default_role() const {
 }
 
 std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene,
-                                                           ConnectionId creator) {
+                                                           SessionCreator creator) {
   if (auto error = refuse_session()) return *std::move(error);
   auto simulation = make_simulation(scene, environment_, environment_.instructions);
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+  auto share = resources_.take(resources_of(std::get<Simulation>(simulation)));
+  if (const auto* excess = std::get_if<ResourceExcess>(&share)) return limit_reached(*excess);
   std::optional<std::uint64_t> stored;
   try {
     stored = store(name, scene);
@@ -125,12 +138,14 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   }
   const Sessions::key_type number = stored ? *stored : ++last_session_;
   const auto session = std::make_shared<Session>(
-      to_id(number), SessionSettings{std::move(name), default_role(), false, creator},
-      std::get<Simulation>(std::move(simulation)), environment_, pool_);
+      to_id(number), SessionSettings{std::move(name), default_role(), false, creator.connection},
+      std::get<Simulation>(std::move(simulation)), std::get<ResourceShare>(std::move(share)),
+      environment_, pool_);
   if (stored) {
     session->keep_in(std::make_unique<SessionLog>(*storage_, number, SessionLog::Place{1, 0}));
   }
   sessions_.emplace(number, session);
+  places_.emplace(number, std::move(creator.place));
   session->start();
   spdlog::info("session {} created: {}", to_id(number), scene.name);
   return to_id(number);
@@ -140,16 +155,20 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
                                                        Json scene) {
   const std::lock_guard lock(mutex_);
   if (auto error = refuse_session_locked()) return error;
-  const ConnectionId creator = caller.client()->id();
   const Client* client = find_caller(caller);
   if (client != nullptr && !client->access.session.empty()) {
     return not_allowed("the token is for session " + client->access.session + " only");
   }
-  boost::asio::post(creations_, [this, creator, caller = std::move(caller), name = std::move(name),
-                                 scene = std::move(scene)]() mutable {
+  // From here on, so that those that wait for their turn are counted too.
+  const std::size_t most = settings_.limits.max_sessions_per_address;
+  SessionCreator creator{caller.client()->id(),
+                         sessions_by_address_.take(caller.client()->address(), most)};
+  if (creator.place == nullptr) return limit_reached("sessions_per_address", most);
+  boost::asio::post(creations_, [this, creator = std::move(creator), caller = std::move(caller),
+                                 name = std::move(name), scene = std::move(scene)]() mutable {
     const ThreadPoolRunner::Guest guest(runner_);
     try {
-      caller.answer(create_from(scene, std::move(name), creator));
+      caller.answer(create_from(scene, std::move(name), std::move(creator)));
     } catch (const std::exception& error) {
       spdlog::error("session.create failed: {}", error.what());
       caller.answer(internal_error());
@@ -158,11 +177,12 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
   return {};
 }
 
-RpcResult SessionDirectory::create_from(const Json& scene, std::string name, ConnectionId creator) {
+RpcResult SessionDirectory::create_from(const Json& scene, std::string name,
+                                        SessionCreator creator) {
   if (auto error = refuse_session()) return *std::move(error);  // others were before it
   auto read = read_client_scene(scene, catalogue_);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
-  auto created = create(std::move(name), std::get<Scene>(read), creator);
+  auto created = create(std::move(name), std::get<Scene>(read), std::move(creator));
   if (auto* error = std::get_if<RpcError>(&created)) return std::move(*error);
   return Json{{"session", std::get<SessionId>(created)}, {"tick", 0}};
 }
@@ -265,7 +285,9 @@ std::string SessionDirectory::metrics() const {
     present.connections = clients_.size();
     for (const auto& [number, session] : sessions_) {
       const SessionSummary summary = session->summary();
-      ++(summary.playing ? present.playing_sessions : present.paused_sessions);
+      ++(summary.hibernating ? present.hibernating_sessions
+         : summary.playing   ? present.playing_sessions
+                             : present.paused_sessions);
       present.clients += client_count(number);
       present.particles += summary.particles;
     }
@@ -290,6 +312,7 @@ void SessionDirectory::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
+    expiry_timer_.cancel();
     while (!sessions_.empty()) {
       close_session(sessions_.begin(), Session::End::may_come_back, "the server stops", {});
     }
@@ -299,6 +322,31 @@ void SessionDirectory::stop() {
   pool_.join();
   frame_threads_.join();
   if (storage_) storage_->flush();
+}
+
+void SessionDirectory::wait_for_expiry() {
+  const std::chrono::milliseconds after = settings_.limits.expire_after;
+  if (after.count() == 0) return;
+  expiry_timer_.expires_after(std::clamp(after / 4, kShortestExpiryCheck, kLongestExpiryCheck));
+  expiry_timer_.async_wait([this](const boost::system::error_code& failure) {
+    if (!failure) end_expired();
+  });
+}
+
+void SessionDirectory::end_expired() {
+  const std::lock_guard lock(mutex_);
+  if (stopped_) return;
+  const auto now = SteadyClock::now();
+  const std::chrono::milliseconds after = settings_.limits.expire_after;
+  for (auto next = sessions_.begin(); next != sessions_.end();) {
+    const auto session = next++;
+    if (session == sessions_.begin() || client_count(session->first) > 0) continue;
+    const auto empty_since = session->second->summary().empty_since;
+    if (empty_since && now - *empty_since >= after) {
+      close_session(session, Session::End::closed, "nobody was in it for too long", {});
+    }
+  }
+  wait_for_expiry();
 }
 
 SessionDirectory::Sessions::iterator SessionDirectory::find_session(const SessionId& id) {
@@ -330,6 +378,7 @@ void SessionDirectory::close_session(Sessions::iterator session, Session::End en
   }
   session->second->close(end, std::move(caller));
   tokens_.remove_session(id);
+  places_.erase(session->first);
   sessions_.erase(session);
   spdlog::info("session {} closed: {}", id, reason);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
@@ -17,6 +18,7 @@
 
 #include "server/access/access.h"
 #include "server/http/downloads.h"
+#include "server/net/address_counts.h"
 #include "server/session/later.h"
 #include "server/session/session.h"
 #include "server/session/session_server.h"
@@ -25,6 +27,12 @@ namespace vat {
 
 /// The id of the session with this number.
 SessionId to_id(std::uint64_t number);
+
+/// Who has a session made.
+struct SessionCreator {
+  ConnectionId connection = 0;  ///< who is its owner once it joins; 0: nobody is
+  AddressCounts::Place place;   ///< among the sessions of its address; null: the server's own
+};
 
 /// The sessions, the clients and who is in which; owns the threads. Safe to use from any thread.
 class SessionDirectory {
@@ -56,9 +64,8 @@ class SessionDirectory {
   /// Whether none is under way to come back.
   bool is_ready() const;
 
-  /// `creator` is its owner once it joins; 0: nobody is.
   std::variant<SessionId, RpcError> create(std::string name, const Scene& scene,
-                                           ConnectionId creator);
+                                           SessionCreator creator);
   /// Reads the scene and creates the session on a thread of the pool, one at a time, and answers
   /// there; or gives the error at once.
   std::optional<RpcError> create_later(Caller& caller, std::string name, Json scene);
@@ -81,6 +88,7 @@ class SessionDirectory {
   /// The tick of the session that the caller is in, as of its last answer or turn; none outside.
   std::optional<std::uint64_t> tick_of(const Caller& caller) const;
 
+  ServerMetrics& counters() { return metrics_; }
   /// What Prometheus is told.
   std::string metrics() const;
 
@@ -122,16 +130,18 @@ class SessionDirectory {
   void end_recovery(const StoredSession& stored, std::shared_ptr<Session> session);
   /// Of who joins a session without an invitation, unless its owner says otherwise.
   Role default_role() const;
-  RpcResult create_from(const Json& scene, std::string name, ConnectionId creator);
+  RpcResult create_from(const Json& scene, std::string name, SessionCreator creator);
   /// Why there can be no further session, if so.
   std::optional<RpcError> refuse_session() const;
 
   /// The token's, if it is good.
   std::optional<Grant> find_grant(std::string_view token);
   void close_unless_entered(ConnectionId id);
+  void end_expired();
   void undo_join(ConnectionId id, Sessions::key_type session);
 
   // With the mutex held.
+  void wait_for_expiry();
   const Client* find_caller(const Caller& caller) const;
   /// Why the caller may not call a method that names this session, if so.
   std::optional<RpcError> refuse_role(const Caller& caller, const MethodRules& rules,
@@ -157,11 +167,13 @@ class SessionDirectory {
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
   AccessTokens tokens_;
+  ResourceBudget resources_;
   boost::asio::thread_pool frame_threads_;
   Downloads downloads_;
   const SessionEnvironment environment_;
   // Of sessions that come back: what was within the limits once is let in again.
   const ServerLimits no_limits_;
+  ResourceBudget past_resources_;
   const SessionEnvironment past_environment_;
   const std::unique_ptr<Storage> storage_;  // null: sessions are in memory alone
   boost::asio::thread_pool pool_;
@@ -172,6 +184,9 @@ class SessionDirectory {
   mutable std::mutex mutex_;
   std::map<ConnectionId, Client> clients_;
   Sessions sessions_;
+  AddressCounts sessions_by_address_;
+  std::map<Sessions::key_type, AddressCounts::Place> places_;  // of the sessions' creators
+  boost::asio::steady_timer expiry_timer_;
   std::map<Sessions::key_type, Absent> absent_;
   Sessions::key_type last_session_ = 0;  // of those in memory alone
   bool draining_ = false;

@@ -60,9 +60,11 @@ void SessionDirectory::recover_session(const StoredSession& stored) {
 std::shared_ptr<Session> SessionDirectory::make_recovered(const StoredSession& stored) {
   const auto begin = SteadyClock::now();
   SessionRecovery recovery(*storage_, stored, past_environment_, stopped_);
+  Simulation simulation = recovery.begin();
+  ResourceShare share = past_resources_.take_anyway(resources_of(simulation));
   auto session =
       std::make_shared<Session>(to_id(stored.number), read_settings(stored.name, stored.settings),
-                                recovery.begin(), past_environment_, pool_);
+                                std::move(simulation), std::move(share), past_environment_, pool_);
   session->recover(recovery, *storage_, environment_);
   const std::chrono::duration<double> time = SteadyClock::now() - begin;
   spdlog::info("session {} is back at tick {}, in {:.2f} s", to_id(stored.number),

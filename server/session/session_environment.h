@@ -5,6 +5,7 @@
 #include "core/support/instruction_set.h"
 #include "protocol/scene_json.h"
 #include "server/access/access.h"
+#include "server/admission/resource_budget.h"
 #include "server/limits.h"
 #include "server/server_metrics.h"
 #include "server/task_runner.h"
@@ -20,6 +21,7 @@ struct SessionEnvironment {
   InstructionSet instructions;
   ThreadPoolRunner& runner;  ///< for the blocks of all sessions' steps
   ServerMetrics& metrics;
+  ResourceBudget& resources;
   boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send all sessions' frames
   AccessTokens& tokens;
   Downloads* downloads = nullptr;  ///< null: nobody fetches files

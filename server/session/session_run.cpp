@@ -1,24 +1,47 @@
 #include "server/session/session_run.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "server/session/scene_loading.h"
 
 namespace vat {
 
-SessionRun::SessionRun(Simulation simulation, ServerMetrics& metrics)
-    : metrics_(metrics), simulation_(std::move(simulation)), as_loaded_(simulation_.snapshot()) {}
+SessionRun::SessionRun(Simulation simulation, ResourceShare share, ServerMetrics& metrics)
+    : metrics_(metrics),
+      simulation_(std::move(simulation)),
+      as_loaded_(simulation_.snapshot()),
+      needed_as_loaded_(resources_of(simulation_)),
+      share_(std::move(share)) {}
+
+std::optional<ResourceExcess> SessionRun::admit(const Simulation& next) {
+  return share_.resize(resources_of(next));
+}
+
+std::optional<ResourceExcess> SessionRun::admit_change() {
+  const Resources now = resources_of(simulation_);
+  return share_.resize({std::max(now.particles, needed_as_loaded_.particles),
+                        std::max(now.springs, needed_as_loaded_.springs)});
+}
 
 void SessionRun::resume(Simulation simulation, Snapshot as_loaded, std::uint64_t position,
                         std::uint64_t tick, std::uint32_t epoch) {
   simulation_ = std::move(simulation);
   as_loaded_ = std::move(as_loaded);
+  needed_as_loaded_ = resources_of(simulation_);
   position_ = position;
   tick_ = tick;
   epoch_ = epoch;
 }
 
+void SessionRun::resize_share_anyway() {
+  share_.resize_anyway(resources_of(simulation_));
+}
+
 void SessionRun::load(Simulation simulation) {
   simulation_ = std::move(simulation);
   as_loaded_ = simulation_.snapshot();
+  needed_as_loaded_ = resources_of(simulation_);
   profile_ = {};
   tick_ = 0;
   ++epoch_;
@@ -26,6 +49,7 @@ void SessionRun::load(Simulation simulation) {
 
 void SessionRun::reset() {
   simulation_.restore(as_loaded_);
+  share_.resize_anyway(needed_as_loaded_);
   tick_ = 0;
   ++epoch_;
 }

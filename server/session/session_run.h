@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/simulation.h"
+#include "server/admission/resource_budget.h"
 #include "server/server_metrics.h"
 #include "server/session/tick_profile.h"
 
@@ -11,11 +13,23 @@ namespace vat {
 /// A session's simulation, counted in ticks, and the scene as it was loaded.
 class SessionRun {
  public:
-  SessionRun(Simulation simulation, ServerMetrics& metrics);
+  /// `share` is what it has of the budget of all sessions.
+  SessionRun(Simulation simulation, ResourceShare share, ServerMetrics& metrics);
 
   /// Goes on from elsewhere in the history of a session. `as_loaded` is what it resets to.
   void resume(Simulation simulation, Snapshot as_loaded, std::uint64_t position, std::uint64_t tick,
               std::uint32_t epoch);
+  /// Takes what another simulation needs in place of this one's. What would be too much, if so.
+  std::optional<ResourceExcess> admit(const Simulation& next);
+  /// Takes what this simulation needs now that it has changed. At least what it needed when it was
+  /// loaded, since it may go back to that.
+  std::optional<ResourceExcess> admit_change();
+  /// What it has is counted in another budget from now on, even beyond that one's limits.
+  void move_share(ResourceBudget& budget) { share_ = budget.take_anyway(share_.amount()); }
+  /// Takes what the simulation needs, even beyond the limits.
+  void resize_share_anyway();
+  /// Gives back what it has of the budget; nothing runs any more.
+  void end() { share_.resize({}); }
   /// Replaces the simulation; the ticks begin at 0, and a new epoch and profile.
   void load(Simulation simulation);
   /// Back to the scene as loaded, at tick 0 of a new epoch.
@@ -41,6 +55,8 @@ class SessionRun {
   ServerMetrics& metrics_;
   Simulation simulation_;
   Snapshot as_loaded_;
+  Resources needed_as_loaded_;
+  ResourceShare share_;
   TickProfile profile_;
   std::uint64_t tick_ = 0;
   std::uint64_t position_ = 0;

@@ -12,6 +12,7 @@ namespace vat {
 namespace {
 
 constexpr std::uint16_t kTooManyConnections = 1013;
+constexpr std::uint16_t kFlooding = 4009;
 
 Errors to_errors(const RpcError& error) {
   Errors errors;
@@ -40,12 +41,19 @@ class SessionServer::Impl {
     const std::shared_ptr<ClientOutbox>& client = sender.outbox;
     std::optional<Json> id;
     try {
+      const auto now = SteadyClock::now();
+      if (auto excess = client->meter()->count_bytes(message.size(), now)) {
+        return refuse(*client, id, *excess);
+      }
       auto request = read(message, sender.role, id);
+      if (auto excess = client->meter()->count(class_of(request), now)) {
+        return refuse(*client, id, *excess);
+      }
       if (auto* error = std::get_if<RpcError>(&request)) {
         client->send(write_reply(id.value_or(nullptr), std::move(*error)));
         return;
       }
-      Caller caller(client, id);
+      Caller caller(client, id, &directory_.counters());
       if (auto result =
               call(caller, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
         caller.answer(*std::move(result));
@@ -56,8 +64,36 @@ class SessionServer::Impl {
     }
   }
 
+  /// False where the message came too soon and is not answered.
+  bool count_binary(ClientOutbox& client, std::size_t bytes) {
+    const auto now = SteadyClock::now();
+    auto excess = client.meter()->count_bytes(bytes, now);
+    if (!excess) excess = client.meter()->count(MessageClass::query, now);
+    if (excess) refuse(client, {}, *excess);
+    return !excess;
+  }
+
+  void count_refusal(std::string_view limit) { directory_.counters().add_refusal(limit); }
+  void count_close(std::uint16_t code) { directory_.counters().add_close(code); }
+
  private:
   const ServerLimits& limits() const { return directory_.settings().limits; }
+
+  /// Of what is no request, or names no method: that of a question.
+  static MessageClass class_of(const std::variant<RpcRequest, RpcError>& request) {
+    const auto* good = std::get_if<RpcRequest>(&request);
+    const Method* method = good == nullptr ? nullptr : find_method(good->method);
+    return method == nullptr ? MessageClass::query : method->rules.message_class;
+  }
+
+  /// Answers what came too soon; who sends on regardless is closed.
+  void refuse(ClientOutbox& client, const std::optional<Json>& id, const RateExcess& excess) {
+    directory_.counters().add_rate_limited(excess.limit);
+    if (excess.is_flood) return client.close(kFlooding, "too many messages");
+    if (!id) return;  // a notification, or not read
+    const RpcError error = rate_limited(excess.limit, excess.maximum, excess.retry_after.count());
+    client.send(write_reply(*id, error));
+  }
 
   std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
                                           std::optional<Json>& id) const {
@@ -117,7 +153,7 @@ SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings
 SessionServer::~SessionServer() = default;
 
 Result<SessionId> SessionServer::create_session(std::string name, const Scene& scene) {
-  auto created = impl_->directory().create(std::move(name), scene, 0);
+  auto created = impl_->directory().create(std::move(name), scene, {});
   if (const auto* error = std::get_if<RpcError>(&created)) return to_errors(*error);
   return std::get<SessionId>(std::move(created));
 }
@@ -147,6 +183,14 @@ Downloads& SessionServer::downloads() {
   return impl_->directory().downloads();
 }
 
+void SessionServer::count_refusal(std::string_view limit) {
+  impl_->count_refusal(limit);
+}
+
+void SessionServer::count_close(std::uint16_t code) {
+  impl_->count_close(code);
+}
+
 void SessionServer::stop() {
   impl_->directory().stop();
 }
@@ -162,9 +206,9 @@ void SessionServer::text_received(ConnectionId id, std::string_view message) {
   if (sender.outbox != nullptr) impl_->receive(sender, message);
 }
 
-void SessionServer::binary_received(ConnectionId id, std::string_view) {
+void SessionServer::binary_received(ConnectionId id, std::string_view message) {
   const std::shared_ptr<ClientOutbox> client = impl_->directory().find_client(id).outbox;
-  if (client == nullptr) return;
+  if (client == nullptr || !impl_->count_binary(*client, message.size())) return;
   client->send(write_reply(nullptr, invalid_request("binary messages are for frames from here")));
 }
 

@@ -62,6 +62,10 @@ class SessionServer final : public ConnectionHandler {
   /// Files that were made for clients, who fetch them by HTTP.
   Downloads& downloads();
 
+  // Of the transport; see TransportSettings.
+  void count_refusal(std::string_view limit);
+  void count_close(std::uint16_t code);
+
   /// Ends all sessions, tells their clients by session.closed, and joins the threads; a tick that
   /// runs is ended first. Nothing that comes in later has an effect. What is kept in the data
   /// folder is whole then.

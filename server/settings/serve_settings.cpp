@@ -14,6 +14,10 @@ constexpr std::size_t kMaxEndpoints = 64;
 constexpr std::size_t kMostConnections = 100'000;
 constexpr std::size_t kMostSessions = 10'000;
 constexpr std::size_t kMostBytes = 1024 * 1024 * 1024;
+constexpr std::size_t kMostInAll = 1'000'000'000;
+constexpr double kMostPerSecond = 1e6;
+constexpr double kMostBytesPerSecond = 1e9;
+constexpr double kMostAway = 1e8;
 constexpr std::uint64_t kMostSeconds = 3600;
 
 std::string check_host(const std::string& host) {
@@ -64,6 +68,8 @@ std::vector<Setting> server_group(ServeSettings& s) {
                    check_instructions),
       word_setting("log_level", s.log_level, {"debug", "info", "warn", "error", "off"},
                    "What to log"),
+      word_setting("log_format", s.log_format, {"text", "json"},
+                   "Of the log on standard error; json: one object a line"),
   };
 }
 
@@ -83,6 +89,9 @@ std::vector<Setting> connection_limits(ServeSettings& s) {
   return {
       number_setting<std::size_t>("max_connections", limits.max_connections, 1, kMostConnections,
                                   "WebSockets at once; the next is closed"),
+      number_setting<std::size_t>("max_connections_per_address", limits.max_connections_per_address,
+                                  1, kMostConnections,
+                                  "The same from one address: behind a proxy all have its"),
       number_setting<std::size_t>("max_clients", limits.max_clients_per_session, 1,
                                   kMostConnections, "Clients of one session"),
       number_setting<std::size_t>("max_grabs", limits.max_grabs_per_client, 1, kMaxGrabs,
@@ -110,15 +119,48 @@ std::vector<Setting> connection_limits(ServeSettings& s) {
   };
 }
 
+std::vector<Setting> rate_limits(ServerLimits& limits) {
+  return {
+      number_setting("max_queries_per_second", limits.max_queries_per_second, 0.01, kMostPerSecond,
+                     "Questions, and acknowledgements of frames"),
+      number_setting("max_controls_per_second", limits.max_controls_per_second, 0.01,
+                     kMostPerSecond, "Commands of a few numbers"),
+      number_setting("max_pointer_moves_per_second", limits.max_pointer_moves_per_second, 0.01,
+                     kMostPerSecond, "Commands that follow a pointer"),
+      number_setting("max_scenes_per_second", limits.max_scenes_per_second, 0.01, kMostPerSecond,
+                     "Messages with a scene or a body"),
+      number_setting("max_message_bytes_per_second", limits.max_message_bytes_per_second, 1024,
+                     kMostBytesPerSecond, "Of all messages"),
+      number_setting("burst_seconds", limits.burst_seconds, 0.1, kMostSeconds,
+                     "So much of each may come at once"),
+      number_setting(
+          "max_refusals_per_second", limits.max_refusals_per_second, 0.01, kMostPerSecond,
+          "Messages that are refused for coming too soon; beyond, the connection is closed"),
+  };
+}
+
 std::vector<Setting> session_limits(ServerLimits& limits) {
   return {
       number_setting<std::size_t>("max_sessions", limits.max_sessions, 1, kMostSessions,
                                   "Sessions at once"),
+      number_setting<std::size_t>("max_sessions_per_address", limits.max_sessions_per_address, 1,
+                                  kMostSessions, "Of them, created by clients of one address"),
       number_setting<std::size_t>("max_particles", limits.max_particles, 1, kMaxParticles,
                                   "Particles of one session"),
+      number_setting<std::size_t>("max_springs", limits.max_springs, 1, kMaxSprings,
+                                  "Springs of one session"),
+      number_setting<std::size_t>("max_particles_in_all", limits.max_particles_in_all, 1,
+                                  kMostInAll, "Particles of all sessions"),
+      number_setting<std::size_t>("max_springs_in_all", limits.max_springs_in_all, 1, kMostInAll,
+                                  "Springs of all sessions"),
       number_setting<std::size_t>("max_particle_steps_per_tick", limits.max_particle_steps_per_tick,
                                   1, 1'000'000'000,
                                   "Particles of a session times the steps of its tick"),
+      time_setting("hibernate_after", limits.hibernate_after, 0, kMostAway,
+                   "Seconds without participants after which a session stands still; 0: never"),
+      time_setting(
+          "expire_after", limits.expire_after, 0, kMostAway,
+          "Seconds without participants after which a session ends, but the first; 0: never"),
   };
 }
 
@@ -151,6 +193,7 @@ std::vector<Setting> serve_settings(ServeSettings& target) {
   add_group(all, "Access", access_group(target));
   add_group(all, "Storage", storage_group(target));
   add_group(all, "Limits of connections", connection_limits(target));
+  add_group(all, "Limits of messages of a connection", rate_limits(target.limits));
   add_group(all, "Limits of sessions", session_limits(target.limits));
   return all;
 }

@@ -23,8 +23,9 @@ struct ServeSettings {
   std::size_t endpoints = 1;
   std::string instructions = "best";  ///< or the name of a set
   std::string log_level = "info";
-  std::string access = "auto";   ///< or "open", "token"
-  std::string admin_token_file;  ///< empty: none
+  std::string log_format = "text";  ///< or json
+  std::string access = "auto";      ///< or "open", "token"
+  std::string admin_token_file;     ///< empty: none
   std::chrono::milliseconds handshake_timeout{10'000};
   std::chrono::milliseconds ping_interval{20'000};
   ServerLimits limits;

@@ -47,6 +47,7 @@ class CheckingConnection final : public Connection {
   CheckingConnection(ConnectionId id, NewestToken& token) : id_(id), token_(token) {}
 
   ConnectionId id() const override { return id_; }
+  const std::string& address() const override { return address_; }
   void send_text(std::string message) override {
     const Json json = Json::parse(message, nullptr, false);
     VAT_CHECK(json.is_object() && json.value("jsonrpc", "") == "2.0");
@@ -87,6 +88,7 @@ class CheckingConnection final : public Connection {
   std::condition_variable finished_;
   bool is_finished_ = false;
   FrameDecoder decoder_;
+  const std::string address_ = "127.0.0.1";
 };
 
 /// A small scene, so that an input takes no longer than its messages.
@@ -115,6 +117,7 @@ ServerSettings small_settings(bool needs_token) {
   settings.access.mode = needs_token ? AccessMode::token : AccessMode::open;
   settings.access.admin = hash_of_token(kAdminToken);
   settings.access.refusal_delay = std::chrono::milliseconds(0);
+  settings.limits.burst_seconds = 1e9;  // an input is never too fast
   return settings;
 }
 

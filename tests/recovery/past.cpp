@@ -29,14 +29,15 @@ std::map<std::string, StoredPast> read_past(const std::string& data_folder) {
 std::map<std::uint64_t, std::set<std::string>> hashes_of(const StoredPast& past,
                                                          const Catalogue& catalogue) {
   ServerLimits limits;
-  limits.max_particles = limits.max_particle_steps_per_tick = limits.max_grabs_per_client =
-      std::numeric_limits<std::size_t>::max();
+  limits.max_particles = limits.max_springs = limits.max_particle_steps_per_tick =
+      limits.max_grabs_per_client = std::numeric_limits<std::size_t>::max();
   ThreadPoolRunner runner(1);
   ServerMetrics metrics;
   boost::asio::thread_pool threads(1);
+  ResourceBudget resources(kUnlimitedResources);
   AccessTokens tokens(1);
-  const SessionEnvironment environment{catalogue, limits, best_instruction_set(), runner, metrics,
-                                       threads,   tokens};
+  const SessionEnvironment environment{
+      catalogue, limits, best_instruction_set(), runner, metrics, resources, threads, tokens};
   const std::atomic<bool> never = false;
   const Json params = Json::parse(past.log.front().params);
   const Scene scene = std::get<Scene>(read_client_scene(params.at("scene"), catalogue));

@@ -27,9 +27,11 @@ class FakeConnection final : public Connection {
   /// How long a test waits for what must come, before it fails.
   static constexpr std::chrono::seconds kPatience{30};
 
-  explicit FakeConnection(ConnectionId id) : id_(id) {}
+  explicit FakeConnection(ConnectionId id, std::string address = "127.0.0.1")
+      : id_(id), address_(std::move(address)) {}
 
   ConnectionId id() const override { return id_; }
+  const std::string& address() const override { return address_; }
   void send_text(std::string message) override {
     const bool is_reply = message.find(R"("id":)") != std::string::npos;
     if (failing_ || (is_reply && fail_next_reply_.exchange(false)))
@@ -127,6 +129,7 @@ class FakeConnection final : public Connection {
   }
 
   const ConnectionId id_;
+  const std::string address_;
   script::Transcript* record_ = nullptr;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,6 +1,13 @@
 #include "server/http/http_site.h"
 
+#include <atomic>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "tests/server/transport_fixture.h"
@@ -16,7 +23,9 @@ class HttpSiteTest : public TransportTest {
   void serve() {
     Result<StaticFiles> files = StaticFiles::read(folder.path() / "dist");
     ASSERT_TRUE(files.ok());
-    http_handler = make_http_site(std::move(files).value(), [] { return "vat_threads 4\n"; });
+    http_handler = make_http_site(std::move(files).value(),
+                                  {[] { return "vat_threads 4\n"; },
+                                   [this] { return phase.load(); }, R"({"version":"1.2.3"})"});
     start();
   }
   void serve_viewer() {
@@ -29,6 +38,7 @@ class HttpSiteTest : public TransportTest {
   }
 
   TemporaryFolder folder;
+  SharedPhase phase = ServerPhase::ready;
 };
 
 TEST_F(HttpSiteTest, TheRootIsTheIndex) {
@@ -87,7 +97,8 @@ TEST_F(HttpSiteTest, NoPathLeadsOutOfTheFolder) {
 
 TEST_F(HttpSiteTest, EveryAnswerHasTheSecurityHeaders) {
   serve_viewer();
-  for (const char* target : {"/", "/missing", "/healthz", "/metrics", "/%zz"}) {
+  for (const char* target :
+       {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/%zz"}) {
     const HttpReply reply = http(port, "GET", target);
     EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff") << target;
     EXPECT_EQ(reply.header("Referrer-Policy"), "no-referrer") << target;
@@ -107,6 +118,46 @@ TEST_F(HttpSiteTest, Health) {
   EXPECT_EQ(reply.header("Content-Type"), "application/json");
   EXPECT_EQ(reply.header("Cache-Control"), "no-store");
   EXPECT_EQ(reply.body, "{\"status\":\"ok\"}\n");
+}
+
+// What the image asks, by its own words.
+TEST_F(HttpSiteTest, TheHealthCheckOfTheImagePasses) {
+  serve();
+  std::ifstream file(VAT_SOURCE_DIR "/docker/Dockerfile");
+  std::ostringstream text;
+  text << file.rdbuf();
+  std::string recipe = std::regex_replace(text.str(), std::regex(R"(\\\n)"), " ");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(recipe, found, std::regex(R"(HEALTHCHECK .*CMD (\[.*\]))")));
+  std::string command = nlohmann::json::parse(found.str(1)).at(2);
+  const auto ask = [&](int at) {
+    const std::string there = std::regex_replace(command, std::regex("8080"), std::to_string(at));
+    return std::system(("exec bash -c \"" + there + "\" 2> /dev/null").c_str());
+  };
+  EXPECT_EQ(ask(port), 0) << command;
+  transport->stop();
+  EXPECT_NE(ask(port), 0);
+}
+
+TEST_F(HttpSiteTest, ReadyIsWhoTakesNewSessions) {
+  serve();
+  for (const auto& [now, status, name] : {std::tuple(ServerPhase::starting, 503, "starting"),
+                                          std::tuple(ServerPhase::recovering, 503, "recovering"),
+                                          std::tuple(ServerPhase::ready, 200, "ready"),
+                                          std::tuple(ServerPhase::draining, 503, "draining")}) {
+    phase = now;
+    const HttpReply reply = http(port, "GET", "/readyz");
+    EXPECT_EQ(reply.status, status) << name;
+    EXPECT_EQ(reply.body, std::string("{\"status\":\"") + name + "\"}\n");
+    EXPECT_EQ(http(port, "GET", "/healthz").status, 200) << name;
+  }
+}
+
+TEST_F(HttpSiteTest, TheVersionIsJson) {
+  serve();
+  const HttpReply reply = http(port, "GET", "/version");
+  EXPECT_EQ(reply.header("Content-Type"), "application/json");
+  EXPECT_EQ(reply.body, "{\"version\":\"1.2.3\"}\n");
 }
 
 TEST_F(HttpSiteTest, Metrics) {

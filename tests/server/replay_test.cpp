@@ -113,10 +113,11 @@ class ReplayTest : public testing::Test {
   ServerLimits limits_;
   ThreadPoolRunner runner_{2};
   ServerMetrics metrics_;
+  ResourceBudget resources_{kUnlimitedResources};
   boost::asio::thread_pool frame_threads_{1};
   AccessTokens tokens_{1};
-  const SessionEnvironment environment_{
-      catalogue_, limits_, best_instruction_set(), runner_, metrics_, frame_threads_, tokens_};
+  const SessionEnvironment environment_{catalogue_, limits_,    best_instruction_set(), runner_,
+                                        metrics_,   resources_, frame_threads_,         tokens_};
 };
 
 TEST_F(ReplayTest, EndsInTheStateOfTheSession) {

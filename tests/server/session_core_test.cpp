@@ -49,12 +49,17 @@ class SessionCoreTest : public testing::Test {
   const ServerLimits limits;
   ThreadPoolRunner runner{1};
   ServerMetrics metrics;
+  ResourceBudget resources{{limits.max_particles_in_all, limits.max_springs_in_all}};
   boost::asio::thread_pool frame_threads{1};
   AccessTokens tokens{1};
-  const SessionEnvironment environment{
-      catalogue, limits, InstructionSet::baseline, runner, metrics, frame_threads, tokens};
-  SessionCore core{
-      "s1", {"one"}, Simulation::create(to_scene(mixed_scene_text())).value(), environment};
+  const SessionEnvironment environment{catalogue,     limits,  InstructionSet::baseline,
+                                       runner,        metrics, resources,
+                                       frame_threads, tokens};
+  SessionCore core{"s1",
+                   {"one"},
+                   Simulation::create(to_scene(mixed_scene_text())).value(),
+                   resources.take_anyway({}),
+                   environment};
 
  private:
   std::vector<std::pair<std::shared_ptr<FakeConnection>, std::shared_ptr<ClientOutbox>>> viewers_;

@@ -83,8 +83,8 @@ Scene to_scene(const std::string& text) {
   return read_scene_text(text, no_meshes).value();
 }
 
-TestClient::TestClient(SessionServer& server, ConnectionId id)
-    : connection(std::make_shared<FakeConnection>(id)), server_(server) {
+TestClient::TestClient(SessionServer& server, ConnectionId id, std::string address)
+    : connection(std::make_shared<FakeConnection>(id, std::move(address))), server_(server) {
   connection->record(message_record());
   server_.opened(connection);
 }
@@ -180,6 +180,10 @@ std::unique_ptr<TestClient> SessionTest::connect_admin() {
   auto admin = connect();
   admin->result("access.enter", {{"token", kAdminToken}});
   return admin;
+}
+
+std::unique_ptr<TestClient> SessionTest::connect_from(std::string address) {
+  return std::make_unique<TestClient>(server, ++last_connection_, std::move(address));
 }
 
 std::unique_ptr<TestClient> SessionTest::join(const std::string& session) {

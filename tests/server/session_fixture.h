@@ -30,7 +30,7 @@ inline constexpr std::string_view kAdminToken = "the admin token of the tests";
 /// One client of a SessionServer, which must outlive it.
 class TestClient {
  public:
-  TestClient(SessionServer& server, ConnectionId id);
+  TestClient(SessionServer& server, ConnectionId id, std::string address = "127.0.0.1");
   ~TestClient() { disconnect(); }
   TestClient(const TestClient&) = delete;
   TestClient& operator=(const TestClient&) = delete;
@@ -74,12 +74,19 @@ class TestClient {
 /// A server with one session of mixed_scene_text() (`s1`), paused at tick 0, and one client in it.
 class SessionTest : public testing::Test {
  protected:
-  explicit SessionTest(const ServerLimits& limits = {});
+  /// Clients may send as fast as they like, unless the test has limits of its own.
+  explicit SessionTest(const ServerLimits& limits = unhurried());
+  static ServerLimits unhurried() {
+    ServerLimits limits;
+    limits.burst_seconds = 1e9;
+    return limits;
+  }
 
   /// Connects a further client.
   std::unique_ptr<TestClient> connect();
   /// Connects one that was let in as an admin.
   std::unique_ptr<TestClient> connect_admin();
+  std::unique_ptr<TestClient> connect_from(std::string address);
   /// Connects one that has joined `session`.
   std::unique_ptr<TestClient> join(const std::string& session = "s1");
   std::string hash() { return client->result("session.hash").at("hash"); }

@@ -28,7 +28,9 @@ void RawClient::await(Start&& start) {
   throw std::runtime_error("no answer within the patience of the test");
 }
 
-RawClient::RawClient(std::uint16_t port) : socket_(io_) {
+RawClient::RawClient(std::uint16_t port, const char* from) : socket_(io_) {
+  socket_.open(asio::ip::tcp::v4());
+  socket_.bind({asio::ip::make_address(from), 0});
   socket_.connect({asio::ip::make_address("127.0.0.1"), port});
 }
 

@@ -19,7 +19,8 @@ inline constexpr std::chrono::seconds kPatience{10};  ///< then a test fails rat
 /// std::runtime_error, as does a write to a peer that has gone.
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port);
+  /// `from`: another address of this machine.
+  explicit RawClient(std::uint16_t port, const char* from = "127.0.0.1");
 
   void write(std::string_view bytes);
   /// At least one byte; empty: the peer has closed or reset the connection.

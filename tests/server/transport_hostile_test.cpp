@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <random>
 #include <thread>
 
@@ -171,6 +172,39 @@ TEST_F(TransportHostileTest, SocketsThatSayNothingAreLimited) {
     }
   }
   FAIL() << "no connection is accepted any more";
+}
+
+TEST_F(TransportHostileTest, AnAddressHasItsShareOfTheConnections) {
+  settings.max_connections = 100;
+  settings.max_connections_per_address = 3;
+  std::vector<std::string> refusals;
+  std::vector<std::uint16_t> closes;
+  settings.count_refusal = [&](std::string_view limit) { refusals.emplace_back(limit); };
+  settings.count_close = [&](std::uint16_t code) { closes.push_back(code); };
+  start();
+  std::vector<std::unique_ptr<WsClient>> clients;
+  for (int i = 0; i < 3; ++i) clients.push_back(std::make_unique<WsClient>(port));
+  EXPECT_EQ(WsClient(port).read_close(), 1013);
+  ASSERT_TRUE(recorder.wait_opened(3));
+  EXPECT_EQ(recorder.connection(1)->address(), "127.0.0.1");
+  clients.pop_back();
+  ASSERT_TRUE(recorder.wait_closed(1));
+  expect_alive();
+  transport->stop();
+  EXPECT_EQ(refusals, std::vector<std::string>{"connections_per_address"});
+  EXPECT_EQ(std::count(closes.begin(), closes.end(), 1001), 2) << "by the server's stop";
+}
+
+// Sockets that say nothing are counted too, and others come in beside them.
+TEST_F(TransportHostileTest, AnAddressHasItsShareOfTheSockets) {
+  settings.max_connections_per_address = 4;
+  start();
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 100; ++i) idle.push_back(std::make_unique<RawClient>(port));
+  EXPECT_EQ(idle.back()->read_all(), "");  // at once, long before the handshake's time limit
+  RawClient elsewhere(port, "127.0.0.2");
+  elsewhere.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_NE(elsewhere.read_all().find(" 200 "), std::string::npos);
 }
 
 TEST_F(TransportHostileTest, AHandlerThatThrowsCostsThatConnectionOnly) {

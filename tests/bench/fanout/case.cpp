@@ -39,7 +39,8 @@ std::vector<std::string> server_arguments(const FanoutCase& one, const FanoutSet
   }
   if (viewers > kDefaultConnections) {
     const std::string most = std::to_string(viewers + kDefaultConnections);
-    words.insert(words.end(), {"--max-connections", most, "--max-clients", most});
+    words.insert(words.end(), {"--max-connections", most, "--max-connections-per-address", most,
+                               "--max-clients", most});
   }
   return words;
 }

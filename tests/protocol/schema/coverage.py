@@ -17,6 +17,13 @@ NOT_SHOWN = {
 # What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
 # error; a number: the code that a connection is closed with; a script: it is all about that.
 LIMITS = {
+    "burst_seconds": ("script", "too-often"), "connections_per_address": ("script", "sharing"),
+    "controls_per_second": "limit", "expire_after_seconds": ("script", "empty-sessions"),
+    "hibernate_after_seconds": ("script", "empty-sessions"),
+    "message_bytes_per_second": ("closed", 4009), "particles_in_all": "limit",
+    "pointer_moves_per_second": "limit", "queries_per_second": "limit",
+    "refusals_per_second": ("closed", 4009), "scenes_per_second": "limit",
+    "sessions_per_address": "limit", "springs": "limit", "springs_in_all": "limit",
     "applied_forces": "limit", "bodies": ("path", "/scene/bodies"), "clients_per_session": "limit",
     "command_bytes_in_flight": ("script", "limits"), "commands_in_flight": "limit",
     "connections": ("closed", 1013), "control_queue_bytes": ("closed", 4008),
