@@ -5,7 +5,7 @@ import { qualityInWords } from '../../web/viewer/panel/quality';
 import { FrameMeter } from '../../web/viewer/panel/frame_meter';
 import { describeGuard } from '../../web/viewer/panel/notices';
 import { sliderSpeed } from '../../web/viewer/panel/playback';
-import { chosenSession, streamUrl } from '../../web/viewer/stream/stream';
+import { chosenSession, givenToken, streamUrl } from '../../web/viewer/stream/stream';
 import { roundLength } from '../../web/viewer/view/ground';
 
 describe('numbers in words', () => {
@@ -120,6 +120,13 @@ it.each([
   ['http://host/', undefined],
   ['http://host/?session=s2', 's2'],
 ])('the session of %s is %s', (page, session) => expect(chosenSession(page)).toBe(session));
+
+it.each([
+  ['http://host/', undefined],
+  ['http://host/?session=s2#ticket=abc', 'abc'],
+  ['http://host/#invite=a-_b', 'a-_b'],
+  ['http://host/?ticket=abc', undefined],
+])('the token of %s is %s', (page, token) => expect(givenToken(page)).toBe(token));
 
 it.each([
   [0.12, 0.1],

@@ -14,9 +14,15 @@ let faults: string[];
 let seconds: number;
 let session: Session;
 
-function newSession(chosen?: string, frameFor?: () => Frame, errorInRadii?: number): Session {
+function newSession(
+  chosen?: string,
+  frameFor?: () => Frame,
+  errorInRadii?: number,
+  tokens: { token?: string; resume?: string } = {},
+): Session {
   return new Session(
     {
+      ...tokens,
       url: 'ws://server/ws',
       session: chosen,
       socket: FakeSocket,
@@ -86,6 +92,73 @@ describe('the error of positions', () => {
     tell(described(0.6));
     tell(described());
     expect(subscriptions().slice(1)).toEqual([{ max_error: 0.3 }, undefined]);
+  });
+});
+
+describe('a server that asks for a token', () => {
+  const kToken = 'a'.repeat(22);
+  const kResume = 'b'.repeat(22);
+  const refusal = {
+    error: { code: 1007, message: 'no', data: { kind: 'not_authenticated', hint: 'ask' } },
+  };
+  const joined = { result: { description: kDescription, resume: kResume } };
+  const shown = (socket: FakeSocket) =>
+    socket.sent.flatMap((m) => (m.method === 'access.enter' ? [m.params] : []));
+
+  async function knock(): Promise<FakeSocket> {
+    const socket = FakeSocket.newest;
+    socket.accept();
+    await socket.answer('server.info', { result: { time: 1050, access: 'token' } });
+    return socket;
+  }
+
+  it('is shown the one that was given, and after a break the one to come back with', async () => {
+    session = newSession(undefined, undefined, undefined, { token: kToken });
+    session.open();
+    const socket = await knock();
+    expect(shown(socket)).toEqual([{ token: kToken }]);
+    await socket.answer('access.enter', { result: { role: 'controller' } });
+    await socket.answer('session.join', joined);
+    await socket.answer('frames.subscribe', { result: { tick: 0 } });
+    socket.break();
+    vi.advanceTimersByTime(100);
+    const second = await knock();
+    expect(shown(second)).toEqual([{ token: kResume }]);
+    await second.answer('access.enter', { result: { role: 'controller' } });
+    expect(second.sent.at(-1)).toMatchObject({
+      method: 'session.join',
+      params: { resume: kResume },
+    });
+    await second.answer('session.join', joined);
+    expect(descriptions).toHaveLength(2);
+  });
+
+  it('is shown what was given where who we were is forgotten', async () => {
+    session = newSession(undefined, undefined, undefined, { token: kToken, resume: kResume });
+    session.open();
+    const socket = await knock();
+    await socket.answer('access.enter', refusal);
+    expect(shown(socket)).toEqual([{ token: kResume }, { token: kToken }]);
+    await socket.answer('access.enter', { result: { role: 'viewer' } });
+    await socket.answer('session.join', joined);
+    expect(descriptions).toHaveLength(1);
+  });
+
+  it('is told of in words where there is none to show', async () => {
+    session.open();
+    const socket = await knock();
+    expect(shown(socket)).toEqual([]);
+    expect(socket.methods).toEqual(['server.info']);
+    expect(states.at(-1)).toBe('waiting');
+  });
+
+  it.each([4003, 4010])('that closes with %i is left alone', async (code) => {
+    session.open();
+    const socket = await enter();
+    socket.break({ code, reason: '' });
+    expect(states.at(-1)).toBe('closed');
+    vi.advanceTimersByTime(100_000);
+    expect(FakeSocket.made).toHaveLength(1);
   });
 });
 

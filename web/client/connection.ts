@@ -2,7 +2,7 @@ import { isEventName, kSubprotocol } from './messages';
 import type { Event, MethodName, Params, Result } from './messages';
 import { PendingRequests, RequestError } from './requests';
 import type { Reply } from './requests';
-import { describeClose } from './socket';
+import { describeClose, isFinal } from './socket';
 import type { Socket, SocketClose, SocketConstructor } from './socket';
 
 export type ConnectionState =
@@ -10,7 +10,8 @@ export type ConnectionState =
   | { name: 'open' }
   /** The line is down; the next attempt comes after `retryMs`. */
   | { name: 'waiting'; reason: string; retryMs: number }
-  | { name: 'closed' };
+  /** For good: by us, or by the server for the reason that is given. */
+  | { name: 'closed'; reason?: string };
 
 export interface ConnectionHandlers {
   onState?(state: ConnectionState): void;
@@ -116,7 +117,13 @@ export class Connection {
 
   private handleClose(event: SocketClose): void {
     const wasOpen = this.isOpen;
-    this.retryLater(describeClose(event));
+    const reason = describeClose(event);
+    if (isFinal(event)) {
+      this.drop(reason);
+      this.handlers.onState?.({ name: 'closed', reason });
+      return;
+    }
+    this.retryLater(reason);
     if (!wasOpen) void this.explainRefusal();
   }
 

@@ -15,6 +15,8 @@ export interface SessionHandlers {
   onFrame?(frame: Frame, bytes: number): void;
   /** What the next frame is decoded to: one that is not in use any more. By default a new one. */
   frameFor?(): Frame;
+  /** The secret by which this participant may come back, on this line or another. */
+  onResumeToken?(token: string): void;
   /** Seconds that the server's clock is ahead of `now`. */
   onClockOffset?(seconds: number): void;
   /** Something that a user should hear of; the session goes on. */
@@ -24,6 +26,10 @@ export interface SessionHandlers {
 export interface SessionOptions extends ConnectionOptions {
   /** The session to join; by default the server's first. */
   session?: string | undefined;
+  /** What lets us in where the server asks for it: of an invitation, a ticket or an admin. */
+  token?: string | undefined;
+  /** Who we were: `onResumeToken` told it. */
+  resume?: string | undefined;
   /** Our clock [s]. */
   now: () => number;
   /** Time between two round trips that measure the clock and prove that the line lives. */
@@ -43,6 +49,7 @@ export class Session {
   private clockTimer: ReturnType<typeof setTimeout> | undefined;
   private hasJoined = false;
   private isWatched = true;
+  private resume: string | undefined;
   /** What was subscribed to, or is to be [m]; undefined: what the session gives. */
   private maxError: number | undefined;
 
@@ -50,6 +57,7 @@ export class Session {
     private readonly options: SessionOptions,
     private readonly handlers: SessionHandlers,
   ) {
+    this.resume = options.resume;
     this.connection = new Connection(options, {
       onState: (state) => this.handleState(state),
       onEvent: (event) => this.handleEvent(event),
@@ -122,16 +130,39 @@ export class Session {
       const { session } = this.options;
       this.clock = new ClockOffset();
       this.decoder = new FrameDecoder();
-      await this.measureClock();
-      const { description } = await this.request(
-        'session.join',
-        session === undefined ? {} : { session },
-      );
-      this.describe(description);
+      const { access } = await this.measureClock();
+      await this.letIn(access);
+      const joined = await this.request('session.join', {
+        ...(session !== undefined && { session }),
+        ...(this.resume !== undefined && { resume: this.resume }),
+      });
+      this.resume = joined.resume;
+      this.handlers.onResumeToken?.(joined.resume);
+      this.describe(joined.description);
       this.hasJoined = true;
       if (this.isWatched) await this.subscribe();
     } catch (error) {
       this.restart(error);
+    }
+  }
+
+  /** Shows who we were, or what we were given, where that is asked for or changes our role. */
+  private async letIn(access: Result<'server.info'>['access']): Promise<void> {
+    const { token } = this.options;
+    if (access === 'token' && this.resume !== undefined && (await this.isGood(this.resume))) return;
+    if (token !== undefined && (await this.isGood(token))) return;
+    if (access !== 'token') return;
+    const words = 'this server lets in who has an invitation: open the link that you were given';
+    throw new RequestError('not_authenticated', words);
+  }
+
+  private async isGood(token: string): Promise<boolean> {
+    try {
+      await this.request('access.enter', { token });
+      return true;
+    } catch (error) {
+      if (error instanceof RequestError && error.kind === 'not_authenticated') return false;
+      throw error;
     }
   }
 
@@ -141,16 +172,17 @@ export class Session {
     this.connection.restart(error.message); // does nothing if the line is down already
   }
 
-  private async measureClock(): Promise<void> {
+  private async measureClock(): Promise<Result<'server.info'>> {
     const sent = this.options.now();
-    const { time } = await this.request('server.info', {});
-    this.clock.add(sent, this.options.now(), time);
+    const info = await this.request('server.info', {});
+    this.clock.add(sent, this.options.now(), info.time);
     if (this.clock.seconds !== undefined) this.handlers.onClockOffset?.(this.clock.seconds);
     clearTimeout(this.clockTimer);
     this.clockTimer = setTimeout(
       () => void this.measureClock().catch((error: unknown) => this.restart(error)),
       this.options.clockPeriodMs ?? 5000,
     );
+    return info;
   }
 
   private handleEvent(event: Event): void {

@@ -50,6 +50,6 @@ function words(state: ConnectionState): string {
     case 'waiting':
       return `Not connected: ${state.reason}`;
     case 'closed':
-      return 'Not connected';
+      return state.reason === undefined ? 'Not connected' : `Not connected: ${state.reason}`;
   }
 }

@@ -3,7 +3,7 @@ import type { Frame, MethodName, Params, Result } from '../../client/index';
 import type { FromWorker, ToWorker } from './wire';
 
 /** What the worker reports by itself; replies to requests come as promises instead. */
-export type Report = Exclude<FromWorker, { type: 'result' | 'refusal' }>;
+export type Report = Exclude<FromWorker, { type: 'result' | 'refusal' | 'resume' }>;
 
 export type Request = <M extends MethodName>(method: M, params: Params<M>) => Promise<Result<M>>;
 
@@ -11,6 +11,8 @@ interface Waiting {
   resolve(result: unknown): void;
   reject(error: RequestError): void;
 }
+
+const kResumeKey = 'vat.resume';
 
 /** The page's end of the worker that holds the connection. */
 export class Stream {
@@ -30,7 +32,13 @@ export class Stream {
 
   /** Connects now; also cuts short the wait before the next attempt. */
   open(): void {
-    this.post({ type: 'open', url: streamUrl(this.page), session: chosenSession(this.page) });
+    this.post({
+      type: 'open',
+      url: streamUrl(this.page),
+      session: chosenSession(this.page),
+      token: givenToken(this.page),
+      resume: sessionStorage.getItem(kResumeKey) ?? undefined,
+    });
   }
 
   readonly request: Request = (method, params) => {
@@ -65,6 +73,9 @@ export class Stream {
     } else if (message.type === 'refusal') {
       const { kind, message: text, code, data } = message.refusal;
       this.take(message.key)?.reject(new RequestError(kind, text, code, data));
+    } else if (message.type === 'resume') {
+      // Of this tab, so that who reloads the page is who they were.
+      sessionStorage.setItem(kResumeKey, message.token);
     } else {
       this.onReport(message);
     }
@@ -75,6 +86,12 @@ export class Stream {
     this.waiting.delete(key);
     return waiting;
   }
+}
+
+/** What the fragment of the page's address gives as `#ticket=` or `#invite=`; no request carries it. */
+export function givenToken(page: string): string | undefined {
+  const given = new URLSearchParams(new URL(page).hash.slice(1));
+  return given.get('ticket') ?? given.get('invite') ?? undefined;
 }
 
 /** The session that the page's address names with `?session=`. */

@@ -2,7 +2,7 @@
 import { emptyFrame, RequestError, Session } from '../../client/index';
 import type { Frame, MethodName, Params } from '../../client/index';
 import { now } from './clock';
-import type { FromWorker, Refusal, ToWorker } from './wire';
+import type { Entrance, FromWorker, Refusal, ToWorker } from './wire';
 
 /** A sixty-fourth of the distance between particles: less cannot be seen. */
 const kErrorInRadii = 1 / 32;
@@ -25,16 +25,17 @@ async function probe(): Promise<boolean> {
   }
 }
 
-function open(url: string, chosen: string | undefined): void {
+function open(entrance: Entrance): void {
   session?.close();
   session = new Session(
-    { url, session: chosen, socket: WebSocket, now, probe, errorInRadii: kErrorInRadii },
+    { ...entrance, socket: WebSocket, now, probe, errorInRadii: kErrorInRadii },
     {
       onState: (state) => post({ type: 'state', state }),
       onDescription: (description) => post({ type: 'description', description }),
       onEvent: (event) => post({ type: 'event', event }),
       onFrame: (frame, bytes) => post({ type: 'frame', frame, bytes }, [frame.storage]),
       frameFor,
+      onResumeToken: (token) => post({ type: 'resume', token }),
       onClockOffset: (offset) => post({ type: 'clock', offset }),
       onFault: (message) => post({ type: 'fault', message }),
     },
@@ -67,7 +68,7 @@ function refusalOf({ kind, message, code, data }: RequestError): Refusal {
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   switch (data.type) {
     case 'open':
-      open(data.url, data.session);
+      open(data);
       break;
     case 'request':
       void request(data.key, data.method, data.params);

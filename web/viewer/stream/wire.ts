@@ -7,9 +7,17 @@ import type {
   SessionDescription,
 } from '../../client/index';
 
+/** Where to enter, and what lets us in. */
+export interface Entrance {
+  url: string;
+  session: string | undefined;
+  token: string | undefined;
+  resume: string | undefined;
+}
+
 /** Messages between the page and the worker that holds the connection. */
 export type ToWorker =
-  | { type: 'open'; url: string; session: string | undefined }
+  | ({ type: 'open' } & Entrance)
   | { type: 'request'; key: number; method: MethodName; params: object }
   | { type: 'acknowledge'; number: number }
   /** Of a frame that is shown no more; it is transferred, like that of each frame. */
@@ -22,6 +30,7 @@ export type FromWorker =
   | { type: 'event'; event: Event }
   | { type: 'frame'; frame: Frame; bytes: number }
   | { type: 'clock'; offset: number }
+  | { type: 'resume'; token: string }
   | { type: 'fault'; message: string }
   | { type: 'result'; key: number; result: unknown }
   | { type: 'refusal'; key: number; refusal: Refusal };
