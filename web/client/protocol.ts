@@ -56,6 +56,7 @@ export type ReplyError =
   | NotAllowed
   | NotAuthenticated
   | Busy
+  | RateLimited
   | StorageFailed
   | NotRecovered;
 
@@ -304,6 +305,21 @@ export interface Busy {
       participant: ParticipantId;
       name: string;
     };
+  };
+}
+
+export interface RateLimited {
+  code: 1009;
+  message: string;
+  data: {
+    kind: 'rate_limited';
+    hint: Hint;
+    /** Its name in server.info */
+    limit: string;
+    /** Messages, or bytes, a second */
+    maximum: number;
+    /** Time until the next one will pass [s] */
+    retry_after: number;
   };
 }
 
