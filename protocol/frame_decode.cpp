@@ -2,8 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include "protocol/block_coder.h"
 #include "core/support/byte_io.h"
+#include "protocol/block_coder.h"
 #include "protocol/frame_check.h"
 #include "protocol/frame_codec.h"
 #include "protocol/frame_layout.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/block_coder.h"
 #include "core/support/byte_io.h"
+#include "protocol/block_coder.h"
 #include "protocol/frame_check.h"
 #include "protocol/frame_codec.h"
 #include "protocol/frame_layout.h"

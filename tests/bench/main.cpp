@@ -16,7 +16,8 @@
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app{"Speed, validation, accuracy and stability of the simulation, and many viewers", "vat bench"};
+  CLI::App app{"Speed, validation, accuracy and stability of the simulation, and many viewers",
+               "vat bench"};
   // Not require_subcommand(1): that would hide which word is not a sub-command.
   app.require_subcommand(0, 1);
   app.callback([&app] {
