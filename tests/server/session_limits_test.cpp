@@ -90,7 +90,8 @@ TEST_F(SessionLimits, WhoGoesOnRegardlessIsClosed) {
 TEST_F(SessionLimits, AFloodOfWhatIsNoRequestIsOneToo) {
   for (const char* text : {"", "{}", "[]", R"({"jsonrpc":"2.0","method":"no.such"})", "\xff"}) {
     const auto other = connect();
-    for (int i = 0; i < 10'000 && !other->connection->close_code(); ++i) other->send_raw(text);
+    for (int i = 0; i < 10'000 && !other->connection->close_code(); ++i)
+      other->send_raw(text, true);
     EXPECT_EQ(other->connection->close_code(), 4009) << text;
     EXPECT_LT(other->connection->texts().size(), 300U) << "answers are limited too";
   }
