@@ -97,6 +97,7 @@ Status Simulation::set_gravity(const Vec3& gravity) {
   impl_->wake_all();
   auto model = std::make_shared<Model>(*impl_->model);
   model->scene.gravity = gravity;
+  model->damping.is_current = false;
   impl_->model = std::move(model);
   impl_->state.forces_current = false;
   return {};
@@ -184,6 +185,7 @@ Real felt_mass(const Model& model, const ModelBody& body, const Configuration& a
 /// Constants of a critically damped spring that moves the whole body, or of a liquid what is held.
 /// The held particles are fewer: the damping must not turn them round within a step.
 void tune_grab(const Model& model, const ModelBody& body, const Configuration& at, Grab& grab) {
+  grab.held_mass = 0;
   for (const Index i : grab.held) grab.held_mass += model.mass[body.particles.begin + i];
   const Real most = kGrabMaxDampingRatio * felt_mass(model, body, at, grab) /
                     (2 * kGrabFrequency * model.scene.numerics.step);
@@ -195,6 +197,10 @@ void tune_grab(const Model& model, const ModelBody& body, const Configuration& a
 }
 
 }  // namespace
+
+void Simulation::Impl::tune_grabs() {
+  for (Grab& grab : controls.grabs) tune_grab(*model, model->bodies[grab.body], state.now, grab);
+}
 
 Status Simulation::grab_start(std::uint64_t id, BodyId body_id, Index particle,
                               const Vec3& target) {

@@ -46,11 +46,14 @@ Controls rebind(Controls controls, const Model& before, const Model& model) {
 }
 
 void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
-                                 const std::vector<std::optional<std::vector<Index>>>& kept) {
+                                 const std::vector<std::optional<std::vector<Index>>>& kept,
+                                 const std::vector<BodyId>& described_anew) {
   std::vector<char> as_described(ids.size(), false);
   for (std::size_t b = 0; b < ids.size(); ++b) {
     const ModelBody* known = find(ids[b]);
     if (samples[b] != nullptr || known == nullptr || known->sample == nullptr) continue;
+    const bool is_other = std::ranges::find(described_anew, ids[b]) != described_anew.end();
+    if (is_other && known->is_as_described) continue;
     samples[b] = known->sample;
     as_described[b] = known->is_as_described;
   }
@@ -84,6 +87,24 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Sa
 
 void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
   recompile(std::move(scene), ids, Samples(ids.size()), {});
+}
+
+void Simulation::Impl::recompile_moved(std::size_t body, BodyDescription moved) {
+  auto new_model = with_moved_body(*model, body, std::move(moved));
+  GuardBounds new_bounds = guard_bounds(*new_model);
+  StepBounds new_step_bounds = step_bounds_of_moved(*new_model, body, step_bounds);
+  forget_samples(*new_model);
+  State new_state;
+  new_state.forces = no_forces(*new_model);
+  if (model->scene.sleeping) new_state.slow_looks.assign(model->bodies.size(), 0);
+  // Nothing fails from here on.
+  new_state.now = std::move(state.now);
+  new_state.now.contacts.clear();
+  new_state.step_count = state.step_count;
+  new_state.emitted = state.emitted;
+  new_state.drained = state.drained;
+  adopt({std::move(new_model), std::move(new_state), std::move(controls), nullptr},
+        std::move(new_bounds), std::move(new_step_bounds));
 }
 
 std::vector<BodyId> Simulation::Impl::ids() const {

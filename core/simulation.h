@@ -50,6 +50,55 @@ struct LiquidFields {
   std::vector<Real> pressure;  ///< [Pa]
 };
 
+/// A particle of a body, by its number.
+struct ConnectedParticle {
+  BodyId body = 0;
+  Index particle = 0;
+  bool operator==(const ConnectedParticle&) const = default;
+};
+
+/// Two particles and what there is between them: of a static spring its strain, length over length
+/// at rest less 1; of a contact the force along the line between them [N], negative where it pulls.
+struct ConnectedPair {
+  ConnectedParticle a;
+  ConnectedParticle b;
+  Real value = 0;
+};
+
+/// Of all that there are every so many, beginning with the first.
+struct ConnectionList {
+  std::size_t total = 0;
+  std::size_t every = 1;
+  std::vector<ConnectedPair> sample;
+};
+
+/// What of the connections is asked for.
+struct ConnectionWish {
+  std::optional<BodyId> body{};  ///< those of this one alone
+  std::size_t most = 0;          ///< of each list
+};
+
+/// Static springs that are not torn, and contacts between bodies, or within one, that push or pull.
+struct Connections {
+  ConnectionList springs;
+  ConnectionList contacts;
+};
+
+/// Where a body is put, and how it moves from then on.
+struct BodyPlacement {
+  Vec3 center_of_mass = Vec3::Zero();  ///< [m]
+  std::optional<Quat> orientation{};   ///< rigid bodies, as in RigidPose; as it is without
+  /// [m/s] of all of the body, which then does not turn; as it is without.
+  std::optional<Vec3> velocity{};
+};
+
+/// Where the particles of a body are, and how they move, as BodyView tells it.
+struct BodyMotion {
+  std::vector<Vec3> positions;      ///< [m] world axes; of liquid and deformable bodies
+  std::vector<Vec3> velocities;     ///< [m/s] the same
+  std::optional<RigidPose> pose{};  ///< of rigid bodies, in their place
+};
+
 /// What the guard saw. A step, or the part of one that step control takes, that ends with a
 /// non-finite value, outside the domain, too fast (see core/step/guard.h) or with more pairs of
 /// liquid particles, or contacts by projection, than memory is meant for is undone and repeated in
@@ -179,6 +228,9 @@ class Simulation {
 
   /// Measures the present state, at the cost of about one force evaluation.
   Diagnostics diagnostics() const;
+  /// Springs and contacts of the present state, at the cost of about one force evaluation where
+  /// bodies may touch; by projection those of the last step. Fails if there is no such body.
+  Result<Connections> connections(const ConnectionWish& wish) const;
   /// The stages of one force evaluation and the columns they read and write, as text.
   std::string plan_text() const;
   /// Told of the stages of every step from now on; null for nobody. It must outlive its use here.
@@ -187,9 +239,31 @@ class Simulation {
   /// Adds a body at the present time. Fails like create(), paths under "/body"; its name must be
   /// new.
   Result<BodyId> add_body(const BodyDescription& body);
+  /// The same of one that has been there: it is as described, but where and as fast as `motion`
+  /// tells. Fails too where that is not of all its particles, out of range or out of the vat; paths
+  /// under "/state".
+  Result<BodyId> add_body(const BodyDescription& body, const BodyMotion& motion);
   /// Ends the body's grabs and applied forces too, and its emitters. Fails if there is no such
   /// body.
   Status remove_body(BodyId id);
+  /// Puts a body elsewhere, turned if it is rigid, and keeps its shape. What users hold of it stays
+  /// held. Its description begins that much elsewhere, that of a rigid body where it is put. Fails
+  /// if there is no such body, it has no particles or some in a nozzle, it leaves the vat, the
+  /// plane of a scene in two dimensions or kMaxLength, is faster than kMaxSpeed, or would have more
+  /// pairs than a scene may start with.
+  Status move_body(BodyId id, const BodyPlacement& placement);
+  /// Adds a material, or replaces the constants of the one of its name: those of springs too, and
+  /// where the density changes the masses of all that is of it and was not given a mass; velocities
+  /// stay, and so does what springs have flown or torn, as long as they join the same particles.
+  /// Numerics stay as they are. Fails like create(), paths under "/material", and where a liquid
+  /// that an emitter feeds would change its support radius.
+  Status set_material(const Material& material);
+  /// Moves the vat by hand, beside its own motion: from how far the hand has moved it by now to
+  /// `offset` [m], with at most kMaxHandSpeed and kMaxHandAcceleration along each axis, and there
+  /// it stays. Fails without a vat, for an offset longer along an axis than the vat's longest side,
+  /// one along a periodic axis or out of the plane of a scene in two dimensions, and where an
+  /// emitter would be outside.
+  Status move_vat(const Vec3& offset);
   /// Opens or closes an emitter: of a closed one what is in its tube goes on, and nothing comes
   /// after it. Fails if there is no emitter of that name.
   Status set_emitter(std::string_view name, bool open);
@@ -200,6 +274,10 @@ class Simulation {
   Status melt_body(BodyId id, const std::string& material);
   /// `gravity` in m/s^2, each component at most kMaxGravity in magnitude; fails beyond.
   Status set_gravity(const Vec3& gravity);
+  /// Steps with another integrator, or in nominal steps of another length [s], from now on; the
+  /// tick stays. Fails like create(), paths /integrator and /step, where the step of a scene with
+  /// emitters would change, and within a tick.
+  Status set_numerics(IntegratorId integrator, Real step);
   /// Adds or replaces one interface. Fails like create(), paths under "/interface".
   Status set_interface(const InterfaceDescription& interface);
   /// A force [N] on the whole body as it is now, in equal accelerations, for `duration` seconds
@@ -236,6 +314,7 @@ class Snapshot {
 
   /// That of the simulation as it was.
   std::uint64_t state_hash() const;
+  const Scene& scene() const;  ///< as it was then; see Simulation::scene()
   /// For Simulation::load(): the scene as it was, the state and the commands in force. Per particle
   /// 48 bytes, of liquids by incompressible solves 8 more, with velocity Verlet 24 more, where
   /// liquid flows in or out or has melted 64 more; a body that sleeps counts once, others beside it

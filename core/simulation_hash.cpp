@@ -53,6 +53,13 @@ void add_state(const Model& model, const State& state, StateHash& hash) {
   for (const Vec3& velocity : state.forces.transport) hash.add(velocity);
 }
 
+void add_hand(const HandMotion& hand, StateHash& hash) {
+  hash.add(hand.start);
+  hash.add(hand.offset);
+  hash.add(hand.velocity);
+  hash.add(hand.target);
+}
+
 void add_controls(const Controls& controls, StateHash& hash) {
   for (const Grab& grab : controls.grabs) {
     hash.add(std::uint64_t{grab.body});
@@ -82,6 +89,7 @@ std::uint64_t Snapshot::Content::hash() const {
   for (const Emitter& emitter : all().scene.emitters) {
     hash.add(std::uint64_t{emitter.open});
   }
+  if (all().scene.vat && all().scene.vat->hand) add_hand(*all().scene.vat->hand, hash);
   add_controls(controls, hash);
   return hash.value();
 }

@@ -92,14 +92,21 @@ struct Simulation::Impl : Snapshot::Content {
   /// Compiles `scene` and carries over the state of the bodies whose ids stay, and what users hold
   /// of them. Changes nothing where it fails. A null sample is the body's own, or made. `kept`,
   /// where it is not empty, has which particles of a body stay, as the first of its sample, in
-  /// rising order; all where there is nothing.
+  /// rising order; all where there is nothing. Bodies that are as described and whose description
+  /// has changed are sampled anew.
   void recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
-                 const std::vector<std::optional<std::vector<Index>>>& kept);
+                 const std::vector<std::optional<std::vector<Index>>>& kept,
+                 const std::vector<BodyId>& described_anew = {});
   void recompile(Scene scene, const std::vector<BodyId>& ids);
+  /// The same as recompile() where nothing but one body's place and motion in `moved` is new; all
+  /// are stepped. It compiles that one alone.
+  void recompile_moved(std::size_t body, BodyDescription moved);
   /// Of all bodies, in their order.
   std::vector<BodyId> ids() const;
   /// Changes nothing where it fails.
   void melt(const std::vector<MeltedBody>& bodies);
+  /// The constants of springs that hold bodies, for the scene's step.
+  void tune_grabs();
   /// Rigid particles to their poses, for views.
   void pose_rigid_particles();
 

@@ -47,6 +47,9 @@ Snapshot::~Snapshot() = default;
 std::uint64_t Snapshot::state_hash() const {
   return content_->hash();
 }
+const Scene& Snapshot::scene() const {
+  return content_->all().scene;
+}
 
 namespace {
 
@@ -72,7 +75,11 @@ std::shared_ptr<const Model> compile_saved(Scene scene, std::vector<SavedBody> b
                                   : nullptr);
   }
   const std::shared_ptr<Model> model = compile(std::move(scene), ids, std::move(samples));
-  for (std::size_t b = 0; b < bodies.size(); ++b) model->damping.own[b] = bodies[b].damping;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Oscillation& own = model->damping.own[b];
+    model->damping.is_current = model->damping.is_current && own == bodies[b].damping;
+    own = bodies[b].damping;
+  }
   forget_samples(*model);
   return model;
 }
@@ -95,6 +102,7 @@ std::vector<std::uint8_t> Snapshot::to_bytes() const {
           content_->sleepers != nullptr);
   if (content_->sleepers) archive(content_->sleepers->configuration, content_->sleepers->islands);
   archive(content_->state, content_->controls);
+  if (all.scene.vat && all.scene.vat->hand) archive(*all.scene.vat->hand);
   close_seal(bytes);
   return bytes;
 }
@@ -134,7 +142,13 @@ Status Simulation::Impl::load(LoadingArchive& archive) {
   if (some_sleep) archive(configuration, islands);
   Content content;
   archive(content.state, content.controls);
+  std::optional<HandMotion> hand;  // what users do comes last, as it came into the format
+  if (archive.left() > 0 && scene.vat) archive(hand.emplace());
   if (Status status = bad_bytes(archive); !status) return status;
+  if (hand) {
+    if (Status status = check_saved_hand(*hand); !status) return status;
+    scene.vat->hand = hand;
+  }
   if (Status status = check_saved_scene(scene, bodies, next_id); !status) return status;
 
   content.model = compile_saved(std::move(scene), std::move(bodies));

@@ -63,8 +63,8 @@ void set_viscosities(const StepContext& c, F&& f) {
 
 /// Of liquid towards liquid: mu_ij is 2 mu_i mu_j / (mu_i + mu_j), see mean_viscosity().
 PairViscosity mean_of(Real mu) {
-  constexpr Real kLeast =
-      std::numeric_limits<float>::min();  // not 0 over 0 between two without any
+  // Not 0 over 0 between two without any.
+  constexpr Real kLeast = static_cast<Real>(std::numeric_limits<float>::min());
   return {2 * mu, 1, std::max(mu, kLeast)};
 }
 

@@ -89,7 +89,8 @@ void DampingMatrix::collect_rigid(const ForceModel& f) {
     });
     const auto of_block = std::span(rigid_).subspan(first);
     std::ranges::sort(of_block);
-    rigid_.resize(rigid_.size() - std::ranges::unique(of_block).size());
+    const auto last = std::unique(of_block.begin(), of_block.end());
+    rigid_.resize(rigid_.size() - static_cast<std::size_t>(of_block.end() - last));
   }
 }
 

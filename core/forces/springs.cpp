@@ -17,16 +17,18 @@ void add_block(StepContext& c, Index begin, Index end) {
   const Vec3* const velocities = c.configuration.velocity.data();
   Vec3* const directions = c.work.spring_directions.data();
   const int dimensions = c.model.scene.dimensions;
+  const Model* const model = &c.model;
+  const Configuration* const configuration = &c.configuration;
   BlockSums sums;
   sum_over_springs(c.model, begin, end, sums, [&](Index e) {
-    return [=, &c, position = positions[e], velocity = velocities[e]](Index s) -> Vec3 {
+    return [=, position = positions[e], velocity = velocities[e]](Index s) -> Vec3 {
       const SpringEnd& spring = ends[s];
       const Vec3 x = position - positions[spring.other];
       const Real r = x.norm();
       const Vec3 n = r > 0 ? Vec3(x * (1 / r)) : coincident_direction(e, spring.other, dimensions);
       const Real speed = (velocity - velocities[spring.other]).dot(n);
       if constexpr (springs_change) {
-        const SpringEnd now = present_spring(c.model, c.configuration, s);
+        const SpringEnd now = present_spring(*model, *configuration, s);
         // Those of torn springs are not asked for a damping that they no longer have.
         if constexpr (keep_directions) directions[s] = now.damping > 0 ? n : Vec3(Vec3::Zero());
         return connection_push(now.stiffness, now.damping, now.rest_length, r, speed) * n;

@@ -12,9 +12,16 @@ struct VatMotion {
   Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 };
 VatMotion vat_motion(const Vat& vat, Real time);
+/// What of it is the hand's, from its start on.
+VatMotion hand_motion(const HandMotion& hand, Real time);
+/// Whether it is not at rest at its target yet.
+bool is_moving(const HandMotion& hand, Real time);
 
-/// Whether any of its walls ever moves, across itself or along.
-bool moves_walls(const Vat& vat);
+/// Whether any of its walls ever moves, across itself or along; of a hand's motions those that are
+/// not over at `time`.
+bool moves_walls(const Vat& vat, Real time);
+/// From `time` on no wall moves across itself any faster [m/s].
+Real greatest_vat_speed(const Vat& vat, Real time);
 
 /// How far `p` is inside each wall of the vat (negative: beyond it) [m], and the walls' inward
 /// normals. The last wall is the lid.

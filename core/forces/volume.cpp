@@ -6,7 +6,7 @@
 namespace vat {
 
 void compute_cell_pressure(StepContext& c) {
-  const std::vector<VolumeCell>& cells = c.model.cells;
+  const SharedArray<VolumeCell>& cells = c.model.cells;
   c.work.cell_pressure.resize(cells.size());
   for_blocks(c.runner, cells.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

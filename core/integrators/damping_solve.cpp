@@ -9,7 +9,7 @@ namespace vat {
 namespace {
 
 constexpr Real kTolerance = 1e-2;  // of the change of velocities, in the norm of M
-constexpr int kMaxIterations = 200;
+constexpr int kMostDampingPasses = 200;
 
 /// The solve's constants.
 struct Equation {
@@ -86,8 +86,12 @@ void apply_damping(const Equation& eq, Motion& w, Motion& force) {
 template <class F>
 Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
   const Model& model = eq.model();
-  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
-  Real error = sum_over_particles(eq, partial_sums, [&](std::size_t i, Real& sum) {
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  Motion& w = eq.scratch.change;
+  Motion& force = eq.scratch.force;
+  Motion& r = eq.scratch.residual;
+  Motion& p = eq.scratch.direction;
+  Real error = sum_over_particles(eq, eq.scratch.partial_sums, [&](std::size_t i, Real& sum) {
     r.particle[i] = eq.dt * forces.particle[i] + model.mass[i] * given_velocity(i);
     p.particle[i] = model.inverse_mass[i] * r.particle[i];
     w.particle[i].setZero();
@@ -110,8 +114,10 @@ Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
 /// <p, (M - dt D) p> with q = D p.
 Real curvature_along(const Equation& eq) {
   const Model& model = eq.model();
-  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
-  Real sum = sum_over_particles(eq, partial_sums, [&](std::size_t i, Real& part) {
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  const Motion& p = eq.scratch.direction;
+  const Motion& q = eq.scratch.product;
+  Real sum = sum_over_particles(eq, eq.scratch.partial_sums, [&](std::size_t i, Real& part) {
     part += p.particle[i].dot(model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
   });
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -124,8 +130,13 @@ Real curvature_along(const Equation& eq) {
 /// w += length p, and what follows from it for D w and r.
 DampingSums advance_along(const Equation& eq, Real length) {
   const Model& model = eq.model();
-  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
-  DampingSums total = sum_over_particles(eq, sums, [&](std::size_t i, DampingSums& sum) {
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  Motion& w = eq.scratch.change;
+  Motion& force = eq.scratch.force;
+  Motion& r = eq.scratch.residual;
+  const Motion& p = eq.scratch.direction;
+  const Motion& q = eq.scratch.product;
+  DampingSums total = sum_over_particles(eq, eq.scratch.sums, [&](std::size_t i, DampingSums& sum) {
     w.particle[i] += length * p.particle[i];
     force.particle[i] += length * q.particle[i];
     r.particle[i] -= length * (model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
@@ -151,7 +162,9 @@ DampingSums advance_along(const Equation& eq, Real length) {
 /// p = M^-1 r + share p.
 void turn_direction(const Equation& eq, Real share) {
   const Model& model = eq.model();
-  auto& [matrix, bodies, w, force, r, p, q, rub_torque, partial_sums, sums] = eq.scratch;
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  const Motion& r = eq.scratch.residual;
+  Motion& p = eq.scratch.direction;
   for_blocks(eq.force_model.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       p.particle[i] = model.inverse_mass[i] * r.particle[i] + share * p.particle[i];
@@ -166,7 +179,7 @@ void turn_direction(const Equation& eq, Real share) {
 /// Conjugate gradients from w = 0, preconditioned with M.
 void iterate(const Equation& eq, Real error) {
   Real size = 0;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMostDampingPasses; ++iteration) {
     if (!(error > kTolerance * kTolerance * size)) return;
     apply_damping(eq, eq.scratch.direction, eq.scratch.product);
     const Real curvature = curvature_along(eq);

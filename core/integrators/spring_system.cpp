@@ -3,7 +3,7 @@
 namespace vat {
 namespace {
 
-constexpr int kMaxIterations = 1000;
+constexpr int kMostPasses = 1000;
 
 }  // namespace
 
@@ -37,7 +37,11 @@ void SpringSystem::multiply() {
 }
 
 void SpringSystem::solve(Real tolerance) {
-  auto& [slopes, residual, change, left, direction, product, partial_sums] = scratch_;
+  const std::vector<Vec3>& residual = scratch_.residual;
+  std::vector<Vec3>& change = scratch_.change;
+  std::vector<Vec3>& left = scratch_.left;
+  std::vector<Vec3>& direction = scratch_.direction;
+  const std::vector<Vec3>& product = scratch_.product;
   for_particles([&](Index i) {
     const std::size_t k = place_of(i);
     change[k].setZero();
@@ -49,7 +53,7 @@ void SpringSystem::solve(Real tolerance) {
   };
   Real size = size_of_left();
   const Real enough = tolerance * tolerance * size;
-  for (int iteration = 0; iteration < kMaxIterations && size > enough; ++iteration) {
+  for (int iteration = 0; iteration < kMostPasses && size > enough; ++iteration) {
     multiply();
     const Real curvature =
         sum([&](Index i) { return direction[place_of(i)].dot(product[place_of(i)]); });

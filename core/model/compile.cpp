@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "core/forces/cohesion.h"
 #include "core/forces/vat_motion.h"
@@ -112,38 +115,86 @@ void lay_out_particles(Model& model) {
   append_bodies(model, [](const ModelBody& b) { return b.kind == BodyKind::rigid; });
 }
 
-void add_springs(Model& model) {
-  std::vector<std::vector<SpringEnd>> ends(model.free_count);
-  for (const ModelBody& body : model.bodies) {
-    if (!model.scene.forces.springs) break;
-    const Index first = body.particles.begin;
-    for (const SampledSpring& spring : body.sample->springs) {
-      const auto end_at = [&](Index other) {
-        return SpringEnd{first + other, spring.stiffness, spring.damping, spring.rest_length};
-      };
-      ends[first + spring.a].push_back(end_at(spring.b));
-      ends[first + spring.b].push_back(end_at(spring.a));
+/// What lists of different lengths take, one after the other: their beginnings, and behind the
+/// last.
+class ListLayout {
+ public:
+  explicit ListLayout(std::size_t lists) : begin_(lists + 1, 0) {}
+
+  void count(Index list) { ++begin_[list + 1]; }
+  /// When all is counted.
+  void lay_out() { std::partial_sum(begin_.begin(), begin_.end(), begin_.begin()); }
+  const std::vector<Index>& begin() const { return begin_; }
+  std::vector<Index> take() && { return std::move(begin_); }
+
+ private:
+  std::vector<Index> begin_;
+};
+
+/// The springs of one body, from each end, in order of the other one, and among those that join the
+/// same two in the sample's order: by a counting sort by the other end, then one by its own.
+void add_springs_of(const ModelBody& body, const std::vector<Index>& begin,
+                    std::vector<SpringEnd>& ends) {
+  struct End {
+    Index own;
+    Index spring;
+  };
+  const std::vector<SampledSpring>& springs = body.sample->springs;
+  const Index first = body.particles.begin;
+  const auto next_places = [&] {
+    return std::vector<Index>(begin.begin() + first, begin.begin() + body.particles.end);
+  };
+  std::vector<End> by_other(2 * springs.size());
+  std::vector<Index> next = next_places();
+  const Index offset = begin[first];
+  for (Index s = 0; s < springs.size(); ++s) {
+    by_other[next[springs[s].b]++ - offset] = {springs[s].a, s};
+    by_other[next[springs[s].a]++ - offset] = {springs[s].b, s};
+  }
+  next = next_places();
+  for (Index other = 0; other < body.particles.size(); ++other) {
+    for (Index e = begin[first + other]; e < begin[first + other + 1]; ++e) {
+      const End& end = by_other[e - offset];
+      const SampledSpring& spring = springs[end.spring];
+      ends[next[end.own]++] = {first + other, spring.stiffness, spring.damping, spring.rest_length};
     }
-  }
-  for (Index i = model.liquid_count; i < model.free_count; ++i) {
-    const Material& material = model.scene.materials[model.material[i]];
-    const bool may_change = material.plasticity || material.tearing_strain;
-    model.springs_change = model.springs_change || (may_change && !ends[i].empty());
-  }
-  model.spring_begin.push_back(0);
-  for (Index i = 0; i < model.free_count; ++i) {
-    std::vector<SpringEnd>& of_particle = ends[i];
-    std::ranges::stable_sort(of_particle, {}, &SpringEnd::other);
-    const auto own = std::ranges::lower_bound(of_particle, i, {}, &SpringEnd::other);
-    model.spring_own_begin.push_back(model.spring_begin.back() +
-                                     static_cast<Index>(own - of_particle.begin()));
-    model.spring_ends.insert(model.spring_ends.end(), of_particle.begin(), of_particle.end());
-    model.spring_begin.push_back(static_cast<Index>(model.spring_ends.size()));
   }
 }
 
+void add_springs(Model& model) {
+  ListLayout layout(model.free_count);
+  for (const ModelBody& body : model.bodies) {
+    if (!model.scene.forces.springs) break;
+    for (const SampledSpring& spring : body.sample->springs) {
+      layout.count(body.particles.begin + spring.a);
+      layout.count(body.particles.begin + spring.b);
+    }
+  }
+  layout.lay_out();
+  std::vector<SpringEnd> ends(layout.begin().back());
+  for (const ModelBody& body : model.bodies) {
+    const bool has_springs = model.scene.forces.springs && !body.sample->springs.empty();
+    if (has_springs) add_springs_of(body, layout.begin(), ends);
+  }
+  std::vector<Index> own_begin;
+  own_begin.reserve(model.free_count);
+  for (Index i = 0; i < model.free_count; ++i) {
+    const auto of_particle =
+        std::span(ends).subspan(layout.begin()[i], layout.begin()[i + 1] - layout.begin()[i]);
+    const auto own = std::ranges::lower_bound(of_particle, i, {}, &SpringEnd::other);
+    own_begin.push_back(layout.begin()[i] + static_cast<Index>(own - of_particle.begin()));
+    const Material& material = model.scene.materials[model.material[i]];
+    const bool may_change = material.plasticity || material.tearing_strain;
+    model.springs_change = model.springs_change || (may_change && !of_particle.empty());
+  }
+  model.spring_begin = std::move(layout).take();
+  model.spring_own_begin = std::move(own_begin);
+  model.spring_ends = std::move(ends);
+}
+
 void add_cells(Model& model) {
-  std::vector<std::vector<CellCorner>> corners(model.free_count);
+  std::vector<VolumeCell> cells;
+  ListLayout layout(model.free_count);
   const Index count = model.scene.dimensions == 3 ? 8 : 4;
   for (const ModelBody& body : model.bodies) {
     if (!model.scene.forces.springs) break;
@@ -151,16 +202,20 @@ void add_cells(Model& model) {
       VolumeCell cell{{}, sampled.volume, model.scene.materials[body.material].bulk_modulus};
       for (Index c = 0; c < count; ++c) {
         cell.corners[c] = body.particles.begin + sampled.corners[c];
-        corners[cell.corners[c]].push_back({static_cast<Index>(model.cells.size()), c});
+        layout.count(cell.corners[c]);
       }
-      model.cells.push_back(cell);
+      cells.push_back(cell);
     }
   }
-  model.cell_begin.push_back(0);
-  for (const std::vector<CellCorner>& of_particle : corners) {
-    model.cell_corners.insert(model.cell_corners.end(), of_particle.begin(), of_particle.end());
-    model.cell_begin.push_back(static_cast<Index>(model.cell_corners.size()));
+  layout.lay_out();
+  std::vector<CellCorner> corners(layout.begin().back());
+  std::vector<Index> next(layout.begin().begin(), layout.begin().end() - 1);
+  for (Index k = 0; k < cells.size(); ++k) {
+    for (Index c = 0; c < count; ++c) corners[next[cells[k].corners[c]]++] = {k, c};
   }
+  model.cells = std::move(cells);
+  model.cell_begin = std::move(layout).take();
+  model.cell_corners = std::move(corners);
 }
 
 void set_inertia(RigidModel& rigid, const Mat3& inertia) {
@@ -179,30 +234,35 @@ std::uint64_t first_free_step(const BodyDescription& body, Real step) {
   return body.fixed ? kNever : first_step_from(body.release, step);
 }
 
+/// What of a rigid body and its particles follows from where it begins.
+RigidModel make_rigid(Model& model, std::size_t index) {
+  const ModelBody& body = model.bodies[index];
+  const bool plane = model.scene.dimensions == 2;
+  const MassProperties properties =
+      plane ? plane_mass_properties(*body.sample) : mass_properties(*body.sample);
+  RigidModel rigid;
+  rigid.body = static_cast<Index>(index);
+  rigid.particles = body.particles;
+  rigid.inverse_mass = 1 / properties.mass;
+  rigid.free_from = first_free_step(model.scene.bodies[index], model.scene.numerics.step);
+  const Mat3 to_body =
+      model.scene.bodies[index].orientation.normalized().toRotationMatrix().transpose();
+  // In the plane it is the same in all axes, and rounding must not make it otherwise.
+  set_inertia(
+      rigid, plane ? properties.inertia : Mat3(to_body * properties.inertia * to_body.transpose()));
+  for (Index i = 0; i < body.particles.size(); ++i) {
+    model.local_position[body.particles.begin - model.free_count + i] =
+        to_body * (body.sample->positions[i] - properties.center_of_mass);
+  }
+  return rigid;
+}
+
 void add_rigid_bodies(Model& model) {
   model.local_position.resize(model.particle_count - model.free_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    ModelBody& body = model.bodies[b];
-    if (body.kind != BodyKind::rigid) continue;
-    const bool plane = model.scene.dimensions == 2;
-    const MassProperties properties =
-        plane ? plane_mass_properties(*body.sample) : mass_properties(*body.sample);
-    body.rigid = static_cast<Index>(model.rigid_bodies.size());
-    RigidModel rigid;
-    rigid.body = static_cast<Index>(b);
-    rigid.particles = body.particles;
-    rigid.inverse_mass = 1 / properties.mass;
-    rigid.free_from = first_free_step(model.scene.bodies[b], model.scene.numerics.step);
-    const Mat3 to_body =
-        model.scene.bodies[b].orientation.normalized().toRotationMatrix().transpose();
-    // In the plane it is the same in all axes, and rounding must not make it otherwise.
-    set_inertia(rigid, plane ? properties.inertia
-                             : Mat3(to_body * properties.inertia * to_body.transpose()));
-    model.rigid_bodies.push_back(rigid);
-    for (Index i = 0; i < body.particles.size(); ++i) {
-      model.local_position[body.particles.begin - model.free_count + i] =
-          to_body * (body.sample->positions[i] - properties.center_of_mass);
-    }
+    if (model.bodies[b].kind != BodyKind::rigid) continue;
+    model.bodies[b].rigid = static_cast<Index>(model.rigid_bodies.size());
+    model.rigid_bodies.push_back(make_rigid(model, b));
   }
 }
 
@@ -247,17 +307,29 @@ std::vector<const SampledBody*> samples_of(const Model& model) {
   return samples;
 }
 
+void take_greatest(const OscillatingPart& part, Oscillation& own) {
+  own = {std::max(own.omega2, part.bound.omega2), std::max(own.rate, part.bound.rate)};
+}
+
 ModelDamping find_damping(const Model& model) {
   ModelDamping damping;
   damping.any = model.is_filled;  // what is carried along with the transport velocity
   damping.own.resize(model.bodies.size());
   for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples_of(model))) {
     if (part.bound.rate > 0) damping.any = true;
-    if (!part.body) continue;
-    Oscillation& own = damping.own[*part.body];
-    own = {std::max(own.omega2, part.bound.omega2), std::max(own.rate, part.bound.rate)};
+    if (part.body) take_greatest(part, damping.own[*part.body]);
   }
   return damping;
+}
+
+/// The same of one body.
+Oscillation find_own_damping(const Model& model, std::size_t body) {
+  Oscillation own;
+  for (const OscillatingPart& part :
+       find_parts_of_body(model.scene, body, *sample_of(model, body))) {
+    if (part.body) take_greatest(part, own);
+  }
+  return own;
 }
 
 }  // namespace
@@ -351,6 +423,25 @@ std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
   model->damping = find_damping(*model);
   model->plan = make_step_plan(*model);
   return model;
+}
+
+std::shared_ptr<Model> with_moved_body(const Model& model, std::size_t index,
+                                       BodyDescription moved) {
+  auto result = std::make_shared<Model>(model);
+  result->scene.bodies[index] = std::move(moved);
+  ModelBody& body = result->bodies[index];
+  if (body.is_as_described) {
+    body.sample.reset();
+    body.sample = sample_of(*result, index);
+  }
+  if (body.kind == BodyKind::rigid) result->rigid_bodies[body.rigid] = make_rigid(*result, index);
+  compile_contacts_of_moved(*result, body);
+  for (std::size_t b = 0; b < result->bodies.size(); ++b) {
+    const bool may_be_old = !model.damping.is_current && result->bodies[b].kind == BodyKind::liquid;
+    if (b == index || may_be_old) result->damping.own[b] = find_own_damping(*result, b);
+  }
+  result->damping.is_current = true;
+  return result;
 }
 
 }  // namespace vat

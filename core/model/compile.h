@@ -17,6 +17,12 @@ std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
                                std::vector<std::shared_ptr<const SampledBody>> samples,
                                const Model* whole = nullptr);
 
+/// What compile() makes of the model's scene with one of its bodies beginning elsewhere, and moving
+/// otherwise, than its description has it; from the samples of the others, and at no more cost than
+/// that of the body itself and a copy. Bodies whose particles are not those of their description
+/// keep them.
+std::shared_ptr<Model> with_moved_body(const Model& model, std::size_t body, BodyDescription moved);
+
 /// Lets go the samples of liquids that their descriptions can give again; for when the state at
 /// time 0 is known. Of scenes in which liquid flows in or out, where they are needed again soon, it
 /// keeps all.

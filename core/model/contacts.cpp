@@ -1,6 +1,8 @@
 #include "core/model/contacts.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "core/forces/restitution.h"
 #include "core/neighbours/uniform_grid.h"
@@ -96,46 +98,73 @@ void find_reach(Model& model) {
   }
 }
 
-/// Adds to `excluded` the particles of `body` that start closer to one another than their radii.
-void exclude_close_pairs(const Model& model, const ModelBody& body,
-                         std::vector<std::vector<Index>>& excluded) {
+/// Of each particle of a body, those that never collide with it.
+using Excluded = std::vector<std::vector<Index>>;
+
+bool has_exclusions(const Model& model, const ModelBody& body) {
+  return body.kind == BodyKind::deformable && model.self_contacts[body.material];
+}
+
+/// Those that start closer to one another than their radii, or are joined by a spring; in order.
+Excluded exclusions_of(const Model& model, const ModelBody& body) {
   const std::vector<Vec3>& points = body.sample->positions;
   const std::vector<Real>& radii = body.sample->radii;
   const Real reach = 2 * *std::ranges::max_element(radii);
+  Excluded excluded(points.size());
   UniformGrid grid;
   grid.build(points, reach);
   for (Index i = 0; i < points.size(); ++i) {
+    std::vector<Index>& own = excluded[i];
     grid.for_each_run(points[i], reach, [&](Index begin, Index end) {
       for (Index slot = begin; slot < end; ++slot) {
         const Index j = grid.order()[slot];
         const Real threshold = radii[i] + radii[j];
         if (j != i && (points[i] - points[j]).squaredNorm() < threshold * threshold) {
-          excluded[body.particles.begin + i].push_back(body.particles.begin + j);
+          own.push_back(body.particles.begin + j);
         }
       }
     });
-  }
-  for (Index i = body.particles.begin; i < body.particles.end; ++i) {
-    for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
-      excluded[i].push_back(model.spring_ends[s].other);
+    const Index particle = body.particles.begin + i;
+    for (Index s = model.spring_begin[particle]; s < model.spring_begin[particle + 1]; ++s) {
+      own.push_back(model.spring_ends[s].other);
     }
+    std::ranges::sort(own);
+    own.erase(std::unique(own.begin(), own.end()), own.end());
   }
+  return excluded;
 }
 
+/// Exclusions of all particles, as they are added one after the other.
+struct ExclusionLists {
+  std::vector<Index> begin = {0};
+  std::vector<Index> all;
+
+  void add(std::span<const Index> of_particle) {
+    all.insert(all.end(), of_particle.begin(), of_particle.end());
+    begin.push_back(static_cast<Index>(all.size()));
+  }
+  void move_to(Model& model) && {
+    model.exclusion_begin = std::move(begin);
+    model.exclusions = std::move(all);
+  }
+};
+
 void find_exclusions(Model& model) {
-  std::vector<std::vector<Index>> excluded(model.free_count);
-  for (const ModelBody& body : model.bodies) {
-    if (body.kind == BodyKind::deformable && model.self_contacts[body.material]) {
-      exclude_close_pairs(model, body, excluded);
+  std::vector<Excluded> of_bodies(model.bodies.size());
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    if (has_exclusions(model, body)) of_bodies[b] = exclusions_of(model, body);
+  }
+  ExclusionLists lists;
+  for (Index i = 0; i < model.free_count; ++i) {
+    const Index b = model.body[i];
+    if (of_bodies[b].empty()) {
+      lists.add({});
+    } else {
+      lists.add(of_bodies[b][i - model.bodies[b].particles.begin]);
     }
   }
-  model.exclusion_begin.push_back(0);
-  for (std::vector<Index>& of_particle : excluded) {
-    std::ranges::sort(of_particle);
-    of_particle.erase(std::unique(of_particle.begin(), of_particle.end()), of_particle.end());
-    model.exclusions.insert(model.exclusions.end(), of_particle.begin(), of_particle.end());
-    model.exclusion_begin.push_back(static_cast<Index>(model.exclusions.size()));
-  }
+  std::move(lists).move_to(model);
 }
 
 }  // namespace
@@ -145,6 +174,21 @@ void compile_contacts(Model& model) {
   find_reach(model);
   if (!model.scene.forces.contacts) model.contact_reach = 0;
   if (model.has_self_contact) find_exclusions(model);
+}
+
+void compile_contacts_of_moved(Model& model, const ModelBody& body) {
+  if (!has_exclusions(model, body)) return;
+  const Excluded own = exclusions_of(model, body);
+  const auto known = [&](Index i) {
+    return std::span(model.exclusions)
+        .subspan(model.exclusion_begin[i], model.exclusion_begin[i + 1] - model.exclusion_begin[i]);
+  };
+  ExclusionLists lists;
+  for (Index i = 0; i < model.free_count; ++i) {
+    const bool is_own = i >= body.particles.begin && i < body.particles.end;
+    lists.add(is_own ? std::span<const Index>(own[i - body.particles.begin]) : known(i));
+  }
+  std::move(lists).move_to(model);
 }
 
 }  // namespace vat

@@ -8,4 +8,7 @@ namespace vat {
 /// particles and springs must be in the model already.
 void compile_contacts(Model& model);
 
+/// Brings them up to date where nothing has changed but where this body starts.
+void compile_contacts_of_moved(Model& model, const ModelBody& body);
+
 }  // namespace vat

@@ -1,6 +1,7 @@
 #include "core/model/limited_springs.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace vat {
 namespace {
@@ -23,12 +24,13 @@ std::vector<LimitedSpring> list_limited(const Model& model) {
 }  // namespace
 
 void find_limited_springs(Model& model) {
+  const std::vector<LimitedSpring> limited = list_limited(model);
   std::vector<std::vector<LimitedSpring>> colours;
-  std::vector<std::vector<bool>> is_taken(model.free_count);  // by particle and colour
+  std::vector<std::vector<bool>> is_taken(limited.empty() ? 0 : model.free_count);  // and colour
   const auto has = [&](Index i, std::size_t colour) {
     return colour < is_taken[i].size() && is_taken[i][colour];
   };
-  for (const LimitedSpring& spring : list_limited(model)) {
+  for (const LimitedSpring& spring : limited) {
     std::size_t colour = 0;
     while (has(spring.a, colour) || has(spring.b, colour)) ++colour;
     if (colours.size() <= colour) colours.resize(colour + 1);
@@ -38,11 +40,14 @@ void find_limited_springs(Model& model) {
     }
     colours[colour].push_back(spring);
   }
-  model.limited_begin.push_back(0);
+  std::vector<LimitedSpring> springs;
+  std::vector<Index> begins = {0};
   for (const std::vector<LimitedSpring>& colour : colours) {
-    model.limited_springs.insert(model.limited_springs.end(), colour.begin(), colour.end());
-    model.limited_begin.push_back(static_cast<Index>(model.limited_springs.size()));
+    springs.insert(springs.end(), colour.begin(), colour.end());
+    begins.push_back(static_cast<Index>(springs.size()));
   }
+  model.limited_springs = std::move(springs);
+  model.limited_begin = std::move(begins);
 }
 
 }  // namespace vat

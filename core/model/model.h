@@ -19,6 +19,7 @@
 #include "core/scene/scene.h"
 #include "core/scene/stable_step.h"
 #include "core/step/step_plan.h"
+#include "core/support/shared_array.h"
 #include "core/types.h"
 
 namespace vat {
@@ -135,10 +136,12 @@ struct RigidModel {
 struct ModelDamping {
   bool any = false;
   std::vector<Oscillation> own;  ///< by body: of its springs, or of its liquid
+  bool is_current = true;        ///< not for the weight of liquids once gravity has changed
 };
 
-/// A compiled scene: constant while it is stepped. Particles are ordered liquid, deformable, rigid,
-/// each body contiguous; of the deformable ones, those with implicit springs come last.
+/// A compiled scene: constant while it is stepped. What is large for deformable bodies is shared by
+/// the copies in which a command changes something else. Particles are ordered liquid, deformable,
+/// rigid, each body contiguous; of the deformable ones, those with implicit springs come last.
 struct Model {
   Scene scene;
   std::vector<ModelBody> bodies;  ///< in the scene's order
@@ -170,17 +173,17 @@ struct Model {
 
   // Static springs of free particles: ends of particle i are [spring_begin[i], spring_begin[i+1]),
   // in order of `other`, those to later particles from spring_own_begin[i] on.
-  std::vector<Index> spring_begin;
-  std::vector<Index> spring_own_begin;
-  std::vector<SpringEnd> spring_ends;
+  SharedArray<Index> spring_begin;
+  SharedArray<Index> spring_own_begin;
+  SharedArray<SpringEnd> spring_ends;
   // Cells of deformable bodies: corners at free particle i are [cell_begin[i], cell_begin[i+1]).
-  std::vector<VolumeCell> cells;
-  std::vector<Index> cell_begin;
-  std::vector<CellCorner> cell_corners;
+  SharedArray<VolumeCell> cells;
+  SharedArray<Index> cell_begin;
+  SharedArray<CellCorner> cell_corners;
 
   // By colour: none of [limited_begin[c], limited_begin[c + 1]) shares a particle with another.
-  std::vector<LimitedSpring> limited_springs;
-  std::vector<Index> limited_begin;
+  SharedArray<LimitedSpring> limited_springs;
+  SharedArray<Index> limited_begin;
   bool springs_change = false;  ///< some may flow or tear, see core/forces/spring_changes.h
 
   std::vector<ContactLaw> contact_laws;                       ///< materials x materials
@@ -188,8 +191,8 @@ struct Model {
   std::vector<std::optional<SpringConstants>> self_contacts;  ///< by material
   // Pairs of one deformable body that never collide: joined by a spring, or closer at the start
   // than they may come. Sorted; begins have an entry per free particle and one more.
-  std::vector<Index> exclusion_begin;
-  std::vector<Index> exclusions;
+  SharedArray<Index> exclusion_begin;
+  SharedArray<Index> exclusions;
   Real contact_reach = 0;   ///< [m] no contact between particles further apart than this
   bool is_coupled = false;  ///< liquids meet solids and walls by SPH, not by contacts
   bool is_filled = false;   ///< coupled, and without a free surface: pressure may be negative

@@ -44,7 +44,8 @@ void ContactSolve::set_geometry(const Configuration& predicted,
     rigid[b] = rigid_motion(body, at.rigid[b], body.is_held(force_model.step));
   }
   for (ContactConstraint& contact : constraints) {
-    auto& [first, second] = contact.ends;
+    const ContactEnd& first = contact.ends[0];
+    const ContactEnd& second = contact.ends[1];
     Real distance = 0;
     if (contact.wall >= 0) {
       contact.normal = wall_normal(contact.wall);

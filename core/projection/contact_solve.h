@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <ranges>
 #include <vector>
 
 #include "core/projection/contact_constraint.h"
@@ -47,8 +46,8 @@ struct ContactSolve {
       Real change = 0;
       for (ContactConstraint& contact : constraints) contact.gradient = -contact.impulse();
       for (ContactConstraint& contact : constraints) change = std::max(change, relax(contact));
-      for (ContactConstraint& contact : std::views::reverse(constraints)) {
-        change = std::max(change, relax(contact));
+      for (auto contact = constraints.rbegin(); contact != constraints.rend(); ++contact) {
+        change = std::max(change, relax(*contact));
       }
       if (change <= kTolerance) return true;
       last = extrapolate(constraints, last);

@@ -130,6 +130,18 @@ Status check_saved_state(const Model& model, const State& state) {
   return {};
 }
 
+Status check_saved_hand(const HandMotion& hand) {
+  const auto is_within = [](const Vec3& value, Real most) {
+    return value.allFinite() && value.cwiseAbs().maxCoeff() <= most;
+  };
+  constexpr Real kRounding = 1 + 1e-9;
+  if (std::isfinite(hand.start) && is_within(hand.offset, 2 * kMaxLength) &&
+      is_within(hand.velocity, kRounding * kMaxHandSpeed) && is_within(hand.target, kMaxLength)) {
+    return {};
+  }
+  return bad_value("/hand", "must be a motion that a hand can give a vat");
+}
+
 Status check_saved_controls(const Model& model, const Controls& controls) {
   const auto is_grab = [&](const Grab& grab) { return fits(model, grab); };
   const auto is_applied = [&](const AppliedForce& applied) {

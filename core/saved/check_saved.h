@@ -34,5 +34,7 @@ Status check_saved_sleepers(const Model& model, const Configuration& at,
 /// That the columns are those of the model.
 Status check_saved_state(const Model& model, const State& state);
 Status check_saved_controls(const Model& model, const Controls& controls);
+/// That a vat can be moved so.
+Status check_saved_hand(const HandMotion& hand);
 
 }  // namespace vat

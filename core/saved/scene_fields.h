@@ -132,8 +132,13 @@ void describe(Archive& archive, Of<Archive, Wall>& v) {
 }
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Vat>& v) {
-  auto& [min, max, lid, motion, walls] = v;
+  auto& [min, max, lid, motion, walls, hand] = v;  // a hand's motion is none of a scene's
   archive(min, max, lid, motion, walls);
+}
+template <class Archive>
+void describe(Archive& archive, Of<Archive, HandMotion>& v) {
+  auto& [start, offset, velocity, target] = v;
+  archive(start, offset, velocity, target);
 }
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Periodicity>& v) {

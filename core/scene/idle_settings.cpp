@@ -176,7 +176,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   if (scene.settling && std::ranges::none_of(scene.bodies, is_liquid)) {
     warn("/settling", "no body is liquid", warnings);
   }
-  if (scene.sleeping && scene.vat && moves_walls(*scene.vat)) {
+  if (scene.sleeping && scene.vat && moves_walls(*scene.vat, 0)) {
     warn("/sleeping", "nothing sleeps in a vat that moves", warnings);
   }
   warn_of_solver(scene, warnings);

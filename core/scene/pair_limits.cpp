@@ -1,5 +1,6 @@
 #include "core/scene/pair_limits.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -36,11 +37,23 @@ Particles gather(const Scene& scene, const std::vector<PairBody>& bodies, bool l
   return all;
 }
 
-/// Counts neighbours as the step searches for them, up to the limits.
+Particles in_order(const Particles& particles, std::span<const Index> order) {
+  Particles sorted;
+  sorted.positions.reserve(order.size());
+  sorted.material.reserve(order.size());
+  for (const Index i : order) {
+    sorted.positions.push_back(particles.positions[i]);
+    sorted.material.push_back(particles.material[i]);
+  }
+  return sorted;
+}
+
+/// Counts neighbours as the step searches for them, up to the limits. Of none that is tried is the
+/// distance asked where all of them count.
 class NeighbourCount {
  public:
-  NeighbourCount(std::size_t particles, const PeriodicBox& box)
-      : most_(max_start_pairs(particles)), box_(box) {}
+  NeighbourCount(std::size_t particles, const PeriodicBox& box, bool all_tried_count)
+      : most_(max_start_pairs(particles)), box_(box), all_tried_count_(all_tried_count) {}
 
   bool is_exceeded() const { return found_ > most_ || tried_ > kMaxSearch; }
 
@@ -52,16 +65,14 @@ class NeighbourCount {
     UniformGrid grid;
     grid.build(others.positions, reach);
     Particles sorted;  // near in space, near in memory
-    for (const Index i : grid.order()) {
-      sorted.positions.push_back(others.positions[i]);
-      sorted.material.push_back(others.material[i]);
-    }
+    if (!all_tried_count_) sorted = in_order(others, grid.order());
     for (std::size_t i = 0; i < particles.positions.size() && !is_exceeded(); ++i) {
       box_.for_each_image(particles.positions[i], reach, [&](const Vec3& shift) {
         const Vec3 p = particles.positions[i] + shift;
         grid.for_each_run(p, reach, [&](Index begin, Index end) {
           tried_ += end - begin;
-          for (Index j = begin; j < end; ++j) {
+          if (all_tried_count_) found_ += end - begin;
+          for (Index j = begin; j < end && !all_tried_count_; ++j) {
             const Real r2 = (p - sorted.positions[j]).squaredNorm();
             found_ += counts(particles.material[i], sorted.material[j], r2) ? 1 : 0;
           }
@@ -73,9 +84,22 @@ class NeighbourCount {
  private:
   std::size_t most_;
   PeriodicBox box_;
+  bool all_tried_count_;
   std::size_t found_ = 0;
   std::size_t tried_ = 0;
 };
+
+/// Whether what `add_all(count)` adds to a count is too much. Where there are so few that all that
+/// are tried would not be, their distances do not matter.
+template <class AddAll>
+bool are_too_many(std::size_t particles, const PeriodicBox& box, AddAll&& add_all) {
+  for (const bool all_tried_count : {true, false}) {
+    NeighbourCount count(particles, box, all_tried_count);
+    add_all(count);
+    if (!count.is_exceeded()) return false;
+  }
+  return true;
+}
 
 std::string too_many_text(const std::string& what, Real reach, std::size_t particles) {
   char text[200];
@@ -113,11 +137,12 @@ void check_liquid(const Scene& scene, const std::vector<PairBody>& bodies, const
     if (liquid) support2[m] = liquid->support_radius * liquid->support_radius;
   }
   const Real reach = scene.materials[*widest].liquid->support_radius;
-  NeighbourCount count(all.positions.size(), box_of(scene));
-  count.add(all, all, reach, [&](std::size_t own, std::size_t other, Real r2) {
-    return own == other && r2 < support2[own];
-  });
-  if (count.is_exceeded()) {
+  const auto add_all = [&](NeighbourCount& count) {
+    count.add(all, all, reach, [&](std::size_t own, std::size_t other, Real r2) {
+      return own == other && r2 < support2[own];
+    });
+  };
+  if (are_too_many(all.positions.size(), box_of(scene), add_all)) {
     check.add("too_many", path,
               too_many_text(name_support(scene.materials[*widest]), reach, all.positions.size()));
   }
@@ -173,27 +198,31 @@ ContactReach find_reach(const Scene& scene, const std::vector<PairBody>& bodies)
   return reach;
 }
 
-void check_contacts(const Scene& scene, const std::vector<PairBody>& bodies,
-                    const std::string& path, RangeCheck& check) {
+}  // namespace
+
+void check_contact_pairs(const Scene& scene, const std::vector<PairBody>& bodies,
+                         const std::string& path, RangeCheck& check) {
   const ContactReach reach = find_reach(scene, bodies);
   if (reach.distance == 0) return;
   const Particles solids = gather(scene, bodies, false);
   const Particles liquids = gather(scene, bodies, true);
   const std::size_t particles = solids.positions.size() + liquids.positions.size();
   const Real reach2 = reach.distance * reach.distance;
-  NeighbourCount count(particles, box_of(scene));
   const auto within = [&](std::size_t, std::size_t, Real r2) { return r2 < reach2; };
-  count.add(solids, solids, reach.distance, within);
-  count.add(liquids, solids, reach.distance, within);
-  if (reach.liquids_touch) {
+  const auto add_all = [&](NeighbourCount& count) {
+    count.add(solids, solids, reach.distance, within);
+    count.add(liquids, solids, reach.distance, within);
+    if (!reach.liquids_touch) return;
     count.add(liquids, liquids, reach.distance, [&](std::size_t own, std::size_t other, Real r2) {
       return own != other && r2 < reach2;
     });
-  }
-  if (count.is_exceeded()) {
+  };
+  if (are_too_many(particles, box_of(scene), add_all)) {
     check.add("too_many", path, too_many_text(reach.cause, reach.distance, particles));
   }
 }
+
+namespace {
 
 /// Adds an error where a particle could meet another one and its image at once.
 void check_length(const Periodicity& periodic, Real reach, const std::string& cause,
@@ -239,7 +268,57 @@ bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, cons
 void check_pairs(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
                  RangeCheck& check) {
   check_liquid(scene, bodies, path, check);
-  check_contacts(scene, bodies, path, check);
+  check_contact_pairs(scene, bodies, path, check);
+}
+
+void check_pairs_of_new(const Scene& scene, const std::vector<PairBody>& bodies,
+                        const std::string& path, RangeCheck& check) {
+  if (bodies.back().description->kind == BodyKind::liquid) {
+    check_liquid(scene, bodies, path, check);
+  }
+  check_contact_pairs(scene, bodies, path, check);
+}
+
+namespace {
+
+/// Whether particles of others, of those that `notices(body)` tells, may be within `reach` of the
+/// body.
+template <class Notices>
+bool is_near_others(const std::vector<PairBody>& bodies, std::size_t body, Real reach,
+                    Notices&& notices) {
+  Eigen::AlignedBox<Real, 3> box;
+  for (const Vec3& position : bodies[body].positions) box.extend(position);
+  const Vec3 margin = Vec3::Constant(reach * (1 + 1e-6));
+  const Eigen::AlignedBox<Real, 3> wide(box.min() - margin, box.max() + margin);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (b == body || !notices(*bodies[b].description)) continue;
+    const auto is_near = [&](const Vec3& position) { return wide.contains(position); };
+    if (std::ranges::any_of(bodies[b].positions, is_near)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void check_pairs_of_moved(const Scene& scene, const std::vector<PairBody>& bodies, std::size_t body,
+                          const std::string& path, RangeCheck& check) {
+  const BodyDescription& moved = *bodies[body].description;
+  const bool is_liquid = moved.kind == BodyKind::liquid;
+  const bool repeats = scene.periodic.has_value();  // images may be near
+  if (is_liquid) {
+    const Material& material = scene.materials[material_index(scene.materials, moved.material)];
+    const auto is_same_liquid = [&](const BodyDescription& other) {
+      return other.kind == BodyKind::liquid && other.material == moved.material;
+    };
+    if (repeats || is_near_others(bodies, body, material.liquid->support_radius, is_same_liquid)) {
+      check_liquid(scene, bodies, path, check);
+    }
+  }
+  const Real reach = find_reach(scene, bodies).distance;
+  const auto is_any = [](const BodyDescription&) { return true; };
+  if (reach > 0 && (repeats || is_near_others(bodies, body, reach, is_any))) {
+    check_contact_pairs(scene, bodies, path, check);
+  }
 }
 
 }  // namespace vat

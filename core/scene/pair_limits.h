@@ -28,5 +28,15 @@ bool check_periods(const Scene& scene, const std::vector<PairBody>& bodies, cons
 /// `path`. The periods must be long enough.
 void check_pairs(const Scene& scene, const std::vector<PairBody>& bodies, const std::string& path,
                  RangeCheck& check);
+/// The same where only the way in which bodies touch has changed.
+void check_contact_pairs(const Scene& scene, const std::vector<PairBody>& bodies,
+                         const std::string& path, RangeCheck& check);
+/// The same where only the last of the bodies is new.
+void check_pairs_of_new(const Scene& scene, const std::vector<PairBody>& bodies,
+                        const std::string& path, RangeCheck& check);
+/// The same where only one of the bodies has moved: where nothing is near it now, there are no more
+/// pairs than there were.
+void check_pairs_of_moved(const Scene& scene, const std::vector<PairBody>& bodies, std::size_t body,
+                          const std::string& path, RangeCheck& check);
 
 }  // namespace vat

@@ -51,6 +51,12 @@ class LatticeIndex {
   std::vector<Index> index_;
 };
 
+/// For one point within the lattice.
+std::size_t count_springs(const LatticeSprings& springs) {
+  return (springs.structural ? kStructural.size() : 0) + (springs.shear ? kShear.size() : 0) +
+         (springs.bend ? kBend.size() : 0);
+}
+
 template <std::size_t count>
 void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeIndex& index,
                          const std::array<Offset, count>& offsets,
@@ -120,6 +126,7 @@ void sample_lattice(const BodyDescription& body, const Material& material, int d
   const LatticeIndex index(lattice, points);
   if (material.bulk_modulus > 0) add_lattice_cells(points, index, dimensions, sample);
   if (material.springs) {
+    sample.springs.reserve(count_springs(*material.springs) * count);
     add_lattice_springs(points, index, kStructural, material.springs->structural, sample);
     add_lattice_springs(points, index, kShear, material.springs->shear, sample);
     add_lattice_springs(points, index, kBend, material.springs->bend, sample);

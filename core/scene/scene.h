@@ -257,6 +257,16 @@ struct SlideMotion {
   Real period = 1;  ///< [s]
 };
 
+/// How a hand moves a vat beside its own motion: along each axis from where it was, at rest or not,
+/// to its target, in the least time that kMaxHandSpeed and kMaxHandAcceleration allow, and there it
+/// stays. Never in a scene that a user writes: see Simulation::move_vat().
+struct HandMotion {
+  Real start = 0;                ///< [s]
+  Vec3 offset = Vec3::Zero();    ///< at the start [m]
+  Vec3 velocity = Vec3::Zero();  ///< the same [m/s]
+  Vec3 target = Vec3::Zero();    ///< [m]
+};
+
 /// Names of the axes, and of the vat's walls in the order of Vat::walls.
 inline constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
 inline constexpr std::array<const char*, 6> kWallNames{"x_min", "x_max", "y_min",
@@ -276,6 +286,7 @@ struct Vat {
   bool lid = false;
   std::optional<SlideMotion> motion;
   std::array<Wall, 6> walls{};  ///< x_min, x_max, y_min, y_max, z_min, z_max
+  std::optional<HandMotion> hand{};
 };
 
 /// A world that repeats itself along some axes: what leaves through one side comes in through the

@@ -8,6 +8,7 @@ namespace vat {
 struct Oscillation {
   Real omega2 = 0;  ///< [1/s^2]
   Real rate = 0;    ///< damping by mass [1/s]
+  bool operator==(const Oscillation&) const = default;
 };
 inline Oscillation operator+(const Oscillation& a, const Oscillation& b) {
   return {a.omega2 + b.omega2, a.rate + b.rate};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -43,38 +44,57 @@ struct SpringBound {
   Real least_ratio = std::numeric_limits<Real>::infinity();  ///< damping / stiffness [s]
 };
 
-/// max_i 2 lambda_max(sum_j k_ij n n^T) / m_i over the free particles, with k one of the springs'
-/// constants.
-template <class Constant>
-Real greatest_load(const SampledBody& body, Constant&& constant) {
-  std::vector<Mat3> load(body.positions.size(), Mat3::Zero());
-  for (const SampledSpring& spring : body.springs) {
-    const Vec3 x = body.positions[spring.a] - body.positions[spring.b];
-    const Real length = x.norm();
-    const Mat3 along = length > 0 ? Mat3(x * x.transpose() / (length * length)) : Mat3::Identity();
-    load[spring.a] += constant(spring) * along;
-    load[spring.b] += constant(spring) * along;
-  }
-  for (const Index fixed : body.fixed) load[fixed].setZero();
+/// A symmetric tensor: xx, yy, zz, xy, xz, yz.
+using Symmetric = std::array<Real, 6>;
+
+Symmetric along(const Vec3& x) {
+  const Real length = x.norm();
+  if (!(length > 0)) return {1, 1, 1, 0, 0, 0};
+  const Real length2 = length * length;
+  return {x[0] * x[0] / length2, x[1] * x[1] / length2, x[2] * x[2] / length2,
+          x[0] * x[1] / length2, x[0] * x[2] / length2, x[1] * x[2] / length2};
+}
+
+void add(Real factor, const Symmetric& tensor, Symmetric& sum) {
+  for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += factor * tensor[c];
+}
+
+Mat3 matrix_of(const Symmetric& t) {
+  Mat3 matrix;
+  matrix << t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2];
+  return matrix;
+}
+
+/// max_i 2 lambda_max(load_i) / m_i.
+Real greatest_load(const SampledBody& body, const std::vector<Symmetric>& loads) {
   Real greatest = 0;
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  for (std::size_t i = 0; i < load.size(); ++i) {
-    if (2 * load[i].trace() <= greatest * body.masses[i]) continue;  // its eigenvalues are below
-    solver.compute(load[i], Eigen::EigenvaluesOnly);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const Mat3 load = matrix_of(loads[i]);
+    if (2 * load.trace() <= greatest * body.masses[i]) continue;  // its eigenvalues are below
+    solver.compute(load, Eigen::EigenvaluesOnly);
     greatest = std::max(greatest, 2 * solver.eigenvalues()[2] / body.masses[i]);
   }
   return greatest;
 }
 
+/// Of loads sum_j k_ij n n^T on the free particles, with k each of the springs' constants.
 SpringBound bound_springs(const SampledBody& body) {
   SpringBound bound;
   if (body.springs.empty()) return bound;
-  bound.greatest.omega2 = greatest_load(body, [](const SampledSpring& s) { return s.stiffness; });
-  bound.greatest.rate = greatest_load(body, [](const SampledSpring& s) { return s.damping; });
+  std::vector<Symmetric> stiffness(body.positions.size());
+  std::vector<Symmetric> damping(body.positions.size());
   for (const SampledSpring& spring : body.springs) {
+    const Symmetric direction = along(body.positions[spring.a] - body.positions[spring.b]);
+    for (const Index end : {spring.a, spring.b}) {
+      add(spring.stiffness, direction, stiffness[end]);
+      add(spring.damping, direction, damping[end]);
+    }
     if (spring.stiffness == 0) continue;
     bound.least_ratio = std::min(bound.least_ratio, spring.damping / spring.stiffness);
   }
+  for (const Index fixed : body.fixed) stiffness[fixed] = damping[fixed] = {};
+  bound.greatest = {greatest_load(body, stiffness), greatest_load(body, damping)};
   return bound;
 }
 
@@ -265,17 +285,25 @@ Real compressed_step_share(int dimensions) {
   return dimensions == 2 ? 0.82 : 0.9;
 }
 
+std::vector<OscillatingPart> find_parts_of_body(const Scene& scene, std::size_t body,
+                                                const SampledBody& sample) {
+  std::vector<OscillatingPart> parts;
+  const BodyDescription& description = scene.bodies[body];
+  if (liquid_of(scene, description) != nullptr) add_liquid(scene, body, sample, parts);
+  if (description.kind != BodyKind::liquid) {
+    if (scene.forces.springs) add_solid(scene, body, sample, parts);
+    if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, body, sample, parts);
+  }
+  for (OscillatingPart& part : parts) part.damping_is_solved = solves_damping(scene);
+  return parts;
+}
+
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples) {
   std::vector<OscillatingPart> parts;
   for (std::size_t b = 0; b < samples.size(); ++b) {
-    if (liquid_of(scene, scene.bodies[b]) != nullptr) add_liquid(scene, b, *samples[b], parts);
-    if (scene.bodies[b].kind == BodyKind::liquid) continue;
-    if (scene.forces.springs) add_solid(scene, b, *samples[b], parts);
-    if (couples_liquids(scene.pressure_solver)) add_wet_solid(scene, b, *samples[b], parts);
+    std::ranges::move(find_parts_of_body(scene, b, *samples[b]), std::back_inserter(parts));
   }
-  const bool is_solved = solves_damping(scene);
-  for (OscillatingPart& part : parts) part.damping_is_solved = is_solved;
   add_contacts(scene, samples, parts);
   return parts;
 }

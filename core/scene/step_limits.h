@@ -53,6 +53,10 @@ Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions);
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples);
 
+/// Those that one body makes by itself.
+std::vector<OscillatingPart> find_parts_of_body(const Scene& scene, std::size_t body,
+                                                const SampledBody& sample);
+
 /// What is left of the step that is stable for sound where an impact compresses the liquid. Of the
 /// gas by up to an eighth: lattices of h / 2 are then stable up to 0.71 h / c in the plane and 0.78
 /// h / c in space, nine tenths of which are the step that is taken. Of the weakly compressible

@@ -274,7 +274,7 @@ Errors find_body_errors(const Scene& scene, const Present& present, const BodyDe
   if (!errors.empty()) return errors;
   std::vector<PairBody> pairs = pair_bodies(scene, present);
   pairs.push_back({&body, sample->positions, sample->radii});
-  if (check_periods(scene, pairs, path, check)) check_pairs(scene, pairs, path, check);
+  if (check_periods(scene, pairs, path, check)) check_pairs_of_new(scene, pairs, path, check);
   return errors;
 }
 
@@ -296,7 +296,10 @@ Errors find_interface_errors(const Scene& scene, const Present& present,
   if (!errors.empty()) return errors;
   Scene changed = scene;
   changed.interfaces.push_back(interface);  // the last of a pair of materials counts
-  check_neighbours(changed, present, path, path, check);
+  const std::vector<PairBody> pairs = pair_bodies(changed, present);
+  if (check_periods(changed, pairs, path, check)) {
+    check_contact_pairs(changed, pairs, path, check);
+  }
   return errors;
 }
 
@@ -310,6 +313,93 @@ Errors find_melting_errors(const Scene& scene, const Present& present, std::size
   changed.bodies[body].kind = BodyKind::liquid;
   changed.bodies[body].material = into;
   check_neighbours(changed, present, "/body", "/body", check);
+  return errors;
+}
+
+namespace {
+
+constexpr const char* kPositionPath = "/position";
+
+/// Of a body where it is put; `check_its_pairs(pairs, check)` is for its neighbours.
+template <class CheckPairs>
+Errors find_placed_errors(const Scene& scene, const Present& present, std::size_t body,
+                          CheckPairs&& check_its_pairs) {
+  Errors errors;
+  RangeCheck check(errors);
+  const std::span<const Vec3> positions = present.bodies[body].positions;
+  if (scene.vat) check_inside_vat(scene, present.vat_offset, positions, kPositionPath, check);
+  if (!errors.empty()) return errors;
+  const std::vector<PairBody> pairs = pair_bodies(scene, present);
+  if (check_periods(scene, pairs, kPositionPath, check)) check_its_pairs(pairs, check);
+  return errors;
+}
+
+}  // namespace
+
+Errors find_moved_errors(const Scene& scene, const Present& present, std::size_t body) {
+  return find_placed_errors(scene, present, body, [&](const auto& pairs, RangeCheck& check) {
+    check_pairs_of_moved(scene, pairs, body, kPositionPath, check);
+  });
+}
+
+Errors find_returned_errors(const Scene& scene, const Present& present) {
+  const std::size_t last = scene.bodies.size() - 1;
+  return find_placed_errors(scene, present, last, [&](const auto& pairs, RangeCheck& check) {
+    check_pairs_of_new(scene, pairs, kPositionPath, check);
+  });
+}
+
+Scene with_material(Scene scene, const Material& material) {
+  const auto found = std::ranges::find(scene.materials, material.name, &Material::name);
+  if (found == scene.materials.end()) {
+    scene.materials.push_back(material);
+  } else {
+    *found = material;
+  }
+  return scene;
+}
+
+Errors find_material_errors(const Scene& scene, const Present& present,
+                            const std::vector<const SampledBody*>& known, const Material& material,
+                            const std::string& path) {
+  const Scene changed = with_material(scene, material);
+  const std::string own = element("/materials", material_index(changed.materials, material.name));
+  Errors errors = find_changed_errors(changed, known);
+  for (Error& error : errors) {
+    const bool is_own = error.path == own || error.path.starts_with(own + '/');
+    if (!is_own) error.message = error.path + " would be wrong: " + error.message;
+    error.path = is_own ? path + error.path.substr(own.size()) : path;
+  }
+  RangeCheck check(errors);
+  if (errors.empty()) check_neighbours(changed, present, path, path, check);
+  return errors;
+}
+
+Errors find_moved_vat_errors(const Scene& scene, const Vec3& offset) {
+  const std::string path = "/offset";
+  if (!scene.vat) return {Error{"no_vat", path, "the scene has no vat"}};
+  Errors errors;
+  RangeCheck check(errors);
+  const Real side = (scene.vat->max - scene.vat->min).maxCoeff();
+  check.vector(offset, -side, side, path);
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool repeats = scene.periodic && scene.periodic->axes[static_cast<std::size_t>(axis)];
+    if (!repeats || offset[axis] == 0) continue;
+    check.add("not_allowed", path,
+              std::string("must be 0 along the periodic axis ") + kAxisNames[axis]);
+  }
+  if (scene.dimensions == 2 && offset.y() != 0) {
+    check.add("off_plane", path, "must have y = 0 in a scene of two dimensions");
+  }
+  if (!errors.empty() || (scene.emitters.empty() && scene.drains.empty())) return errors;
+  Scene moved = scene;
+  moved.vat->min += offset;
+  moved.vat->max += offset;
+  check_flow(moved, errors);
+  for (Error& error : errors) {
+    error.message = error.path + " would be wrong: " + error.message;
+    error.path = path;
+  }
   return errors;
 }
 

@@ -49,6 +49,27 @@ Errors find_body_errors(const Scene& scene, const BodyDescription& body, const s
 Errors find_melting_errors(const Scene& scene, const Present& present, std::size_t body,
                            const std::string& into);
 
+/// The errors of the scene's body `body` where it is put: `present` has it there. Paths are
+/// /position. Samples nothing.
+Errors find_moved_errors(const Scene& scene, const Present& present, std::size_t body);
+/// The same of the last body, which comes to where `present` has it.
+Errors find_returned_errors(const Scene& scene, const Present& present);
+
+/// The errors of a material that is added or that replaces the one of its name, of a scene that has
+/// changed; `known` is as for find_changed_errors(). Paths start with `path`.
+Errors find_material_errors(const Scene& scene, const Present& present,
+                            const std::vector<const SampledBody*>& known, const Material& material,
+                            const std::string& path);
+/// The scene with it.
+Scene with_material(Scene scene, const Material& material);
+
+/// The errors of a vat that a hand moves so far from where it is by itself; paths are /offset.
+Errors find_moved_vat_errors(const Scene& scene, const Vec3& offset);
+
+/// The errors of the integrator and the step of a scene that has none but by these; paths are
+/// /integrator and /step. Samples nothing.
+Errors find_numerics_errors(const Scene& scene);
+
 /// The errors of an interface that is added or that replaces the one of the same materials; paths
 /// start with `path`. Samples nothing.
 Errors find_interface_errors(const Scene& scene, const Present& present,

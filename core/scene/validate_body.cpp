@@ -126,15 +126,6 @@ bool is_inside(const Scene& scene, const Vec3& p) {
   return true;
 }
 
-void check_inside_vat(const Scene& scene, const Vec3& offset, const SampledBody& sample,
-                      const std::string& path, RangeCheck& check) {
-  for (const Vec3& position : sample.positions) {
-    if (is_inside(scene, position - offset)) continue;
-    check.add("outside_vat", path, "must start inside the vat, with every particle's centre");
-    return;
-  }
-}
-
 struct BodySize {
   std::size_t particles = 0;
   std::size_t lattice_springs = 0;
@@ -179,6 +170,15 @@ std::optional<BodySize> measure_body(const BodyDescription& body, const Material
 
 }  // namespace
 
+void check_inside_vat(const Scene& scene, const Vec3& offset, std::span<const Vec3> positions,
+                      const std::string& path, RangeCheck& check) {
+  for (const Vec3& position : positions) {
+    if (is_inside(scene, position - offset)) continue;
+    check.add("outside_vat", path, "must start inside the vat, with every particle's centre");
+    return;
+  }
+}
+
 std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,
                                       const BodyDescription& body, const std::string& path,
                                       Allowance& allowance, RangeCheck& check) {
@@ -207,7 +207,7 @@ std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset
     if (body.kind == BodyKind::liquid) {
       check_surface_support(scene, *material, *sample, path, own_check);
     }
-    if (scene.vat) check_inside_vat(scene, vat_offset, *sample, path, own_check);
+    if (scene.vat) check_inside_vat(scene, vat_offset, sample->positions, path, own_check);
   }
   if (!own.empty()) sample.reset();
   for (Error& error : own) {

@@ -38,6 +38,20 @@ Scene without_bounds(const Scene& scene) {
 
 }  // namespace
 
+Errors find_numerics_errors(const Scene& scene) {
+  Errors errors = find_errors(without_bodies(scene));
+  const std::string own = "/numerics";
+  for (Error& error : errors) {
+    if (error.path == own + "/integrator" || error.path == own + "/step") {
+      error.path = error.path.substr(own.size());
+      continue;
+    }
+    error.message = error.path + " would be wrong: " + error.message;
+    error.path = error.path == own + "/tick" ? "/step" : "/integrator";
+  }
+  return errors;
+}
+
 Errors find_changed_errors(const Scene& scene, const std::vector<const SampledBody*>& known) {
   Errors errors = find_errors(without_bodies(scene));
   if (!errors.empty()) return errors;

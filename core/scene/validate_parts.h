@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/scene/lattice.h"
@@ -83,6 +84,10 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
 std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,
                                       const BodyDescription& body, const std::string& path,
                                       Allowance& allowance, RangeCheck& check);
+
+/// That all these are between the walls that the vat has, moved by `offset`.
+void check_inside_vat(const Scene& scene, const Vec3& offset, std::span<const Vec3> positions,
+                      const std::string& path, RangeCheck& check);
 
 /// Where a body starts and how it moves: ranges, and what its kind allows.
 void check_motion(const BodyDescription& body, const std::string& path, RangeCheck& check);

@@ -23,7 +23,7 @@ bool is_in_drain(const Model& model, const ModelBody& body, const Configuration&
 }  // namespace
 
 bool drives_all(const Scene& scene, Real time) {
-  if (scene.vat && moves_walls(*scene.vat)) return true;
+  if (scene.vat && moves_walls(*scene.vat, time)) return true;
   if (scene.settling && time < scene.settling->until) return true;
   return std::ranges::any_of(
       scene.emitters, [&](const Emitter& emitter) { return emitter.open && time < emitter.until; });

@@ -1,12 +1,34 @@
 #include "core/state/body_state.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 
 #include "core/forces/vat_motion.h"
 #include "core/support/check.h"
 
 namespace vat {
+
+namespace {
+
+/// Whether springs join the same particles of both.
+bool have_same_springs(const Placed& from, const Placed& to) {
+  for (Index k = 0; k < from.body.particles.size(); ++k) {
+    const auto ends = [k](const Placed& placed) {
+      const Index i = placed.body.particles.begin + k;
+      return std::span(placed.model.spring_ends)
+          .subspan(placed.model.spring_begin[i],
+                   placed.model.spring_begin[i + 1] - placed.model.spring_begin[i]);
+    };
+    const auto join_same = [&](const SpringEnd& a, const SpringEnd& b) {
+      return a.other - from.body.particles.begin == b.other - to.body.particles.begin;
+    };
+    if (!std::ranges::equal(ends(from), ends(to), join_same)) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 void carry_over(const Placed& from, const Configuration& source, const Placed& to,
                 const std::optional<std::vector<Index>>& kept, Configuration& target) {
@@ -30,7 +52,7 @@ void carry_over(const Placed& from, const Configuration& source, const Placed& t
   if (from.body.kind == BodyKind::rigid) {
     target.rigid[to.body.rigid] = source.rigid[from.body.rigid];
   } else if (to.body.kind == BodyKind::deformable && !source.springs.empty() &&
-             !target.springs.empty()) {
+             !target.springs.empty() && have_same_springs(from, to)) {
     const Index end = from.model.spring_begin[first];
     const auto ends = from.model.spring_begin[from.body.particles.end] - end;
     std::copy_n(source.springs.begin() + end, ends,
@@ -77,7 +99,7 @@ Index moved(const Model& from, const std::vector<Index>& begins, Index particle)
 }
 
 /// Adds the contacts that there are in the other model too.
-void add_contacts(const Model& from, const std::vector<ContactImpulse>& source,
+void append_contacts(const Model& from, const std::vector<ContactImpulse>& source,
                   const std::vector<Index>& begins, std::vector<ContactImpulse>& target) {
   for (ContactImpulse contact : source) {
     contact.particle = moved(from, begins, contact.particle);
@@ -111,7 +133,7 @@ Configuration part_of(const Model& whole, const Configuration& source, const Mod
   for_each_shared_body(part, whole, [&](const ModelBody& body, const ModelBody& same) {
     carry_over({whole, same}, source, {part, body}, {}, target);
   });
-  add_contacts(whole, source.contacts, beginnings(part, whole), target.contacts);
+  append_contacts(whole, source.contacts, beginnings(part, whole), target.contacts);
   return target;
 }
 
@@ -124,7 +146,7 @@ void write_part(const Model& part, const Configuration& source, const Model& who
 
 void add_contacts_of_part(const Model& part, const Configuration& source, const Model& whole,
                           Configuration& target) {
-  add_contacts(part, source.contacts, beginnings_in_whole(part, whole), target.contacts);
+  append_contacts(part, source.contacts, beginnings_in_whole(part, whole), target.contacts);
   std::ranges::sort(target.contacts, {}, [](const ContactImpulse& contact) {
     return std::tuple(contact.particle, contact.other);
   });

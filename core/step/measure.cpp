@@ -133,15 +133,6 @@ bool runs(const StepPlan& plan, StageFunction stage) {
   return std::ranges::find(plan.stages, stage, &Stage::run) != plan.stages.end();
 }
 
-/// Runs the plan but for external forces: `forces` are those of particles and walls on each other.
-void evaluate_inner_forces(StepContext& c) {
-  std::ranges::fill(c.forces.particle, Vec3::Zero());
-  if (c.model.has_friction) c.forces.rub_torque.assign(c.model.particle_count, Vec3::Zero());
-  for (const Stage& stage : c.model.plan.stages) {
-    if (stage.run != &set_external_forces) stage.run(c);
-  }
-}
-
 /// Density and pressure where no force needs them.
 void complete_liquid_fields(StepContext& c) {
   if (c.model.liquid_count == 0 || c.model.is_coupled) return;
@@ -179,12 +170,13 @@ Real external_energy(const Model& model, const Configuration& at) {
 
 }  // namespace
 
-Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) {
+StepContext evaluate_inner_forces(const ForceModel& force_model, Configuration& at, Real time,
+                                  Forces& forces) {
   const Model& model = force_model.model;
-  Forces forces;
-  forces.particle.resize(model.particle_count);
+  forces.particle.assign(model.particle_count, Vec3::Zero());
   forces.rigid_force.resize(model.rigid_bodies.size());
   forces.rigid_torque.resize(model.rigid_bodies.size());
+  if (model.has_friction) forces.rub_torque.assign(model.particle_count, Vec3::Zero());
   StepContext context{model,
                       force_model.controls,
                       time,
@@ -193,7 +185,16 @@ Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) 
                       forces,
                       force_model.work,
                       force_model.runner};
-  evaluate_inner_forces(context);
+  for (const Stage& stage : model.plan.stages) {
+    if (stage.run != &set_external_forces) stage.run(context);
+  }
+  return context;
+}
+
+Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) {
+  const Model& model = force_model.model;
+  Forces forces;
+  StepContext context = evaluate_inner_forces(force_model, at, time, forces);
   complete_liquid_fields(context);
 
   Diagnostics result{};

@@ -9,4 +9,9 @@ namespace vat {
 /// be that of the steps.
 Diagnostics measure(const ForceModel& force_model, Configuration configuration, Real time);
 
+/// Runs the plan but for external forces: `forces` are those of particles and walls on each other.
+/// What it gives is of the arguments, which must outlive it.
+StepContext evaluate_inner_forces(const ForceModel& force_model, Configuration& configuration,
+                                  Real time, Forces& forces);
+
 }  // namespace vat

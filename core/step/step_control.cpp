@@ -23,13 +23,15 @@ constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, by each of 
 constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by a percent in a step
 constexpr Real kGreatestTurn = 0.5;               // [rad] a step; the guard's is 1
 
-/// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they lie in `at`.
+/// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they start.
 template <class Constant>
-Real spring_load(const Model& model, const std::vector<Vec3>& at, Index i, Constant&& constant) {
+Real spring_load(const Model& model, const ModelBody& body, Index i, Constant&& constant) {
+  const std::vector<Vec3>& at = body.sample->positions;
+  const Index first = body.particles.begin;
   Mat3 load = Mat3::Zero();
   for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
     const SpringEnd& spring = model.spring_ends[s];
-    const Vec3 x = at[i] - at[spring.other];
+    const Vec3 x = at[i - first] - at[spring.other - first];
     const Real length2 = x.squaredNorm();
     load += constant(spring) *
             (length2 > 0 ? Mat3(x * x.transpose() / length2) : Mat3(Mat3::Identity()));
@@ -54,25 +56,62 @@ Real travel_share(const Model& model) {
   return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
 }
 
-/// But of liquids, which no bound asks for.
-std::vector<Vec3> starting_places(const Model& model) {
-  std::vector<Vec3> at(model.particle_count);
-  for (const ModelBody& body : model.bodies) {
-    if (!body.sample) continue;
-    std::ranges::copy(body.sample->positions, at.begin() + body.particles.begin);
+/// Those of a body's particles, which all have the same.
+void bound_liquid(const Model& model, std::size_t b, StepBounds& bounds) {
+  const IndexRange& particles = model.bodies[b].particles;
+  const bool has_level_of_its_own = model.scene.numerics.control == StepControl::local;
+  const Oscillation own = has_level_of_its_own
+                              ? Oscillation{}
+                              : limiting(model, compressed(model, model.damping.own[b]));
+  const Real step = safe_step(model.scene.numerics, own);
+  const Real step_at_rest = safe_step(model.scene.numerics, {});
+  for (Index i = particles.begin; i < particles.end; ++i) {
+    const bool is_free = model.inverse_mass[i] > 0;
+    bounds.own[i] = is_free ? own : Oscillation{};
+    bounds.own_step[i] = is_free ? step : step_at_rest;
   }
-  return at;
 }
 
-void add_cell_bounds(const Model& model, StepBounds& bounds) {
-  for (const ModelBody& body : model.bodies) {
-    if (!body.sample || body.sample->cells.empty() || !model.scene.forces.springs) continue;
-    const Real bulk_modulus = model.scene.materials[body.material].bulk_modulus;
-    const Real omega2 = bound_cells(*body.sample, bulk_modulus, model.scene.dimensions);
-    for (Index i = body.particles.begin; i < body.particles.end; ++i) {
-      if (model.inverse_mass[i] > 0) bounds.own[i].omega2 += omega2;
+void bound_deformable(const Model& model, const ModelBody& body, StepBounds& bounds) {
+  const Oscillation cells{
+      model.scene.forces.springs && !body.sample->cells.empty()
+          ? bound_cells(*body.sample, model.scene.materials[body.material].bulk_modulus,
+                        model.scene.dimensions)
+          : 0,
+      0};
+  for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+    Oscillation own;
+    if (model.inverse_mass[i] > 0) {
+      if (i < model.implicit_begin && model.spring_begin[i] != model.spring_begin[i + 1]) {
+        own = {spring_load(model, body, i, [](const SpringEnd& s) { return s.stiffness; }),
+               spring_load(model, body, i, [](const SpringEnd& s) { return s.damping; })};
+      }
+      own.omega2 += cells.omega2;
     }
+    bounds.own[i] = limiting(model, own);
+    bounds.own_step[i] = safe_step(model.scene.numerics, bounds.own[i]);
   }
+}
+
+Real find_scene_step(const Model& model) {
+  const Numerics& numerics = model.scene.numerics;
+  Real step = kInfinity;
+  if (model.scene.forces.gravity && model.scene.central_field &&
+      model.scene.central_field->angular_frequency > 0) {
+    step = resolving_phase_of_places(numerics) / model.scene.central_field->angular_frequency;
+  }
+  for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
+    if (model.bodies[b].kind == BodyKind::liquid) continue;
+    const Oscillation own = limiting(model, compressed(model, model.damping.own[b]));
+    step = std::min(step, safe_step(numerics, own));
+  }
+  return step;
+}
+
+void bound_body(const Model& model, std::size_t b, StepBounds& bounds) {
+  const ModelBody& body = model.bodies[b];
+  if (body.kind == BodyKind::liquid) bound_liquid(model, b, bounds);
+  if (body.kind == BodyKind::deformable) bound_deformable(model, body, bounds);
 }
 
 }  // namespace
@@ -80,36 +119,20 @@ void add_cell_bounds(const Model& model, StepBounds& bounds) {
 StepBounds find_step_bounds(const Model& model) {
   StepBounds bounds;
   if (model.scene.numerics.control == StepControl::fixed) return bounds;
-  const std::vector<Vec3> at = starting_places(model);
   bounds.own.resize(model.free_count);
-  for (Index i = 0; i < model.free_count; ++i) {
-    if (model.inverse_mass[i] == 0) continue;
-    if (i < model.liquid_count) {
-      if (model.scene.numerics.control == StepControl::local) continue;  // a level of their own
-      bounds.own[i] = compressed(model, model.damping.own[model.body[i]]);
-    } else if (i < model.implicit_begin && model.spring_begin[i] != model.spring_begin[i + 1]) {
-      bounds.own[i] = {
-          spring_load(model, at, i, [](const SpringEnd& spring) { return spring.stiffness; }),
-          spring_load(model, at, i, [](const SpringEnd& spring) { return spring.damping; })};
-    }
-  }
-  add_cell_bounds(model, bounds);
-  for (Oscillation& own : bounds.own) own = limiting(model, own);
   bounds.own_step.resize(model.free_count);
-  const Numerics& numerics = model.scene.numerics;
-  std::ranges::transform(bounds.own, bounds.own_step.begin(),
-                         [&](const Oscillation& own) { return safe_step(numerics, own); });
-  bounds.scene_step = kInfinity;
-  if (model.scene.forces.gravity && model.scene.central_field &&
-      model.scene.central_field->angular_frequency > 0) {
-    bounds.scene_step =
-        resolving_phase_of_places(numerics) / model.scene.central_field->angular_frequency;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) bound_body(model, b, bounds);
+  bounds.scene_step = find_scene_step(model);
+  return bounds;
+}
+
+StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds bounds) {
+  if (model.scene.numerics.control == StepControl::fixed) return bounds;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const bool is_liquid = model.bodies[b].kind == BodyKind::liquid;
+    if (b == body || is_liquid) bound_body(model, b, bounds);
   }
-  for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
-    if (model.bodies[b].kind == BodyKind::liquid) continue;
-    const Oscillation own = limiting(model, compressed(model, model.damping.own[b]));
-    bounds.scene_step = std::min(bounds.scene_step, safe_step(numerics, own));
-  }
+  bounds.scene_step = find_scene_step(model);
   return bounds;
 }
 

@@ -12,6 +12,9 @@ namespace vat {
 
 /// Empty where steps are fixed.
 StepBounds find_step_bounds(const Model& model);
+/// The same from those of a model that differs in where one body begins, and in how gravity weighs
+/// on liquids.
+StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds bounds);
 
 /// The greatest steps that a state allows [s]; infinite where nothing limits them.
 struct PresentSteps {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/forces/lennard_jones.h"
 #include "core/forces/pair_direction.h"
@@ -15,7 +14,6 @@ namespace {
 
 constexpr Real kStabilityMargin = 0.9;
 constexpr Real kLocalMargin = 0.5;  // kicks at several periods have resonances below the limit
-constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
 /// What a step's length depends on beside the state.
 struct Search {
@@ -143,7 +141,7 @@ Real contact_phase(const Numerics& numerics) {
 Real allowed_step(const Numerics& numerics, const ContactOutlook& outlook,
                   const Oscillation& contacts, const Oscillation& all) {
   const Real rate = std::sqrt(contacts.omega2 + contacts.rate * contacts.rate);
-  if (rate == 0) return kInfinity;
+  if (rate == 0) return std::numeric_limits<Real>::infinity();
   const Real amplitude = outlook.speed / rate;
   const Real share = std::min(Real{1}, amplitude / (kFullAmplitude * outlook.threshold));
   const Real resolving = contact_phase(numerics) / (rate * std::sqrt(share));
@@ -220,18 +218,12 @@ Real rigid_step(const Search& search, const std::vector<ContactOutlook>& outlook
     stiffness.add(own.stiffness, cross);
     damping.add(own.damping, cross);
   }
-  if (sum.is_empty()) return kInfinity;
+  if (sum.is_empty()) return std::numeric_limits<Real>::infinity();
   const Mat3 turning = (now.orientation * rigid.principal_axes).toRotationMatrix() *
                        rigid.inverse_moments.cwiseSqrt().asDiagonal();
   const Oscillation contacts{stiffness.greatest(rigid.inverse_mass, turning),
                              damping.greatest(rigid.inverse_mass, turning)};
   return allowed_step(search.model().scene.numerics, sum, contacts, contacts);
-}
-
-Real greatest_vat_speed(const Model& model) {
-  if (!model.scene.vat || !model.scene.vat->motion) return 0;
-  const SlideMotion& motion = *model.scene.vat->motion;
-  return std::numbers::pi * std::abs(motion.stroke) / motion.period;
 }
 
 }  // namespace
@@ -241,7 +233,7 @@ Real safe_step(const Numerics& numerics, const Oscillation& oscillation) {
     return kLocalMargin * stable_step(IntegratorId::symplectic_euler, oscillation);
   }
   const Real step = stable_step(numerics.integrator, oscillation);
-  return step > 0 ? kStabilityMargin * step : kInfinity;
+  return step > 0 ? kStabilityMargin * step : std::numeric_limits<Real>::infinity();
 }
 
 void ContactOutlook::add(const ContactOutlook& other) {
@@ -263,7 +255,7 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
                       model.scene.forces.gravity ? model.scene.gravity.norm() * longest : 0,
                       reach,
                       model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
-                      greatest_vat_speed(model)};
+                      model.scene.vat ? greatest_vat_speed(*model.scene.vat, time) : 0};
   // Coupled liquid meets walls without springs.
   const Index first = model.is_coupled && model.contact_reach <= 0 ? model.liquid_count : 0;
   if (first == model.particle_count) return;
