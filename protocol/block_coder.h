@@ -14,6 +14,10 @@
 /// written runs for the former alone; what the latter refuses leaves anything in the block.
 namespace vat {
 
+inline constexpr std::uint32_t kEven = rans::kScale / 2;  ///< chances of what is as often true
+inline constexpr std::uint32_t kChanceBits = 12;
+inline constexpr std::uint32_t kClassBits = 7;  ///< of residuals
+
 /// Memory that stays from frame to frame, and what is known of the block at hand.
 struct BlockScratch {
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -71,9 +75,10 @@ void code_added(Coder& coder, const FrameScale& scale, CodedBlock<Coder>& block,
 template <class Coder>
 void code_positions(Coder& coder, const GridBlock& first, const GridBlock* second,
                     CodedBlock<Coder>& block, BlockScratch& scratch);
+/// Of the three attributes from `begin` on those that change; nothing where none does.
 template <class Coder>
 void code_attributes(Coder& coder, const GridBlock& first, const GridBlock* second,
-                     const std::array<bool, 3>& moved, CodedBlock<Coder>& block,
+                     std::size_t begin, const ByAttribute<bool>& changes, CodedBlock<Coder>& block,
                      BlockScratch& scratch);
 template <class Coder>
 void code_pose_change(Coder& coder, const GridBlock& first, const GridBlock* second,

@@ -207,7 +207,7 @@ void code_column(Coder& coder, const Strides& strides, std::size_t attribute,
     std::int32_t whole = 0;
     const Expectation expected = prediction.expect(0, 0, false, whole);
     const std::int32_t value =
-        code_value(coder, column[places[i]], whole, expected, attribute, scratch.sizes[i][0]);
+        code_value(coder, column[places[i]], whole, expected, attribute % 3, scratch.sizes[i][0]);
     if (std::abs(value) > kMaxAttribute) return coder.refuse();
     keep<Coder>(column[places[i]], value);
   }

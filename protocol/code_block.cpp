@@ -9,9 +9,6 @@ namespace {
 
 using frame_layout::has_attribute;
 
-constexpr std::uint32_t kNone = BlockScratch::kNone;
-constexpr std::uint32_t kEven = rans::kScale / 2;
-constexpr std::uint32_t kChanceBits = 12;
 constexpr std::uint32_t kGridShiftBits = 4;
 
 /// Chances out of 4096 of something that was true so often; never none.
@@ -34,7 +31,7 @@ void resize_columns(const FrameScale& scale, std::size_t count, GridBlock& block
   }
 }
 
-/// For every particle of `from`, its place in `to`, or kNone.
+/// For every particle of `from`, its place in `to`, or BlockScratch::kNone.
 void match(const GridBlock& from, const GridBlock& to, std::vector<std::uint32_t>& places) {
   const std::size_t count = from.particle_count();
   const std::size_t end = to.particle_count();
@@ -52,7 +49,7 @@ void match(const GridBlock& from, const GridBlock& to, std::vector<std::uint32_t
       while (j < end && to.numbers[j] < number) ++j;
     }
     const bool is_there = j < end && to.number(j) == number;
-    places[i] = is_there ? static_cast<std::uint32_t>(j) : kNone;
+    places[i] = is_there ? static_cast<std::uint32_t>(j) : BlockScratch::kNone;
   }
 }
 
@@ -68,7 +65,7 @@ void list_added(const GridBlock& block, BlockScratch& scratch) {
     }
   };
   for (const std::uint32_t place : scratch.new_place) {
-    if (place == kNone) continue;
+    if (place == BlockScratch::kNone) continue;
     add_up_to(place);
     ++next;
   }
@@ -89,7 +86,7 @@ bool merge_numbers(const GridBlock& first, GridBlock& block, BlockScratch& scrat
     }
   };
   for (std::size_t i = 0; i < first.particle_count(); ++i) {
-    if (scratch.new_place[i] == kNone) continue;
+    if (scratch.new_place[i] == BlockScratch::kNone) continue;
     const std::uint32_t number = first.number(i);
     add_below(number);
     if (next < scratch.numbers.size() && scratch.numbers[next] == number) return false;
@@ -105,16 +102,17 @@ struct Parts {
   bool removes = false;
   std::uint32_t added = 0;
   bool moves = false;
-  std::array<bool, 3> changes{};  ///< by attribute
+  ByAttribute<bool> changes{};
 
-  bool needs_order() const { return removes || moves || changes[0] || changes[1] || changes[2]; }
+  bool any_changes() const { return changes != ByAttribute<bool>{}; }
+  bool needs_order() const { return removes || moves || any_changes(); }
 };
 
 template <std::size_t quantities, class T>
 bool has_moved(const std::vector<T>& before, const std::vector<T>& now,
                const std::vector<std::uint32_t>& new_place) {
   for (std::size_t i = 0; i < new_place.size(); ++i) {
-    if (new_place[i] == kNone) continue;
+    if (new_place[i] == BlockScratch::kNone) continue;
     for (std::size_t q = 0; q < quantities; ++q) {
       if (before[quantities * i + q] != now[quantities * new_place[i] + q]) return true;
     }
@@ -124,7 +122,8 @@ bool has_moved(const std::vector<T>& before, const std::vector<T>& now,
 
 Parts find_parts(const GridBlock& first, const GridBlock& block, const BlockScratch& scratch) {
   Parts parts;
-  parts.removes = std::ranges::find(scratch.new_place, kNone) != scratch.new_place.end();
+  parts.removes =
+      std::ranges::find(scratch.new_place, BlockScratch::kNone) != scratch.new_place.end();
   parts.added = static_cast<std::uint32_t>(scratch.added.size());
   parts.moves = has_moved<3>(first.positions, block.positions, scratch.new_place);
   for (std::size_t a = 0; a < kFrameAttributes; ++a) {
@@ -165,7 +164,7 @@ void code_removed(Coder& coder, BlockScratch& scratch) {
     std::array<std::array<std::size_t, 2>, 2> counts{};
     bool before = false;
     for (const std::uint32_t i : order) {
-      const bool is_gone = scratch.new_place[i] == kNone;
+      const bool is_gone = scratch.new_place[i] == BlockScratch::kNone;
       ++counts[before ? 1 : 0][is_gone ? 1 : 0];
       before = is_gone;
     }
@@ -176,9 +175,9 @@ void code_removed(Coder& coder, BlockScratch& scratch) {
   for (std::uint32_t& each : chances) each = code_chances(coder, each);
   bool before = false;
   for (const std::uint32_t i : order) {
-    before = coder.flag(scratch.new_place[i] == kNone, chances[before ? 1 : 0]);
+    before = coder.flag(scratch.new_place[i] == BlockScratch::kNone, chances[before ? 1 : 0]);
     if constexpr (Coder::kReads) {
-      if (before) scratch.new_place[i] = kNone;
+      if (before) scratch.new_place[i] = BlockScratch::kNone;
     }
   }
 }
@@ -193,7 +192,7 @@ void keep_unmoved(const GridBlock& first, const Parts& parts, const BlockScratch
   if (!any) return;
   for (std::size_t i = 0; i < scratch.new_place.size(); ++i) {
     const std::uint32_t place = scratch.new_place[i];
-    if (place == kNone) continue;
+    if (place == BlockScratch::kNone) continue;
     if (!parts.moves) {
       std::copy_n(&first.positions[3 * i], 3, &block.positions[std::size_t{3} * place]);
     }
@@ -247,8 +246,9 @@ void code_particle_changes(Coder& coder, const FrameScale& scale, const GridBloc
   if (second != nullptr) match(first, *second, scratch.second_place);
   if (parts.moves) code_positions(coder, first, second, block, scratch);
   if (!coder.is_sound()) return;
-  if (parts.changes != std::array<bool, 3>{}) {
-    code_attributes(coder, first, second, parts.changes, block, scratch);
+  for (std::size_t begin = 0; begin < kFrameAttributes; begin += 3) {
+    code_attributes(coder, first, second, begin, parts.changes, block, scratch);
+    if (!coder.is_sound()) return;
   }
   if (coder.is_sound()) code_added(coder, scale, block, scratch);
 }

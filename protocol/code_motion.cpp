@@ -9,10 +9,8 @@ namespace {
 
 using frame_layout::kMaxAttribute;
 
-constexpr std::uint32_t kNone = BlockScratch::kNone;
 constexpr std::uint32_t kShiftBits = 3;
 constexpr std::int32_t kShiftOffset = 4;
-constexpr std::uint32_t kClassBits = 7;
 
 // ---- what only writers choose
 
@@ -153,7 +151,7 @@ void code_cells(Coder& coder, BlockScratch& scratch, const std::array<bool, 3>& 
     for (std::uint32_t k = cells[c].begin; k < cells[c].end; ++k) {
       const std::uint32_t i = order[k];
       const std::uint32_t place = scratch.new_place[i];
-      if (place == kNone) continue;
+      if (place == BlockScratch::kNone) continue;
       const Triple predictions = predict(i, c);
       Triple wholes;
       std::array<Expectation, 3> expected;
@@ -187,7 +185,7 @@ void find_mean_steps(const GridBlock& first, const GridBlock* second, BlockScrat
     for (std::uint32_t k = cells[c].begin; k < end; ++k) {
       const std::uint32_t i = order[k];
       const std::uint32_t j = scratch.second_place[i];
-      if (j == kNone) continue;
+      if (j == BlockScratch::kNone) continue;
       const std::uint16_t* a = &first.positions[std::size_t{3} * i];
       const std::uint16_t* b = &second->positions[std::size_t{3} * j];
       x += std::clamp(a[0] - b[0], -kMostStep, kMostStep);
@@ -222,8 +220,8 @@ struct MotionPrediction {
   std::int32_t own = 0;     ///< of what the particle's own step differs from it
 
   Triple excess(std::uint32_t i, std::size_t cell) const {
-    const std::uint32_t j = second != nullptr ? scratch.second_place[i] : kNone;
-    if (j == kNone) return {};
+    const std::uint32_t j = second != nullptr ? scratch.second_place[i] : BlockScratch::kNone;
+    if (j == BlockScratch::kNone) return {};
     Triple result;
     for (std::size_t q = 0; q < 3; ++q) {
       const std::int32_t step = first.positions[std::size_t{3} * i + q] -
@@ -253,7 +251,7 @@ void fit_factors(const GridBlock& block, MotionPrediction& prediction) {
     for (std::uint32_t k = cells[c].begin; k < cells[c].end; k += step) {
       const std::uint32_t i = scratch.cells.order()[k];
       const std::uint32_t place = scratch.new_place[i];
-      if (place == kNone) continue;
+      if (place == BlockScratch::kNone) continue;
       const Triple beyond = prediction.excess(i, c);
       for (std::size_t q = 0; q < 3; ++q) {
         const std::int32_t moved = block.positions[std::size_t{3} * place + q] -
@@ -271,19 +269,23 @@ struct AttributePrediction {
   const GridBlock& first;
   const GridBlock* second;
   const BlockScratch& scratch;
-  std::array<bool, 3> moved;
+  std::size_t begin;          ///< quantity q is of the attribute begin + q
+  std::array<bool, 3> moved;  ///< by quantity; there may be fewer attributes
   Triple factors{};
 
+  std::int32_t value(const GridBlock& block, std::uint32_t i, std::size_t q) const {
+    return block.attributes[begin + q][i];
+  }
   std::int32_t step(std::uint32_t i, std::size_t q) const {
-    const std::uint32_t j = second != nullptr ? scratch.second_place[i] : kNone;
-    return j == kNone ? 0 : first.attributes[q][i] - second->attributes[q][j];
+    const std::uint32_t j = second != nullptr ? scratch.second_place[i] : BlockScratch::kNone;
+    return j == BlockScratch::kNone ? 0 : value(first, i, q) - value(*second, j, q);
   }
   Triple operator()(std::uint32_t i, std::size_t) const {
     Triple result{};
     for (std::size_t q = 0; q < 3; ++q) {
       if (!moved[q]) continue;
       const std::int64_t change = (std::int64_t{8} * factors[q] * step(i, q) + 128) >> 8;
-      result[q] = static_cast<std::int32_t>(8 * first.attributes[q][i] + change);
+      result[q] = static_cast<std::int32_t>(8 * value(first, i, q) + change);
     }
     return result;
   }
@@ -295,9 +297,9 @@ void fit_factors(const GridBlock& block, AttributePrediction& prediction) {
     Fit fit;
     for (std::uint32_t i = 0; i < prediction.first.particle_count(); ++i) {
       const std::uint32_t place = prediction.scratch.new_place[i];
-      if (place == kNone) continue;
+      if (place == BlockScratch::kNone) continue;
       fit.add(0, prediction.step(i, q),
-              block.attributes[q][place] - prediction.first.attributes[q][i]);
+              prediction.value(block, place, q) - prediction.value(prediction.first, i, q));
     }
     prediction.factors[q] = fit.b_alone();
   }
@@ -343,13 +345,16 @@ void code_positions(Coder& coder, const GridBlock& first, const GridBlock* secon
 
 template <class Coder>
 void code_attributes(Coder& coder, const GridBlock& first, const GridBlock* second,
-                     const std::array<bool, 3>& moved, CodedBlock<Coder>& block,
+                     std::size_t begin, const ByAttribute<bool>& changes, CodedBlock<Coder>& block,
                      BlockScratch& scratch) {
-  AttributePrediction prediction{first, second, scratch, moved};
+  std::array<bool, 3> moved{};
+  for (std::size_t q = 0; q < 3 && begin + q < kFrameAttributes; ++q) moved[q] = changes[begin + q];
+  if (moved == std::array<bool, 3>{}) return;
+  AttributePrediction prediction{first, second, scratch, begin, moved};
   const auto value = [&](std::uint32_t place) {
     Triple values{};
     for (std::size_t q = 0; q < 3; ++q) {
-      if (moved[q]) values[q] = block.attributes[q][place];
+      if (moved[q]) values[q] = prediction.value(block, place, q);
     }
     return values;
   };
@@ -367,7 +372,7 @@ void code_attributes(Coder& coder, const GridBlock& first, const GridBlock* seco
       for (std::size_t q = 0; q < 3; ++q) {
         if (!moved[q]) continue;
         if (std::abs(values[q]) > kMaxAttribute) return false;
-        block.attributes[q][place] = values[q];
+        block.attributes[begin + q][place] = values[q];
       }
       return true;
     };
@@ -384,9 +389,9 @@ template void code_positions(SymbolWriter&, const GridBlock&, const GridBlock*, 
                              BlockScratch&);
 template void code_positions(SymbolReader&, const GridBlock&, const GridBlock*, GridBlock&,
                              BlockScratch&);
-template void code_attributes(SymbolWriter&, const GridBlock&, const GridBlock*,
-                              const std::array<bool, 3>&, const GridBlock&, BlockScratch&);
-template void code_attributes(SymbolReader&, const GridBlock&, const GridBlock*,
-                              const std::array<bool, 3>&, GridBlock&, BlockScratch&);
+template void code_attributes(SymbolWriter&, const GridBlock&, const GridBlock*, std::size_t,
+                              const ByAttribute<bool>&, const GridBlock&, BlockScratch&);
+template void code_attributes(SymbolReader&, const GridBlock&, const GridBlock*, std::size_t,
+                              const ByAttribute<bool>&, GridBlock&, BlockScratch&);
 
 }  // namespace vat

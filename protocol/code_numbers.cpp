@@ -3,8 +3,6 @@
 namespace vat {
 namespace {
 
-constexpr std::uint32_t kEven = rans::kScale / 2;
-constexpr std::uint32_t kChanceBits = 12;
 constexpr std::uint32_t kOrderBits = 5;
 
 /// Those below 2^order are alike, and the larger rarer. A reader's may be anything: it is checked.

@@ -9,8 +9,6 @@ namespace {
 
 using frame_layout::kMaxPlace;
 
-constexpr std::uint32_t kClassBits = 7;
-
 /// A whole number with its sign in the lowest bit.
 template <class Coder>
 std::int32_t code_signed(Coder& coder, std::int32_t value) {

@@ -1,5 +1,7 @@
 #include "protocol/frame_check.h"
 
+#include "protocol/frame_layout.h"
+
 namespace vat {
 namespace {
 
@@ -21,7 +23,7 @@ std::uint32_t check_of(const Values& values) {
   return check.sum();
 }
 
-void add_particles(const GridBlock& block, Check& check) {
+void add_particles(const GridBlock& block, std::size_t attributes, Check& check) {
   std::array<Check, 3> axes;
   for (std::size_t i = 0; i < block.positions.size(); i += 3) {
     for (std::size_t q = 0; q < 3; ++q) axes[q].add(block.positions[i + q]);
@@ -29,18 +31,21 @@ void add_particles(const GridBlock& block, Check& check) {
   check.add(static_cast<std::uint32_t>(block.particle_count()));
   check.add(check_of(block.numbers));
   for (const Check& axis : axes) check.add(axis.sum());
-  for (const auto& column : block.attributes) check.add(check_of(column));
+  for (std::size_t a = 0; a < attributes; ++a) check.add(check_of(block.attributes[a]));
 }
 
 }  // namespace
 
 std::uint32_t frame_check(const GridFrame& frame) {
+  using namespace frame_layout;
+  const std::size_t attributes =
+      has_acceleration(frame.scale) ? kFrameAttributes : kScaleAttributes;
   Check check;
   for (const GridBlock& block : frame.blocks) {
     check.add(block.body);
     check.add(static_cast<std::uint32_t>(block.kind));
     if (block.has_particles()) {
-      add_particles(block, check);
+      add_particles(block, attributes, check);
       continue;
     }
     check.add(block.orientation_bits);

@@ -31,6 +31,7 @@ struct Coding {
   bool is_key = false;
   std::array<std::uint16_t, 2> distances{};
   std::uint32_t check = 0;
+  bool has_acceleration = false;  ///< of key frames
 };
 
 Status read_header(ByteReader& in, GridFrame& frame, Coding& coding) {
@@ -47,6 +48,7 @@ Status read_header(ByteReader& in, GridFrame& frame, Coding& coding) {
   header.slow = (flags & kSlowFlag) != 0;
   frame.detail = (flags >> kDetailShift) & kFullDetail;
   frame.has_region = (flags & kRegionFlag) != 0;
+  coding.has_acceleration = (flags & kAccelerationFlag) != 0;
   header.stride = in.get<std::uint8_t>();
   header.epoch = in.get<std::uint32_t>();
   header.number = in.get<std::uint32_t>();
@@ -56,7 +58,8 @@ Status read_header(ByteReader& in, GridFrame& frame, Coding& coding) {
   header.time = in.get<double>();
   header.published = in.get<double>();
   header.real_time_factor = in.get<float>();
-  if ((flags & ~kKnownFlags) != 0 || header.stride == 0) {
+  const int known = coding.is_key ? kKnownFlags | kAccelerationFlag : kKnownFlags;
+  if ((flags & ~known) != 0 || header.stride == 0) {
     return frame_error("bad_header", "unused flags must be 0, and the stride above 0");
   }
   if (!std::isfinite(header.time) || !std::isfinite(header.published) ||
@@ -70,14 +73,20 @@ Status read_header(ByteReader& in, GridFrame& frame, Coding& coding) {
   return {};
 }
 
-Status read_scale(ByteReader& in, FrameScale& scale) {
+Status read_scale(ByteReader& in, bool accelerations, FrameScale& scale) {
+  if (in.left() < kScaleSize + (accelerations ? sizeof(double) : 0)) return truncated();
   for (double& coordinate : scale.grid.origin) coordinate = in.get<double>();
   scale.grid.quantum = in.get<double>();
-  for (double& quantum : scale.attribute_quanta) quantum = in.get<double>();
+  scale.attribute_quanta = {};
+  const std::size_t count = accelerations ? kFrameAttributes : kScaleAttributes;
+  for (std::size_t a = 0; a < count; ++a) scale.attribute_quanta[a] = in.get<double>();
   if (!all_finite(scale.grid.origin) || !std::isfinite(scale.grid.quantum) ||
       scale.grid.quantum <= 0 || !all_finite(scale.attribute_quanta) ||
       std::ranges::any_of(scale.attribute_quanta, [](double q) { return q < 0; })) {
     return frame_error("bad_header", "the grid must be finite, and its quanta above 0");
+  }
+  if (accelerations && !has_acceleration(scale)) {
+    return frame_error("bad_header", "the quantum of accelerations must be above 0");
   }
   return {};
 }
@@ -179,8 +188,9 @@ Result<const GridFrame*> FrameDecoder::decode(std::span<const std::uint8_t> byte
   if (Status header = read_header(in, frame, coding); !header) return header.errors();
   FrameReferences references;
   if (coding.is_key) {
-    if (in.left() < kScaleSize) return truncated();
-    if (Status scale = read_scale(in, frame.scale); !scale) return scale.errors();
+    if (Status scale = read_scale(in, coding.has_acceleration, frame.scale); !scale) {
+      return scale.errors();
+    }
   } else {
     const auto [first, second] = coding.distances;
     const auto& [number, epoch] = std::pair(frame.header.number, frame.header.epoch);

@@ -20,11 +20,14 @@ std::uint16_t distance(const GridFrame& frame, const GridFrame* reference) {
 void put_header(ByteWriter& out, const GridFrame& frame, const FrameReferences& references,
                 std::uint8_t stride) {
   const FrameHeader& header = frame.header;
+  const bool is_key = references.first == nullptr;
+  const bool accelerations = is_key && has_acceleration(frame.scale);
   const int flags = (header.playing ? kPlayingFlag : 0) | (header.slow ? kSlowFlag : 0) |
-                    (frame.detail << kDetailShift) | (frame.has_region ? kRegionFlag : 0);
+                    (frame.detail << kDetailShift) | (frame.has_region ? kRegionFlag : 0) |
+                    (accelerations ? kAccelerationFlag : 0);
   out.put(kMagic);
   out.put(kVersion);
-  out.put(references.first == nullptr ? kKeyFrame : kDeltaFrame);
+  out.put(is_key ? kKeyFrame : kDeltaFrame);
   out.put(static_cast<std::uint8_t>(flags));
   out.put(stride);
   out.put(header.epoch);
@@ -36,10 +39,11 @@ void put_header(ByteWriter& out, const GridFrame& frame, const FrameReferences& 
   out.put(header.time);
   out.put(header.published);
   out.put(header.real_time_factor);
-  if (references.first != nullptr) return;
+  if (!is_key) return;
   for (const double coordinate : frame.scale.grid.origin) out.put(coordinate);
   out.put(frame.scale.grid.quantum);
-  for (const double quantum : frame.scale.attribute_quanta) out.put(quantum);
+  const std::size_t count = accelerations ? kFrameAttributes : kScaleAttributes;
+  for (std::size_t a = 0; a < count; ++a) out.put(frame.scale.attribute_quanta[a]);
 }
 
 void write_key_blocks(const GridFrame& frame, SymbolWriter& writer, BlockScratch& scratch) {

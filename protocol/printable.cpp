@@ -5,11 +5,11 @@
 namespace vat {
 
 std::string printable(std::string_view text) {
-  constexpr std::size_t kMaxLength = 160;  // a line or two of a terminal
-  std::string result(text.substr(0, kMaxLength));
+  constexpr std::size_t kMostBytes = 160;  // a line or two of a terminal
+  std::string result(text.substr(0, kMostBytes));
   std::replace_if(
       result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  if (text.size() > kMaxLength) result += "...";
+  if (text.size() > kMostBytes) result += "...";
   return result;
 }
 

@@ -37,7 +37,9 @@ void publish_pose(const BodyView& view, PublishedState::Body& body) {
 void publish_particles(const Simulation& simulation, const BodyView& view,
                        const ByAttribute<bool>& wanted, LiquidFields& fields,
                        PublishedState::Body& body) {
-  const auto [speed, density, pressure] = wanted;
+  const bool speed = wanted[0];
+  const bool density = wanted[1];
+  const bool pressure = wanted[2];
   body.positions.assign(view.positions.begin(), view.positions.end());
   body.numbers.assign(view.numbers.begin(), view.numbers.end());
   if (speed) put_speeds(view, body.attributes[0]);
@@ -68,7 +70,43 @@ void StatePublisher::publish(const Simulation& simulation, const ByAttribute<boo
       publish_pose(view, body);
     } else {
       publish_particles(simulation, view, wanted, fields_, body);
+      if (wanted[3]) put_accelerations(view, body.attributes[3]);
     }
+  }
+}
+
+void StatePublisher::remember(const Simulation& simulation, Real seconds) {
+  simulation.list_bodies(views_);
+  remembered_.resize(views_.size());
+  for (std::size_t b = 0; b < views_.size(); ++b) {
+    remembered_[b].id = views_[b].id;
+    remembered_[b].velocities.assign(views_[b].velocities.begin(), views_[b].velocities.end());
+    remembered_[b].numbers.assign(views_[b].numbers.begin(), views_[b].numbers.end());
+  }
+  seconds_ = seconds;
+}
+
+void StatePublisher::forget() {
+  seconds_ = 0;
+}
+
+void StatePublisher::put_accelerations(const BodyView& view,
+                                       std::vector<float>& accelerations) const {
+  const std::size_t count = view.velocities.size();
+  accelerations.assign(count, 0);
+  const auto found = std::ranges::find(remembered_, view.id, &Remembered::id);
+  if (seconds_ == 0 || found == remembered_.end()) return;
+  const auto& [id, velocities, numbers] = *found;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index number = view.numbers.empty() ? static_cast<Index>(i) : view.numbers[i];
+    if (numbers.empty()) {
+      j = number;
+    } else {
+      while (j < numbers.size() && numbers[j] < number) ++j;
+    }
+    if (j >= velocities.size() || (!numbers.empty() && numbers[j] != number)) continue;
+    accelerations[i] = static_cast<float>((view.velocities[i] - velocities[j]).norm() / seconds_);
   }
 }
 

@@ -21,10 +21,10 @@ struct FrameHeader {
   float real_time_factor = 0;
 };
 
-/// What may be sent of a particle beside its place. Liquids have all three, deformable bodies a
-/// speed, rigid bodies none.
-enum class FrameAttribute : std::uint8_t { speed = 0, density = 1, pressure = 2 };
-inline constexpr std::size_t kFrameAttributes = 3;
+/// What may be sent of a particle beside its place. Liquids have all, deformable bodies speed and
+/// acceleration, rigid bodies none.
+enum class FrameAttribute : std::uint8_t { speed = 0, density = 1, pressure = 2, acceleration = 3 };
+inline constexpr std::size_t kFrameAttributes = 4;
 /// One entry an attribute, in their order.
 template <class T>
 using ByAttribute = std::array<T, kFrameAttributes>;
@@ -39,7 +39,7 @@ struct PublishedState {
     std::array<double, 4> orientation{1, 0, 0, 0};
     double bounding_radius = 0;          ///< [m] rigid bodies: of all particles, about the centre
     std::vector<std::uint32_t> numbers;  ///< of the particles, rising; empty: 0, 1, 2, ...
-    /// [m/s], [kg/m^3], [Pa]: empty where the body has none, or nobody asked for them.
+    /// [m/s], [kg/m^3], [Pa], [m/s^2]: empty where the body has none, or nobody asked for them.
     ByAttribute<std::vector<float>> attributes;
 
     bool operator==(const Body&) const = default;
@@ -60,7 +60,22 @@ class StatePublisher {
   void publish(const Simulation& simulation, const ByAttribute<bool>& wanted,
                PublishedState& state);
 
+  /// An acceleration is what the velocity has changed by since this, over `seconds` that are to
+  /// pass: of all that acts, whatever the steps do with it. 0 of particles that have come since.
+  void remember(const Simulation& simulation, Real seconds);
+  /// From now on it is 0, until velocities are remembered anew.
+  void forget();
+
  private:
+  struct Remembered {
+    BodyId id = 0;
+    std::vector<Vec3> velocities;
+    std::vector<Index> numbers;  // empty: 0, 1, 2, ...
+  };
+  void put_accelerations(const BodyView& view, std::vector<float>& accelerations) const;
+
+  std::vector<Remembered> remembered_;
+  Real seconds_ = 0;  // 0: none are
   std::vector<BodyView> views_;
   LiquidFields fields_;
 };

@@ -17,12 +17,25 @@ Vectors to_vectors(const Json& list, const std::string& path, Real bound, Errors
   return vectors;
 }
 
-Vectors read_vectors(ObjectReader& reader, std::string_view key, Real bound, bool required,
-                     Errors& errors) {
+}  // namespace
+
+std::vector<Vec3> read_vectors(ObjectReader& reader, std::string_view key, Real bound,
+                               bool required, Errors& errors) {
   const Json* list = reader.array(key, kMaxParticles, required);
   if (list == nullptr) return {};
   return to_vectors(*list, reader.path_of(key), bound, errors);
 }
+
+Quat to_orientation(const Json& value, const std::string& path, Errors& errors) {
+  if (to_array(value, path, 4, 4, errors) == nullptr) return Quat::Identity();
+  std::array<Real, 4> components{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    components[i] = to_real(value[i], pointer_to(path, i), kAnyMin, kAnyMax, errors).value_or(0);
+  }
+  return {components[0], components[1], components[2], components[3]};
+}
+
+namespace {
 
 std::vector<Real> read_reals(ObjectReader& reader, std::string_view key, Real min, Real max,
                              Errors& errors) {
@@ -118,16 +131,6 @@ ParticleShape read_particles(ObjectReader& reader, Errors& errors) {
     particles.fixed = to_indices(*fixed, reader.path_of("fixed"), errors);
   }
   return particles;
-}
-
-/// Not normalised: a length far from 1 is a mistake, which find_errors reports.
-Quat to_orientation(const Json& value, const std::string& path, Errors& errors) {
-  if (to_array(value, path, 4, 4, errors) == nullptr) return Quat::Identity();
-  std::array<Real, 4> components{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    components[i] = to_real(value[i], pointer_to(path, i), kAnyMin, kAnyMax, errors).value_or(0);
-  }
-  return {components[0], components[1], components[2], components[3]};
 }
 
 SpringDescription to_spring(const Json& value, std::string path, Errors& errors) {

@@ -76,7 +76,9 @@ Result<Catalogue> Catalogue::open(const std::string& folder) {
        entry.increment(failure)) {
     if (entry->path().extension() == ".json") files.push_back(entry->path());
   }
-  if (failure) return Error{"no_such_folder", "", folder + ": " + failure.message()};
+  if (failure) {
+    return Error{"no_such_folder", "", "the scenes cannot be listed: " + failure.message()};
+  }
   std::sort(files.begin(), files.end());
 
   Catalogue catalogue;

@@ -258,4 +258,11 @@ Result<InterfaceDescription> read_interface(const Json& document, const std::str
   return interface;
 }
 
+Result<Material> read_material(const Json& document, const std::string& path) {
+  Errors errors;
+  Material material = scene_parts::to_material(document, path, errors);
+  if (!errors.empty()) return errors;
+  return material;
+}
+
 }  // namespace vat

@@ -30,10 +30,12 @@ Result<Scene> read_scene_text(std::string_view text, const MeshSource& meshes);
 /// ending.
 Result<Scene> read_scene_file(const std::string& path);
 
-/// One body or interface, as in a scene file; checks the document only. `path` prefixes errors.
+/// One body, interface or material, as in a scene file; checks the document only. `path` prefixes
+/// errors.
 Result<BodyDescription> read_body(const Json& document, const std::string& path,
                                   const MeshSource& meshes);
 Result<InterfaceDescription> read_interface(const Json& document, const std::string& path);
+Result<Material> read_material(const Json& document, const std::string& path);
 
 /// Scene -> JSON that read_scene takes back to an equal scene, bit by bit. Meshes are written with
 /// their vertices and triangles, so that the result stands alone.

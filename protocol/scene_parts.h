@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "protocol/json_reader.h"
@@ -14,6 +17,11 @@ namespace vat::scene_parts {
 inline constexpr std::size_t kMaxFileName = 256;
 inline constexpr std::size_t kMaxInterfaces = 4096;  // 64 materials and the vat, pair by pair
 
+/// The member as a list of points, each component at most `bound` in magnitude.
+std::vector<Vec3> read_vectors(ObjectReader& reader, std::string_view key, Real bound,
+                               bool required, Errors& errors);
+/// Not normalised: a length far from 1 is a mistake, which the core reports.
+Quat to_orientation(const Json& value, const std::string& path, Errors& errors);
 SpringConstants to_spring_constants(ObjectReader& reader);
 SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors);
 /// Of an interface without materials and threshold.
@@ -29,6 +37,8 @@ Emitter to_emitter(const Json& value, std::string path, Errors& errors);
 Drain to_drain(const Json& value, std::string path, Errors& errors);
 IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors);
 ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors);
+/// The member "integrator". Without a fallback it is required.
+IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback = {});
 Numerics to_numerics(const Json& value, std::string path, Errors& errors);
 /// `bound` is that of the field's values at its waves' crests.
 VectorField to_field(const Json& value, std::string path, Real bound, Errors& errors);

@@ -140,14 +140,19 @@ ForceSwitches to_force_switches(const Json& value, std::string path, Errors& err
   return forces;
 }
 
+IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback) {
+  std::optional<std::size_t> usual;
+  if (fallback) usual = static_cast<std::size_t>(*fallback);
+  // In the order of IntegratorId.
+  return static_cast<IntegratorId>(reader.choice(
+      "integrator",
+      {"explicit_euler", "symplectic_euler", "velocity_verlet", "heun", "runge_kutta_4"}, usual));
+}
+
 Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Numerics numerics;
-  // In the order of IntegratorId.
-  numerics.integrator = static_cast<IntegratorId>(reader.choice(
-      "integrator",
-      {"explicit_euler", "symplectic_euler", "velocity_verlet", "heun", "runge_kutta_4"},
-      static_cast<std::size_t>(numerics.integrator)));
+  numerics.integrator = read_integrator(reader, numerics.integrator);
   numerics.step = reader.real("step", kMinStep, kMaxStep, numerics.step);
   numerics.tick = reader.real("tick", kMinStep, kMaxTick, numerics.tick);
   // In the order of StepControl.

@@ -16,7 +16,8 @@ class ParticleBlock:
     kind: int
     numbers: list[int]
     positions: list[Triple]
-    attributes: list[list[int]]  # speeds, densities and pressures; empty where there are none
+    attributes: list[list[int]]  # speeds, densities, pressures, and accelerations where frames have
+    # them; each empty where there are none
 
 
 @dataclass(frozen=True)

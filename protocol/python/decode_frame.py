@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from bad_frame import BadFrame
 from blocks import LARGEST_PLACE, RIGID, VAT, Block, ParticleBlock, PoseBlock, check_of_blocks
-from frame_header import FIELDS, KEY_FRAME, SCALE, Header, Scale, read_header, read_scale
+from frame_header import KEY_FRAME, Header, Scale, read_header, read_scale, symbols_begin
 from neighbours import clamp
 from particles import attributes_of, read_changed, read_coming, read_numbers
 from symbols import Symbols
@@ -33,13 +33,13 @@ class Decoder:
         """Raises BadFrame."""
         header = read_header(data)
         if header.type == KEY_FRAME:
-            scale = read_scale(data)
-            symbols = Symbols(data[FIELDS.size + SCALE.size:])
+            scale = read_scale(data, header)
+            symbols = Symbols(data[symbols_begin(header):])
             blocks = read_key_blocks(symbols, scale)
         else:
             references = [self.reference(header, back) for back in header.references_back]
             scale = references[0].scale
-            symbols = Symbols(data[FIELDS.size:])
+            symbols = Symbols(data[symbols_begin(header):])
             blocks = read_delta_blocks(symbols, scale, references)
         symbols.finish()
         if check_of_blocks(blocks) != header.check:

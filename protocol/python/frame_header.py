@@ -10,6 +10,8 @@ KEY_FRAME = 1
 DELTA_FRAME = 2
 FIELDS = struct.Struct("<4s4B2I2HIQ2df")
 SCALE = struct.Struct("<7d")
+SCALE_WITH_ACCELERATION = struct.Struct("<8d")
+ACCELERATION_FLAG = 32
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,7 @@ class Scale:
 
     origin: tuple[float, float, float]
     quantum: float
-    attribute_quanta: tuple[float, float, float]
+    attribute_quanta: tuple[float, ...]  # three, or four where there are accelerations
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,7 @@ class Header:
     slow: bool
     detail: int
     region: bool
+    accelerations: bool  # key frames
     stride: int
     epoch: int
     number: int
@@ -51,7 +54,8 @@ def read_header(frame: bytes) -> Header:
         raise BadFrame("bad_version")
     if frame_type not in (KEY_FRAME, DELTA_FRAME):
         raise BadFrame("bad_type")
-    if flags >= 1 << 5 or stride == 0:
+    known = 31 + (ACCELERATION_FLAG if frame_type == KEY_FRAME else 0)
+    if flags & ~known or stride == 0:
         raise BadFrame("bad_header")
     if not all(map(math.isfinite, (time, published, real_time_factor))):
         raise BadFrame("bad_header")
@@ -65,6 +69,7 @@ def read_header(frame: bytes) -> Header:
         slow=bool(flags & 2),
         detail=flags >> 2 & 3,
         region=bool(flags & 16),
+        accelerations=bool(flags & ACCELERATION_FLAG),
         stride=stride,
         epoch=epoch,
         number=number,
@@ -77,14 +82,23 @@ def read_header(frame: bytes) -> Header:
     )
 
 
-def read_scale(frame: bytes) -> Scale:
+def symbols_begin(header: Header) -> int:
+    """Where the rest of a frame begins."""
+    if header.type == DELTA_FRAME:
+        return FIELDS.size
+    return FIELDS.size + (SCALE_WITH_ACCELERATION if header.accelerations else SCALE).size
+
+
+def read_scale(frame: bytes, header: Header) -> Scale:
     """What a key frame has behind its first 52 bytes."""
-    if len(frame) < FIELDS.size + SCALE.size:
+    if len(frame) < symbols_begin(header):
         raise BadFrame("truncated")
-    numbers = SCALE.unpack_from(frame, FIELDS.size)
-    x, y, z, quantum, speed, density, pressure = numbers
+    fields = SCALE_WITH_ACCELERATION if header.accelerations else SCALE
+    x, y, z, quantum, *attribute_quanta = numbers = fields.unpack_from(frame, FIELDS.size)
     if not all(map(math.isfinite, numbers)):
         raise BadFrame("bad_header")
-    if quantum <= 0 or min(speed, density, pressure) < 0:
+    if quantum <= 0 or min(attribute_quanta) < 0:
         raise BadFrame("bad_header")
-    return Scale((x, y, z), quantum, (speed, density, pressure))
+    if header.accelerations and attribute_quanta[3] == 0:
+        raise BadFrame("bad_header")
+    return Scale((x, y, z), quantum, tuple(attribute_quanta))

@@ -15,6 +15,7 @@ LARGEST_NUMBER = (1 << 32) - 1
 LARGEST_SIZE = 131064
 MIDDLE_OF_GRID = 32768
 CLASS_OF_NOTHING = 67
+SPEED, _DENSITY, _PRESSURE, ACCELERATION = range(4)
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,11 @@ class Particles:
 
 def attributes_of(kind: int, attribute_quanta: Sequence[float]) -> list[bool]:
     """Which attributes the block of a body of this kind has."""
-    speed, density, pressure = (quantum > 0 for quantum in attribute_quanta)
-    return [speed, density and kind == LIQUID, pressure and kind == LIQUID]
+    of_all_kinds = (SPEED, ACCELERATION)
+    return [
+        quantum > 0 and (kind == LIQUID or q in of_all_kinds)
+        for q, quantum in enumerate(attribute_quanta)
+    ]
 
 
 def checked(values: Sequence[int], least: int, greatest: int) -> Sequence[int]:
@@ -64,8 +68,9 @@ def read_changed(
     if moves:
         read_positions(symbols, order, staying, positions, second, earlier)
     attributes = [list(values) for values in first.attributes]
-    if any(changes):
-        read_attributes(symbols, order, staying, attributes, second, earlier, changes)
+    for begin in (0, ACCELERATION):
+        if any(changes[begin:begin + 3]):
+            read_attributes(symbols, order, staying, attributes, second, earlier, changes, begin)
     stayed = Particles(
         [first.numbers[i] for i in kept],
         [positions[i] for i in kept],
@@ -133,22 +138,25 @@ def read_attributes(
     second: ParticleBlock,
     earlier: Sequence[int | None],
     changes: Sequence[bool],
+    begin: int,
 ) -> None:
-    """Changes attributes of the staying particles from those in the first reference."""
-    factors = [symbols.factor() if change else 0 for change in changes]
+    """Changes three attributes of the staying particles from those in the first reference: those
+    from `begin` on, as far as there are any."""
+    three = [*changes[begin:begin + 3], False, False][:3]
+    factors = [symbols.factor() if change else 0 for change in three]
     neighbours = Neighbours(symbols)
     for i in staying:
         predictions = [0, 0, 0]
         for q in range(3):
-            if changes[q]:
-                a1, at = attributes[q][i], earlier[i]
-                a2 = a1 if at is None else second.attributes[q][at]
+            if three[q]:
+                a1, at = attributes[begin + q][i], earlier[i]
+                a2 = a1 if at is None else second.attributes[begin + q][at]
                 predictions[q] = 8 * a1 + ((8 * factors[q] * (a1 - a2) + 128) >> 8)
-        values = neighbours.read(order.cells[i], predictions, changes)
+        values = neighbours.read(order.cells[i], predictions, three)
         checked(values, -LARGEST_ATTRIBUTE, LARGEST_ATTRIBUTE)
         for q in range(3):
-            if changes[q]:
-                attributes[q][i] = values[q]
+            if three[q]:
+                attributes[begin + q][i] = values[q]
 
 
 def merged(body: int, kind: int, stayed: Particles, come: Particles) -> ParticleBlock:
@@ -195,7 +203,7 @@ def read_coming(symbols: Symbols, numbers: list[int], has: Sequence[bool]) -> Pa
     """The places and attributes of particles that come."""
     count = len(numbers)
     if count == 0:
-        return Particles([], [], [[], [], []])
+        return Particles([], [], [[] for _ in has])
     strides = read_strides(symbols)
     positions: list[Triple] = []
     sizes: list[Sequence[int]] = []
@@ -206,7 +214,8 @@ def read_coming(symbols: Symbols, numbers: list[int], has: Sequence[bool]) -> Pa
         positions.append(place)
         sizes.append(left)
     attributes = [
-        read_coming_attribute(symbols, q, count, strides) if has[q] else [] for q in range(3)
+        read_coming_attribute(symbols, q, count, strides) if has[q] else []
+        for q in range(len(has))
     ]
     return Particles(numbers, positions, attributes)
 
@@ -262,7 +271,7 @@ def read_coming_attribute(
         if before:
             prediction = 8 * sum(values[j] for j in before) // len(before)
             residual_class = class_of_coming(sum(sizes[j] for j in before) // len(before))
-        value = symbols.predicted(prediction, residual_class, q)
+        value = symbols.predicted(prediction, residual_class, q % 3)
         checked([value], -LARGEST_ATTRIBUTE, LARGEST_ATTRIBUTE)
         values.append(value)
         sizes.append(size_left(value, prediction))

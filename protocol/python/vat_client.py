@@ -9,12 +9,14 @@ import hashlib
 import json
 import os
 import socket
+import ssl
 import struct
 import time
 from collections import deque
 from urllib.parse import urlsplit
 
 GUID = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455
+PORTS = {"ws": 80, "wss": 443}
 CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10
 
 
@@ -37,17 +39,21 @@ class Closed(Exception):
 
 
 class WebSocket:
-    """The client's side of RFC 6455, over TCP."""
+    """The client's side of RFC 6455, over TCP or TLS."""
 
-    def __init__(self, url, timeout):
+    def __init__(self, url, timeout, tls):
         parts = urlsplit(url)
-        if parts.scheme != "ws" or not parts.hostname:
-            raise ValueError(f"{url!r} is not ws://HOST[:PORT][/PATH]")
-        self.socket = socket.create_connection((parts.hostname, parts.port or 80), timeout)
+        if parts.scheme not in PORTS or not parts.hostname:
+            raise ValueError(f"{url!r} is neither ws://HOST[:PORT][/PATH] nor wss://")
+        address = (parts.hostname, parts.port or PORTS[parts.scheme])
+        self.socket = socket.create_connection(address, timeout)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.buffer = b""
         self.message = None  # the opcode and parts of a message that is not whole yet
         try:
+            if parts.scheme == "wss":
+                context = tls or ssl.create_default_context()
+                self.socket = context.wrap_socket(self.socket, server_hostname=parts.hostname)
             self.upgrade(parts)
         except BaseException:
             self.socket.close()
@@ -137,9 +143,10 @@ class WebSocket:
 class Client:
     """One connection. Results, events and frames are as in PROTOCOL.md, as dictionaries."""
 
-    def __init__(self, url="ws://127.0.0.1:8080/ws", timeout=10):
+    def __init__(self, url="ws://127.0.0.1:8080/ws", timeout=10, tls=None):
+        """`tls`: an ssl.SSLContext that tells whom to trust; None: whom the system trusts."""
         self.timeout = timeout
-        self.socket = WebSocket(url, timeout)
+        self.socket = WebSocket(url, timeout, tls)
         self.last_id = 0
         self.replies = {}
         self.events = deque()  # (name, params) of those that came and were not taken
