@@ -14,6 +14,7 @@
 #include "core/support/instruction_set.h"
 #include "server/recent_values.h"
 #include "server/stage_clock.h"
+#include "server/storage/storage_counts.h"
 
 namespace vat {
 
@@ -53,6 +54,8 @@ class ServerMetrics {
     std::size_t connections = 0;
     std::size_t clients = 0;    ///< connections that have joined a session
     std::size_t particles = 0;  ///< of all sessions
+    std::size_t heap = 0;       ///< in use [bytes]
+    StorageCounts storage;
   };
   /// All of it in the text format, version 0.0.4.
   std::string to_text(const Present& present) const;

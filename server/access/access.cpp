@@ -2,19 +2,52 @@
 
 #include <utility>
 
+#include "server/storage/token_store.h"
+#include "server/wall_clock.h"
+
 namespace vat {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+Role read_role(const std::string& name) {
+  for (const Role role : {Role::viewer, Role::controller, Role::owner, Role::admin}) {
+    if (name == to_string(role)) return role;
+  }
+  throw StorageError(StorageError::Kind::corrupt, "a stored token: its role");
+}
+
+}  // namespace
 
 const char* to_string(AccessMode mode) {
   return mode == AccessMode::open ? "open" : "token";
 }
 
+void AccessTokens::keep_in(TokenStore& store, Clock::time_point now) {
+  const double wall = wall_clock();
+  store.remove_old(wall);
+  const std::lock_guard lock(mutex_);
+  store_ = &store;
+  for (StoredToken& token : store.all()) {
+    const auto left = std::chrono::duration_cast<Clock::duration>(Seconds(token.ends - wall));
+    Grant grant{read_role(token.role), std::move(token.session), true};
+    entries_.insert_or_assign(token.hash, Entry{std::move(grant), token.uses, now + left});
+    ++issued_;
+  }
+}
+
 std::optional<std::string> AccessTokens::issue(Grant grant, std::optional<std::size_t> uses,
                                                Clock::time_point end, Clock::time_point now) {
   std::string token = make_token();
+  const TokenHash hash = hash_of_token(token);
   const std::lock_guard lock(mutex_);
   if (issued_ >= max_issued_) remove_old(now);
   if (issued_ >= max_issued_) return {};
-  entries_.insert_or_assign(hash_of_token(token), Entry{std::move(grant), uses, end});
+  if (store_ != nullptr) {
+    const double ends = wall_clock() + Seconds(end - now).count();
+    store_->add({hash, to_string(grant.role), grant.session, uses, ends});
+  }
+  entries_.insert_or_assign(hash, Entry{std::move(grant), uses, end});
   ++issued_;
   return token;
 }
@@ -32,8 +65,9 @@ void AccessTokens::remove(const TokenHash& token) {
   entries_.erase(found);
 }
 
-void AccessTokens::remove_session(std::string_view session) {
+void AccessTokens::remove_session(const std::string& session, bool comes_back) {
   const std::lock_guard lock(mutex_);
+  if (store_ != nullptr && !comes_back) store_->remove_session(session);
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_of_it = entry.second.grant.session == session;
     if (is_of_it && entry.second.end) --issued_;
@@ -48,14 +82,23 @@ std::optional<Grant> AccessTokens::use(const TokenHash& token, Clock::time_point
   Entry& entry = found->second;
   if (entry.end && *entry.end <= now) return {};
   Grant grant = entry.grant;
-  if (entry.uses && --*entry.uses == 0) {
-    entries_.erase(found);
-    --issued_;
-  }
+  if (entry.uses) count_use(token, entry);
   return grant;
 }
 
+void AccessTokens::count_use(const TokenHash& token, Entry& entry) {
+  const std::size_t left = *entry.uses - 1;
+  // First, so that a use counts whatever ends the server.
+  if (store_ != nullptr && left > 0) store_->set_uses(token, left);
+  if (store_ != nullptr && left == 0) store_->remove(token);
+  entry.uses = left;
+  if (left > 0) return;
+  entries_.erase(token);
+  --issued_;
+}
+
 void AccessTokens::remove_old(Clock::time_point now) {
+  if (store_ != nullptr) store_->remove_old(wall_clock());
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_old = entry.second.end && *entry.second.end <= now;
     if (is_old) --issued_;

@@ -13,6 +13,8 @@
 
 namespace vat {
 
+class TokenStore;
+
 enum class AccessMode {
   open,  ///< whoever connects is let in, as a controller
   token  ///< a client has to show a token first
@@ -42,6 +44,10 @@ class AccessTokens {
   /// At most so many that were issued are kept.
   explicit AccessTokens(std::size_t max_issued) : max_issued_(max_issued) {}
 
+  /// From now on those that are issued are kept; those that are in the store are good again. Throws
+  /// StorageError, as all do that change what is kept; nothing has changed then.
+  void keep_in(TokenStore& store, Clock::time_point now);
+
   /// A new token, good `uses` times (absent: any number) until `end`. Nothing if there are too
   /// many.
   std::optional<std::string> issue(Grant grant, std::optional<std::size_t> uses,
@@ -49,7 +55,8 @@ class AccessTokens {
   /// A token that somebody else looks after, good until it is removed.
   void add(const TokenHash& token, Grant grant);
   void remove(const TokenHash& token);
-  void remove_session(std::string_view session);
+  /// Of a session that comes back, those that were issued are kept all the same.
+  void remove_session(const std::string& session, bool comes_back);
   /// What the token gives, and counts the use; nothing if it is not good.
   std::optional<Grant> use(const TokenHash& token, Clock::time_point now);
 
@@ -60,12 +67,14 @@ class AccessTokens {
     std::optional<Clock::time_point> end;  // absent: it was not issued here
   };
   void remove_old(Clock::time_point now);
+  void count_use(const TokenHash& token, Entry& entry);
 
   const std::size_t max_issued_;
   std::mutex mutex_;
   // Found by their hashes: what the time of a search could tell is of the hash, not of the token.
   std::map<TokenHash, Entry> entries_;
   std::size_t issued_ = 0;
+  TokenStore* store_ = nullptr;  // null: they end with the server
 };
 
 }  // namespace vat

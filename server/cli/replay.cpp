@@ -14,16 +14,20 @@
 
 #include "core/limits.h"
 #include "server/cli/command.h"
+#include "server/cli/replay_seeks.h"
 #include "server/replay/replay_player.h"
 #include "server/session/describe.h"
 
 namespace vat {
 namespace {
 
+constexpr std::uint64_t kMostLines = 200;  // about so many of the hashes are printed
+
 struct Options {
   std::string file;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
   bool verify = false;
+  std::size_t seeks = 0;
 };
 
 /// What sessions share, for one that nobody joins.
@@ -61,14 +65,23 @@ void print_place(const SessionCore& core, std::uint64_t hash) {
             << describe_hash(hash) << '\n';
 }
 
-int play(const Options& options, const Recording& recording, const Catalogue& catalogue) {
+int play(const Options& options, const std::shared_ptr<const Recording>& shared,
+         const Catalogue& catalogue) {
+  const Recording& recording = *shared;
   const LonelyEnvironment environment(catalogue, recording.instructions);
+  if (options.seeks > 0) {
+    time_seeks(shared, environment.get(), options.seeks);
+    return kExitOk;
+  }
   ReplayPlayer player(recording, environment.get());
   SessionCore core("replay", {recording.name}, player.begin(), environment.get());
   std::size_t compared = 0;
+  std::uint64_t print_from = 0;
   player.on_same = [&](const RecordedHash& same) {
     ++compared;
-    if (options.verify) print_place(core, same.hash);
+    if (!options.verify || (same.position < print_from && same.position != recording.end)) return;
+    print_place(core, same.hash);
+    print_from = same.position + (recording.end - recording.begin) / kMostLines;
   };
   if (options.verify) player.compare_moments();
   const std::atomic<bool> cancelled = false;
@@ -86,12 +99,13 @@ int play(const Options& options, const Recording& recording, const Catalogue& ca
 
 int replay(const Options& options) {
   spdlog::set_level(spdlog::level::err);
-  const Result<Recording> recording = read_file(options.file);
-  if (!recording) return fail(options.file, recording.errors());
+  Result<Recording> read = read_file(options.file);
+  if (!read) return fail(options.file, read.errors());
+  const auto recording = std::make_shared<const Recording>(std::move(read).value());
   const Result<Catalogue> catalogue = Catalogue::open(options.scenes_folder);
   if (!catalogue) return fail(options.scenes_folder, catalogue.errors());
   try {
-    return play(options, recording.value(), catalogue.value());
+    return play(options, recording, catalogue.value());
   } catch (const Diverged& difference) {
     std::cerr << options.file << ": differs: " << difference.what() << '\n';
   } catch (const StorageError& error) {
@@ -111,7 +125,11 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::ExistingFile);
   command->add_flag("--verify", options->verify,
-                    "Compare all states that it holds, and print their hashes");
+                    "Compare all states that it holds too, and print hashes on the way");
+  command
+      ->add_option("--seeks", options->seeks,
+                   "Measure how long it takes to go to so many random positions, instead")
+      ->check(CLI::Range(1, 1'000'000));
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
   command->footer(
       "Exit codes: 0 played to its end, 1 not a recording, or one that leads elsewhere: the tick "

@@ -66,10 +66,20 @@ int play(const std::string& path, const script::PlaySettings& settings, bool& wa
   }
 }
 
+/// Whether the options that tell whom to trust have something to tell.
+bool is_trust_of_use(const script::PlaySettings& settings) {
+  const bool is_given = !settings.trust.authority_file.empty() || settings.trust.is_unchecked;
+  return !is_given || !settings.server || settings.server->is_secure;
+}
+
 int play_all(Options& options) {
   script::PlaySettings& settings = options.play;
   settings.patience = std::chrono::milliseconds(static_cast<std::int64_t>(options.patience * 1000));
   if (!options.server.empty()) settings.server = script::read_websocket_url(options.server);
+  if (!is_trust_of_use(settings)) {
+    std::cerr << "--ca and --insecure are of servers with TLS, which are at wss://\n";
+    return kExitUsage;
+  }
   settings.program = "/proc/self/exe";
   settings.arguments = {"serve",   "--port",      "0",           "--scenes", options.scenes_folder,
                         "--scene", options.scene, "--log-level", "error"};
@@ -88,9 +98,22 @@ int play_all(Options& options) {
 void add_options(CLI::App& command, Options& options) {
   command.add_option("file", options.files, "Scripts, in .jsonl")->required();
   command
-      .add_option("--server", options.server,
-                  "Address of a running server: ws://HOST[:PORT][/PATH], by default port 80, /ws")
+      .add_option(
+          "--server", options.server,
+          "Address of a running server: ws://HOST[:PORT][/PATH], by default port 80, /ws; or "
+          "wss:// over TLS, by default port 443")
       ->check(CLI::Validator(check_url, "URL"));
+  CLI::Option* authorities =
+      command
+          .add_option("--ca", options.play.trust.authority_file,
+                      "Certificates to trust in place of the system's, in PEM: of authorities, or "
+                      "the server's own")
+          ->check(CLI::ExistingFile);
+  command
+      .add_flag("--insecure", options.play.trust.is_unchecked,
+                "Do not check whose certificate a server with TLS shows: whoever sits between can "
+                "read and change all")
+      ->excludes(authorities);
   command
       .add_option("--scene", options.scene,
                   "The first session's of a server that is started. " + std::string(kSceneHelp))

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +17,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,6 +28,7 @@
 #include "server/cli/open_files.h"
 #include "server/cli/scene_argument.h"
 #include "server/cli/serve_access.h"
+#include "server/heap.h"
 #include "server/http/downloads.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
@@ -61,30 +65,52 @@ that cannot be used or port in use, 2 wrong usage, or a variable with a bad valu
 /// Waits for SIGINT or SIGTERM, also for one that came since the construction.
 class StopSignal {
  public:
-  StopSignal() : signals_(io_, SIGINT, SIGTERM) {
-    signals_.async_wait([this](boost::system::error_code, int signal) {
-      is_term_ = signal == SIGTERM;
-      spdlog::info("stopping: {}", is_term_ ? "SIGTERM" : "SIGINT");
+  StopSignal(asio::io_context& io, std::chrono::milliseconds drain_time)
+      : usual_drain_time_(drain_time),
+        drain_time_(drain_time),
+        io_(io),
+        signals_(io, SIGINT, SIGTERM) {
+    signals_.async_wait([this](boost::system::error_code cancelled, int signal) {
+      if (cancelled) return;
+      // By SIGTERM operators end a server that others use.
+      if (signal == SIGINT) drain_time_ = std::chrono::milliseconds(0);
+      spdlog::info("stopping: {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       signals_.clear();  // the next one ends the process
+      io_.stop();
     });
   }
-  void wait() { io_.run(); }
-  /// Whether it was SIGTERM, by which operators end a server that others use.
-  bool is_term() const { return is_term_; }
+  /// Runs the context until it comes, or request(); how long clients may stay then.
+  std::chrono::milliseconds wait() {
+    io_.run();
+    return drain_time_;
+  }
+  /// As if one came, from any thread; the time that clients get.
+  std::chrono::milliseconds request(std::optional<std::chrono::milliseconds> drain_time) {
+    const auto given = drain_time.value_or(usual_drain_time_);
+    asio::post(io_, [this, given] {
+      spdlog::info("stopping: server.drain");
+      drain_time_ = given;
+      signals_.clear();
+      io_.stop();
+    });
+    return given;
+  }
 
  private:
-  bool is_term_ = false;
-  asio::io_context io_;
+  const std::chrono::milliseconds usual_drain_time_;
+  std::chrono::milliseconds drain_time_;
+  asio::io_context& io_;
   asio::signal_set signals_;
 };
 
 /// An address that a browser on this machine can open.
-std::string viewer_url(const std::string& host, std::uint16_t port) {
-  asio::ip::address address = asio::ip::make_address(host);
+std::string viewer_url(const ServeSettings& options, std::uint16_t port) {
+  asio::ip::address address = asio::ip::make_address(options.host);
   if (address == asio::ip::address_v4::any()) address = asio::ip::address_v4::loopback();
   if (address == asio::ip::address_v6::any()) address = asio::ip::address_v6::loopback();
   const std::string text = address.to_string();
-  return "http://" + (address.is_v6() ? "[" + text + "]" : text) + ":" + std::to_string(port) + "/";
+  const std::string scheme = options.tls_certificate.empty() ? "http://" : "https://";
+  return scheme + (address.is_v6() ? "[" + text + "]" : text) + ":" + std::to_string(port) + "/";
 }
 
 void raise_file_limit(std::size_t connections) {
@@ -101,11 +127,14 @@ TransportSettings transport_settings(const ServeSettings& options, SessionServer
   settings.endpoints = options.endpoints;
   settings.host = options.host;
   settings.port = options.port;
+  settings.tls_certificate = options.tls_certificate;
+  settings.tls_key = options.tls_key;
+  settings.allowed_origins = split_origins(options.allow_origin);
   settings.max_connections = options.limits.max_connections;
   settings.max_connections_per_address = options.limits.max_connections_per_address;
   settings.max_message_bytes = options.limits.max_scene_message_bytes;
-  settings.handshake_timeout = options.handshake_timeout;
-  settings.ping_interval = options.ping_interval;
+  settings.handshake_timeout = options.limits.handshake_time;
+  settings.ping_interval = options.limits.ping_interval;
   settings.report = [](std::string_view fault) { spdlog::error("internal error: {}", fault); };
   settings.count_refusal = [&](std::string_view limit) { sessions.count_refusal(limit); };
   settings.count_close = [&](std::uint16_t code) { sessions.count_close(code); };
@@ -128,7 +157,10 @@ ServerPhase phase_of(const SharedPhase& phase, const SessionServer& sessions) {
 /// Serves until a signal comes.
 int serve(const ServeSettings& options, const ServeAccess& access, const Catalogue& catalogue,
           const Scene& scene, StaticFiles viewer) {
-  StopSignal stop_signal;
+  prepare_heap();
+  asio::io_context main_thread;
+  StopSignal stop_signal(main_thread, options.drain_time);
+  MemoryReturn memory_return(main_thread);
   SharedPhase phase = ServerPhase::starting;
   ServerSettings settings;
   settings.version = VAT_VERSION;
@@ -145,6 +177,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
     settings.data_folder = options.data;
   }
   settings.storage = options.storage;
+  settings.end = [&](auto drain_time) { return stop_signal.request(drain_time); };
   SessionServer sessions(catalogue, settings);
   if (sessions.recover() == 0) {
     const Result<SessionId> session = sessions.create_session(scene.name, scene);
@@ -159,13 +192,13 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
                      sessions.downloads()));
   raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
-  const std::string url = viewer_url(options.host, port);
+  const std::string url = viewer_url(options, port);
   tell_access(options, access, url);
   phase = ServerPhase::ready;
   std::cout << "vat is at " << url << " (Ctrl-C stops it)" << std::endl;
-  stop_signal.wait();
+  const std::chrono::milliseconds drain_time = stop_signal.wait();
   phase = ServerPhase::draining;
-  sessions.drain(stop_signal.is_term() ? options.drain_time : std::chrono::milliseconds(0));
+  sessions.drain(drain_time);
   sessions.stop();
   transport->stop();
   return kExitOk;
@@ -250,14 +283,18 @@ int run(CommandLine& line) {
     return kExitUsage;
   }
   apply_options(line.table, line.options, sources);
+  if (line.settings.tls_certificate.empty() != line.settings.tls_key.empty()) {
+    std::cerr << "tls_certificate and tls_key: either needs the other\n";
+    return kExitUsage;
+  }
+  const std::vector<std::string> unknown = unknown_variables(line.table, variables);
   if (line.print_config) {
+    for (const std::string& one : unknown) std::cerr << "a variable is no setting: " << one << '\n';
     std::cout << describe(line.table, sources).dump(2) << '\n';
     return kExitOk;
   }
   start_log(line.settings.log_level, line.settings.log_format == "json");
-  for (const std::string& unknown : unknown_variables(line.table, variables)) {
-    spdlog::warn("a variable is no setting: {}", unknown);
-  }
+  for (const std::string& one : unknown) spdlog::warn("a variable is no setting: {}", one);
   return load_and_serve(line.settings);
 }
 

@@ -8,9 +8,9 @@ namespace vat {
 
 std::optional<std::string> Downloads::add(File file, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  forget_old(now);
+  forget_old_locked(now);
   const std::size_t size = file.content.size();
-  if (bytes_ + size > kMostBytes) return {};
+  if (bytes_ + size > max_bytes_) return {};
   std::string path = std::string(kFolder) + make_token();
   bytes_ += size;
   files_.emplace(path, Waiting{std::move(file), now + kPatience});
@@ -19,7 +19,7 @@ std::optional<std::string> Downloads::add(File file, Clock::time_point now) {
 
 std::optional<Downloads::File> Downloads::take(std::string_view path, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  forget_old(now);
+  forget_old_locked(now);
   const auto found = files_.find(path);
   if (found == files_.end()) return {};
   File file = std::move(found->second.file);
@@ -28,7 +28,13 @@ std::optional<Downloads::File> Downloads::take(std::string_view path, Clock::tim
   return file;
 }
 
-void Downloads::forget_old(Clock::time_point now) {
+std::size_t Downloads::forget_old(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  forget_old_locked(now);
+  return bytes_;
+}
+
+void Downloads::forget_old_locked(Clock::time_point now) {
   std::erase_if(files_, [&](const auto& entry) {
     if (entry.second.end > now) return false;
     bytes_ -= entry.second.file.content.size();

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/limits.h"
 #include "server/net/transport.h"
 
 namespace vat {
@@ -18,7 +19,6 @@ class Downloads {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::string_view kFolder = "/downloads/";
-  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;  ///< of all that wait
   static constexpr std::chrono::seconds kPatience{60};
 
   struct File {
@@ -26,17 +26,24 @@ class Downloads {
     std::string content;
   };
 
+  /// `max_bytes`: of all that wait.
+  explicit Downloads(std::size_t max_bytes = ServerLimits{}.max_download_bytes)
+      : max_bytes_(max_bytes) {}
+
   /// A path that nobody can guess; nothing where too much waits already.
   std::optional<std::string> add(File file, Clock::time_point now);
   std::optional<File> take(std::string_view path, Clock::time_point now);
+  /// Those that have waited long enough go; what the others take.
+  std::size_t forget_old(Clock::time_point now);
 
  private:
   struct Waiting {
     File file;
     Clock::time_point end;
   };
-  void forget_old(Clock::time_point now);
+  void forget_old_locked(Clock::time_point now);
 
+  const std::size_t max_bytes_;
   std::mutex mutex_;
   std::map<std::string, Waiting, std::less<>> files_;
   std::size_t bytes_ = 0;

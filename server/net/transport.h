@@ -60,8 +60,13 @@ struct HttpResponse {
 using HttpHandler = std::function<HttpResponse(std::string_view method, std::string_view target)>;
 
 struct TransportSettings {
-  std::string host = "127.0.0.1";                  ///< a numeric address
-  std::uint16_t port = 8080;                       ///< 0: any free port
+  std::string host = "127.0.0.1";  ///< a numeric address
+  std::uint16_t port = 8080;       ///< 0: any free port
+  /// Files in PEM: with both, the port speaks TLS (https and wss) and nothing else.
+  std::string tls_certificate;
+  std::string tls_key;
+  /// Pages of these origins may connect, beside those of this server: "https://example.org".
+  std::vector<std::string> allowed_origins;
   std::size_t endpoints = 1;                       ///< threads that share the port's connections
   std::size_t max_connections = 1024;              ///< WebSockets; the next is closed with 1013
   std::size_t max_connections_per_address = 256;   ///< the same
@@ -85,7 +90,8 @@ struct TransportSettings {
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Begins to listen and serve. Throws std::runtime_error that names host and port if it cannot.
+  /// Begins to listen and serve. Throws std::runtime_error that names host and port, or the file
+  /// for TLS, if it cannot.
   /// Returns the port that is listened on.
   virtual std::uint16_t start() = 0;
   /// Stops listening, closes every connection with 1001, waits for the closing handshakes at most

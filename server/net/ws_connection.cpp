@@ -33,6 +33,7 @@ WsConnection::WsConnection(ConnectionId id, std::string address, std::shared_ptr
       queued_bytes_(std::make_shared<std::atomic<std::size_t>>(0)) {}
 
 void WsConnection::send_text(std::string message) {
+  message.shrink_to_fit();  // it may wait for long: what was written bit by bit has room to spare
   send(std::make_shared<const std::string>(std::move(message)), websocketpp::frame::opcode::TEXT);
 }
 

@@ -32,6 +32,7 @@ constexpr std::size_t kMaxOtherSockets = 256;
 constexpr std::size_t kMaxOtherSocketsPerAddress = 64;
 
 constexpr std::uint16_t kGoingAway = 1001;
+constexpr std::uint16_t kNotUtf8 = 1007;
 constexpr std::uint16_t kInternalError = 1011;
 constexpr std::uint16_t kTryAgainLater = 1013;
 
@@ -59,6 +60,16 @@ boost::system::error_code try_to_listen(boost::asio::io_context& io,
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
   return error;
+}
+
+bool ends_within_character(const std::string& text) {
+  constexpr std::size_t kLongest = 4;
+  for (std::size_t back = 1; back <= std::min(text.size(), kLongest); ++back) {
+    const auto byte = static_cast<unsigned char>(text[text.size() - back]);
+    if (byte >= 0xc0) return back < (byte >= 0xf0 ? 4U : byte >= 0xe0 ? 3U : 2U);
+    if (byte < 0x80) return false;
+  }
+  return false;
 }
 
 /// See Connection::address(). Empty where the peer has gone already.
@@ -102,6 +113,7 @@ void WsEndpoint::configure() {
   server_.set_max_http_body_size(shared_.settings.max_http_request_bytes);
   server_.set_open_handshake_timeout(static_cast<long>(shared_.settings.handshake_timeout.count()));
   server_.set_close_handshake_timeout(kClosingHandshakeTimeout);
+  server_.set_tls_context(shared_.tls);
 }
 
 void WsEndpoint::set_handlers() {
@@ -233,7 +245,8 @@ bool WsEndpoint::validate(WsStream& stream) {
   const auto refusal = refuse_upgrade(
       {stream.get_request().get_uri(), stream.get_request_header("Host"),
        stream.get_request_header("Origin"), stream.get_request_header("Sec-WebSocket-Version"),
-       stream.get_requested_subprotocols()});
+       stream.get_requested_subprotocols()},
+      shared_.settings.allowed_origins);
   if (!refusal) {
     stream.select_subprotocol(kSubprotocol);
     return true;
@@ -269,6 +282,10 @@ void WsEndpoint::received(WsStream& stream, const WsMessage& message) {
   if (stream.id == 0) return;
   stream.unanswered_pings = 0;
   if (message.get_opcode() == opcode::TEXT) {
+    // The library looks for that at the end of a message in one frame only.
+    if (ends_within_character(message.get_payload())) {
+      return close_stream(stream, kNotUtf8, "text that is not UTF-8");
+    }
     shared_.connections.text_received(stream.id, message.get_payload());
   } else {
     shared_.connections.binary_received(stream.id, message.get_payload());

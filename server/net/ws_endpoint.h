@@ -3,6 +3,7 @@
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +28,7 @@ struct WsShared {
       : settings(std::move(settings_in)), connections(connections_in), http(std::move(http_in)) {}
 
   const TransportSettings settings;
+  std::shared_ptr<boost::asio::ssl::context> tls;  ///< null: without
   ConnectionHandler& connections;
   const HttpHandler http;
   std::atomic<ConnectionId> last_id = 0;

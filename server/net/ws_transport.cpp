@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/net/ws_tls.h"
+
 namespace vat {
 
 WsTransport::WsTransport(TransportSettings settings, ConnectionHandler& connections,
                          HttpHandler http)
     : shared_(std::move(settings), connections, std::move(http)) {
+  if (!shared_.settings.tls_certificate.empty()) {
+    shared_.tls = make_tls_context(shared_.settings.tls_certificate, shared_.settings.tls_key);
+  }
   const std::size_t count = std::max<std::size_t>(1, shared_.settings.endpoints);
   while (endpoints_.size() < count) endpoints_.push_back(std::make_unique<WsEndpoint>(shared_));
 }

@@ -26,14 +26,19 @@ bool same_origin(std::string_view origin, std::string_view host) {
 
 }  // namespace
 
-std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request) {
+std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
+                                             const std::vector<std::string>& allowed_origins) {
   if (request.target.substr(0, request.target.find('?')) != "/ws") {
     return UpgradeRefusal{400, "WebSocket connections are served at /ws only.\n"};
   }
   if (request.version != "13") {
     return UpgradeRefusal{400, "Sec-WebSocket-Version must be 13.\n"};
   }
-  if (!request.origin.empty() && !same_origin(request.origin, request.host)) {
+  const auto is_named = [&](const std::string& allowed) {
+    return equal_ignoring_case(allowed, request.origin);
+  };
+  if (!request.origin.empty() && !same_origin(request.origin, request.host) &&
+      std::none_of(allowed_origins.begin(), allowed_origins.end(), is_named)) {
     return UpgradeRefusal{403, "The page comes from another origin than this server.\n"};
   }
   const auto& offered = request.subprotocols;

@@ -24,7 +24,9 @@ struct UpgradeRefusal {
 };
 
 /// Why the upgrade is refused; nothing where it is granted. A browser names the page's origin: only
-/// pages that this server itself has served may connect, or any site could drive a user's server.
-std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request);
+/// pages that this server itself has served, and those of the allowed origins, may connect, or any
+/// site could drive a user's server.
+std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
+                                             const std::vector<std::string>& allowed_origins);
 
 }  // namespace vat

@@ -44,22 +44,22 @@ void append_values(std::string& row, std::initializer_list<Real> values) {
   }
 }
 
-void append_vector(std::string& row, const Vec3& v) {
+void append_axes(std::string& row, const Vec3& v) {
   append_values(row, {v.x(), v.y(), v.z()});
 }
 
 void append_body(std::string& row, const BodyDiagnostics& body) {
   append_values(row, {body.mass});
-  append_vector(row, body.center_of_mass);
-  append_vector(row, body.linear_momentum);
-  append_vector(row, body.angular_momentum);
-  append_vector(row, body.outer_force);
-  append_vector(row, body.outer_torque);
+  append_axes(row, body.center_of_mass);
+  append_axes(row, body.linear_momentum);
+  append_axes(row, body.angular_momentum);
+  append_axes(row, body.outer_force);
+  append_axes(row, body.outer_torque);
   if (body.orientation) {
     const Quat& q = *body.orientation;
     append_values(row, {q.w(), q.x(), q.y(), q.z()});
   }
-  if (body.angular_velocity) append_vector(row, *body.angular_velocity);
+  if (body.angular_velocity) append_axes(row, *body.angular_velocity);
 }
 
 std::string value_row(const Diagnostics& d, std::uint64_t guard_events) {

@@ -41,10 +41,15 @@ std::string without_tokens(const std::string& fields) {
 /// Those that the log goes on from.
 std::vector<RecordedMoment> read_moments(CheckpointStore& checkpoints, std::uint64_t number,
                                          const std::vector<LogEntry>& log) {
-  const std::uint64_t first = log.size() < 2 ? 0 : log[1].sequence - 1;
+  const std::vector<CheckpointPlace> places = checkpoints.places(number);
+  // A log that was shortened may have nothing yet that came behind the newest checkpoint.
+  const std::uint64_t newest = places.empty() ? 0 : places.back().sequence;
+  const bool goes_on = log.size() > 1;
+  const std::uint64_t last = goes_on ? log.back().sequence : std::max(newest, log[0].sequence);
+  const std::uint64_t first = goes_on ? log[1].sequence - 1 : last;
   std::vector<RecordedMoment> moments;
-  for (const CheckpointPlace& place : checkpoints.places(number)) {
-    if (place.sequence < first || place.sequence > log.back().sequence) continue;
+  for (const CheckpointPlace& place : places) {
+    if (place.sequence < first || place.sequence > last) continue;
     const std::optional<Checkpoint> checkpoint = checkpoints.read(place);
     if (!checkpoint) continue;  // thinned meanwhile
     moments.push_back({checkpoint->position, checkpoint->sequence,
@@ -53,18 +58,34 @@ std::vector<RecordedMoment> read_moments(CheckpointStore& checkpoints, std::uint
   return moments;
 }
 
-/// Before much is read.
-void check_size(Storage& storage, std::uint64_t number) {
+/// Those that a recording covers. A tick's hash is of before all that was done at its position.
+std::vector<RecordedHash> read_hashes(CheckpointStore& checkpoints, std::uint64_t number,
+                                      const Recording& recording) {
+  const std::uint64_t first =
+      recording.is_whole() ? recording.log.front().sequence : recording.moments.front().sequence;
+  std::vector<RecordedHash> hashes;
+  auto next = recording.log.begin();
+  for (const TickHash& one : checkpoints.hashes(number, recording.begin)) {
+    if (one.position <= recording.begin || one.position > recording.end) continue;
+    while (next != recording.log.end() && next->position < one.position) ++next;
+    const std::uint64_t sequence = next == recording.log.begin() ? first : (next - 1)->sequence;
+    hashes.push_back({one.position, std::max(first, sequence), one.hash});
+  }
+  return hashes;
+}
+
+std::size_t kept_bytes(Storage& storage, std::uint64_t number) {
   std::size_t bytes = storage.sessions().log_bytes(number);
+  bytes += storage.checkpoints().hash_count(number) * sizeof(RecordedHash);
   for (const CheckpointPlace& place : storage.checkpoints().places(number)) bytes += place.bytes;
-  if (bytes <= kMaxRecordingBytes) return;
-  throw StorageError(StorageError::Kind::full, "the session is too large for a recording");
+  return bytes;
 }
 
 }  // namespace
 
-Recording record_session(Storage& storage, std::uint64_t number) {
-  check_size(storage, number);
+std::optional<Recording> record_session(Storage& storage, std::uint64_t number,
+                                        std::size_t max_bytes) {
+  if (kept_bytes(storage, number) > max_bytes) return {};  // before much is read
   const StoredSession session = find_session(storage.sessions(), number);
   const Result<InstructionSet> instructions = parse_instruction_set(session.instruction_set);
   if (!instructions) throw StorageError(StorageError::Kind::corrupt, "its instruction set");
@@ -83,11 +104,14 @@ Recording record_session(Storage& storage, std::uint64_t number) {
   if (!recording.moments.empty()) {
     recording.end = std::max(recording.end, recording.moments.back().position);
   }
-  if (const auto& beat = session.beat; beat && beat->sequence <= last.sequence) {
-    recording.end = std::max(recording.end, beat->position);
-    if (beat->position >= recording.begin) {
-      recording.hashes.push_back({beat->position, beat->sequence, beat->hash});
-    }
+  const auto& beat = session.beat;
+  const bool is_seen = beat && beat->sequence <= recording.last_sequence();
+  if (is_seen) recording.end = std::max(recording.end, beat->position);
+  recording.hashes = read_hashes(storage.checkpoints(), number, recording);
+  if (is_seen && beat->position >= recording.begin) {
+    const RecordedHash seen{beat->position, beat->sequence, beat->hash};
+    const auto behind = std::ranges::upper_bound(recording.hashes, key_of(seen), {}, key_of);
+    recording.hashes.insert(behind, seen);
   }
   return recording;
 }

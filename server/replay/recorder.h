@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "server/replay/recording.h"
 #include "server/storage/storage.h"
@@ -8,8 +10,9 @@
 namespace vat {
 
 /// What is kept of a session, as a recording: up to its newest checkpoint, or further where the
-/// session was seen later. It tells nothing that lets anybody in. Throws StorageError; of kind full
-/// where it would be more than kMaxRecordingBytes.
-Recording record_session(Storage& storage, std::uint64_t session);
+/// session was seen later. It tells nothing that lets anybody in. Nothing where more than so many
+/// bytes are kept. Throws StorageError.
+std::optional<Recording> record_session(Storage& storage, std::uint64_t session,
+                                        std::size_t max_bytes);
 
 }  // namespace vat

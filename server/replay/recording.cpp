@@ -63,7 +63,7 @@ bool is_in_order(const std::vector<LogEntry>& log) {
 template <class Place>
 bool is_in_order(const std::vector<Place>& places, const Recording& recording) {
   const auto key = [](const Place& place) { return std::tuple(place.position, place.sequence); };
-  const std::uint64_t last = recording.log.back().sequence;
+  const std::uint64_t last = recording.last_sequence();
   return std::ranges::is_sorted(places, {}, key) &&
          std::ranges::all_of(places, [&](const Place& place) {
            return place.position >= recording.begin && place.position <= recording.end &&

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/saved/archive.h"
@@ -29,6 +31,11 @@ struct RecordedHash {
   std::uint64_t hash = 0;
 };
 
+/// Where that is, to compare.
+inline std::pair<std::uint64_t, std::uint64_t> key_of(const RecordedHash& hash) {
+  return {hash.position, hash.sequence};
+}
+
 /// A session's history: its scene and all that changed it, from which it can be run again, bit for
 /// bit, by whoever has the instruction set; moments to begin at; and hashes to compare with.
 struct Recording {
@@ -41,9 +48,16 @@ struct Recording {
   std::vector<RecordedMoment> moments;  ///< rising by position and sequence
   std::vector<RecordedHash> hashes;     ///< the same
 
-  /// It begins with its scene; otherwise at its first moment.
+  /// It begins with its scene; otherwise at its first moment, which may be behind all of the log.
   bool is_whole() const {
-    return begin == log[0].position && (log.size() < 2 || log[1].sequence == log[0].sequence + 1);
+    if (begin != log[0].position) return false;
+    if (log.size() > 1) return log[1].sequence == log[0].sequence + 1;
+    return moments.empty() || moments[0].sequence == log[0].sequence;
+  }
+  /// The last that has been carried out at the end.
+  std::uint64_t last_sequence() const {
+    const std::uint64_t last = log.back().sequence;
+    return log.size() > 1 || moments.empty() ? last : std::max(last, moments[0].sequence);
   }
 };
 

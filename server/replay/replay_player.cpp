@@ -3,36 +3,26 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "server/session/describe.h"
 #include "server/session/scene_loading.h"
 #include "server/storage/compression.h"
+#include "server/thread_time.h"
 
 namespace vat {
 namespace {
-
-constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;  // of what a checkpoint may hold
 
 [[noreturn]] void fail(const std::string& what, const std::string& why) {
   throw StorageError(StorageError::Kind::corrupt, "the recording's " + what + ": " + why);
 }
 
-auto key_of(const RecordedHash& hash) {
-  return std::tuple(hash.position, hash.sequence);
-}
-
-/// Who follows along decides by themselves how fast that is.
-bool is_of_the_clock(const LogEntry& entry) {
-  return entry.method == "control.play" || entry.method == "control.pause" ||
-         entry.method == "control.step" || entry.method == "control.set_speed";
-}
-
 }  // namespace
 
 ReplayPlayer::ReplayPlayer(const Recording& recording, const SessionEnvironment& environment)
-    : recording_(recording), environment_(environment), hashes_(recording.hashes) {}
+    : recording_(recording), environment_(environment), hashes_(recording.hashes) {
+  set_keeping({});
+}
 
 void ReplayPlayer::compare_moments() {
   for (const RecordedMoment& moment : recording_.moments) {
@@ -42,8 +32,9 @@ void ReplayPlayer::compare_moments() {
 }
 
 Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
-  Result<Simulation> simulation = Simulation::load(decompress(moment.state, kMaxStateBytes),
-                                                   &environment_.runner, recording_.instructions);
+  Result<Simulation> simulation =
+      Simulation::load(decompress(moment.state, most_state_bytes(environment_.limits)),
+                       &environment_.runner, recording_.instructions);
   if (!simulation) fail("state", simulation.errors().front().message);
   return std::move(simulation).value();
 }
@@ -51,8 +42,8 @@ Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
 Simulation ReplayPlayer::load_scene(std::uint64_t sequence) const {
   const auto entry = std::ranges::find(recording_.log, sequence, &LogEntry::sequence);
   if (entry == recording_.log.end()) fail("scene", "its entry is not there");
-  const Result<Json> params =
-      parse_json(entry->params, {entry->params.size(), kMaxMessageDepth, entry->params.size() + 1});
+  const Result<Json> params = parse_json(
+      entry->params, {entry->params.size(), kMostMessageDepth, entry->params.size() + 1});
   if (!params) fail("scene", params.errors().front().message);
   const auto value = params.value().find("scene");
   if (value == params.value().end()) fail("scene", "its entry has none");
@@ -90,9 +81,19 @@ void ReplayPlayer::go_to(SessionCore& core, const RecordedMoment& moment) {
   if (read.position != moment.position || read.sequence != moment.sequence) {
     fail("moment", "it tells of another place than its own");
   }
-  const Snapshot as_loaded = load_scene(read.loaded).snapshot();
-  core.resume(read, std::move(simulation), as_loaded);
+  if (auto error = find_excess(simulation, environment_.limits)) fail("state", error->message);
+  if (const auto excess = core.run().admit(simulation)) {
+    fail("state", limit_reached(*excess).message);
+  }
+  core.resume(read, std::move(simulation), scene_as_loaded(read.loaded));
   find_place(core);
+}
+
+const Snapshot& ReplayPlayer::scene_as_loaded(std::uint64_t sequence) {
+  if (!loaded_ || loaded_->sequence != sequence) {
+    loaded_.emplace(Loaded{sequence, load_scene(sequence).snapshot()});
+  }
+  return loaded_->scene;
 }
 
 void ReplayPlayer::find_place(const SessionCore& core) {
@@ -100,7 +101,7 @@ void ReplayPlayer::find_place(const SessionCore& core) {
   const auto entry = std::ranges::upper_bound(recording_.log, sequence, {}, &LogEntry::sequence);
   next_entry_ = static_cast<std::size_t>(entry - recording_.log.begin());
   const auto hash =
-      std::ranges::lower_bound(hashes_, std::tuple(core.run().position(), sequence), {}, key_of);
+      std::ranges::lower_bound(hashes_, std::pair(core.run().position(), sequence), {}, key_of);
   next_hash_ = static_cast<std::size_t>(hash - hashes_.begin());
   same_until_ = core.run().tick();
   work_ = work_.zero();
@@ -111,7 +112,7 @@ void ReplayPlayer::carry_out_here(SessionCore& core) {
     compare_here(core);
     const LogEntry& entry = recording_.log[next_entry_];
     if (entry.position != core.run().position()) return;
-    if (is_of_the_clock(entry)) {
+    if (is_of_clock(entry.method)) {
       core.apply(entry, [](SessionCore&, Participant&) -> ActionResult { return Json::object(); });
     } else {
       carry_out_again(core, entry);
@@ -121,7 +122,7 @@ void ReplayPlayer::carry_out_here(SessionCore& core) {
 }
 
 void ReplayPlayer::compare_here(const SessionCore& core) {
-  const auto here = std::tuple(core.run().position(), core.sequence());
+  const auto here = std::pair(core.run().position(), core.sequence());
   for (; next_hash_ < hashes_.size() && key_of(hashes_[next_hash_]) <= here; ++next_hash_) {
     const RecordedHash& expected = hashes_[next_hash_];
     if (key_of(expected) < here) continue;  // there is no such place
@@ -137,62 +138,52 @@ void ReplayPlayer::compare_here(const SessionCore& core) {
   }
 }
 
-const RecordedMoment* ReplayPlayer::find_moment(std::uint64_t position) const {
+std::shared_ptr<const RecordedMoment> ReplayPlayer::find_moment(std::uint64_t position) const {
   const auto after =
       std::ranges::upper_bound(recording_.moments, position, {}, &RecordedMoment::position);
-  const RecordedMoment* found = after == recording_.moments.begin() ? nullptr : &*(after - 1);
-  const auto kept = kept_.upper_bound(position);
-  if (kept == kept_.begin()) return found;
-  const RecordedMoment& last = std::prev(kept)->second;
-  return found == nullptr || found->position < last.position ? &last : found;
+  auto kept = kept_->find(position);
+  if (after == recording_.moments.begin()) return kept;
+  const RecordedMoment& own = *(after - 1);
+  if (kept != nullptr && kept->position > own.position) return kept;
+  return {std::shared_ptr<void>(), &own};  // the recording's, not to be deleted
 }
 
 void ReplayPlayer::keep(const SessionCore& core) {
   const SessionMoment moment = core.moment();
-  RecordedMoment kept{moment.position, moment.sequence, moment.fields(),
-                      compress(moment.snapshot.to_bytes())};
-  kept_bytes_ += kept.state.size() + kept.fields.size();
-  kept_.emplace(moment.position, std::move(kept));
-  while (kept_bytes_ > keeping_.most_bytes && !kept_.empty()) thin();
-}
-
-void ReplayPlayer::thin() {
-  keeping_.work *= 2;
-  bool goes = true;
-  std::erase_if(kept_, [&](const auto& entry) {
-    if (goes) kept_bytes_ -= entry.second.state.size() + entry.second.fields.size();
-    return std::exchange(goes, !goes);
-  });
+  kept_->add(
+      {moment.position, moment.sequence, moment.fields(), compress(moment.snapshot.to_bytes())});
 }
 
 void ReplayPlayer::play_to(SessionCore& core, std::uint64_t position,
                            const std::atomic<bool>& cancelled) {
   carry_out_here(core);
   while (core.run().position() < std::min(position, recording_.end)) {
-    const auto begin = SteadyClock::now();
+    const auto begin = thread_time();
     run_to(core, core.run().position() + 1, cancelled);
     carry_out_here(core);
-    work_ += SteadyClock::now() - begin;
-    const RecordedMoment* last = find_moment(core.run().position());
+    work_ += thread_time() - begin;
+    const auto last = find_moment(core.run().position());
     const bool is_there = last != nullptr && last->position == core.run().position();
-    if (!is_there && work_ < keeping_.work) continue;
+    if (!is_there && work_ < kept_->work()) continue;
     if (!is_there) keep(core);
     work_ = work_.zero();
   }
 }
 
-void ReplayPlayer::seek(SessionCore& core, std::uint64_t position,
-                        const std::atomic<bool>& cancelled) {
+void ReplayPlayer::begin_seek(SessionCore& core, std::uint64_t position) {
   position = std::clamp(position, recording_.begin, recording_.end);
-  const RecordedMoment* from = find_moment(position);
+  const auto from = find_moment(position);
   const std::uint64_t present = core.run().position();
   const bool goes_on = present <= position && (from == nullptr || from->position <= present);
-  if (!goes_on && from == nullptr) {
-    go_to_begin(core);
-  } else if (!goes_on) {
-    go_to(core, *from);
-  }
-  play_to(core, position, cancelled);
+  if (goes_on) return find_place(core);
+  if (from == nullptr) return go_to_begin(core);
+  go_to(core, *from);
+}
+
+void ReplayPlayer::seek(SessionCore& core, std::uint64_t position,
+                        const std::atomic<bool>& cancelled) {
+  begin_seek(core, position);
+  play_to(core, std::clamp(position, recording_.begin, recording_.end), cancelled);
 }
 
 }  // namespace vat

@@ -5,9 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "server/replay/kept_moments.h"
 #include "server/replay/recording.h"
 #include "server/session/session_core.h"
 #include "server/session/session_recovery.h"
@@ -39,18 +42,27 @@ class ReplayPlayer {
   /// ones are kept in memory, of so many bytes at most: beyond them every other one goes, and so
   /// much more work lies between those that come.
   struct Keeping {
-    std::chrono::duration<double> work{0.05};
-    std::size_t most_bytes = std::size_t{64} << 20;
+    KeptMoments::Seconds work{0.04};
+    std::size_t most_bytes = std::size_t{128} << 20;
   };
-  void set_keeping(const Keeping& keeping) { keeping_ = keeping; }
-  std::size_t kept_moments() const { return kept_.size(); }
-  std::size_t kept_bytes() const { return kept_bytes_; }
+  void set_keeping(const Keeping& keeping) {
+    kept_ = std::make_shared<KeptMoments>(keeping.work, keeping.most_bytes);
+  }
+  /// The same, in a place that others use too.
+  void share(std::shared_ptr<KeptMoments> moments) { kept_ = std::move(moments); }
+  const KeptMoments& kept() const { return *kept_; }
+
+  /// The same as seek(), in parts: jumps to a moment if that is nearer, and plays nothing.
+  void begin_seek(SessionCore& core, std::uint64_t position);
+  /// States are not compared up to the next seek.
+  void stop_comparing() { next_hash_ = hashes_.size(); }
 
   /// Told of each comparison that did not fail.
   std::function<void(const RecordedHash&)> on_same;
 
  private:
   Simulation load_scene(std::uint64_t sequence) const;
+  const Snapshot& scene_as_loaded(std::uint64_t sequence);
   void go_to(SessionCore& core, const RecordedMoment& moment);
   Simulation load_state(const RecordedMoment& moment) const;
   /// What comes after the sequence that the core has carried out.
@@ -58,9 +70,8 @@ class ReplayPlayer {
   /// All that belongs to the core's position.
   void carry_out_here(SessionCore& core);
   void compare_here(const SessionCore& core);
-  const RecordedMoment* find_moment(std::uint64_t position) const;
+  std::shared_ptr<const RecordedMoment> find_moment(std::uint64_t position) const;
   void keep(const SessionCore& core);
-  void thin();
 
   const Recording& recording_;
   const SessionEnvironment& environment_;
@@ -68,10 +79,13 @@ class ReplayPlayer {
   std::size_t next_entry_ = 0;
   std::size_t next_hash_ = 0;
   std::uint64_t same_until_ = 0;  ///< tick of the last comparison
-  Keeping keeping_;
-  std::map<std::uint64_t, RecordedMoment> kept_;  ///< by position
-  std::size_t kept_bytes_ = 0;
-  std::chrono::duration<double> work_{0};  ///< since the last moment
+  struct Loaded {
+    std::uint64_t sequence;
+    Snapshot scene;
+  };
+  std::optional<Loaded> loaded_;  ///< the scene that was wanted last
+  std::shared_ptr<KeptMoments> kept_;
+  KeptMoments::Seconds work_{0};  ///< since the last moment
 };
 
 }  // namespace vat

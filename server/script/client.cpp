@@ -1,11 +1,9 @@
 #include "server/script/client.h"
 
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
+
+#include "server/script/stream_runner.h"
 
 namespace vat::script {
 namespace {
@@ -16,14 +14,15 @@ namespace websocket = beast::websocket;
 using boost::system::error_code;
 
 /// Everything happens inside next() and connect(), on the caller's thread.
+template <class Layer>
 class WebSocketClient final : public Client {
  public:
-  WebSocketClient() : stream_(context_) {}
+  explicit WebSocketClient(const TlsTrust& trust)
+      : runner_(trust), stream_(runner_.template make<websocket::stream<Layer>>()) {}
   ~WebSocketClient() override {
     error_code ignored;  // the peer may have gone
     beast::get_lowest_layer(stream_).socket().close(ignored);
-    context_.restart();
-    context_.run();  // ends the operations in flight, which refer to this
+    runner_.run_out();  // ends the operations in flight, which refer to this
   }
 
   /// The HTTP status.
@@ -42,7 +41,7 @@ class WebSocketClient final : public Client {
     start_read();
   }
   std::optional<Message> next(Deadline deadline) override {
-    run_until(deadline, [this] { return !received_.empty(); });
+    runner_.run_until(deadline, [this] { return !received_.empty(); });
     if (received_.empty()) return {};
     Message message = std::move(received_.front());
     received_.pop_front();
@@ -50,17 +49,15 @@ class WebSocketClient final : public Client {
   }
 
  private:
-  void open_socket(const WebSocketUrl& url, Deadline deadline);
-  template <class Condition>
-  void run_until(Deadline deadline, Condition&& reached);
+  unsigned upgrade(const WebSocketUrl& url, const ConnectRequest& request, Deadline deadline);
   void send(Message message);
   void start_write();
   void start_read();
   void read_ended(error_code failure);
   void ended(error_code failure);
 
-  asio::io_context context_;
-  websocket::stream<beast::tcp_stream> stream_;
+  StreamRunner<Layer> runner_;
+  websocket::stream<Layer> stream_;
   beast::flat_buffer buffer_;
   std::deque<Message> to_send_;
   std::deque<Message> received_;
@@ -71,35 +68,9 @@ class WebSocketClient final : public Client {
   bool closed_ = false;
 };
 
-template <class Condition>
-void WebSocketClient::run_until(Deadline deadline, Condition&& reached) {
-  context_.restart();
-  context_.poll();
-  while (!reached() && std::chrono::steady_clock::now() < deadline) {
-    context_.restart();
-    if (context_.run_one_until(deadline) == 0 && context_.stopped()) return;  // nothing to wait for
-  }
-}
-
-void WebSocketClient::open_socket(const WebSocketUrl& url, Deadline deadline) {
-  asio::ip::tcp::resolver resolver(context_);
-  error_code failure;
-  const auto found = resolver.resolve(url.host, url.port, failure);
-  if (failure) throw std::runtime_error("no address of " + url.host + ": " + failure.message());
-  beast::tcp_stream& socket = beast::get_lowest_layer(stream_);
-  std::optional<error_code> outcome;
-  socket.expires_at(deadline);
-  socket.async_connect(found, [&](error_code result, const auto&) { outcome = result; });
-  run_until(Deadline::max(), [&] { return outcome.has_value(); });
-  socket.expires_never();
-  if (*outcome) {
-    throw std::runtime_error("no server at " + url.authority() + ": " + outcome->message());
-  }
-}
-
-unsigned WebSocketClient::connect(const WebSocketUrl& url, const ConnectRequest& request,
-                                  Deadline deadline) {
-  open_socket(url, deadline);
+template <class Layer>
+unsigned WebSocketClient<Layer>::upgrade(const WebSocketUrl& url, const ConnectRequest& request,
+                                         Deadline deadline) {
   if (!request.subprotocol.empty()) {
     stream_.set_option(websocket::stream_base::decorator([&](websocket::request_type& upgrade) {
       upgrade.set(beast::http::field::sec_websocket_protocol, request.subprotocol);
@@ -109,27 +80,35 @@ unsigned WebSocketClient::connect(const WebSocketUrl& url, const ConnectRequest&
   std::optional<error_code> outcome;
   stream_.async_handshake(response, url.authority(), request.path.empty() ? url.path : request.path,
                           [&](error_code failure) { outcome = failure; });
-  run_until(deadline, [&] { return outcome.has_value(); });
-  if (!outcome) {
-    beast::get_lowest_layer(stream_).socket().close();
-    run_until(Deadline::max(), [&] { return outcome.has_value(); });
-    throw std::runtime_error("the server did not answer the upgrade in time");
+  runner_.finish(stream_.next_layer(), outcome, deadline,
+                 "the server did not answer the upgrade in time");
+  if (*outcome && *outcome != websocket::error::upgrade_declined) {
+    const std::string hint = runner_.kIsSecure ? "" : "; a server with TLS is at wss://";
+    throw std::runtime_error("the upgrade failed: " + outcome->message() + hint);
   }
-  if (*outcome == websocket::error::upgrade_declined) return response.result_int();
-  if (*outcome) throw std::runtime_error("the upgrade failed: " + outcome->message());
-  stream_.read_message_max(std::size_t{64} << 20);
-  start_read();
   return response.result_int();
 }
 
-void WebSocketClient::send(Message message) {
-  to_send_.push_back(std::move(message));
-  if (!writing_) start_write();
-  context_.restart();
-  context_.poll();
+template <class Layer>
+unsigned WebSocketClient<Layer>::connect(const WebSocketUrl& url, const ConnectRequest& request,
+                                         Deadline deadline) {
+  runner_.open(stream_.next_layer(), url, deadline);
+  const unsigned status = upgrade(url, request, deadline);
+  if (status != 101) return status;
+  stream_.read_message_max(std::size_t{64} << 20);
+  start_read();
+  return status;
 }
 
-void WebSocketClient::start_write() {
+template <class Layer>
+void WebSocketClient<Layer>::send(Message message) {
+  to_send_.push_back(std::move(message));
+  if (!writing_) start_write();
+  runner_.run_ready();
+}
+
+template <class Layer>
+void WebSocketClient<Layer>::start_write() {
   writing_ = true;
   const Message& message = to_send_.front();
   stream_.binary(message.kind == Message::Kind::binary);
@@ -144,13 +123,15 @@ void WebSocketClient::start_write() {
   });
 }
 
-void WebSocketClient::start_read() {
+template <class Layer>
+void WebSocketClient<Layer>::start_read() {
   if (reading_ || closed_ || !read_wanted_) return;
   reading_ = true;
   stream_.async_read(buffer_, [this](error_code failure, std::size_t) { read_ended(failure); });
 }
 
-void WebSocketClient::read_ended(error_code failure) {
+template <class Layer>
+void WebSocketClient<Layer>::read_ended(error_code failure) {
   reading_ = false;
   if (failure) {
     if (!closing_) ended(failure);
@@ -162,21 +143,29 @@ void WebSocketClient::read_ended(error_code failure) {
   start_read();
 }
 
-void WebSocketClient::ended(error_code failure) {
+template <class Layer>
+void WebSocketClient<Layer>::ended(error_code failure) {
   closed_ = true;
   const std::uint16_t code = failure == websocket::error::closed ? stream_.reason().code : 0;
   const std::string reason(stream_.reason().reason.data(), stream_.reason().reason.size());
   received_.push_back({Message::Kind::closed, code == 0 ? failure.message() : reason, code});
 }
 
-}  // namespace
-
-Connected connect_websocket(const WebSocketUrl& url, const ConnectRequest& request,
-                            Deadline deadline) {
-  auto client = std::make_unique<WebSocketClient>();
+template <class Layer>
+Connected connect_over(const WebSocketUrl& url, const TlsTrust& trust,
+                       const ConnectRequest& request, Deadline deadline) {
+  auto client = std::make_unique<WebSocketClient<Layer>>(trust);
   const unsigned status = client->connect(url, request, deadline);
   if (status != 101) return {nullptr, status};
   return {std::move(client), status};
+}
+
+}  // namespace
+
+Connected connect_websocket(const WebSocketUrl& url, const TlsTrust& trust,
+                            const ConnectRequest& request, Deadline deadline) {
+  return url.is_secure ? connect_over<SecureStream>(url, trust, request, deadline)
+                       : connect_over<PlainStream>(url, trust, request, deadline);
 }
 
 }  // namespace vat::script

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "server/script/pattern.h"
 #include "server/script/websocket_url.h"
 
 namespace vat::script {
@@ -44,9 +45,11 @@ struct Connected {
   unsigned http_status = 101;
 };
 using Connect = std::function<Connected(const ConnectRequest&)>;
+/// The answer to GET for a path, as fetch_http() gives it.
+using Fetch = std::function<Json(const std::string& path, Deadline deadline)>;
 
-/// Connects to a server. Throws std::runtime_error where there is none.
-Connected connect_websocket(const WebSocketUrl& url, const ConnectRequest& request,
-                            Deadline deadline);
+/// Connects to a server. Throws std::runtime_error where there is none, or none to be trusted.
+Connected connect_websocket(const WebSocketUrl& url, const TlsTrust& trust,
+                            const ConnectRequest& request, Deadline deadline);
 
 }  // namespace vat::script

@@ -25,9 +25,10 @@ void add_bounds(const GridFrame& frame, const GridBlock& block, Json& json) {
   }
 }
 
-/// The least and greatest of each attribute that the block has [m/s, kg/m^3, Pa].
+/// The least and greatest of each attribute that the block has [m/s, kg/m^3, Pa, m/s^2].
 void add_attributes(const GridFrame& frame, const GridBlock& block, Json& json) {
-  constexpr std::array<const char*, kFrameAttributes> kNames{"speed", "density", "pressure"};
+  constexpr std::array<const char*, kFrameAttributes> kNames{"speed", "density", "pressure",
+                                                             "acceleration"};
   for (std::size_t a = 0; a < kFrameAttributes; ++a) {
     const std::vector<std::int32_t>& values = block.attributes[a];
     if (values.empty()) continue;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
+#include "server/script/http_fetch.h"
 #include "server/script/player.h"
 #include "server/script/server_process.h"
 
@@ -31,6 +33,23 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// A folder for the server's files, as long as it runs.
+struct OwnFolder {
+  OwnFolder() {
+    const std::string pattern = "vat-script-" + std::string(6, 'X');  // as mkdtemp wants it
+    path = (std::filesystem::temp_directory_path() / pattern).string();
+    if (mkdtemp(path.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  }
+  ~OwnFolder() {
+    std::error_code ignored;  // nothing depends on the removal
+    std::filesystem::remove_all(path, ignored);
+  }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+
+  std::string path;
+};
+
 /// Named as the file is, and the heading in it.
 std::unique_ptr<Transcript> open_transcript(const std::string& path, const PlaySettings& settings) {
   if (settings.transcript_folder.empty()) return {};
@@ -46,10 +65,13 @@ void play_lines(const std::string& path, const std::vector<Line>& lines, const W
   const auto transcript = open_transcript(path, settings);
   Player player(
       [&](const ConnectRequest& request) {
-        return connect_websocket(url, request,
+        return connect_websocket(url, settings.trust, request,
                                  std::chrono::steady_clock::now() + settings.patience);
       },
       settings.patience);
+  player.fetch_by([&](const std::string& target, Deadline deadline) {
+    return fetch_http(url, settings.trust, target, deadline);
+  });
   if (transcript) player.record(*transcript);
   for (const auto& [name, text] : settings.captures) player.set('$' + name, text);
   player.play(lines);
@@ -57,10 +79,12 @@ void play_lines(const std::string& path, const std::vector<Line>& lines, const W
 
 void play_with_own_server(const std::string& path, const std::vector<Line>& lines,
                           const std::vector<std::string>& arguments, const PlaySettings& settings) {
+  const OwnFolder folder;
   std::vector<std::string> all = settings.arguments;
-  all.insert(all.end(), arguments.begin(), arguments.end());
+  for (const std::string& word : arguments) all.push_back(word == "$folder" ? folder.path : word);
   ServerProcess server(settings.program, all);
-  play_lines(path, lines, {"127.0.0.1", std::to_string(server.port()), "/ws"}, settings);
+  play_lines(path, lines, {"127.0.0.1", std::to_string(server.port()), "/ws", server.is_secure()},
+             settings);
   if (!server.is_running()) throw Failure("the server has ended");
   if (const int status = server.stop(); status != 0) {
     throw Failure("the server ended with status " + std::to_string(status));

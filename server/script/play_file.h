@@ -14,6 +14,7 @@ namespace vat::script {
 struct PlaySettings {
   /// The server to play against; none: one that is started for each script and stopped after it.
   std::optional<WebSocketUrl> server;
+  TlsTrust trust;                      ///< of a server with TLS
   std::string program;                 ///< that starts such a one, with these arguments first
   std::vector<std::string> arguments;  ///< and what the script's first line asks for behind them
   std::string heading;                 ///< of the script, where the file is a Markdown document

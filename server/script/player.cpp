@@ -9,6 +9,7 @@ namespace {
 const std::map<std::string, std::set<std::string>>& known_actions() {
   static const std::map<std::string, std::set<std::string>> kActions{
       {"connect", {"path", "subprotocol", "refused"}},
+      {"fetch", {"response"}},
       {"send", {"wrong"}},
       {"send_text", {"wrong"}},
       {"send_binary", {}},
@@ -27,6 +28,12 @@ const std::map<std::string, std::set<std::string>>& known_actions() {
   return kActions;
 }
 
+std::string names_of_actions() {
+  std::string names;
+  for (const auto& [name, members] : known_actions()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 /// The line's one action; every other member must belong to it.
 std::string action_of(const Json& line) {
   std::string action;
@@ -36,7 +43,7 @@ std::string action_of(const Json& line) {
     action = key;
   }
   if (action.empty() && line.size() == 1 && line.contains("comment")) return "comment";
-  if (action.empty()) throw ScriptError("no known action");
+  if (action.empty()) throw ScriptError("no known action, which are " + names_of_actions());
   for (const auto& [key, value] : line.items()) {
     const bool common = key == action || key == "client" || key == "within" || key == "comment";
     if (!common && known_actions().at(action).count(key) == 0) {
@@ -88,6 +95,7 @@ void Player::play_line(const Json& line) {
 void Player::run_action(const std::string& action, const Json& line) {
   if (action == "repeat") return repeat(line);
   if (action == "connect") return connect(line);
+  if (action == "fetch") return fetch(line);
   if (action == "call") return call(line);
   if (action == "notify") return notify(line);
   if (action == "wait_ticks") return wait_ticks(line);
@@ -123,6 +131,15 @@ void Player::connect(const Json& line) {
   Peer& peer = peers_[name_of(line["connect"])] = Peer{};
   peer.connection = name_of(line["connect"]) + '#' + std::to_string(++connections_);
   peer.client = std::move(connected.client);
+}
+
+void Player::fetch(const Json& line) {
+  if (!fetch_) throw ScriptError("nothing can be fetched here");
+  const auto path = substitute(line["fetch"], captures_).get<std::string>();
+  if (!path.starts_with('/')) throw ScriptError("fetch needs a path, which begins with /");
+  Json pattern = line.value("response", Json::object());
+  if (!pattern.contains("status")) pattern["status"] = 200;
+  require(pattern, fetch_(path, deadline_of(line)));
 }
 
 void Player::send_text(Peer& peer, const std::string& text, const Json& line) {
@@ -254,7 +271,10 @@ std::string Player::name_of(const Json& name) const {
 Player::Peer& Player::peer_of(const Json& line) {
   const std::string name = name_of(line.value("client", Json("a")));
   const auto found = peers_.find(name);
-  if (found == peers_.end()) throw ScriptError("no client " + name);
+  if (found == peers_.end()) {
+    throw ScriptError("no client " + name + "; a line before it has to be {\"connect\": \"" + name +
+                      "\"}");
+  }
   return found->second;
 }
 

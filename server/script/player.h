@@ -30,6 +30,9 @@ class Player {
   /// Makes a capture beforehand.
   void set(const std::string& name, Json value) { captures_[name] = std::move(value); }
 
+  /// For the lines that fetch; without it they are mistakes.
+  void fetch_by(Fetch fetch) { fetch_ = std::move(fetch); }
+
   /// Writes what is sent and received; `transcript` must outlive this.
   void record(Transcript& transcript) { transcript_ = &transcript; }
 
@@ -55,6 +58,7 @@ class Player {
   void run_action(const std::string& action, const Json& line);
   void repeat(const Json& line);
   void connect(const Json& line);
+  void fetch(const Json& line);
   void send(const Json& line);
   void call(const Json& line);
   void wait_ticks(const Json& line);
@@ -83,6 +87,7 @@ class Player {
   void require(const Json& pattern, const Json& value);
 
   Connect connect_;
+  Fetch fetch_;
   std::chrono::milliseconds patience_;
   Transcript* transcript_ = nullptr;
   int connections_ = 0;

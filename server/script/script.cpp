@@ -1,5 +1,6 @@
 #include "server/script/script.h"
 
+#include <filesystem>
 #include <fstream>
 
 namespace vat::script {
@@ -8,6 +9,7 @@ namespace {
 std::ifstream open(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw ScriptError(path + ": cannot be read");
+  if (std::filesystem::is_directory(path)) throw ScriptError(path + ": is a folder");
   return file;
 }
 

@@ -19,12 +19,19 @@ using std::chrono::steady_clock;
 constexpr auto kStartTime = std::chrono::seconds(30);  // a sanitizer build on a busy machine
 constexpr auto kStopTime = std::chrono::seconds(10);
 
-/// The port in "vat is at http://HOST:PORT/ ...", the line that the server prints when it is ready.
-std::optional<std::uint16_t> port_in(const std::string& line) {
-  constexpr std::string_view kStart = "vat is at http://";
+/// In "vat is at http://HOST:PORT/ ...", the line that the server prints when it is ready.
+struct Place {
+  bool is_secure;
+  std::uint16_t port;
+};
+
+std::optional<Place> place_in(const std::string& line) {
+  constexpr std::string_view kStart = "vat is at http";
   if (!line.starts_with(kStart)) return {};
-  const std::size_t colon = line.rfind(':', line.find('/', kStart.size()));
-  return static_cast<std::uint16_t>(std::stoul(line.substr(colon + 1)));
+  const std::size_t host = line.find("://") + 3;
+  const std::size_t colon = line.rfind(':', line.find('/', host));
+  return Place{line[kStart.size()] == 's',
+               static_cast<std::uint16_t>(std::stoul(line.substr(colon + 1)))};
 }
 
 }  // namespace
@@ -34,9 +41,10 @@ ServerProcess::ServerProcess(const std::string& program,
   start(program, arguments);
   const auto deadline = steady_clock::now() + kStartTime;
   try {
-    std::optional<std::uint16_t> port;
-    while (!port) port = port_in(read_line(deadline));
-    port_ = *port;
+    std::optional<Place> place;
+    while (!place) place = place_in(read_line(deadline));
+    port_ = place->port;
+    is_secure_ = place->is_secure;
   } catch (...) {
     if (!reap()) {
       ::kill(pid_, SIGKILL);

@@ -18,7 +18,11 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
 
   std::uint16_t port() const { return port_; }
+  /// Whether its port speaks TLS.
+  bool is_secure() const { return is_secure_; }
   bool is_running();
+  /// Its number in the system.
+  int process() const { return pid_; }
   /// Ends it at once, as no program can prevent.
   void kill();
   /// Sends SIGTERM and gives the exit status; throws where it does not end in ten seconds or ends
@@ -35,6 +39,7 @@ class ServerProcess {
   int output_ = -1;
   int status_ = 0;
   std::uint16_t port_ = 0;
+  bool is_secure_ = false;
 };
 
 }  // namespace vat::script

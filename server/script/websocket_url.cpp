@@ -8,10 +8,12 @@
 namespace vat::script {
 namespace {
 
-constexpr std::string_view kScheme = "ws://";
+constexpr std::string_view kPlain = "ws://";
+constexpr std::string_view kSecure = "wss://";
 
 std::invalid_argument fault(const std::string& text, const std::string& reason) {
-  return std::invalid_argument("'" + text + "' " + reason + "; expected ws://HOST[:PORT][/PATH]");
+  return std::invalid_argument("'" + text + "' " + reason +
+                               "; expected ws://HOST[:PORT][/PATH] or wss://");
 }
 
 /// Where the host ends in "HOST[:PORT]".
@@ -34,12 +36,15 @@ std::string WebSocketUrl::authority() const {
 }
 
 WebSocketUrl read_websocket_url(const std::string& text) {
-  if (!text.starts_with(kScheme)) throw fault(text, "does not begin with ws://");
-  const std::string rest = text.substr(kScheme.size());
+  WebSocketUrl url;
+  url.is_secure = text.starts_with(kSecure);
+  if (url.is_secure) url.port = "443";
+  if (!url.is_secure && !text.starts_with(kPlain))
+    throw fault(text, "is no address of a WebSocket");
+  const std::string rest = text.substr((url.is_secure ? kSecure : kPlain).size());
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string authority = rest.substr(0, slash);
   const std::size_t end = end_of_host(authority);
-  WebSocketUrl url;
   url.host = authority.substr(0, end);
   if (url.host.starts_with('[')) url.host = url.host.substr(1, url.host.size() - 2);
   if (url.host.empty()) throw fault(text, "names no host");

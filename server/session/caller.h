@@ -39,8 +39,8 @@ class Caller {
   /// client has too much in flight.
   std::optional<RpcError> count(std::size_t bytes, std::size_t max_commands,
                                 std::size_t max_bytes) {
-    if (!client_->begin_command(bytes, max_commands, max_bytes)) {
-      return limit_reached("commands_in_flight", max_commands);
+    if (const auto excess = client_->begin_command(bytes, max_commands, max_bytes)) {
+      return limit_reached(excess->limit, excess->maximum);
     }
     counted_bytes_ = bytes;
     return {};

@@ -21,7 +21,7 @@ void ControlQueue::sent(std::size_t bytes, bool control, std::size_t queued) {
 }
 
 bool ControlQueue::over_limit() const {
-  return control_bytes_ > kMaxControlQueueBytes || long_messages_ > kMaxLongMessages;
+  return control_bytes_ > max_bytes_ || long_messages_ > kMaxLongMessages;
 }
 
 bool ControlQueue::holds_frame(std::size_t queued) {
@@ -45,14 +45,16 @@ void ControlQueue::take(std::size_t queued) {
 
 void ControlQueue::count(const Entry& entry, bool adds) {
   if (!entry.control) return;
-  const bool is_long = entry.bytes > kMaxControlQueueBytes;
+  const std::size_t cost = entry.bytes + kMessageCost;
+  const bool is_long = cost > max_bytes_;
   std::size_t& counter = is_long ? long_messages_ : control_bytes_;
-  const std::size_t amount = is_long ? 1 : entry.bytes;
+  const std::size_t amount = is_long ? 1 : cost;
   counter = adds ? counter + amount : counter - amount;
 }
 
-ClientOutbox::ClientOutbox(std::shared_ptr<Connection> connection)
-    : connection_(std::move(connection)) {}
+ClientOutbox::ClientOutbox(std::shared_ptr<Connection> connection,
+                           std::size_t max_control_queue_bytes)
+    : connection_(std::move(connection)), queue_(max_control_queue_bytes) {}
 
 void ClientOutbox::close(std::uint16_t code, std::string_view reason) {
   const std::lock_guard lock(mutex_);
@@ -165,13 +167,17 @@ void ClientOutbox::close_if_silent(SteadyClock::time_point now, std::chrono::sec
                     " s");
 }
 
-bool ClientOutbox::begin_command(std::size_t bytes, std::size_t max_commands,
-                                 std::size_t max_bytes) {
+std::optional<ResourceExcess> ClientOutbox::begin_command(std::size_t bytes,
+                                                          std::size_t max_commands,
+                                                          std::size_t max_bytes) {
   const std::lock_guard lock(mutex_);
-  if (commands_ >= max_commands || command_bytes_ + bytes > max_bytes) return false;
+  if (commands_ >= max_commands) return ResourceExcess{"commands_in_flight", max_commands};
+  if (command_bytes_ + bytes > max_bytes) {
+    return ResourceExcess{"command_bytes_in_flight", max_bytes};
+  }
   ++commands_;
   command_bytes_ += bytes;
-  return true;
+  return {};
 }
 
 void ClientOutbox::end_command(std::size_t bytes) {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "server/admission/message_meter.h"
+#include "server/admission/resource_budget.h"
+#include "server/limits.h"
 #include "server/net/transport.h"
 #include "server/session/frame_window.h"
 #include "server/session/role.h"
@@ -22,10 +24,15 @@ namespace vat {
 using SharedFrame = std::shared_ptr<const std::string>;
 
 /// Control messages that the socket has not taken yet, known from the sizes of all that was sent
-/// and the bytes that are queued now. The bound of PROTOCOL.md: 1 MiB, and beside it two messages
-/// that are longer than that themselves (a description or a state of very many particles).
+/// and the bytes that are queued now. The bound of PROTOCOL.md: `max_bytes`, and beside it two
+/// messages that are longer than that themselves (a description or a state of very many particles).
 class ControlQueue {
  public:
+  /// What a message that waits takes in memory beside its text, and counts for: its place here and
+  /// in the transport, its header, its counts. Of a short one that is several times its text.
+  static constexpr std::size_t kMessageCost = 512;
+
+  explicit ControlQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
   /// Notes a message that is sent; `queued` is what the socket had not taken just before.
   void sent(std::size_t bytes, bool control, std::size_t queued);
   bool over_limit() const;
@@ -43,6 +50,7 @@ class ControlQueue {
   void take(std::size_t queued);
   void count(const Entry& entry, bool adds);
 
+  const std::size_t max_bytes_;
   std::deque<Entry> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::size_t control_bytes_ = 0;
@@ -70,7 +78,9 @@ class FrameWaker {
 /// subscription and the epoch; after these have ended, it goes nowhere, however late it comes.
 class ClientOutbox {
  public:
-  explicit ClientOutbox(std::shared_ptr<Connection> connection);
+  explicit ClientOutbox(
+      std::shared_ptr<Connection> connection,
+      std::size_t max_control_queue_bytes = ServerLimits{}.max_control_queue_bytes);
 
   ConnectionId id() const { return connection_->id(); }
   const std::string& address() const { return connection_->address(); }
@@ -111,8 +121,9 @@ class ClientOutbox {
   void close_if_silent(SteadyClock::time_point now, std::chrono::seconds patience);
 
   /// Counts a command in, unless the client would then have more than `max_commands` of them, or
-  /// `max_bytes` of their messages, in flight.
-  bool begin_command(std::size_t bytes, std::size_t max_commands, std::size_t max_bytes);
+  /// `max_bytes` of their messages, in flight: which limit that is.
+  std::optional<ResourceExcess> begin_command(std::size_t bytes, std::size_t max_commands,
+                                              std::size_t max_bytes);
   void end_command(std::size_t bytes);
 
  private:

@@ -1,6 +1,7 @@
 #include "server/session/describe.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/output/text.h"
 
@@ -76,6 +77,56 @@ Json describe_state(const BodyView& body) {
     state["angular_velocity"] = to_json(body.pose->angular_velocity);
   }
   return state;
+}
+
+namespace {
+
+/// Short as text.
+Real rounded(Real value) {
+  constexpr Real kDigits = 4;
+  if (value == 0 || !std::isfinite(value)) return 0;
+  const Real scale = std::pow(Real{10}, kDigits - 1 - std::floor(std::log10(std::abs(value))));
+  return std::isfinite(scale) ? std::round(value * scale) / scale : value;
+}
+
+}  // namespace
+
+Json describe_connections(const ConnectionList& list, const char* values) {
+  Json pairs = Json::array();
+  Json numbers = Json::array();
+  pairs.get_ref<Json::array_t&>().reserve(4 * list.sample.size());
+  numbers.get_ref<Json::array_t&>().reserve(list.sample.size());
+  for (const ConnectedPair& connection : list.sample) {
+    for (const ConnectedParticle& end : {connection.a, connection.b}) {
+      pairs.push_back(end.body);
+      pairs.push_back(end.particle);
+    }
+    numbers.push_back(rounded(connection.value));
+  }
+  return {{"total", list.total},
+          {"every", list.every},
+          {"pairs", std::move(pairs)},
+          {values, std::move(numbers)}};
+}
+
+Json describe_diagnostics(const Diagnostics& diagnostics) {
+  Vec3 momentum = Vec3::Zero();
+  Vec3 angular_momentum = Vec3::Zero();
+  for (const BodyDiagnostics& body : diagnostics.bodies) {
+    momentum += body.linear_momentum;
+    angular_momentum += body.angular_momentum;
+  }
+  return {{"kinetic_energy", diagnostics.kinetic_energy},
+          {"gravitational_energy", diagnostics.gravitational_energy},
+          {"elastic_energy", diagnostics.elastic_energy},
+          {"contact_energy", diagnostics.contact_energy},
+          {"momentum", to_json(momentum)},
+          {"angular_momentum", to_json(angular_momentum)},
+          {"mean_density_error", diagnostics.mean_density_error},
+          {"max_density_error", diagnostics.max_density_error},
+          {"torn_springs", diagnostics.torn_springs},
+          {"emitted_particles", diagnostics.emitted_particles},
+          {"drained_particles", diagnostics.drained_particles}};
 }
 
 Json describe_guard(const GuardEvent& event, std::uint64_t tick) {

@@ -18,6 +18,11 @@ Json describe_bodies(const Simulation& simulation);
 Json describe_vat(const std::optional<Vat>& vat);
 /// One body of a `state.query`, with all its bits.
 Json describe_state(const BodyView& body);
+/// Numbers of particles and their bodies, pair by pair, as one flat list; and `values`, of a word
+/// that tells what they are, rounded to four digits.
+Json describe_connections(const ConnectionList& list, const char* values);
+/// Sums over all bodies.
+Json describe_diagnostics(const Diagnostics& diagnostics);
 Json describe_guard(const GuardEvent& event, std::uint64_t tick);
 /// 16 hexadecimal digits.
 std::string describe_hash(std::uint64_t hash);

@@ -64,7 +64,7 @@ RpcResult SessionDirectory::issue_ticket(const Caller& caller, Role role,
     }
     if (session) {
       const auto found = find_session(*session);
-      if (found == sessions_.end()) return no_such_session(*session, "/session");
+      if (found == sessions_.end()) return refuse_missing(*client, *session);
       if (auto error = refuse_role(caller, rules, found->first)) return *std::move(error);
     }
   }
@@ -96,7 +96,9 @@ std::optional<RpcError> SessionDirectory::refuse_role(const Caller& caller,
   Role role = client->access.role;
   if (role != Role::admin) {
     const bool is_in = client->session == session;
-    const bool is_creator = sessions_.at(session)->summary().creator == caller.client()->id();
+    const auto found = sessions_.find(session);  // one that is not back has no owner here
+    const bool is_creator =
+        found != sessions_.end() && found->second->summary().creator == caller.client()->id();
     role = is_creator ? Role::owner : is_in ? client->outbox->role() : Role::viewer;
   }
   return vat::refuse_role(rules, role);

@@ -17,6 +17,13 @@ unsigned most_stride(std::uint64_t every) {
   return static_cast<unsigned>(std::clamp<std::uint64_t>(kMaxFrameInterval / every, 1, 4));
 }
 
+/// Those that a level of detail may leave out.
+std::size_t particle_count(const PublishedState& state) {
+  std::size_t count = 0;
+  for (const PublishedState::Body& body : state.bodies) count += body.positions.size();
+  return count;
+}
+
 }  // namespace
 
 FrameDelivery::FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics)
@@ -46,6 +53,7 @@ void FrameDelivery::set_vat(const std::optional<Vat>& vat) {
 void FrameDelivery::publish(PublishedState& state, SteadyClock::time_point now) {
   made_.clear();
   note_turns(state);
+  least_detail_ = least_detail(particle_count(state));
   source_.publish(state);
   Groups groups;
   for (auto& [client, viewer] : viewers_) {
@@ -99,6 +107,7 @@ void FrameDelivery::gather(Viewer& viewer, SteadyClock::time_point now, Groups& 
   if (source_.number() - viewer.shown > kMostTurnsHeld * viewer.period()) viewer.held = {};
   const FrameChannel channel = viewer.outbox->frame_channel(viewer.subscription);
   if (!channel.is_open) return;
+  viewer.pace.set_least_detail(least_detail_);
   if (viewer.has_turn) viewer.pace.frame_due(channel.is_ready, channel.delays, now);
   if (!channel.is_ready) {
     if (viewer.has_turn) metrics_.add_missed_frames(1);

@@ -79,6 +79,7 @@ class FrameDelivery {
   FrameSource source_;
   std::map<GroupKey, Made> made_;  // of the last state
   double default_error_ = 0;
+  std::uint8_t least_detail_ = kFullDetail;
   bool has_state_ = false;
   std::uint64_t tick_ = 0;   // of the last state
   std::uint32_t epoch_ = 0;  // the same

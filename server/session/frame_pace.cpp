@@ -23,7 +23,21 @@ constexpr Seconds kLongestWhile(32);
 
 constexpr unsigned kPrecisionLevels = 2;
 
+// A frame of so many takes one segment of TCP or two.
+constexpr std::size_t kFewParticles = 2000;
+
 }  // namespace
+
+std::uint8_t least_detail(std::size_t particles) {
+  std::uint8_t detail = kFullDetail;
+  for (; detail > 0 && particles / 2 >= kFewParticles; --detail) particles /= 2;
+  return detail;
+}
+
+void FramePace::set_least_detail(std::uint8_t least) {
+  least_detail_ = least;
+  level_ = std::min(level_, lowest());
+}
 
 void FramePace::frame_due(bool is_ready, const AckDelays& delays, SteadyClock::time_point now) {
   if (due_ == 0) look_began_ = now;
@@ -64,7 +78,7 @@ void FramePace::raise(SteadyClock::time_point now) {
 }
 
 unsigned FramePace::lowest() const {
-  return most_stride_ - 1 + kPrecisionLevels + kFullDetail;
+  return most_stride_ - 1 + kPrecisionLevels + kFullDetail - least_detail_;
 }
 
 unsigned FramePace::beyond_stride() const {

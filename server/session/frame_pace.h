@@ -1,10 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "server/session/frame_window.h"
 
 namespace vat {
+
+/// The least level of detail (0 to kFullDetail) that leaves 2000 particles, or all of them: a
+/// viewer that is slow with so few would not gain by fewer.
+std::uint8_t least_detail(std::size_t particles);
 
 /// How much less than it asked for a viewer gets, so that its frames stay young: found from the
 /// frames that it misses and from how long its acknowledgements take. The rate goes down first, to
@@ -14,6 +19,9 @@ class FramePace {
  public:
   /// `most_stride` (1 to 4) bounds how far the rate goes down.
   explicit FramePace(unsigned most_stride = 4) : most_stride_(most_stride) {}
+
+  /// The detail goes down no further than to this (0 to kFullDetail; at first 0).
+  void set_least_detail(std::uint8_t least);
 
   /// A frame is due: whether the viewer is ready for it, and its acknowledgements so far.
   void frame_due(bool is_ready, const AckDelays& delays, SteadyClock::time_point now);
@@ -31,6 +39,7 @@ class FramePace {
   unsigned lowest() const;
 
   unsigned most_stride_;
+  std::uint8_t least_detail_ = 0;
   unsigned level_ = 0;  // 0: all that it asked for
   // Since the last judgement.
   SteadyClock::time_point look_began_{};

@@ -14,6 +14,7 @@ constexpr bool kOfNamedSession = true;
 constexpr MethodRules kRules[] = {
     {"server.info", Role::none, MessageClass::query, kNotLogged},
     {"scene.list", Role::viewer, MessageClass::query, kNotLogged},
+    {"scene.get", Role::viewer, MessageClass::scene, kNotLogged},
     {"session.create", Role::controller, MessageClass::scene, kNotLogged},
     {"session.list", Role::viewer, MessageClass::query, kNotLogged},
     {"session.join", Role::viewer, MessageClass::control, kNotLogged},
@@ -32,6 +33,10 @@ constexpr MethodRules kRules[] = {
     {"world.set_gravity", Role::controller, MessageClass::pointer, kLogged},
     {"world.set_interface", Role::controller, MessageClass::control, kLogged},
     {"world.apply_force", Role::controller, MessageClass::control, kLogged},
+    {"world.move_body", Role::controller, MessageClass::pointer, kLogged},
+    {"world.set_material", Role::controller, MessageClass::control, kLogged},
+    {"world.set_numerics", Role::controller, MessageClass::control, kLogged},
+    {"world.move_vat", Role::controller, MessageClass::pointer, kLogged},
     {"grab.start", Role::controller, MessageClass::control, kLogged},
     {"grab.move", Role::controller, MessageClass::pointer, kLogged},
     {"grab.end", Role::controller, MessageClass::control, kLogged},
@@ -39,6 +44,7 @@ constexpr MethodRules kRules[] = {
     {"frames.unsubscribe", Role::viewer, MessageClass::control, kNotLogged},
     {"frames.ack", Role::viewer, MessageClass::query, kNotLogged},
     {"state.query", Role::viewer, MessageClass::query, kNotLogged},
+    {"state.connections", Role::viewer, MessageClass::query, kNotLogged},
     {"session.hash", Role::viewer, MessageClass::query, kNotLogged},
     {"session.stats", Role::viewer, MessageClass::query, kNotLogged},
     {"session.configure", Role::owner, MessageClass::control, kNotLogged},
@@ -53,6 +59,18 @@ constexpr MethodRules kRules[] = {
     {"access.enter", Role::none, MessageClass::control, kNotLogged},
     {"access.ticket", Role::owner, MessageClass::control, kNotLogged, kOfNamedSession},
     {"recording.export", Role::controller, MessageClass::scene, kNotLogged},
+    {"recording.import", Role::controller, MessageClass::scene, kNotLogged},
+    {"replay.open", Role::controller, MessageClass::scene, kNotLogged, kOfNamedSession},
+    {"replay.info", Role::viewer, MessageClass::query, kNotLogged},
+    {"replay.seek", Role::controller, MessageClass::control, kNotLogged},
+    {"session.save", Role::controller, MessageClass::scene, kNotLogged},
+    {"session.load", Role::controller, MessageClass::scene, kLogged},
+    {"session.saves", Role::viewer, MessageClass::query, kNotLogged},
+    {"session.delete_save", Role::controller, MessageClass::control, kNotLogged},
+    {"scene.save", Role::controller, MessageClass::scene, kNotLogged},
+    {"scene.delete", Role::controller, MessageClass::control, kNotLogged},
+    {"server.sessions", Role::admin, MessageClass::query, kNotLogged},
+    {"server.drain", Role::admin, MessageClass::control, kNotLogged},
 };
 
 }  // namespace
@@ -67,6 +85,11 @@ const MethodRules& rules_of(std::string_view method) {
     throw std::logic_error("no rules for the method " + std::string(method));
   }
   return *found;
+}
+
+bool is_of_clock(std::string_view method) {
+  return method == "control.play" || method == "control.pause" || method == "control.step" ||
+         method == "control.set_speed";
 }
 
 std::optional<RpcError> refuse_role(const MethodRules& rules, Role role) {

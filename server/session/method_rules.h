@@ -38,6 +38,9 @@ struct MethodRules {
 std::span<const MethodRules> method_rules();
 /// The row of this method; throws std::logic_error where there is none.
 const MethodRules& rules_of(std::string_view method);
+/// Whether it says when ticks are run and nothing else: those who play a log again decide that by
+/// themselves.
+bool is_of_clock(std::string_view method);
 /// Why somebody with this role may not call the method, if so: the one place where roles are
 /// checked.
 std::optional<RpcError> refuse_role(const MethodRules& rules, Role role);

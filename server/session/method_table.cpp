@@ -6,9 +6,11 @@ namespace vat {
 const std::vector<Method>& all_methods() {
   static const std::vector<Method> kMethods = [] {
     std::vector<Method> all;
-    for (const auto group : {server_methods(), session_methods(), control_methods(),
-                             world_methods(), grab_methods(), frame_methods(), state_methods(),
-                             people_methods(), presence_methods(), access_methods()}) {
+    for (const auto group :
+         {server_methods(), scene_methods(), session_methods(), control_methods(), world_methods(),
+          edit_methods(), grab_methods(), frame_methods(), state_methods(), people_methods(),
+          presence_methods(), access_methods(), replay_methods(), saved_methods(),
+          admin_methods()}) {
       all.insert(all.end(), group.begin(), group.end());
     }
     for (Method& method : all) {

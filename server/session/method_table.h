@@ -27,15 +27,20 @@ struct Method {
 };
 
 std::span<const Method> server_methods();
+std::span<const Method> scene_methods();
 std::span<const Method> session_methods();
 std::span<const Method> control_methods();
 std::span<const Method> world_methods();
+std::span<const Method> edit_methods();
 std::span<const Method> grab_methods();
 std::span<const Method> frame_methods();
 std::span<const Method> state_methods();
 std::span<const Method> people_methods();
 std::span<const Method> presence_methods();
 std::span<const Method> access_methods();
+std::span<const Method> replay_methods();
+std::span<const Method> saved_methods();
+std::span<const Method> admin_methods();
 
 /// All of them, in the order of PROTOCOL.md.
 const std::vector<Method>& all_methods();

@@ -1,7 +1,6 @@
 // access.*: tokens that let clients in
 
-#include "core/limits.h"
-#include "server/session/method_table.h"
+#include "server/session/method_parts.h"
 
 namespace vat {
 namespace {
@@ -17,7 +16,7 @@ ServerAction read_ticket(ObjectReader& params, Errors&) {
   constexpr Role kRoles[] = {Role::viewer, Role::controller, Role::admin};
   const Role role = kRoles[params.choice("role", {"viewer", "controller", "admin"})];
   std::optional<SessionId> session;
-  if (params.has("session")) session = params.text("session", kMaxNameLength);
+  if (params.has("session")) session = read_session_id(params);
   return [role, session](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
     if (role == Role::admin && session) {
       const Error error{"out_of_range", "/role", "an admin is one in all sessions"};

@@ -1,6 +1,6 @@
 // scene.load, control.*
 
-#include "server/session/method_table.h"
+#include "server/session/method_parts.h"
 #include "server/session/scene_loading.h"
 
 namespace vat {
@@ -22,9 +22,7 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
 }
 
 SessionAction read_load(ObjectReader& params, Errors&) {
-  const Json* scene = params.member("scene", true);
-  if (scene == nullptr) return {};
-  return [scene = *scene](SessionCore& core, Participant&) { return load_scene(core, scene); };
+  return read_action_on("scene", params, load_scene);
 }
 
 SessionAction read_play(ObjectReader&, Errors&) {

@@ -10,10 +10,10 @@
 namespace vat {
 namespace {
 
-constexpr std::array<std::string_view, kFrameAttributes> kAttributeNames = {"speed", "density",
-                                                                            "pressure"};
+constexpr std::array<std::string_view, kFrameAttributes> kAttributeNames = {
+    "speed", "density", "pressure", "acceleration"};
 // A frame's whole steps reach a million quanta; finer ones than this are noise of the simulation.
-constexpr double kLeastAttributeError = 1e-6;  // [m/s], [kg/m^3], [Pa]
+constexpr double kLeastAttributeError = 1e-6;  // [m/s], [kg/m^3], [Pa], [m/s^2]
 constexpr double kMostAttributeError = 1e12;
 
 FrameRegion read_region(const Json& value, const std::string& path, Errors& errors) {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/limits.h"
-#include "server/session/method_table.h"
+#include "server/session/method_parts.h"
 
 namespace vat {
 namespace {
@@ -26,17 +26,20 @@ Index index_of(const Simulation& simulation, BodyId id, Index number) {
   if (!body || body->numbers.empty()) return number;
   const auto found = std::ranges::lower_bound(body->numbers, number);
   const bool is_there = found != body->numbers.end() && *found == number;
-  return static_cast<Index>(is_there ? found - body->numbers.begin() : body->positions.size());
+  if (!is_there) return static_cast<Index>(body->positions.size());
+  return static_cast<Index>(found - body->numbers.begin());
+}
+
+/// Pointers are not recorded, but where those who hold something draw it.
+void point_where_recorded(Participant& participant, const Vec3& target) {
+  if (participant.is_ghost()) participant.pointer = Pointer{target, {}};
 }
 
 ActionResult start(SessionCore& core, Participant& participant, BodyId body, Index number,
                    const Vec3& target) {
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
   if (participant.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
-  const Participant* holder = core.participants().holder_of_body(body);
-  if (holder != nullptr && holder->number != participant.number) {
-    return held_by_other(holder->number, holder->name);
-  }
+  if (auto error = refuse_held_body(core, participant, body)) return *std::move(error);
   const std::uint64_t grab = core.next_grab();
   Simulation& simulation = core.run().simulation();
   const Index particle = index_of(simulation, body, number);
@@ -48,6 +51,7 @@ ActionResult start(SessionCore& core, Participant& participant, BodyId body, Ind
   core.use_grab();
   participant.grabs.emplace(grab, body);
   participant.grab_uses[grab] = SteadyClock::now();
+  point_where_recorded(participant, target);
   return Json{{"grab", grab}};
 }
 
@@ -62,8 +66,7 @@ std::optional<RpcError> refuse_grab(SessionCore& core, const Participant& partic
 }
 
 SessionAction read_start(ObjectReader& params, Errors&) {
-  const auto body =
-      static_cast<BodyId>(params.count("body", 0, std::numeric_limits<BodyId>::max()));
+  const BodyId body = read_body_id(params);
   const auto particle =
       static_cast<Index>(params.count("particle", 0, std::numeric_limits<Index>::max()));
   const Vec3 target = read_target(params);
@@ -80,6 +83,7 @@ SessionAction read_move(ObjectReader& params, Errors&) {
     const Status moved = core.run().simulation().grab_move(grab, target);
     if (!moved) return refused(moved.errors());
     participant.grab_uses[grab] = SteadyClock::now();
+    point_where_recorded(participant, target);
     return Json::object();
   };
 }

@@ -3,16 +3,14 @@
 #include <chrono>
 
 #include "core/limits.h"
-#include "server/http/downloads.h"
-#include "server/replay/recording.h"
 #include "server/session/method_table.h"
+#include "server/wall_clock.h"
 
 namespace vat {
 namespace {
 
-double seconds_since_1970() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
+double seconds(std::chrono::milliseconds time) {
+  return std::chrono::duration<double>(time).count();
 }
 
 Json describe_limits(const ServerLimits& limits) {
@@ -21,6 +19,7 @@ Json describe_limits(const ServerLimits& limits) {
       {"connections_per_address", limits.max_connections_per_address},
       {"sessions", limits.max_sessions},
       {"sessions_per_address", limits.max_sessions_per_address},
+      {"replays", limits.max_replays},
       {"clients_per_session", limits.max_clients_per_session},
       {"particles", limits.max_particles},
       {"springs", limits.max_springs},
@@ -29,8 +28,8 @@ Json describe_limits(const ServerLimits& limits) {
       {"particle_steps_per_tick", limits.max_particle_steps_per_tick},
       {"message_bytes", limits.max_message_bytes},
       {"scene_message_bytes", limits.max_scene_message_bytes},
-      {"message_depth", kMaxMessageDepth},
-      {"message_values", kMaxMessageValues},
+      {"message_depth", limits.max_message_depth},
+      {"message_values", limits.max_message_values},
       {"commands_in_flight", limits.max_commands_in_flight},
       {"command_bytes_in_flight", limits.max_bytes_in_flight},
       {"queries_per_second", limits.max_queries_per_second},
@@ -49,15 +48,30 @@ Json describe_limits(const ServerLimits& limits) {
       {"frame_window", kFrameWindow},
       {"frame_groups", kMaxFrameGroups},
       {"frame_patience_seconds", limits.frame_patience.count()},
-      {"grab_idle_seconds", std::chrono::duration<double>(limits.grab_idle).count()},
+      {"grab_idle_seconds", seconds(limits.grab_idle)},
       {"presence", kMaxPresence},
+      {"connections_listed", kMaxConnections},
       {"tokens", limits.max_tokens},
-      {"resume_seconds", std::chrono::duration<double>(limits.resume_time).count()},
-      {"hibernate_after_seconds", std::chrono::duration<double>(limits.hibernate_after).count()},
-      {"expire_after_seconds", std::chrono::duration<double>(limits.expire_after).count()},
-      {"control_queue_bytes", kMaxControlQueueBytes},
-      {"recording_bytes", kMaxRecordingBytes},
-      {"download_bytes", Downloads::kMostBytes},
+      {"resume_seconds", seconds(limits.resume_time)},
+      {"handshake_seconds", seconds(limits.handshake_time)},
+      {"ping_seconds", seconds(limits.ping_interval)},
+      {"hibernate_after_seconds", seconds(limits.hibernate_after)},
+      {"expire_after_seconds", seconds(limits.expire_after)},
+      {"replay_expire_after_seconds", seconds(limits.replay_expire_after)},
+      {"control_queue_bytes", limits.max_control_queue_bytes},
+      {"recording_bytes", limits.max_recording_bytes},
+      {"recording_ticks", kMaxRecordedTicks},
+      {"recording_entries", kMaxRecordedEntries},
+      {"download_bytes", limits.max_download_bytes},
+      {"imports", Imports::kMostFiles},
+      {"import_bytes", Imports::kMostBytes},
+      {"states_per_session", limits.max_states_per_session},
+      {"state_bytes_per_session", limits.max_state_bytes_per_session},
+      {"state_bytes_in_all", limits.max_state_bytes_in_all},
+      {"scenes_per_address", limits.max_scenes_per_address},
+      {"scene_bytes_per_address", limits.max_scene_bytes_per_address},
+      {"scenes_in_all", limits.max_scenes_in_all},
+      {"scene_bytes_in_all", limits.max_scene_bytes_in_all},
   };
 }
 
@@ -70,7 +84,8 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
       {"protocol", "vat.v1"},
       {"instruction_set", to_string(directory.settings().instructions)},
       {"access", to_string(directory.settings().access.mode)},
-      {"time", seconds_since_1970()},
+      {"storage", directory.settings().data_folder.empty() ? "memory" : "folder"},
+      {"time", wall_clock()},
       {"limits", describe_limits(directory.settings().limits)},
       {"methods", std::move(methods)},
   };
@@ -81,6 +96,14 @@ std::optional<RpcResult> list_scenes(const SessionDirectory& directory) {
   for (const CatalogueEntry& entry : directory.catalogue().entries()) {
     scenes.push_back(
         {{"name", entry.name}, {"title", entry.title}, {"description", entry.description}});
+  }
+  for (const SavedSceneEntry& entry : directory.saved_scenes().list()) {
+    if (directory.catalogue().find(entry.name) != nullptr) continue;  // it has got one since
+    scenes.push_back({{"name", entry.name},
+                      {"title", entry.title},
+                      {"description", entry.description},
+                      {"saved_by", entry.saved_by},
+                      {"saved", entry.time}});
   }
   return Json{{"scenes", std::move(scenes)}};
 }

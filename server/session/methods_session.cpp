@@ -1,7 +1,7 @@
 // session.create, list, join, leave, close
 
 #include "core/limits.h"
-#include "server/session/method_table.h"
+#include "server/session/method_parts.h"
 #include "server/session/person_name.h"
 
 namespace vat {
@@ -13,10 +13,6 @@ std::optional<RpcResult> to_answer(std::optional<Error> error) {
   return RpcResult(*std::move(error));
 }
 
-std::string read_session_id(ObjectReader& params) {
-  return params.text("session", kMaxNameLength);
-}
-
 ServerAction read_create(ObjectReader& params, Errors&) {
   std::string name = params.text("name", kMaxNameLength);
   const Json* scene = params.member("scene", true);
@@ -26,24 +22,14 @@ ServerAction read_create(ObjectReader& params, Errors&) {
   };
 }
 
-std::optional<RpcResult> list_sessions(const SessionDirectory& directory, const Caller& caller) {
-  Json sessions = Json::array();
-  for (const auto& [id, summary, state] : directory.list(caller)) {
-    sessions.push_back({{"session", id},
-                        {"name", summary.name},
-                        {"state", state},
-                        {"scene", summary.scene},
-                        {"clients", summary.clients},
-                        {"playing", summary.playing},
-                        {"tick", summary.tick},
-                        {"particles", summary.particles}});
-  }
-  return Json{{"sessions", std::move(sessions)}};
+void add_clients(Json& session, const SessionSummary& summary) {
+  session["clients"] = summary.clients;
 }
 
 ServerAction read_list(ObjectReader&, Errors&) {
-  return
-      [](SessionDirectory& directory, Caller& caller) { return list_sessions(directory, caller); };
+  return [](SessionDirectory& directory, Caller& caller) {
+    return list_sessions(directory, caller, add_clients);
+  };
 }
 
 ServerAction read_join(ObjectReader& params, Errors& errors) {

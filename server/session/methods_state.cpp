@@ -1,4 +1,4 @@
-// state.query, session.hash, session.stats
+// state.*, session.hash, session.stats, recording.export
 
 #include <chrono>
 #include <limits>
@@ -63,6 +63,29 @@ SessionAction read_query(ObjectReader& params, Errors& errors) {
   return [keys](SessionCore& core, Participant&) { return query(core.run().simulation(), keys); };
 }
 
+/// By id or by name; all where there is none.
+SessionAction read_connections(ObjectReader& params, Errors& errors) {
+  std::optional<BodyKey> key;
+  if (const Json* body = params.member("body")) {
+    key = read_key(*body, params.path_of("body"), errors);
+  }
+  const std::size_t most = params.count("most", 1, kMaxConnections, kDefaultConnections);
+  return [key, most](SessionCore& core, Participant&) -> ActionResult {
+    const Simulation& simulation = core.run().simulation();
+    ConnectionWish wish{{}, most};
+    if (key) {
+      const auto body = find_body(simulation, *key);
+      if (!body) return no_such_body("no body has this id or name", "/body");
+      wish.body = body->id;
+    }
+    const Result<Connections> found = simulation.connections(wish);
+    if (!found) return refused(found.errors());
+    return Json{{"time", simulation.time()},
+                {"springs", describe_connections(found.value().springs, "strains")},
+                {"contacts", describe_connections(found.value().contacts, "forces")}};
+  };
+}
+
 SessionAction read_hash(ObjectReader&, Errors&) {
   return [](SessionCore& core, Participant&) -> ActionResult {
     const Simulation& simulation = core.run().simulation();
@@ -85,25 +108,31 @@ Json describe_stages(const std::vector<StageClock::Stage>& stages) {
   return list;
 }
 
-SessionAction read_stats(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Participant&) -> ActionResult {
+SessionAction read_stats(ObjectReader& params, Errors&) {
+  const bool with_diagnostics = params.boolean("diagnostics", false);
+  return [with_diagnostics](SessionCore& core, Participant&) -> ActionResult {
     const Simulation& simulation = core.run().simulation();
     const TickProfile::Totals& totals = core.run().profile().totals();
-    return Json{{"instruction_set", to_string(simulation.instruction_set())},
-                {"threads", core.environment().runner.thread_count()},
-                {"particles", simulation.particle_count()},
-                {"sleeping_bodies", simulation.sleeping_body_count()},
-                {"ticks", totals.ticks},
-                {"substeps", totals.substeps},
-                {"undone_substeps", totals.undone_substeps},
-                {"seconds", to_seconds(totals.time)},
-                {"longest_tick", to_seconds(totals.longest_tick)},
-                {"stages", describe_stages(totals.stages)}};
+    Json stats{{"instruction_set", to_string(simulation.instruction_set())},
+               {"threads", core.environment().runner.thread_count()},
+               {"time", simulation.time()},
+               {"real_time_factor", core.real_time_factor()},
+               {"particles", simulation.particle_count()},
+               {"sleeping_bodies", simulation.sleeping_body_count()},
+               {"ticks", totals.ticks},
+               {"substeps", totals.substeps},
+               {"undone_substeps", totals.undone_substeps},
+               {"seconds", to_seconds(totals.time)},
+               {"longest_tick", to_seconds(totals.longest_tick)},
+               {"stages", describe_stages(totals.stages)}};
+    if (with_diagnostics) stats["diagnostics"] = describe_diagnostics(simulation.diagnostics());
+    return stats;
   };
 }
 
 SessionAction read_export(ObjectReader&, Errors&) {
   return [](SessionCore& core, Participant&) -> ActionResult {
+    if (core.replay() != nullptr) return not_allowed("the session is a replay itself");
     if (core.log() == nullptr) return not_allowed("the server keeps no sessions; see --data");
     if (core.has_diverged()) return not_allowed("the session is not what its log leads to");
     return MakeRecording{};
@@ -111,9 +140,8 @@ SessionAction read_export(ObjectReader&, Errors&) {
 }
 
 constexpr Method kMethods[] = {
-    {"state.query", read_query},
-    {"session.hash", read_hash},
-    {"session.stats", read_stats},
+    {"state.query", read_query},       {"state.connections", read_connections},
+    {"session.hash", read_hash},       {"session.stats", read_stats},
     {"recording.export", read_export},
 };
 

@@ -1,42 +1,70 @@
 // world.*: ranges are those of the core, which names them in its errors
 
-#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "core/limits.h"
 #include "protocol/scene_json.h"
-#include "server/session/method_table.h"
+#include "protocol/scene_parts.h"
+#include "server/session/method_parts.h"
 #include "server/session/scene_loading.h"
 
 namespace vat {
 namespace {
 
-BodyId read_body_id(ObjectReader& params) {
-  return static_cast<BodyId>(params.count("body", 0, std::numeric_limits<BodyId>::max()));
+/// As `state.query` tells it: of a rigid body its pose, of others their particles.
+Result<BodyMotion> read_motion(const Json& value, const std::string& path) {
+  Errors errors;
+  ObjectReader reader(value, path, errors);
+  BodyMotion motion;
+  if (reader.has("positions") || reader.has("velocities")) {
+    motion.positions = scene_parts::read_vectors(reader, "positions", kAnyMax, true, errors);
+    motion.velocities = scene_parts::read_vectors(reader, "velocities", kAnyMax, true, errors);
+  } else {
+    RigidPose pose;
+    pose.center_of_mass = reader.vector("center_of_mass", kAnyMin, kAnyMax);
+    pose.orientation = Quat::Identity();
+    if (const Json* orientation = reader.member("orientation", true)) {
+      pose.orientation =
+          scene_parts::to_orientation(*orientation, reader.path_of("orientation"), errors);
+    }
+    pose.velocity = reader.vector("velocity", kAnyMin, kAnyMax);
+    pose.angular_velocity = reader.vector("angular_velocity", kAnyMin, kAnyMax);
+    motion.pose = pose;
+  }
+  reader.refuse_unknown();
+  if (!errors.empty()) return errors;
+  return motion;
 }
 
-ActionResult add_body(SessionCore& core, const Json& value) {
+ActionResult add_body(SessionCore& core, const Json& value, const Json* state) {
   const Result<BodyDescription> body = read_body(value, "/body", refuse_mesh_file);
   if (!body) return refused(body.errors());
-  Simulation& simulation = core.run().simulation();
-  const Snapshot before = simulation.snapshot();
-  const Result<BodyId> id = simulation.add_body(body.value());
-  if (!id) return refused(id.errors());
-  if (auto excess = find_excess(simulation, core.environment().limits)) {
-    simulation.restore(before);
-    return *std::move(excess);
-  }
-  if (const auto excess = core.run().admit_change()) {
-    simulation.restore(before);
-    return limit_reached(*excess);
-  }
+  const Result<BodyMotion> motion = state == nullptr ? BodyMotion() : read_motion(*state, "/state");
+  if (!motion) return refused(motion.errors());
+  BodyId id = 0;
+  auto error = change_within_limits(core, [&](Simulation& simulation) -> Status {
+    const Result<BodyId> added = state == nullptr
+                                     ? simulation.add_body(body.value())
+                                     : simulation.add_body(body.value(), motion.value());
+    if (!added) return added.errors();
+    id = added.value();
+    return {};
+  });
+  if (error) return *std::move(error);
   core.bodies_changed();
-  return Json{{"body", id.value()}};
+  return Json{{"body", id}};
 }
 
 SessionAction read_add_body(ObjectReader& params, Errors&) {
   const Json* body = params.member("body", true);
   if (body == nullptr) return {};
-  return [body = *body](SessionCore& core, Participant&) { return add_body(core, body); };
+  std::optional<Json> state;
+  if (const Json* given = params.member("state")) state = *given;
+  return [body = *body, state = std::move(state)](SessionCore& core, Participant&) {
+    return add_body(core, body, state ? &*state : nullptr);
+  };
 }
 
 SessionAction read_remove_body(ObjectReader& params, Errors&) {
@@ -92,11 +120,7 @@ ActionResult set_interface(SessionCore& core, const Json& value) {
 }
 
 SessionAction read_set_interface(ObjectReader& params, Errors&) {
-  const Json* interface = params.member("interface", true);
-  if (interface == nullptr) return {};
-  return [interface = *interface](SessionCore& core, Participant&) {
-    return set_interface(core, interface);
-  };
+  return read_action_on("interface", params, set_interface);
 }
 
 SessionAction read_apply_force(ObjectReader& params, Errors&) {

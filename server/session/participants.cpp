@@ -44,6 +44,7 @@ const Participant* Participants::holder_of_body(BodyId body) const {
 }
 
 Participant& Participants::add(std::string name, Role role) {
+  touch();
   Participant& added = all_[++last_number_];
   added.number = last_number_;
   added.name = std::move(name);
@@ -52,6 +53,7 @@ Participant& Participants::add(std::string name, Role role) {
 }
 
 void Participants::set_role(Participant& participant, Role role) {
+  touch();
   participant.role = role;
   if (participant.is_here()) participant.outbox->set_role(participant.membership, role);
 }
@@ -64,12 +66,14 @@ Participant& Participants::ghost(ParticipantNumber number) {
 }
 
 void Participants::remove(ParticipantNumber number) {
+  touch();
   if (Participant* participant = find(number)) disconnect(*participant);
   all_.erase(number);
 }
 
 void Participants::connect(Participant& participant, std::shared_ptr<ClientOutbox> outbox,
                            std::uint64_t membership) {
+  touch();
   disconnect(participant);
   by_client_[outbox->id()] = participant.number;
   participant.outbox = std::move(outbox);
@@ -80,6 +84,7 @@ void Participants::connect(Participant& participant, std::shared_ptr<ClientOutbo
 
 void Participants::disconnect(Participant& participant) {
   if (!participant.is_here()) return;
+  touch();
   by_client_.erase(participant.outbox->id());
   participant.outbox.reset();
   participant.pointer.reset();
@@ -87,7 +92,9 @@ void Participants::disconnect(Participant& participant) {
 
 void Participants::send_away(SteadyClock::time_point now) {
   for (auto& [number, participant] : all_) {
-    if (!participant.is_here()) participant.away_since = now;
+    if (participant.is_here()) continue;
+    participant.away_since = now;
+    participant.pointer.reset();
   }
 }
 
@@ -149,7 +156,8 @@ void Participants::forget_grab(std::uint64_t grab) {
 }
 
 void Participants::forget_grabs_of(BodyId body) {
-  for (auto& [number, participant] : all_) {
+  for (auto& numbered : all_) {
+    Participant& participant = numbered.second;
     std::erase_if(participant.grabs, [&](const auto& grab) { return grab.second == body; });
     std::erase_if(participant.grab_uses,
                   [&](const auto& use) { return !participant.grabs.contains(use.first); });

@@ -74,6 +74,10 @@ class Participants {
   ParticipantNumber last_number() const { return last_number_; }
   /// Those that come have greater numbers than this.
   void skip_to(ParticipantNumber number) { last_number_ = std::max(last_number_, number); }
+  /// Counts changes of who takes part, as what, and by which connection.
+  std::uint64_t changes() const { return changes_; }
+  /// Something of a participant has changed that is no business of this class.
+  void touch() { ++changes_; }
   /// Gives the participant a connection, which must have no other.
   void connect(Participant& participant, std::shared_ptr<ClientOutbox> outbox,
                std::uint64_t membership);
@@ -102,6 +106,7 @@ class Participants {
   std::map<ParticipantNumber, Participant> all_;
   std::map<ConnectionId, ParticipantNumber> by_client_;
   ParticipantNumber last_number_ = 0;
+  std::uint64_t changes_ = 0;
 };
 
 }  // namespace vat

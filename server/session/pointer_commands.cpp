@@ -8,8 +8,11 @@ namespace {
 
 /// What a command is about: of those about the same thing the newest counts.
 Json subject_of(const SessionCommand& command) {
-  const auto grab = command.params.find("grab");
-  return grab == command.params.end() ? Json() : *grab;
+  for (const char* name : {"grab", "body"}) {
+    const auto subject = command.params.find(name);
+    if (subject != command.params.end()) return *subject;
+  }
+  return {};
 }
 
 }  // namespace

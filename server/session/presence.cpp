@@ -14,8 +14,7 @@ std::vector<BodyId> held_bodies(const Participant& participant) {
   std::vector<BodyId> bodies;
   for (const auto& [grab, body] : participant.grabs) bodies.push_back(body);
   std::ranges::sort(bodies);
-  const auto same = std::ranges::unique(bodies);
-  bodies.erase(same.begin(), same.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
   return bodies;
 }
 

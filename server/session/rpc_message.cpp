@@ -74,10 +74,13 @@ RpcError no_such_body(std::string message, const std::string& path) {
   return {ErrorKind::no_such_body, std::move(message), {{"path", path}}};
 }
 
-RpcError no_such_scene(std::string_view scene) {
-  return {ErrorKind::no_such_scene,
-          "the catalogue has no scene " + printable(scene),
-          {{"path", "/scene"}}};
+RpcError no_such_scene(std::string_view scene, std::string_view path) {
+  return {ErrorKind::no_such_scene, "there is no scene " + printable(scene), {{"path", path}}};
+}
+
+RpcError no_such_state(std::string_view name) {
+  return invalid_params(
+      {Error{"no_such_state", "/name", "no state of this session is saved as " + printable(name)}});
 }
 
 RpcError limit_reached(std::string_view limit, std::size_t maximum) {
@@ -108,9 +111,11 @@ RpcError held_by_other(std::uint64_t participant, const std::string& name) {
 }
 
 RpcError storage_failed(StorageError::Kind reason) {
-  const bool is_full = reason == StorageError::Kind::full;
-  return {ErrorKind::storage_failed,
-          is_full ? "the server's disk is full" : "the server cannot write what it must keep"};
+  const char* message = reason == StorageError::Kind::full      ? "the server's disk is full"
+                        : reason == StorageError::Kind::corrupt ? "what was saved is damaged"
+                                                                : "the server cannot write what "
+                                                                  "it must keep";
+  return {ErrorKind::storage_failed, message};
 }
 
 RpcError not_recovered(std::string_view session, std::string_view state) {

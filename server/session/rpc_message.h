@@ -38,7 +38,9 @@ RpcError not_joined();
 /// Without a path: the session has ended under a command.
 RpcError no_such_session(std::string_view session, std::string_view path = {});
 RpcError no_such_body(std::string message, const std::string& path);
-RpcError no_such_scene(std::string_view scene);
+RpcError no_such_scene(std::string_view scene, std::string_view path = "/scene");
+/// No state of the session is saved under this name, the parameter `name`.
+RpcError no_such_state(std::string_view name);
 /// `limit` is the name in server.info's `limits`, `maximum` its value.
 RpcError limit_reached(std::string_view limit, std::size_t maximum);
 RpcError not_allowed(std::string message);

@@ -1,6 +1,10 @@
 #include "server/session/scene_loading.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "core/saved/greatest_size.h"
+#include "server/storage/saved_scenes.h"
 
 namespace vat {
 namespace {
@@ -29,6 +33,26 @@ std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalog
   return std::move(scene).value();
 }
 
+std::variant<Json, RpcError> find_saved_scene(const std::string& name,
+                                              const SessionEnvironment& environment) {
+  const auto saved = environment.scenes == nullptr ? std::nullopt : environment.scenes->find(name);
+  if (!saved) return no_such_scene(name);
+  const std::string& text = saved->scene;
+  Result<Json> json = parse_json(text, {text.size(), kMostMessageDepth, text.size() + 1});
+  if (!json) throw StorageError(StorageError::Kind::corrupt, "the saved scene " + name);
+  return std::move(json).value();
+}
+
+std::variant<Scene, RpcError> read_named_scene(const Json& value,
+                                               const SessionEnvironment& environment) {
+  if (!value.is_string() || environment.catalogue.find(value.get_ref<const std::string&>())) {
+    return read_client_scene(value, environment.catalogue);
+  }
+  auto saved = find_saved_scene(value.get_ref<const std::string&>(), environment);
+  if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
+  return read_client_scene(std::get<Json>(saved), environment.catalogue);
+}
+
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits) {
   const std::size_t particles = simulation.greatest_particle_count();
   if (particles > limits.max_particles) return limit_reached("particles", limits.max_particles);
@@ -39,6 +63,11 @@ std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLi
     return limit_reached("particle_steps_per_tick", limits.max_particle_steps_per_tick);
   }
   return {};
+}
+
+std::size_t most_state_bytes(const ServerLimits& limits) {
+  constexpr std::size_t kMost = std::size_t{1} << 30;  // as of a checkpoint
+  return std::min(kMost, greatest_saved_size(limits.max_particles, limits.max_springs));
 }
 
 Resources resources_of(const Simulation& simulation) {

@@ -15,6 +15,8 @@ namespace {
 // A turn of the inbox ends after so much, so that ticks and other sessions get theirs.
 constexpr std::size_t kCommandsPerTurn = 64;
 constexpr auto kTurnTime = std::chrono::milliseconds(10);
+// Shorter ones do not hold up others, and are not worth a line to wait in.
+constexpr auto kLongTick = std::chrono::milliseconds(5);
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 
 double seconds(SteadyClock::duration time) {
@@ -25,14 +27,15 @@ double seconds(SteadyClock::duration time) {
 
 Session::Session(std::string id, SessionSettings settings, Simulation simulation,
                  ResourceShare share, const SessionEnvironment& environment,
-                 boost::asio::thread_pool& pool)
+                 boost::asio::thread_pool& pool, LongTicks& long_ticks)
     : id_(id),
       strand_(boost::asio::make_strand(pool.get_executor())),
       core_(std::move(id), std::move(settings), std::move(simulation), std::move(share),
             environment),
       tick_timer_(strand_),
       status_timer_(strand_),
-      presence_timer_(strand_) {
+      presence_timer_(strand_),
+      long_ticks_(long_ticks) {
   update_summary();
 }
 
@@ -112,34 +115,42 @@ void Session::run_turn(void (Session::*turn)()) {
     period_ = {};
     tick_timer_.cancel();
   }
+  place_.reset();
+}
+
+bool Session::has_place() {
+  if (!is_long_ || place_ != nullptr) return true;
+  if (waits_for_place_) return false;
+  place_ = long_ticks_.take([waiting = weak_from_this()](LongTicks::Place place) {
+    const auto self = waiting.lock();
+    if (self == nullptr) return;
+    boost::asio::post(self->strand_, [self, place = std::move(place)]() mutable {
+      self->waits_for_place_ = false;
+      self->place_ = std::move(place);
+      self->run_turn(&Session::place_turn);
+      self->place_.reset();  // of a session that is closed there was no turn
+    });
+  });
+  waits_for_place_ = place_ == nullptr;
+  return !waits_for_place_;
+}
+
+void Session::place_turn() {
+  step_turn();
+  tick_turn();
 }
 
 void Session::end_turn() {
   if (closed_) return;
   if (core_.take_interruption()) end_all_steps();
   if (!tick_is_coming()) carry_out_pointers();
-  core_.announce();
+  if (!seek_) core_.announce();
+  if (replay_ && !seek_) replay_->tell_people(core_, SteadyClock::now());
   follow_presence();
   note_emptiness(SteadyClock::now());
   follow_clock();
   update_summary();
   keep_moment();
-}
-
-void Session::keep_moment() {
-  SessionLog* log = core_.log();
-  const auto now = SteadyClock::now();
-  if (log != nullptr && log->is_due(core_.run().position(), now)) log->keep(core_.moment(), now);
-}
-
-void Session::end_log(End end) {
-  const std::unique_ptr<SessionLog> log = core_.end_log();
-  if (log == nullptr) return;
-  if (end == End::closed) {
-    log->close();
-  } else if (!core_.has_diverged()) {
-    log->keep(core_.moment(), SteadyClock::now(), true);
-  }
 }
 
 void Session::update_summary() {
@@ -204,6 +215,7 @@ void Session::carry_out_join(Caller caller, const Join& join) {
     return;
   }
   const auto& entry = std::get<Entry>(joined);
+  update_summary();  // before the answer, here as below: who has it finds in lists what was done
   caller.answer(Json{{"tick", core_.run().tick()},
                      {"session", id_},
                      {"participant", entry.participant.number},
@@ -223,6 +235,7 @@ void Session::carry_out_leave(Caller caller) {
   if (const Participant* participant = core_.participants().find_client(client)) {
     core_.leave(participant->number);
   }
+  update_summary();
   caller.answer(Json{{"tick", core_.run().tick()}});
 }
 
@@ -246,6 +259,10 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
     caller.answer(*std::move(error));
     return;
   }
+  if (replay_ && command.rules->is_logged && !is_of_clock(command.rules->method)) {
+    caller.answer(not_allowed("the session is a replay: what was done is done"));
+    return;
+  }
   if (command.rules->is_logged && command.rules->message_class == MessageClass::pointer) {
     pointers_.add(participant->number, std::move(command), std::move(caller));
     return;
@@ -259,7 +276,7 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
   ActionResult result = std::move(core_.carry_out({&given, 1}).front());
   if (core_.log() != nullptr) core_.log()->add_work(SteadyClock::now() - begin);
   if (core_.take_interruption()) end_all_steps();
-  update_summary();  // before the answer: who has it finds in session.list what was done
+  update_summary();
   answer(std::move(caller), std::move(result));
 }
 
@@ -269,6 +286,10 @@ void Session::answer(Caller caller, ActionResult result) {
     schedule_step();
   } else if (std::holds_alternative<MakeRecording>(result)) {
     record(std::move(caller));
+  } else if (const auto* seek = std::get_if<SeekTo>(&result)) {
+    begin_seek(std::move(caller), seek->position);
+  } else if (auto* wanted = std::get_if<SaveState>(&result)) {
+    save(std::move(caller), std::move(*wanted));
   } else if (auto* error = std::get_if<RpcError>(&result)) {
     caller.answer(std::move(*error));
   } else {
@@ -304,7 +325,7 @@ void Session::schedule_step() {
 
 void Session::step_turn() {
   step_scheduled_ = false;
-  if (steps_.empty()) return;
+  if (steps_.empty() || seek_ || !has_place()) return;  // a seek's end goes on with them
   run_tick(SteadyClock::now(), false);
   if (core_.take_interruption()) {
     end_all_steps();
@@ -335,7 +356,9 @@ void Session::end_all_steps() {
 
 void Session::tick_turn() {
   const auto now = SteadyClock::now();
-  if (!core_.playing() || now < clock_.due()) return;  // a wait that was overtaken by a command
+  // A wait that was overtaken by a command.
+  if (!core_.playing() || seek_ || now < clock_.due()) return;
+  if (!has_place()) return;
   core_.environment().metrics.add_lateness(now - clock_.due());
   run_tick(now, true);
   clock_.tick_done(SteadyClock::now());
@@ -346,9 +369,16 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
   carry_out_pointers();
   const auto due = timed ? clock_.due() : now;
   const auto begin = SteadyClock::now();
-  const bool done = core_.tick(now, timed);
+  const bool done = replay_ ? replay_->tick(core_, now, timed) : core_.tick(now, timed);
   const auto stepped = SteadyClock::now();
-  if (core_.log() != nullptr) core_.log()->add_work(stepped - begin);
+  is_long_ = stepped - begin > kLongTick;
+  if (SessionLog* const log = core_.log()) {
+    log->add_work(stepped - begin);
+    const SessionRun& run = core_.run();
+    if (done && SessionLog::is_hash_due(run.simulation(), run.position())) {
+      log->add_hash(run.position(), run.simulation().state_hash());
+    }
+  }
   if (!done) return;
   update_summary();  // before the frames: who acknowledges one is told no earlier tick
   core_.publish_tick();
@@ -369,7 +399,7 @@ void Session::note_emptiness(SteadyClock::time_point now) {
 }
 
 void Session::follow_clock() {
-  const auto wanted = core_.playing() && !hibernating_
+  const auto wanted = core_.playing() && !hibernating_ && !seek_
                           ? tick_period(core_.run().tick_seconds(), core_.speed())
                           : SteadyClock::duration::zero();
   if (wanted == period_) return;
@@ -437,6 +467,9 @@ void Session::close_turn() {
     closer.swap(closer_);
   }
   end_log(end);
+  if (seek_) {
+    for (Caller& waiting : seek_->callers) waiting.answer(no_such_session(id_));
+  }
   for (StepJob& job : steps_) {
     job.caller.answer(no_such_session(id_));
     for (Item& item : job.deferred) item.caller.answer(no_such_session(id_));
@@ -446,6 +479,8 @@ void Session::close_turn() {
     for (Caller& pointer_caller : newest.callers) pointer_caller.answer(no_such_session(id_));
   }
   for (Item& item : items) item.caller.answer(no_such_session(id_));
+  core_.show(nullptr);
+  replay_.reset();
   core_.run().end();
   if (closer) closer->answer(Json{{"tick", core_.run().tick()}});
 }

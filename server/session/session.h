@@ -10,9 +10,12 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "server/session/caller.h"
+#include "server/session/long_ticks.h"
 #include "server/session/pointer_commands.h"
+#include "server/session/replay_run.h"
 #include "server/session/session_core.h"
 #include "server/session/session_recovery.h"
 
@@ -23,7 +26,8 @@ namespace vat {
 /// client is carried out and answered in its order.
 ///
 /// The strand's work comes in short turns (some commands, or one tick), so that a session waits for
-/// others at most as long as their turns take.
+/// others at most as long as their turns take; and for no long tick, as these have fewer places
+/// than the pool has threads.
 ///
 /// Locks are taken in this order, and none is held while a scene is read, stepped or encoded: the
 /// directory's (who is where), a session's (its inbox and summary), a client's outbox or a
@@ -33,14 +37,21 @@ namespace vat {
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::string id, SessionSettings settings, Simulation simulation, ResourceShare share,
-          const SessionEnvironment& environment, boost::asio::thread_pool& pool);
+          const SessionEnvironment& environment, boost::asio::thread_pool& pool,
+          LongTicks& long_ticks);
 
   /// Before start(): it is kept from now on.
   void keep_in(std::unique_ptr<SessionLog> log) { core_.keep_in(std::move(log)); }
   /// Before start(), in place of that: makes it what it was, and keeps it. It must have been made
   /// with what the recovery began with.
   void recover(SessionRecovery& recovery, Storage& storage, const SessionEnvironment& environment);
+  /// Before start(), in place of both: it shows a recording.
+  void show(std::unique_ptr<ReplayRun> replay);
   void start();
+  /// Writes down where it is; what is kept is then for `task`, on the storage's thread. Where it is
+  /// kept nowhere, or not any more, `caller` is told.
+  using KeptTask = std::function<void(Storage&, std::uint64_t session)>;
+  void keep_and(KeptTask task, std::shared_ptr<Caller> caller);
   /// Ends all work soon, at most once: commands that are not carried out yet are answered by
   /// no_such_session, and then the caller, if there is one, with the tick that was the last. Where
   /// it is kept, it may come back from where it was.
@@ -78,6 +89,11 @@ class Session : public std::enable_shared_from_this<Session> {
     std::deque<Item> deferred;
   };
 
+  /// A replay.seek under way: whoever asks for another place meanwhile is answered there too.
+  struct Seek {
+    std::vector<Caller> callers;
+  };
+
   void put(Item item);
   /// Runs a turn on the strand; what it throws is logged, and pauses the session.
   void schedule(void (Session::*turn)());
@@ -100,10 +116,20 @@ class Session : public std::enable_shared_from_this<Session> {
   void carry_out_pointers();
 
   void step_turn();
+  /// The ticks that waited for a place.
+  void place_turn();
+  /// Whether a tick may run now: at once, unless the last one took long and others have the places
+  /// for such. Then it comes back by place_turn().
+  bool has_place();
   std::deque<StepJob>::iterator find_step(ConnectionId client);
   /// Makes a recording of what is kept, and answers where it is.
   void record(Caller caller);
+  /// Keeps the present state under a name, and answers then.
+  void save(Caller caller, SaveState save);
   void schedule_step();
+  void begin_seek(Caller caller, std::uint64_t position);
+  void seek_turn();
+  void end_seek();
   /// Answers the job and carries out what was deferred.
   void end_step(std::deque<StepJob>::iterator job);
   void end_all_steps();
@@ -147,6 +173,13 @@ class Session : public std::enable_shared_from_this<Session> {
   PointerCommands pointers_;
   std::deque<StepJob> steps_;
   bool step_scheduled_ = false;
+  LongTicks& long_ticks_;
+  bool is_long_ = false;  // the last tick was
+  bool waits_for_place_ = false;
+  LongTicks::Place place_;             // during a turn only
+  std::unique_ptr<ReplayRun> replay_;  // null: what is simulated is new
+  std::optional<Seek> seek_;
+  bool seek_scheduled_ = false;
   bool closed_ = false;
 };
 

@@ -9,17 +9,10 @@
 
 #include "server/session/default_error.h"
 #include "server/session/describe.h"
+#include "server/session/replay_run.h"
+#include "server/wall_clock.h"
 
 namespace vat {
-namespace {
-
-double wall_clock() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
-}
-
-}  // namespace
-
 SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
                          const SessionEnvironment& environment)
     : SessionCore(std::move(id), std::move(settings), std::move(simulation),
@@ -52,10 +45,30 @@ void SessionCore::set_speed(double speed) {
   status_due_ = true;
 }
 
+void SessionCore::set_clock(bool playing, double speed) {
+  playing_ = playing;
+  speed_ = speed;
+}
+
+void SessionCore::begin_epoch(std::uint32_t epoch) {
+  run_.set_epoch(epoch);
+  rate_ = {};
+  start_epoch();
+}
+
 void SessionCore::load(Simulation simulation) {
+  run_.load(std::move(simulation));
+  begin_anew();
+}
+
+void SessionCore::restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick) {
+  run_.restore(std::move(simulation), as_loaded, tick);
+  begin_anew();
+}
+
+void SessionCore::begin_anew() {
   loaded_ = sequence_;
   divergence_.reset();
-  run_.load(std::move(simulation));
   participants_.forget_grabs();
   interrupt();
   rate_ = {};
@@ -77,9 +90,15 @@ void SessionCore::bodies_changed() {
   start_epoch();
 }
 
+void SessionCore::state_changed() {
+  publisher_.forget();
+  bodies_changed();  // or a session that pauses would show no other frame of its tick
+}
+
 void SessionCore::start_epoch() {
   description_due_ = status_due_ = frame_due_ = true;
   participants_.start_epoch(run_.epoch());
+  recorded_.start_epoch(run_.epoch());  // those who watch, while the past is carried out
   frames_->set_default_error(default_max_error(run_.simulation()));
 }
 
@@ -96,6 +115,7 @@ void SessionCore::subscribe(Participant& participant, const Subscription& subscr
   const std::uint64_t number = participant.outbox->subscribe(participant.membership, frames_, now);
   if (number == 0) return;  // it is about to leave
   participant.subscription = subscription;
+  participants_.touch();
   const bool replaced = frames_->add(participant.outbox, number, subscription);
   (playing_ && !replaced ? tick_frame_due_ : frame_due_) = true;
 }
@@ -103,11 +123,18 @@ void SessionCore::subscribe(Participant& participant, const Subscription& subscr
 void SessionCore::unsubscribe(Participant& participant) {
   if (!participant.subscription) return;
   participant.subscription.reset();
+  participants_.touch();
   participant.outbox->unsubscribe();
   frames_->remove(participant.outbox->id());
 }
 
 bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
+  constexpr auto kAcceleration = static_cast<std::size_t>(FrameAttribute::acceleration);
+  if (participants_.wanted_attributes()[kAcceleration]) {
+    publisher_.remember(run_.simulation(), run_.tick_seconds());
+  } else {
+    publisher_.forget();
+  }
   const AdvanceReport report = run_.advance();
   tell_guard(report);
   if (report.failed) {
@@ -123,7 +150,9 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
 
 void SessionCore::tell_guard(const AdvanceReport& report) {
   for (const GuardEvent& event : report.events) {
-    participants_.send_event(write_event("session.guard", describe_guard(event, run_.tick())));
+    const std::string text = write_event("session.guard", describe_guard(event, run_.tick()));
+    participants_.send_event(text);
+    recorded_.send_event(text);  // the same
   }
 }
 
@@ -176,7 +205,7 @@ void SessionCore::close_silent(SteadyClock::time_point now) {
 }
 
 Json SessionCore::status() const {
-  return {
+  Json status{
       {"tick", run_.tick()},
       {"time", run_.simulation().time()},
       {"playing", playing_},
@@ -185,11 +214,13 @@ Json SessionCore::status() const {
       {"clients", participants_.connected()},
       {"particles", run_.simulation().particle_count()},
   };
+  if (replay_ != nullptr) status["position"] = run_.position();
+  return status;
 }
 
 Json SessionCore::description() const {
   const Scene& scene = run_.simulation().scene();
-  return {
+  Json description{
       {"session", id_},
       {"epoch", run_.epoch()},
       {"tick", run_.tick()},
@@ -203,9 +234,16 @@ Json SessionCore::description() const {
       {"vat", describe_vat(scene.vat)},
       {"bodies", describe_bodies(run_.simulation())},
   };
+  if (replay_ != nullptr) {
+    const Recording& recording = replay_->recording();
+    description["replay"] = {
+        {"begin", recording.begin}, {"end", recording.end}, {"position", run_.position()}};
+  }
+  return description;
 }
 
-SessionSummary SessionCore::summary() const {
+SessionSummary SessionCore::summary() {
+  if (people_ == nullptr || people_changes_ != participants_.changes()) list_people();
   return {settings_.name,
           run_.simulation().scene().name,
           participants_.connected(),
@@ -213,8 +251,20 @@ SessionSummary SessionCore::summary() const {
           run_.tick(),
           run_.simulation().particle_count(),
           settings_.creator,
+          replay_ != nullptr,
           false,
-          {}};
+          {},
+          people_};
+}
+
+void SessionCore::list_people() {
+  auto people = std::make_shared<std::vector<PersonSummary>>();
+  for (const auto& [number, participant] : participants_.all()) {
+    people->push_back({number, participant.name, participant.role,
+                       participant.is_here() ? participant.outbox->address() : ""});
+  }
+  people_ = std::move(people);
+  people_changes_ = participants_.changes();
 }
 
 }  // namespace vat

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,14 @@
 
 namespace vat {
 
+/// Who takes part in a session, as `server.sessions` tells it.
+struct PersonSummary {
+  ParticipantNumber number = 0;
+  std::string name;
+  Role role = Role::viewer;
+  std::string address;  ///< empty: it is away
+};
+
 /// A session as `session.list` tells it.
 struct SessionSummary {
   std::string name;
@@ -31,8 +40,10 @@ struct SessionSummary {
   std::uint64_t tick = 0;
   std::size_t particles = 0;
   ConnectionId creator = 0;  ///< who is its owner once it joins; 0: nobody
-  bool hibernating = false;  ///< plays, but nobody is in it
-  std::optional<SteadyClock::time_point> empty_since;  ///< where nobody is in it, or away
+  bool is_replay = false;
+  bool hibernating = false;                                  ///< plays, but nobody is in it
+  std::optional<SteadyClock::time_point> empty_since;        ///< where nobody is in it, or away
+  std::shared_ptr<const std::vector<PersonSummary>> people;  ///< null: nothing is known of them
 };
 
 /// Who asks to take part.
@@ -51,6 +62,7 @@ struct Entry {
 };
 
 class SessionCore;
+class ReplayRun;
 
 /// Ticks that a command asks for before it is answered.
 struct RunTicks {
@@ -60,8 +72,19 @@ struct RunTicks {
 /// A recording that a command asks for.
 struct MakeRecording {};
 
+/// Where a command wants a replay to go.
+struct SeekTo {
+  std::uint64_t position = 0;
+};
+
+/// The session's state, to be kept under a name.
+struct SaveState {
+  std::string name;
+  std::string saved_by;
+};
+
 /// A command's reply; a result gets its `tick` afterwards.
-using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording>;
+using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState>;
 
 /// What a command does once its parameters are read.
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
@@ -97,17 +120,44 @@ class SessionCore {
   bool is_empty() const { return participants_.connected() == 0 && participants_.away() == 0; }
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
+  double real_time_factor() const { return rate_.rate(); }  ///< that is achieved
   void set_playing(bool playing);
   void set_speed(double speed);
   void load(Simulation simulation);
+  /// The same with one that has run so many ticks since it was `as_loaded`.
+  void restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick);
   void reset();
   /// The bodies have changed: a new epoch begins.
   void bodies_changed();
+  /// Bodies are elsewhere, or otherwise, than where ticks have led them.
+  void state_changed();
   /// What the description tells has changed, but not the bodies.
   void description_changed() { description_due_ = true; }
   /// The id of the next grab, to be started, and to be used up where that succeeds.
   std::uint64_t next_grab() const { return last_grab_ + 1; }
   void use_grab() { ++last_grab_; }
+
+  /// From now on it shows a recording: nothing but its clock can be changed.
+  void show(ReplayRun* replay) { replay_ = replay; }
+  /// Null where it is no replay.
+  const ReplayRun* replay() const { return replay_; }
+  /// Those of a replay that were recorded; participants() watch it.
+  const Participants& recorded() const { return recorded_; }
+  /// While it lives, participants() are those that were recorded.
+  class Past {
+   public:
+    explicit Past(SessionCore& core) : core_(core) { core_.exchange_participants(); }
+    ~Past() { core_.exchange_participants(); }
+    Past(const Past&) = delete;
+    Past& operator=(const Past&) = delete;
+
+   private:
+    SessionCore& core_;
+  };
+  /// Plays or not, and how fast, and nobody is told.
+  void set_clock(bool playing, double speed);
+  /// All of what is shown is another from now on.
+  void begin_epoch(std::uint32_t epoch);
 
   /// A command that a participant has given.
   struct Given {
@@ -188,6 +238,8 @@ class SessionCore {
   /// The rate is measured where `timed`: ticks of control.step keep no pace.
   bool tick(SteadyClock::time_point now, bool timed);
   void publish_tick();
+  /// A tick was run in time by others.
+  void time_tick(SteadyClock::time_point now) { rate_.tick_done(now, run_.tick_seconds()); }
   /// The rate is measured anew: the clock has stood still.
   void forget_rate() { rate_ = {}; }
   /// Tells what is due.
@@ -200,13 +252,16 @@ class SessionCore {
   bool take_interruption();
 
   Json description() const;
-  SessionSummary summary() const;
+  SessionSummary summary();
 
  private:
   Json status() const;
+  void exchange_participants() { std::swap(participants_, recorded_); }
   void interrupt();
   void tell_description();
   void tell_guard(const AdvanceReport& report);
+  void list_people();
+  void begin_anew();
   void start_epoch();
   void publish_frame();
   void fill_state();
@@ -216,6 +271,14 @@ class SessionCore {
   void release_connection(const Participant& participant, ConnectionId next);
   /// So that those who come and go at once do not grow without bound.
   void bound_absences();
+  /// What the log gets of a command, and what it then does.
+  struct Prepared {
+    LogEntry entry;
+    std::optional<SessionAction> action;  ///< in place of the command's
+  };
+  std::variant<Prepared, RpcError> prepare(const Given& given) const;
+  std::variant<Prepared, RpcError> prepare_load(const Given& given) const;
+  std::variant<Prepared, RpcError> prepare_restore(const Given& given) const;
   std::optional<RpcError> log(std::span<LogEntry> entries);
   void refuse(const LogEntry& entry);
   ActionResult act(ParticipantNumber participant, const SessionAction& action);
@@ -230,11 +293,15 @@ class SessionCore {
   const SessionEnvironment* environment_;
   SessionRun run_;
   Participants participants_;
+  Participants recorded_;
+  ReplayRun* replay_ = nullptr;
   Presence presence_;
   const std::shared_ptr<FrameFeed> frames_;
   StatePublisher publisher_;
   PublishedState state_;  // the next, or what another has left in its place
   RateMeter rate_;
+  std::shared_ptr<const std::vector<PersonSummary>> people_;  // as of so many changes
+  std::uint64_t people_changes_ = 0;
   bool playing_ = true;
   double speed_ = 1;  // simulated seconds per second
   std::uint64_t last_grab_ = 0;

@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "server/session/method_table.h"
+#include "server/session/saved_state.h"
 #include "server/session/scene_loading.h"
 #include "server/session/session_core.h"
 
@@ -14,38 +16,80 @@ namespace {
 /// Epochs that clients may have seen after the last one that was written down.
 constexpr std::uint32_t kSkippedEpochs = 1000;
 
-/// A scene of the catalogue is written out: the catalogue may be another one day.
-Json params_to_log(const SessionCommand& command, const Catalogue& catalogue) {
-  if (command.rules->method != kLoadMethod) return command.params;
-  const Json& scene = command.params.at("scene");
-  const Scene* named =
-      scene.is_string() ? catalogue.find(scene.get_ref<const std::string&>()) : nullptr;
-  return named == nullptr ? command.params : Json{{"scene", write_scene(*named)}};
-}
-
 }  // namespace
 
 std::vector<ActionResult> SessionCore::carry_out(std::span<const Given> commands) {
   std::vector<LogEntry> entries;
+  std::vector<std::variant<Prepared, RpcError>> prepared;
   for (const Given& given : commands) {
     if (!given.command.rules->is_logged) continue;
-    const Json params = params_to_log(given.command, environment_->catalogue);
-    entries.push_back(make_entry(given.participant, given.command.rules->method, params.dump()));
+    prepared.push_back(prepare(given));
+    if (auto* good = std::get_if<Prepared>(&prepared.back())) {
+      entries.push_back(std::move(good->entry));
+    }
   }
   if (auto error = log(entries)) return std::vector<ActionResult>(commands.size(), *error);
 
   std::vector<ActionResult> results;
   auto entry = entries.begin();
+  auto next = prepared.begin();
   for (const Given& given : commands) {
     if (!given.command.rules->is_logged) {
       results.push_back(act(given.participant, given.command.action));
       continue;
     }
-    results.push_back(apply(*entry, given.command.action));
+    const std::variant<Prepared, RpcError>& one = *next++;
+    if (const auto* error = std::get_if<RpcError>(&one)) {
+      results.push_back(*error);
+      continue;
+    }
+    const auto& action = std::get<Prepared>(one).action;
+    results.push_back(apply(*entry, action ? *action : given.command.action));
     if (std::holds_alternative<RpcError>(results.back())) refuse(*entry);
     ++entry;
   }
   return results;
+}
+
+std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare(const Given& given) const {
+  const std::string_view method = given.command.rules->method;
+  try {
+    if (method == kLoadMethod) return prepare_load(given);
+    if (method == kLoadStateMethod) return prepare_restore(given);
+  } catch (const StorageError& error) {
+    spdlog::error("session {}: {}", id_, error.what());
+    return storage_failed(error.kind());
+  }
+  return Prepared{make_entry(given.participant, method, given.command.params.dump()), {}};
+}
+
+// A scene that has a name is written out: the name may stand for another one day.
+std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare_load(const Given& given) const {
+  Json params = given.command.params;
+  std::optional<SessionAction> action;
+  Json& scene = params.at("scene");
+  if (const Scene* named = scene.is_string()
+                               ? environment_->catalogue.find(scene.get_ref<const std::string&>())
+                               : nullptr) {
+    scene = write_scene(*named);
+  } else if (scene.is_string()) {
+    auto saved = find_saved_scene(scene.get_ref<const std::string&>(), *environment_);
+    if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
+    scene = std::get<Json>(std::move(saved));
+    action = make_command(kLoadMethod, params).action;
+  }
+  return Prepared{make_entry(given.participant, kLoadMethod, params.dump()), std::move(action)};
+}
+
+std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare_restore(
+    const Given& given) const {
+  const auto& name = given.command.params.at("name").get_ref<const std::string&>();
+  SavedStates* const states = environment_->states;
+  const auto state = states == nullptr ? std::nullopt : states->find(id_, name);
+  if (!state) return no_such_state(name);
+  const Json params = params_of_restore(*state);
+  return Prepared{make_entry(given.participant, kRestoreEntry, params.dump()),
+                  read_restore(params)};
 }
 
 LogEntry SessionCore::make_entry(ParticipantNumber participant, std::string_view method,
@@ -57,7 +101,11 @@ LogEntry SessionCore::make_entry(ParticipantNumber participant, std::string_view
 std::optional<RpcError> SessionCore::log(std::span<LogEntry> entries) {
   if (entries.empty()) return {};
   if (log_ == nullptr) {
-    for (std::size_t i = 0; i < entries.size(); ++i) entries[i].sequence = sequence_ + 1 + i;
+    // What those who watch a replay do is beside its log.
+    const bool counts = replay_ == nullptr;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      entries[i].sequence = sequence_ + (counts ? 1 + i : 0);
+    }
     return {};
   }
   if (divergence_) {
@@ -124,6 +172,7 @@ SessionMoment SessionCore::moment() const {
           run_.epoch(),
           playing_,
           speed_,
+          participants_.changes(),
           write_participants(participants_),
           run_.simulation().snapshot()};
 }
@@ -137,6 +186,7 @@ void SessionCore::resume(const SessionMoment& moment, Simulation simulation, Sna
   last_grab_ = moment.last_grab;
   playing_ = moment.playing;
   speed_ = moment.speed;
+  participants_ = {};
   read_participants(moment.participants, participants_);
 }
 

@@ -9,13 +9,15 @@
 #include <limits>
 #include <thread>
 
+#include "server/heap.h"
 #include "server/session/scene_loading.h"
 
 namespace vat {
 namespace {
 
 constexpr std::chrono::milliseconds kShortestExpiryCheck(50);
-constexpr std::chrono::milliseconds kLongestExpiryCheck(60'000);
+constexpr std::chrono::milliseconds kLongestExpiryCheck(15'000);
+constexpr std::chrono::milliseconds kNever = std::chrono::hours(1'000'000);  // a century
 
 // Two at least: the system then shares even a single core between a long tick and a short one.
 std::size_t thread_count(std::size_t wanted) {
@@ -37,6 +39,7 @@ std::unique_ptr<Storage> open_storage(const ServerSettings& settings) {
 }  // namespace
 
 SessionId to_id(std::uint64_t number) {
+  if (number >= kFirstReplay) return "r" + std::to_string(number - kFirstReplay);
   return "s" + std::to_string(number);
 }
 
@@ -46,20 +49,31 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
       runner_(thread_count(settings_.threads)),
       tokens_(settings_.limits.max_tokens),
       resources_({settings_.limits.max_particles_in_all, settings_.limits.max_springs_in_all}),
+      long_ticks_(runner_.thread_count()),
       frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
-      environment_{catalogue_,     settings_.limits, settings_.instructions,
-                   runner_,        metrics_,         resources_,
-                   frame_threads_, tokens_,          &downloads_},
+      storage_(open_storage(settings_)),
+      saved_in_memory_(storage_ ? nullptr : std::make_unique<SavedInMemory>()),
+      environment_{catalogue_,
+                   settings_.limits,
+                   settings_.instructions,
+                   runner_,
+                   metrics_,
+                   resources_,
+                   frame_threads_,
+                   tokens_,
+                   &downloads_,
+                   storage_ ? &storage_->states() : &saved_in_memory_->states,
+                   storage_ ? &storage_->scenes() : &saved_in_memory_->scenes},
       no_limits_(without_scene_limits(settings_.limits)),
       past_resources_(kUnlimitedResources),
       past_environment_{catalogue_,     no_limits_, settings_.instructions,
                         runner_,        metrics_,   past_resources_,
                         frame_threads_, tokens_,    &downloads_},
-      storage_(open_storage(settings_)),
-      pool_(runner_.thread_count()),
+      pool_(2 * runner_.thread_count()),
       later_(std::make_shared<Later>(pool_)),
       creations_(boost::asio::make_strand(pool_)),
       expiry_timer_(pool_) {
+  if (storage_) tokens_.keep_in(storage_->tokens(), SteadyClock::now());
   const std::lock_guard lock(mutex_);
   wait_for_expiry();
 }
@@ -73,7 +87,8 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   if (stopped_ || draining_ || clients_.size() >= settings_.limits.max_connections) return false;
   const ConnectionId id = connection->id();
   Client& client = clients_[id];
-  client.outbox = std::make_shared<ClientOutbox>(std::move(connection));
+  client.outbox = std::make_shared<ClientOutbox>(std::move(connection),
+                                                 settings_.limits.max_control_queue_bytes);
   client.outbox->set_meter(std::make_unique<MessageMeter>(settings_.limits, SteadyClock::now()));
   if (settings_.access.mode == AccessMode::open) {
     client.access.role = Role::controller;
@@ -140,7 +155,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   const auto session = std::make_shared<Session>(
       to_id(number), SessionSettings{std::move(name), default_role(), false, creator.connection},
       std::get<Simulation>(std::move(simulation)), std::get<ResourceShare>(std::move(share)),
-      environment_, pool_);
+      environment_, pool_, long_ticks_);
   if (stored) {
     session->keep_in(std::make_unique<SessionLog>(*storage_, number, SessionLog::Place{1, 0}));
   }
@@ -180,7 +195,7 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
 RpcResult SessionDirectory::create_from(const Json& scene, std::string name,
                                         SessionCreator creator) {
   if (auto error = refuse_session()) return *std::move(error);  // others were before it
-  auto read = read_client_scene(scene, catalogue_);
+  auto read = read_named_scene(scene, environment_);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
   auto created = create(std::move(name), std::get<Scene>(read), std::move(creator));
   if (auto* error = std::get_if<RpcError>(&created)) return std::move(*error);
@@ -258,12 +273,7 @@ std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId&
   const auto session = find_session(id);
   if (session == sessions_.end()) return close_absent(id, caller);
   if (auto error = refuse_role(caller, rules_of("session.close"), session->first)) return error;
-  try {
-    if (storage_) storage_->sessions().close(session->first);
-  } catch (const StorageError& error) {
-    spdlog::error("session {} cannot be closed: {}", id, error.what());
-    return storage_failed(error.kind());
-  }
+  if (const auto failure = forget_session(session->first)) return storage_failed(*failure);
   close_session(session, Session::End::closed, reason, std::move(caller));
   return {};
 }
@@ -280,9 +290,11 @@ std::string SessionDirectory::metrics() const {
   present.version = settings_.version;
   present.instructions = settings_.instructions;
   present.threads = runner_.thread_count();
+  present.heap = heap_in_use();
   {
     const std::lock_guard lock(mutex_);
     present.connections = clients_.size();
+    if (storage_) present.storage = storage_->counts();
     for (const auto& [number, session] : sessions_) {
       const SessionSummary summary = session->summary();
       ++(summary.hibernating ? present.hibernating_sessions
@@ -301,6 +313,12 @@ void SessionDirectory::drain(std::chrono::milliseconds time) {
   const std::lock_guard lock(mutex_);
   draining_ = true;
   for (auto& [connection, client] : clients_) client.outbox->send(event);
+}
+
+RpcResult SessionDirectory::request_drain(std::optional<std::chrono::milliseconds> time) {
+  if (!settings_.end) return not_allowed("this server is not ended by its clients");
+  const std::chrono::duration<double> given = settings_.end(time);
+  return Json{{"seconds", given.count()}};
 }
 
 std::size_t SessionDirectory::connection_count() const {
@@ -325,9 +343,8 @@ void SessionDirectory::stop() {
 }
 
 void SessionDirectory::wait_for_expiry() {
-  const std::chrono::milliseconds after = settings_.limits.expire_after;
-  if (after.count() == 0) return;
-  expiry_timer_.expires_after(std::clamp(after / 4, kShortestExpiryCheck, kLongestExpiryCheck));
+  const auto soonest = patience_with(kFirstReplay);
+  expiry_timer_.expires_after(std::clamp(soonest / 4, kShortestExpiryCheck, kLongestExpiryCheck));
   expiry_timer_.async_wait([this](const boost::system::error_code& failure) {
     if (!failure) end_expired();
   });
@@ -337,16 +354,28 @@ void SessionDirectory::end_expired() {
   const std::lock_guard lock(mutex_);
   if (stopped_) return;
   const auto now = SteadyClock::now();
-  const std::chrono::milliseconds after = settings_.limits.expire_after;
+  downloads_.forget_old(now);
+  imports_.forget_old(now);
+  end_expired_sessions(now);
+  wait_for_expiry();
+}
+
+std::chrono::milliseconds SessionDirectory::patience_with(Sessions::key_type session) const {
+  const ServerLimits& limits = settings_.limits;
+  const auto usual = limits.expire_after.count() > 0 ? limits.expire_after : kNever;
+  return session >= kFirstReplay ? std::min(limits.replay_expire_after, usual) : usual;
+}
+
+void SessionDirectory::end_expired_sessions(SteadyClock::time_point now) {
   for (auto next = sessions_.begin(); next != sessions_.end();) {
     const auto session = next++;
     if (session == sessions_.begin() || client_count(session->first) > 0) continue;
+    const auto after = patience_with(session->first);
     const auto empty_since = session->second->summary().empty_since;
-    if (empty_since && now - *empty_since >= after) {
+    if (empty_since && now - *empty_since >= after && !forget_session(session->first)) {
       close_session(session, Session::End::closed, "nobody was in it for too long", {});
     }
   }
-  wait_for_expiry();
 }
 
 SessionDirectory::Sessions::iterator SessionDirectory::find_session(const SessionId& id) {
@@ -377,7 +406,8 @@ void SessionDirectory::close_session(Sessions::iterator session, Session::End en
     client.outbox->send(event);  // the last that it hears of the session
   }
   session->second->close(end, std::move(caller));
-  tokens_.remove_session(id);
+  if (saved_in_memory_) saved_in_memory_->states.remove_session(id);
+  remove_tokens(id, end);
   places_.erase(session->first);
   sessions_.erase(session);
   spdlog::info("session {} closed: {}", id, reason);

@@ -19,11 +19,15 @@
 #include "server/access/access.h"
 #include "server/http/downloads.h"
 #include "server/net/address_counts.h"
+#include "server/replay/imports.h"
 #include "server/session/later.h"
 #include "server/session/session.h"
 #include "server/session/session_server.h"
 
 namespace vat {
+
+/// Sessions with such numbers show recordings, and end with the server.
+inline constexpr std::uint64_t kFirstReplay = std::uint64_t{1} << 62;
 
 /// The id of the session with this number.
 SessionId to_id(std::uint64_t number);
@@ -32,6 +36,12 @@ SessionId to_id(std::uint64_t number);
 struct SessionCreator {
   ConnectionId connection = 0;  ///< who is its owner once it joins; 0: nobody is
   AddressCounts::Place place;   ///< among the sessions of its address; null: the server's own
+};
+
+/// What users save where there is no data folder: it ends with the server.
+struct SavedInMemory {
+  SavedStates states{MainDatabase::kInMemory};
+  SavedScenes scenes{std::make_shared<MainDatabase>(MainDatabase::kInMemory)};
 };
 
 /// The sessions, the clients and who is in which; owns the threads. Safe to use from any thread.
@@ -88,6 +98,17 @@ class SessionDirectory {
   /// The tick of the session that the caller is in, as of its last answer or turn; none outside.
   std::optional<std::uint64_t> tick_of(const Caller& caller) const;
 
+  /// A part of a file that a client brings. The last part is answered once the whole is read.
+  std::optional<RpcResult> import_recording(Caller& caller, const Imports::Part& part);
+  /// What a replay is to show: a session that is kept, or a recording that was imported.
+  struct ReplaySource {
+    std::optional<SessionId> session;
+    std::optional<std::string> recording;
+    std::string name;  ///< of the new session; empty: the recording's
+  };
+  /// Makes a session that shows it, and answers with its id; or gives the error at once.
+  std::optional<RpcError> open_replay(Caller& caller, const ReplaySource& source);
+
   ServerMetrics& counters() { return metrics_; }
   /// What Prometheus is told.
   std::string metrics() const;
@@ -95,7 +116,12 @@ class SessionDirectory {
   /// From now on there are no new connections, sessions and joins; clients are told how long they
   /// may stay at most.
   void drain(std::chrono::milliseconds time);
+  /// As an admin wishes: the server ends once clients have had so much time (absent: as much as it
+  /// gives them by itself). How much that is.
+  RpcResult request_drain(std::optional<std::chrono::milliseconds> time);
   std::size_t connection_count() const;
+
+  SavedScenes& saved_scenes() const { return *environment_.scenes; }
 
   /// Files that were made for clients.
   Downloads& downloads() { return downloads_; }
@@ -124,6 +150,9 @@ class SessionDirectory {
 
   /// The number of a new session that is kept; nothing where it is not.
   std::optional<std::uint64_t> store(const std::string& name, const Scene& scene);
+  /// A session that is kept does not come back; or why that could not be written.
+  std::optional<StorageError::Kind> forget_session(Sessions::key_type number);
+  void remove_tokens(const SessionId& id, Session::End end);
   void recover_session(const StoredSession& stored);
   /// Makes it, or tells why it is lost.
   std::shared_ptr<Session> make_recovered(const StoredSession& stored);
@@ -137,10 +166,24 @@ class SessionDirectory {
   /// The token's, if it is good.
   std::optional<Grant> find_grant(std::string_view token);
   void close_unless_entered(ConnectionId id);
+  /// Sessions, and files that nobody has fetched or gone on with.
   void end_expired();
   void undo_join(ConnectionId id, Sessions::key_type session);
 
+  RpcResult take_recording(const std::string& name, std::size_t size);
+  void answer_replay(Caller caller, std::shared_ptr<const Recording> recording,
+                     const std::string& name, SessionCreator creator);
+  RpcResult make_replay(std::shared_ptr<const Recording> recording, const std::string& name,
+                        SessionCreator creator);
+
   // With the mutex held.
+  void end_expired_sessions(SteadyClock::time_point now);
+  /// With a session that nobody is in.
+  std::chrono::milliseconds patience_with(Sessions::key_type session) const;
+  std::optional<RpcError> refuse_source(const Caller& caller, const Client& client,
+                                        const ReplaySource& source);
+  void record_and_open(Caller& caller, const ReplaySource& source, SessionCreator creator);
+  std::size_t replay_count() const;
   void wait_for_expiry();
   const Client* find_caller(const Caller& caller) const;
   /// Why the caller may not call a method that names this session, if so.
@@ -152,6 +195,8 @@ class SessionDirectory {
   std::map<Sessions::key_type, Absent>::iterator find_absent(const std::optional<SessionId>& id);
   std::optional<RpcError> wait_for(Absent& absent, const SessionId& id, Caller& caller,
                                    Entrant entrant);
+  /// Of one that is not in `sessions_`.
+  RpcError refuse_missing(const Client& client, const SessionId& id);
   std::optional<RpcError> close_absent(const SessionId& id, Caller& caller);
   std::size_t client_count(Sessions::key_type session) const;
   void leave_session(Client& client, Caller caller);
@@ -168,14 +213,17 @@ class SessionDirectory {
   ServerMetrics metrics_;
   AccessTokens tokens_;
   ResourceBudget resources_;
+  LongTicks long_ticks_;
   boost::asio::thread_pool frame_threads_;
-  Downloads downloads_;
+  Downloads downloads_{settings_.limits.max_download_bytes};
+  Imports imports_;
+  const std::unique_ptr<Storage> storage_;                // null: sessions are in memory alone
+  const std::unique_ptr<SavedInMemory> saved_in_memory_;  // null: in the storage
   const SessionEnvironment environment_;
   // Of sessions that come back: what was within the limits once is let in again.
   const ServerLimits no_limits_;
   ResourceBudget past_resources_;
   const SessionEnvironment past_environment_;
-  const std::unique_ptr<Storage> storage_;  // null: sessions are in memory alone
   boost::asio::thread_pool pool_;
   const std::shared_ptr<Later> later_;
   // Creations come one after the other: they take one thread from the sessions at most.
@@ -189,6 +237,7 @@ class SessionDirectory {
   boost::asio::steady_timer expiry_timer_;
   std::map<Sessions::key_type, Absent> absent_;
   Sessions::key_type last_session_ = 0;  // of those in memory alone
+  Sessions::key_type last_replay_ = kFirstReplay;
   bool draining_ = false;
   std::atomic<bool> stopped_ = false;
   std::unique_ptr<boost::asio::thread_pool> recovery_threads_;

@@ -23,6 +23,25 @@ std::optional<std::uint64_t> SessionDirectory::store(const std::string& name, co
                                      {1, 0, 0, 0, std::string(kLoadMethod), params.dump(), false});
 }
 
+std::optional<StorageError::Kind> SessionDirectory::forget_session(Sessions::key_type number) {
+  try {
+    if (storage_ && number < kFirstReplay) storage_->sessions().close(number);
+    return {};
+  } catch (const StorageError& error) {
+    spdlog::error("session {} cannot be closed: {}", to_id(number), error.what());
+    return error.kind();
+  }
+}
+
+void SessionDirectory::remove_tokens(const SessionId& id, Session::End end) {
+  try {
+    tokens_.remove_session(id, end == Session::End::may_come_back);
+  } catch (const StorageError& error) {
+    // They are good for nothing without their session.
+    spdlog::error("session {}: its invitations stay until they end: {}", id, error.what());
+  }
+}
+
 std::size_t SessionDirectory::recover() {
   if (storage_ == nullptr) return 0;
   std::vector<StoredSession> stored = storage_->sessions().sessions();
@@ -62,9 +81,9 @@ std::shared_ptr<Session> SessionDirectory::make_recovered(const StoredSession& s
   SessionRecovery recovery(*storage_, stored, past_environment_, stopped_);
   Simulation simulation = recovery.begin();
   ResourceShare share = past_resources_.take_anyway(resources_of(simulation));
-  auto session =
-      std::make_shared<Session>(to_id(stored.number), read_settings(stored.name, stored.settings),
-                                std::move(simulation), std::move(share), past_environment_, pool_);
+  auto session = std::make_shared<Session>(
+      to_id(stored.number), read_settings(stored.name, stored.settings), std::move(simulation),
+      std::move(share), past_environment_, pool_, long_ticks_);
   session->recover(recovery, *storage_, environment_);
   const std::chrono::duration<double> time = SteadyClock::now() - begin;
   spdlog::info("session {} is back at tick {}, in {:.2f} s", to_id(stored.number),
@@ -114,17 +133,22 @@ std::optional<RpcError> SessionDirectory::wait_for(Absent& absent, const Session
   return {};
 }
 
+RpcError SessionDirectory::refuse_missing(const Client& client, const SessionId& id) {
+  const auto absent = find_absent(id);
+  if (absent == absent_.end() || refuse_access(client, absent->first)) {
+    return no_such_session(id, "/session");
+  }
+  return not_recovered(id, absent->second.is_lost ? "lost" : "recovering");
+}
+
 std::optional<RpcError> SessionDirectory::close_absent(const SessionId& id, Caller& caller) {
   const auto absent = find_absent(id);
   if (absent == absent_.end()) return no_such_session(id, "/session");
   if (auto error = refuse_role(caller, rules_of("session.close"), absent->first)) return error;
   if (!absent->second.is_lost) return not_recovered(id, "recovering");
-  try {
-    storage_->sessions().close(absent->first);
-  } catch (const StorageError& error) {
-    return storage_failed(error.kind());
-  }
+  if (const auto failure = forget_session(absent->first)) return storage_failed(*failure);
   storage_->remove_closed();
+  remove_tokens(id, Session::End::closed);
   absent_.erase(absent);
   caller.answer(Json{{"tick", 0}});
   return {};

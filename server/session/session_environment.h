@@ -13,6 +13,8 @@
 namespace vat {
 
 class Downloads;
+class SavedScenes;
+class SavedStates;
 
 /// What all sessions share.
 struct SessionEnvironment {
@@ -25,6 +27,9 @@ struct SessionEnvironment {
   boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send all sessions' frames
   AccessTokens& tokens;
   Downloads* downloads = nullptr;  ///< null: nobody fetches files
+  // Null: nothing can be saved.
+  SavedStates* states = nullptr;
+  SavedScenes* scenes = nullptr;
 };
 
 }  // namespace vat

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/thread_time.h"
+
 namespace vat {
 namespace {
 
@@ -31,34 +33,48 @@ SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& pla
       kept_last_(place.last),
       is_bent_(place.is_bent) {
   writing_->log_bytes = storage.sessions().log_bytes(session);
+  storage.checkpoints().drop_hashes(session, place.position);
+}
+
+template <class Write>
+void SessionLog::write_now(const Write& write) {
+  try {
+    write();
+  } catch (const StorageError&) {
+    storage_.count_failure();
+    throw;
+  }
 }
 
 void SessionLog::append(std::span<LogEntry> entries) {
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i].sequence = last_ + 1 + i;
-  storage_.sessions().append(session_, entries);
+  write_now([&] { storage_.sessions().append(session_, entries); });
   last_ += entries.size();
   writing_->log_bytes += bytes_of(entries);
 }
 
 void SessionLog::refuse(std::uint64_t sequence) {
-  storage_.sessions().refuse(session_, sequence);
+  write_now([&] { storage_.sessions().refuse(session_, sequence); });
 }
 
 void SessionLog::configure(const std::string& name, const std::string& settings) {
-  storage_.sessions().configure(session_, name, settings);
+  write_now([&] { storage_.sessions().configure(session_, name, settings); });
 }
 
 void SessionLog::reach(std::uint64_t position) {
-  storage_.sessions().reach(session_, position);
+  write_now([&] { storage_.sessions().reach(session_, position); });
 }
 
 bool SessionLog::is_checkpoint_due() const {
   return is_bent_ || pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost));
 }
 
-bool SessionLog::is_due(std::uint64_t position, SteadyClock::time_point now) const {
+bool SessionLog::is_due(std::uint64_t position, std::uint64_t people,
+                        SteadyClock::time_point now) const {
   if (writing_->under_way) return false;
-  if (position == kept_position_ && last_ == kept_last_) return false;
+  // Where a session has diverged, what was seen of it stays until somebody goes on from there.
+  const bool people_are_kept = is_bent_ || people == kept_people_;
+  if (position == kept_position_ && last_ == kept_last_ && people_are_kept) return false;
   return now - kept_at_ >= kBeatInterval || is_checkpoint_due();
 }
 
@@ -71,13 +87,15 @@ void SessionLog::keep(SessionMoment moment, SteadyClock::time_point now, bool al
   }
   kept_position_ = moment.position;
   kept_last_ = last_;
+  kept_people_ = moment.people;
   kept_at_ = now;
   writing_->under_way = true;
   storage_.post([&storage = storage_, session = session_, moment = std::move(moment),
-                 with_checkpoint, writing = writing_] {
+                 hashes = std::exchange(hashes_, {}), with_checkpoint, writing = writing_] {
     // Whatever comes of it, the next one may be written.
     const std::shared_ptr<void> end(nullptr, [&](void*) { writing->under_way = false; });
     write(storage, session, moment, with_checkpoint, *writing);
+    storage.checkpoints().write_hashes(session, hashes);
   });
   if (was_bent) storage_.flush();  // what is logged from now on builds on it
 }
@@ -94,10 +112,13 @@ void SessionLog::write(Storage& storage, std::uint64_t session, const SessionMom
                        bool with_checkpoint, Writing& writing) {
   storage.sessions().beat(session, moment.beat());
   if (!with_checkpoint) return;
-  const auto begin = SteadyClock::now();
+  const auto begin = thread_time();
   storage.checkpoints().write(
       {session, moment.position, moment.sequence, moment.fields(), moment.snapshot.to_bytes()});
-  writing.checkpoint_cost = CheckpointPace::Seconds(SteadyClock::now() - begin).count();
+  // Without waiting for a processor or the disk: sessions that work meanwhile lose nothing by it.
+  const CheckpointPace::Seconds cost = thread_time() - begin;
+  writing.checkpoint_cost = cost.count();
+  storage.count_checkpoint(cost);
   bound_log(storage, session, moment, writing);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "server/session/session_moment.h"
 #include "server/session/tick_clock.h"
@@ -24,7 +25,7 @@ inline constexpr std::string_view kLetGoEntry = "let_go";
 class CheckpointPace {
  public:
   using Seconds = std::chrono::duration<double>;
-  static constexpr double kGreatestShare = 0.01;     ///< of the work that ticks and commands are
+  static constexpr double kGreatestShare = 0.05;     ///< of the work that ticks and commands are
   static constexpr Seconds kMostWork = Seconds(10);  ///< without one, whatever one costs
 
   /// `wanted` is how much work there should be between two, where they are cheap enough.
@@ -65,10 +66,18 @@ class SessionLog {
   /// What the session's owner has decided. Throws StorageError.
   void configure(const std::string& name, const std::string& settings);
 
+  /// Whether the state is worth a hash here, which tells a replay at which tick it differs: after
+  /// each tick, but where bodies sleep and a tick may cost less than its hash.
+  static bool is_hash_due(const Simulation& simulation, std::uint64_t position) {
+    return simulation.sleeping_body_count() == 0 || position % kSleepingHashInterval == 0;
+  }
+  /// Of the state after the tick that led to a position.
+  void add_hash(std::uint64_t position, std::uint64_t hash) { hashes_.push_back({position, hash}); }
   void add_work(CheckpointPace::Seconds time) { pace_.add_work(time); }
   /// Whether the session should be looked at, because it is elsewhere than it was a second ago, or
   /// a checkpoint is due.
-  bool is_due(std::uint64_t position, SteadyClock::time_point now) const;
+  /// `people` counts the changes of its participants.
+  bool is_due(std::uint64_t position, std::uint64_t people, SteadyClock::time_point now) const;
   /// Writes where the session is, and a checkpoint if one is due, or `always`.
   void keep(SessionMoment moment, SteadyClock::time_point now, bool always = false);
   /// The same, always with a checkpoint; what is kept is then for `task`, on the storage's thread.
@@ -84,6 +93,10 @@ class SessionLog {
     std::atomic<double> checkpoint_cost = 0;  // [s]
     std::atomic<std::size_t> log_bytes = 0;
   };
+  static constexpr std::uint64_t kSleepingHashInterval = 16;
+  /// Does what may throw StorageError, which is counted.
+  template <class Write>
+  void write_now(const Write& write);
   static void write(Storage& storage, std::uint64_t session, const SessionMoment& moment,
                     bool with_checkpoint, Writing& writing);
   static void bound_log(Storage& storage, std::uint64_t session, const SessionMoment& moment,
@@ -97,8 +110,10 @@ class SessionLog {
   // Of the last moment that was kept.
   std::uint64_t kept_position_ = 0;
   std::uint64_t kept_last_ = 0;
+  std::uint64_t kept_people_ = 0;
   SteadyClock::time_point kept_at_{};
   bool is_bent_;
+  std::vector<TickHash> hashes_;  ///< that are not written yet
   const std::shared_ptr<Writing> writing_ = std::make_shared<Writing>();
 };
 

@@ -1,10 +1,12 @@
 #include "server/session/session_moment.h"
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 #include <utility>
 
 #include "core/limits.h"
+#include "server/session/describe.h"
 
 namespace vat {
 namespace {
@@ -27,7 +29,7 @@ std::optional<TokenHash> from_hex(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::size_t digit = kHexDigits.find(text[i]);
     if (digit == std::string_view::npos) return {};
-    hash[i / 2] = static_cast<std::uint8_t>(hash[i / 2] << 4 | digit);
+    hash[i / 2] = static_cast<std::uint8_t>(std::size_t{hash[i / 2]} << 4 | digit);
   }
   return hash;
 }
@@ -50,6 +52,37 @@ Role read_role(ObjectReader& reader, std::string_view key) {
   return kRoles[reader.choice(key, {"viewer", "controller", "owner", "admin"})];
 }
 
+Json write_subscription(const Subscription& subscription) {
+  Json json{{"every", subscription.every},
+            {"detail", subscription.selection.detail},
+            {"attributes", subscription.attribute_errors}};
+  if (subscription.max_error) json["max_error"] = *subscription.max_error;
+  if (const auto& region = subscription.selection.region) {
+    json["min"] = to_json(region->min);
+    json["max"] = to_json(region->max);
+  }
+  return json;
+}
+
+Subscription read_subscription(const Json& value, const std::string& path, Errors& errors) {
+  ObjectReader reader(value, path, errors);
+  Subscription read;
+  read.every = reader.count("every", 1, kMaxFrameInterval);
+  read.selection.detail = static_cast<std::uint8_t>(reader.count("detail", 0, kFullDetail));
+  if (reader.has("max_error")) read.max_error = reader.real("max_error", 0, kMaxLength);
+  if (reader.has("min")) {
+    read.selection.region = FrameRegion{reader.vector("min", -kMaxLength, kMaxLength),
+                                        reader.vector("max", -kMaxLength, kMaxLength)};
+  }
+  if (const Json* attributes = reader.array("attributes", kFrameAttributes, true)) {
+    for (std::size_t a = 0; a < attributes->size(); ++a) {  // there were fewer once
+      const std::string at = pointer_to(reader.path_of("attributes"), a);
+      read.attribute_errors[a] = to_real((*attributes)[a], at, 0, kAnyMax, errors).value_or(0);
+    }
+  }
+  return read;
+}
+
 void read_participant(const Json& value, const std::string& path, Participants& participants,
                       Errors& errors) {
   ObjectReader reader(value, path, errors);
@@ -57,6 +90,10 @@ void read_participant(const Json& value, const std::string& path, Participants& 
   participant.name = reader.text("name", kMaxNameLength);
   participant.role = read_role(reader, "role");
   participant.resume = from_hex(reader.text("resume", 2 * TokenHash().size()));
+  if (const Json* subscription = reader.member("subscription")) {
+    participant.subscription =
+        read_subscription(*subscription, reader.path_of("subscription"), errors);
+  }
   const Json* grabs = reader.array("grabs", kMaxGrabs, true);
   if (grabs == nullptr) return;
   for (std::size_t i = 0; i < grabs->size(); ++i) {
@@ -129,6 +166,9 @@ Json write_participants(const Participants& participants) {
                     {"role", to_string(participant.role)},
                     {"resume", participant.resume ? to_hex(*participant.resume) : ""},
                     {"grabs", std::move(grabs)}});
+    if (participant.subscription) {
+      list.back()["subscription"] = write_subscription(*participant.subscription);
+    }
   }
   return {{"last", participants.last_number()}, {"list", std::move(list)}};
 }

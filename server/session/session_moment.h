@@ -21,7 +21,8 @@ struct SessionMoment {
   std::uint32_t epoch = 1;
   bool playing = true;
   double speed = 1;
-  Json participants;  ///< see write_participants()
+  std::uint64_t people = 0;  ///< changes of the participants so far; is not written
+  Json participants;         ///< see write_participants()
   Snapshot snapshot;
 
   SessionBeat beat() const;

@@ -120,6 +120,7 @@ void SessionCore::kick(ParticipantNumber number, const std::string& reason) {
 
 void SessionCore::rename(Participant& participant, std::string name) {
   participant.name = std::move(name);
+  participants_.touch();
 }
 
 void SessionCore::set_role(Participant& participant, Role role) {

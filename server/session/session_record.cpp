@@ -15,17 +15,18 @@ namespace vat {
 namespace {
 
 RpcResult make_recording(Storage& storage, std::uint64_t number, const std::string& id,
-                         Downloads& downloads) {
-  const Recording recording = record_session(storage, number);
-  const std::vector<std::uint8_t> bytes = write_recording(recording);
-  if (bytes.size() > kMaxRecordingBytes)
-    return limit_reached("recording_bytes", kMaxRecordingBytes);
+                         Downloads& downloads, const ServerLimits& limits) {
+  const std::size_t most = limits.max_recording_bytes;
+  const std::optional<Recording> recording = record_session(storage, number, most);
+  if (!recording) return limit_reached("recording_bytes", most);
+  const std::vector<std::uint8_t> bytes = write_recording(*recording);
+  if (bytes.size() > most) return limit_reached("recording_bytes", most);
   const auto path =
       downloads.add({id + ".vatrec", {bytes.begin(), bytes.end()}}, Downloads::Clock::now());
-  if (!path) return limit_reached("download_bytes", Downloads::kMostBytes);
+  if (!path) return limit_reached("download_bytes", limits.max_download_bytes);
   return Json{{"path", *path},
               {"bytes", bytes.size()},
-              {"ticks", recording.end - recording.begin},
+              {"ticks", recording->end - recording->begin},
               {"expires", Downloads::kPatience.count()}};
 }
 
@@ -44,7 +45,8 @@ void Session::record(Caller caller) {
     boost::asio::post(self->strand_.get_inner_executor(),
                       [self, waiting, downloads, &storage, number] {
                         try {
-                          RpcResult result = make_recording(storage, number, self->id_, *downloads);
+                          RpcResult result = make_recording(storage, number, self->id_, *downloads,
+                                                            self->core_.environment().limits);
                           if (auto* json = std::get_if<Json>(&result))
                             (*json)["tick"] = self->summary().tick;
                           waiting->answer(result);

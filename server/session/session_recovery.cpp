@@ -8,6 +8,7 @@
 
 #include "server/session/describe.h"
 #include "server/session/method_table.h"
+#include "server/session/saved_state.h"
 #include "server/session/scene_loading.h"
 
 namespace vat {
@@ -23,7 +24,7 @@ std::string name_of(const LogEntry& entry) {
 
 Json parse_params(const LogEntry& entry) {
   Result<Json> json =
-      parse_json(entry.params, {entry.params.size(), kMaxMessageDepth, entry.params.size() + 1});
+      parse_json(entry.params, {entry.params.size(), kMostMessageDepth, entry.params.size() + 1});
   if (!json) fail(name_of(entry), json.errors().front().message);
   return std::move(json).value();
 }
@@ -31,7 +32,9 @@ Json parse_params(const LogEntry& entry) {
 SessionAction read_action(const LogEntry& entry) {
   const Method* method = find_method(entry.method);
   const auto* read = method == nullptr ? nullptr : std::get_if<Method::ForSession>(&method->read);
-  if (read == nullptr) fail(name_of(entry), "there is no such command");
+  if (read == nullptr || !method->rules.is_logged) {
+    fail(name_of(entry), "there is no such command in a log");
+  }
   const Json json = parse_params(entry);
   Errors errors;
   ObjectReader params(json, "", errors);
@@ -55,7 +58,9 @@ void carry_out_again(SessionCore& core, const LogEntry& entry) {
   if (entry.method == kLeaveEntry) return core.carry_out_leave(entry);
   if (entry.method == kLetGoEntry) return core.carry_out_let_go(entry);
   if (entry.refused) return carry_out_refused(core, entry);
-  const ActionResult result = core.apply(entry, read_action(entry));
+  const bool restores = entry.method == kRestoreEntry;
+  const ActionResult result =
+      core.apply(entry, restores ? read_restore(parse_params(entry)) : read_action(entry));
   if (const auto* error = std::get_if<RpcError>(&result)) {
     throw Diverged(name_of(entry) + " is refused: " + error->message);
   }
@@ -145,6 +150,9 @@ void SessionRecovery::finish(SessionCore& core) {
 void SessionRecovery::carry_out_log(SessionCore& core) {
   compare(core);
   std::uint64_t last = core.sequence();
+  const auto newest =
+      storage_.sessions().find(stored_.number, storage_.sessions().last_sequence(stored_.number));
+  const std::uint64_t end = newest ? newest->position : 0;
   for (auto entries = storage_.sessions().read(stored_.number, last); !entries.empty();
        entries = storage_.sessions().read(stored_.number, last)) {
     for (const LogEntry& entry : entries) {
@@ -157,7 +165,11 @@ void SessionRecovery::carry_out_log(SessionCore& core) {
         compare(core);
       }
       run_to(core, entry.position, cancelled_);
-      carry_out_again(core, entry);
+      if (entry.position < end) {
+        carry_out_again(core, entry);
+      } else {
+        carry_out_at_end(core, entry);
+      }
     }
   }
   if (stored_.beat && stored_.beat->sequence == last) {
@@ -165,6 +177,16 @@ void SessionRecovery::carry_out_log(SessionCore& core) {
     compare(core);
   }
   run_to(core, stored_.reached, cancelled_);
+}
+
+void SessionRecovery::carry_out_at_end(SessionCore& core, const LogEntry& entry) {
+  try {
+    carry_out_again(core, entry);
+  } catch (const Diverged& refusal) {
+    spdlog::info("session s{}: {}, as it was when the server ended", stored_.number,
+                 refusal.what());
+    storage_.sessions().refuse(stored_.number, entry.sequence);
+  }
 }
 
 void SessionRecovery::compare(SessionCore& core) {

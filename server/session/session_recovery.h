@@ -54,6 +54,9 @@ class SessionRecovery {
   Simulation begin_at_scene();
   Simulation load_scene(std::uint64_t sequence);
   void carry_out_log(SessionCore& core);
+  /// Of the entries that were written last, those that were refused may not be marked so yet, for
+  /// the server may have ended in between; nobody had an answer to them.
+  void carry_out_at_end(SessionCore& core, const LogEntry& entry);
   /// Compares where that is the place at which the session was seen.
   void compare(SessionCore& core);
 

@@ -6,6 +6,13 @@
 #include "server/session/scene_loading.h"
 
 namespace vat {
+namespace {
+
+Resources greater(const Resources& a, const Resources& b) {
+  return {std::max(a.particles, b.particles), std::max(a.springs, b.springs)};
+}
+
+}  // namespace
 
 SessionRun::SessionRun(Simulation simulation, ResourceShare share, ServerMetrics& metrics)
     : metrics_(metrics),
@@ -18,10 +25,13 @@ std::optional<ResourceExcess> SessionRun::admit(const Simulation& next) {
   return share_.resize(resources_of(next));
 }
 
+std::optional<ResourceExcess> SessionRun::admit(const Simulation& next,
+                                                const Simulation& as_loaded) {
+  return share_.resize(greater(resources_of(next), resources_of(as_loaded)));
+}
+
 std::optional<ResourceExcess> SessionRun::admit_change() {
-  const Resources now = resources_of(simulation_);
-  return share_.resize({std::max(now.particles, needed_as_loaded_.particles),
-                        std::max(now.springs, needed_as_loaded_.springs)});
+  return share_.resize(greater(resources_of(simulation_), needed_as_loaded_));
 }
 
 void SessionRun::resume(Simulation simulation, Snapshot as_loaded, std::uint64_t position,
@@ -45,6 +55,13 @@ void SessionRun::load(Simulation simulation) {
   profile_ = {};
   tick_ = 0;
   ++epoch_;
+}
+
+void SessionRun::restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick) {
+  load(std::move(simulation));
+  as_loaded_ = as_loaded.snapshot();
+  needed_as_loaded_ = resources_of(as_loaded);
+  tick_ = tick;
 }
 
 void SessionRun::reset() {

@@ -21,6 +21,8 @@ class SessionRun {
               std::uint32_t epoch);
   /// Takes what another simulation needs in place of this one's. What would be too much, if so.
   std::optional<ResourceExcess> admit(const Simulation& next);
+  /// The same of one that goes back to another.
+  std::optional<ResourceExcess> admit(const Simulation& next, const Simulation& as_loaded);
   /// Takes what this simulation needs now that it has changed. At least what it needed when it was
   /// loaded, since it may go back to that.
   std::optional<ResourceExcess> admit_change();
@@ -32,12 +34,16 @@ class SessionRun {
   void end() { share_.resize({}); }
   /// Replaces the simulation; the ticks begin at 0, and a new epoch and profile.
   void load(Simulation simulation);
+  /// Replaces the simulation by one that has run so many ticks since it was `as_loaded`.
+  void restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick);
   /// Back to the scene as loaded, at tick 0 of a new epoch.
   void reset();
+  const Snapshot& as_loaded() const { return as_loaded_; }
   /// Takes the steps of one tick. Where it failed, the state and the tick are as before.
   AdvanceReport advance();
   /// The bodies have changed.
   void start_epoch() { ++epoch_; }
+  void set_epoch(std::uint32_t epoch) { epoch_ = epoch; }
   /// Epochs go on behind those that clients may have seen of a session that comes back.
   void skip_epochs(std::uint32_t count) { epoch_ += count; }
 

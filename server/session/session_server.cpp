@@ -58,6 +58,9 @@ class SessionServer::Impl {
               call(caller, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
         caller.answer(*std::move(result));
       }
+    } catch (const StorageError& error) {
+      spdlog::error("a message failed: {}", error.what());
+      client->send(write_reply(id.value_or(nullptr), storage_failed(error.kind())));
     } catch (const std::exception& error) {
       spdlog::error("a message failed: {}", error.what());
       client->send(write_reply(id.value_or(nullptr), internal_error()));
@@ -104,7 +107,8 @@ class SessionServer::Impl {
     if (message.size() > limits().max_scene_message_bytes) {
       return limit_reached("scene_message_bytes", limits().max_scene_message_bytes);
     }
-    Result<Json> json = parse_json(message, {message.size(), kMaxMessageDepth, kMaxMessageValues});
+    Result<Json> json = parse_json(
+        message, {message.size(), limits().max_message_depth, limits().max_message_values});
     if (!json) return parse_failed(json.errors().front());
     return read_request(std::move(json).value(), id);
   }

@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,6 +31,9 @@ struct ServerSettings {
   AccessSettings access;
   std::string data_folder;  ///< where sessions are kept; empty: in memory alone
   StorageLimits storage;
+  /// Ends the server soon, once clients have had so much time, or else its usual one, which it
+  /// gives; may be called from any thread. Empty: no client ends it.
+  std::function<std::chrono::milliseconds(std::optional<std::chrono::milliseconds>)> end;
 };
 
 /// The server behind the transport: its sessions, its clients, and the methods of PROTOCOL.md.

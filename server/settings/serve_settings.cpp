@@ -1,10 +1,12 @@
 #include "server/settings/serve_settings.h"
 
 #include <boost/asio/ip/address.hpp>
+#include <sstream>
 #include <utility>
 
 #include "core/limits.h"
 #include "core/support/instruction_set.h"
+#include "server/replay/recording.h"
 
 namespace vat {
 namespace {
@@ -13,6 +15,7 @@ constexpr std::size_t kMaxThreads = 256;
 constexpr std::size_t kMaxEndpoints = 64;
 constexpr std::size_t kMostConnections = 100'000;
 constexpr std::size_t kMostSessions = 10'000;
+constexpr std::size_t kLeastDepth = 10;  // of a request with a scene: 9
 constexpr std::size_t kMostBytes = 1024 * 1024 * 1024;
 constexpr std::size_t kMostInAll = 1'000'000'000;
 constexpr double kMostPerSecond = 1e6;
@@ -24,6 +27,17 @@ std::string check_host(const std::string& host) {
   boost::system::error_code error;
   boost::asio::ip::make_address(host, error);
   return error ? "must be a numeric address, such as 127.0.0.1, 0.0.0.0 or ::1" : std::string();
+}
+
+std::string check_origins(const std::string& list) {
+  for (const std::string& origin : split_origins(list)) {
+    const bool has_scheme = origin.starts_with("https://") || origin.starts_with("http://");
+    if (!has_scheme || origin.find('/', origin.find("//") + 2) != std::string::npos ||
+        origin.find_first_of(" *") != std::string::npos || origin.ends_with("//")) {
+      return "must be origins with commas between, such as https://example.org:8443";
+    }
+  }
+  return {};
 }
 
 std::string check_instructions(const std::string& name) {
@@ -50,6 +64,13 @@ std::vector<Setting> server_group(ServeSettings& s) {
       text_setting("host", s.host, "ADDRESS", "Address to listen on; 0.0.0.0: all of the machine",
                    check_host),
       number_setting<std::uint16_t>("port", s.port, 0, 65535, "Port to listen on; 0: any free one"),
+      text_setting(
+          "tls_certificate", s.tls_certificate, "FILE",
+          "Certificate in PEM, and those above it: the port then speaks TLS, https and wss"),
+      text_setting("tls_key", s.tls_key, "FILE", "Its private key, in PEM"),
+      text_setting("allow_origin", s.allow_origin, "ORIGINS",
+                   "Pages of these origins may connect too: https://a.example,https://b.example",
+                   check_origins),
       text_setting("scene", s.scene, "SCENE",
                    "The first session's: a scene file (a path with '/' or ending in '.json') or "
                    "the name of a scene of the catalogue"),
@@ -84,8 +105,7 @@ std::vector<Setting> access_group(ServeSettings& s) {
   };
 }
 
-std::vector<Setting> connection_limits(ServeSettings& s) {
-  ServerLimits& limits = s.limits;
+std::vector<Setting> connection_limits(ServerLimits& limits) {
   return {
       number_setting<std::size_t>("max_connections", limits.max_connections, 1, kMostConnections,
                                   "WebSockets at once; the next is closed"),
@@ -100,10 +120,18 @@ std::vector<Setting> connection_limits(ServeSettings& s) {
                                   "Of a message that holds neither scene nor body"),
       number_setting<std::size_t>("max_scene_message_bytes", limits.max_scene_message_bytes, 1024,
                                   kMostBytes, "Of a message that does"),
+      number_setting<std::size_t>("max_message_depth", limits.max_message_depth, kLeastDepth,
+                                  kMostMessageDepth, "Lists and objects within each other"),
+      number_setting<std::size_t>("max_message_values", limits.max_message_values, 1000, 10'000'000,
+                                  "Numbers, texts, lists and objects of a message"),
       number_setting<std::size_t>("max_commands_in_flight", limits.max_commands_in_flight, 1,
                                   1'000'000, "Commands of one client that are not answered yet"),
       number_setting<std::size_t>("max_bytes_in_flight", limits.max_bytes_in_flight, 1024,
                                   kMostBytes, "Of the messages of these commands"),
+      number_setting<std::size_t>("max_control_queue_bytes", limits.max_control_queue_bytes,
+                                  16 * 1024, kMostBytes,
+                                  "Of replies and events that a client has not taken; beyond, it "
+                                  "is closed"),
       time_setting("frame_patience_seconds", limits.frame_patience, 1, kMostSeconds,
                    "Without an acknowledgement, after which a viewer is closed"),
       time_setting("resume_seconds", limits.resume_time, 0, kMostSeconds,
@@ -112,9 +140,14 @@ std::vector<Setting> connection_limits(ServeSettings& s) {
                    "Without a move, after which a grab ends"),
       number_setting<std::size_t>("max_tokens", limits.max_tokens, 1, 1'000'000,
                                   "Invitations and tickets that are good at once"),
-      time_setting("handshake_seconds", s.handshake_timeout, 0.001, kMostSeconds,
+      number_setting<std::size_t>("max_recording_bytes", limits.max_recording_bytes, 1024,
+                                  kMaxRecordingBytes, "Of one recording that is exported"),
+      number_setting<std::size_t>("max_download_bytes", limits.max_download_bytes, 1024,
+                                  std::size_t{16} << 30,
+                                  "Of all recordings that wait for somebody to fetch them"),
+      time_setting("handshake_seconds", limits.handshake_time, 0.001, kMostSeconds,
                    "For a whole HTTP request, or the upgrade to a WebSocket"),
-      time_setting("ping_seconds", s.ping_interval, 0.001, kMostSeconds,
+      time_setting("ping_seconds", limits.ping_interval, 0.001, kMostSeconds,
                    "Between pings; who is silent for two of them is dropped"),
   };
 }
@@ -161,6 +194,27 @@ std::vector<Setting> session_limits(ServerLimits& limits) {
       time_setting(
           "expire_after", limits.expire_after, 0, kMostAway,
           "Seconds without participants after which a session ends, but the first; 0: never"),
+      time_setting("replay_expire_after", limits.replay_expire_after, 0.1, kMostAway,
+                   "The same of a replay, where it is less"),
+  };
+}
+
+std::vector<Setting> saved_limits(ServerLimits& limits) {
+  return {
+      number_setting<std::size_t>("max_states_per_session", limits.max_states_per_session, 0,
+                                  1'000'000, "States that users have saved of one session"),
+      number_setting<std::size_t>("max_state_bytes_per_session", limits.max_state_bytes_per_session,
+                                  1024, kMostBytes, "Of these states"),
+      number_setting<std::size_t>("max_state_bytes_in_all", limits.max_state_bytes_in_all, 1024,
+                                  kMostInAll, "Of the states of all sessions"),
+      number_setting<std::size_t>("max_scenes_per_address", limits.max_scenes_per_address, 0,
+                                  1'000'000, "Scenes that users of one address have saved"),
+      number_setting<std::size_t>("max_scene_bytes_per_address", limits.max_scene_bytes_per_address,
+                                  1024, kMostBytes, "Of these scenes"),
+      number_setting<std::size_t>("max_scenes_in_all", limits.max_scenes_in_all, 0, 1'000'000,
+                                  "Scenes that users have saved"),
+      number_setting<std::size_t>("max_scene_bytes_in_all", limits.max_scene_bytes_in_all, 1024,
+                                  kMostBytes, "Of all of them"),
   };
 }
 
@@ -173,7 +227,7 @@ std::vector<Setting> storage_group(ServeSettings& s) {
                    "server; none: in memory alone"),
       time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMostSeconds,
                    "Of computing between two checkpoints of a session: what is done again after a "
-                   "crash; more where checkpoints would take over a hundredth of the time"),
+                   "crash; more where checkpoints would take over a twentieth of the time"),
       time_setting("drain_seconds", s.drain_time, 0, kMostSeconds,
                    "How long clients may stay after SIGTERM, before sessions are written and the "
                    "server ends"),
@@ -187,14 +241,22 @@ std::vector<Setting> storage_group(ServeSettings& s) {
 
 }  // namespace
 
+std::vector<std::string> split_origins(const std::string& list) {
+  std::vector<std::string> origins;
+  std::istringstream stream(list);
+  for (std::string origin; std::getline(stream, origin, ',');) origins.push_back(origin);
+  return origins;
+}
+
 std::vector<Setting> serve_settings(ServeSettings& target) {
   std::vector<Setting> all;
   add_group(all, "Server", server_group(target));
   add_group(all, "Access", access_group(target));
   add_group(all, "Storage", storage_group(target));
-  add_group(all, "Limits of connections", connection_limits(target));
+  add_group(all, "Limits of connections", connection_limits(target.limits));
   add_group(all, "Limits of messages of a connection", rate_limits(target.limits));
   add_group(all, "Limits of sessions", session_limits(target.limits));
+  add_group(all, "Limits of what users save", saved_limits(target.limits));
   return all;
 }
 

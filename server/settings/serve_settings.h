@@ -16,6 +16,9 @@ namespace vat {
 struct ServeSettings {
   std::string host = "127.0.0.1";  ///< a numeric address
   std::uint16_t port = 8080;       ///< 0: any free one
+  std::string tls_certificate;     ///< file in PEM; empty: no TLS
+  std::string tls_key;
+  std::string allow_origin;  ///< with commas between
   std::string scene = "sliding-vat-liquid";
   std::string scenes_folder;
   std::string web_folder;
@@ -26,13 +29,14 @@ struct ServeSettings {
   std::string log_format = "text";  ///< or json
   std::string access = "auto";      ///< or "open", "token"
   std::string admin_token_file;     ///< empty: none
-  std::chrono::milliseconds handshake_timeout{10'000};
-  std::chrono::milliseconds ping_interval{20'000};
   ServerLimits limits;
   std::chrono::milliseconds drain_time{0};
   std::string data = "none";  ///< folder where sessions are kept, or "none"
   StorageLimits storage;
 };
+
+/// The parts of a list with commas between.
+std::vector<std::string> split_origins(const std::string& list);
 
 /// The one table of them: options, variables of the environment, members of a configuration file
 /// and the page SETTINGS.md come from it. `target` must outlive it.

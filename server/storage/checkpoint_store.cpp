@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/support/byte_io.h"
 #include "server/storage/compression.h"
 #include "server/storage/schema.h"
 
@@ -23,6 +24,15 @@ CREATE TABLE checkpoints (
   state BLOB NOT NULL
 ) STRICT;
 CREATE INDEX checkpoints_of_session ON checkpoints (session, position, sequence);
+)",
+                                  R"(
+CREATE TABLE hashes (
+  session INTEGER NOT NULL,
+  last INTEGER NOT NULL,
+  count INTEGER NOT NULL,
+  list BLOB NOT NULL,
+  PRIMARY KEY (session, last)
+) STRICT;
 )"};
 
 constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;  // of 200 000 particles a third
@@ -120,16 +130,91 @@ std::optional<Checkpoint> CheckpointStore::read(const CheckpointPlace& place) {
   return checkpoint;
 }
 
+void CheckpointStore::write_hashes(std::uint64_t session, std::span<const TickHash> hashes) {
+  if (hashes.empty()) return;
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(database_);
+  insert_hashes(session, hashes);
+  const std::uint64_t last = hashes.back().position;
+  if (last > kMostHashes) {
+    database_.prepare("DELETE FROM hashes WHERE session = ? AND last < ?")
+        .bind(0, session)
+        .bind(1, last - kMostHashes)
+        .run();
+  }
+  transaction.commit();
+}
+
+void CheckpointStore::insert_hashes(std::uint64_t session, std::span<const TickHash> hashes) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter writer(bytes);
+  for (const TickHash& one : hashes) {
+    writer.put(one.position);
+    writer.put(one.hash);
+  }
+  database_
+      .prepare("INSERT OR REPLACE INTO hashes (session, last, count, list) VALUES (?, ?, ?, ?)")
+      .bind(0, session)
+      .bind(1, hashes.back().position)
+      .bind(2, std::uint64_t{hashes.size()})
+      .bind(3, std::span<const std::uint8_t>(bytes))
+      .run();
+}
+
+std::vector<TickHash> CheckpointStore::hashes(std::uint64_t session, std::uint64_t from) {
+  const std::lock_guard lock(mutex_);
+  return hashes_locked(session, from);
+}
+
+std::vector<TickHash> CheckpointStore::hashes_locked(std::uint64_t session, std::uint64_t from) {
+  std::vector<TickHash> hashes;
+  Statement query =
+      database_.prepare("SELECT list FROM hashes WHERE session = ? AND last >= ? ORDER BY last");
+  query.bind(0, session).bind(1, from);
+  while (query.step()) {
+    ByteReader reader(query.bytes(0));
+    while (reader.left() >= 2 * sizeof(std::uint64_t)) {
+      const auto position = reader.get<std::uint64_t>();
+      hashes.push_back({position, reader.get<std::uint64_t>()});
+    }
+  }
+  return hashes;
+}
+
+std::size_t CheckpointStore::hash_count(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  Statement query =
+      database_.prepare("SELECT coalesce(sum(count), 0) FROM hashes WHERE session = ?");
+  query.bind(0, session);
+  return query.step() ? static_cast<std::size_t>(query.count(0)) : 0;
+}
+
+void CheckpointStore::drop_hashes(std::uint64_t session, std::uint64_t behind) {
+  const std::lock_guard lock(mutex_);
+  std::vector<TickHash> some = hashes_locked(session, behind + 1);  // of rows that end behind it
+  if (some.empty()) return;
+  std::erase_if(some, [&](const TickHash& one) { return one.position > behind; });
+  Transaction transaction(database_);
+  database_.prepare("DELETE FROM hashes WHERE session = ? AND last > ?")
+      .bind(0, session)
+      .bind(1, behind)
+      .run();
+  if (!some.empty()) insert_hashes(session, some);
+  transaction.commit();
+}
+
 void CheckpointStore::keep_only(const std::vector<std::uint64_t>& sessions) {
   const std::lock_guard lock(mutex_);
   std::vector<std::uint64_t> gone;
-  Statement query = database_.prepare("SELECT DISTINCT session FROM checkpoints");
+  Statement query =
+      database_.prepare("SELECT session FROM checkpoints UNION SELECT session FROM hashes");
   while (query.step()) {
     const std::uint64_t session = query.count(0);
     if (std::ranges::find(sessions, session) == sessions.end()) gone.push_back(session);
   }
   for (const std::uint64_t session : gone) {
     database_.prepare("DELETE FROM checkpoints WHERE session = ?").bind(0, session).run();
+    database_.prepare("DELETE FROM hashes WHERE session = ?").bind(0, session).run();
   }
 }
 

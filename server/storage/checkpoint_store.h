@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,14 @@ struct CheckpointPlace {
   std::size_t bytes = 0;  ///< that it takes here
 };
 
-/// The sessions' checkpoints, compressed, in a database of their own, so that writing one holds up
-/// no command. Safe to use from any thread; throws StorageError.
+/// What a session's state was as its run had come to a position, before anything was changed there.
+struct TickHash {
+  std::uint64_t position = 0;  ///< as in a LogEntry
+  std::uint64_t hash = 0;
+};
+
+/// The sessions' checkpoints, compressed, and hashes of their states, in a database of their own,
+/// so that writing one holds up no command. Safe to use from any thread; throws StorageError.
 class CheckpointStore {
  public:
   /// Beyond `session_bytes` a session's checkpoints are thinned: see write().
@@ -43,13 +50,24 @@ class CheckpointStore {
   /// Nothing where it was removed in the meantime. Throws what is of kind corrupt for one that is
   /// damaged.
   std::optional<Checkpoint> read(const CheckpointPlace& place);
-  /// Removes those of all other sessions.
+  /// Adds hashes at positions that rise. Those that are `kMostHashes` positions back go.
+  void write_hashes(std::uint64_t session, std::span<const TickHash> hashes);
+  /// Rising by position; may begin somewhat before `from`.
+  std::vector<TickHash> hashes(std::uint64_t session, std::uint64_t from);
+  std::size_t hash_count(std::uint64_t session);
+  /// Those behind a position go: the session goes on from there.
+  void drop_hashes(std::uint64_t session, std::uint64_t behind);
+  static constexpr std::size_t kMostHashes = 2'000'000;  ///< eleven hours at 50 ticks a second
+
+  /// Removes what is of all other sessions.
   void keep_only(const std::vector<std::uint64_t>& sessions);
 
   std::size_t move_log(bool wait) { return mover_.move_log(wait); }
 
  private:
   std::vector<CheckpointPlace> places_locked(std::uint64_t session);
+  void insert_hashes(std::uint64_t session, std::span<const TickHash> hashes);
+  std::vector<TickHash> hashes_locked(std::uint64_t session, std::uint64_t from);
   void thin(std::uint64_t session);
   void remove_row(std::uint64_t row);
 

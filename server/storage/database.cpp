@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBusyTimeout = 10'000;  // [ms] for the mover of the log, which writes for moments
 
-StorageError::Kind kind_of(int code) {
+StorageError::Kind kind_of_code(int code) {
   switch (code & 0xff) {
     case SQLITE_FULL:
       return StorageError::Kind::full;
@@ -29,7 +29,7 @@ StorageError::Kind kind_of(int code) {
 
 [[noreturn]] void fail(const std::string& path, sqlite3* connection, int code) {
   const char* message = connection != nullptr ? sqlite3_errmsg(connection) : sqlite3_errstr(code);
-  throw StorageError(kind_of(code), path + ": " + message);
+  throw StorageError(kind_of_code(code), path + ": " + message);
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ void Statement::check(int code) {
   sqlite3* connection = database_->connection_.get();
   const std::string message = database_->path_ + ": " + sqlite3_errmsg(connection);
   if (statement_) sqlite3_reset(statement_.get());
-  throw StorageError(kind_of(code), message);
+  throw StorageError(kind_of_code(code), message);
 }
 
 Statement& Statement::bind(int parameter, std::int64_t value) {

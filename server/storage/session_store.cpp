@@ -3,42 +3,8 @@
 #include <bit>
 #include <limits>
 
-#include "server/storage/schema.h"
-
 namespace vat {
 namespace {
-
-constexpr std::uint32_t kApplication = 0x76617473;  // "vats"
-
-constexpr const char* kSteps[] = {R"(
-CREATE TABLE sessions (
-  number INTEGER PRIMARY KEY AUTOINCREMENT,
-  name TEXT NOT NULL,
-  instruction_set TEXT NOT NULL,
-  settings TEXT NOT NULL,
-  closed INTEGER NOT NULL DEFAULT 0,
-  reached INTEGER NOT NULL DEFAULT 0,
-  position INTEGER,
-  tick INTEGER,
-  sequence INTEGER,
-  hash INTEGER,
-  epoch INTEGER,
-  playing INTEGER,
-  speed REAL,
-  participants TEXT
-) STRICT;
-CREATE TABLE log (
-  session INTEGER NOT NULL,
-  sequence INTEGER NOT NULL,
-  position INTEGER NOT NULL,
-  tick INTEGER NOT NULL,
-  participant INTEGER NOT NULL,
-  method TEXT NOT NULL,
-  params TEXT NOT NULL,
-  refused INTEGER NOT NULL DEFAULT 0,
-  PRIMARY KEY (session, sequence)
-) STRICT, WITHOUT ROWID;
-)"};
 
 constexpr const char* kInsertEntry =
     "INSERT INTO log (session, sequence, position, tick, participant, method, params)"
@@ -80,7 +46,9 @@ constexpr const char* kSelectEntries =
 }  // namespace
 
 SessionStore::SessionStore(const std::string& path)
-    : database_(open_database(path, {kApplication, kSteps})),
+    : main_(std::make_shared<MainDatabase>(path)),
+      mutex_(main_->mutex),
+      database_(main_->database),
       mover_(path, Database::Mode::create),
       insert_entry_(database_, kInsertEntry),
       write_beat_(database_, kWriteBeat),
@@ -131,7 +99,7 @@ void SessionStore::close(std::uint64_t session) {
   database_.prepare("UPDATE sessions SET closed = 1 WHERE number = ?").bind(0, session).run();
 }
 
-void SessionStore::remove_closed() {
+std::vector<std::uint64_t> SessionStore::remove_closed() {
   std::vector<std::uint64_t> closed;
   {
     const std::lock_guard lock(mutex_);
@@ -143,6 +111,7 @@ void SessionStore::remove_closed() {
     const std::lock_guard lock(mutex_);
     database_.prepare("DELETE FROM sessions WHERE number = ?").bind(0, session).run();
   }
+  return closed;
 }
 
 void SessionStore::insert(std::uint64_t session, const LogEntry& entry) {

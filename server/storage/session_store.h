@@ -2,14 +2,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "server/storage/database.h"
 #include "server/storage/log_entry.h"
+#include "server/storage/main_database.h"
 
 namespace vat {
 
@@ -35,11 +36,14 @@ struct StoredSession {
   std::optional<SessionBeat> beat;
 };
 
-/// The sessions and their logs, in a database of their own. What a call has written when it returns
-/// survives the end of the process at any moment. Safe to use from any thread; throws StorageError.
+/// The sessions and their logs. What a call has written when it returns survives the end of the
+/// process at any moment. Safe to use from any thread; throws StorageError.
 class SessionStore {
  public:
   explicit SessionStore(const std::string& path);
+
+  /// In which they are, with what else is kept there.
+  const std::shared_ptr<MainDatabase>& main() const { return main_; }
 
   /// Numbers are never used again. The first entry is written with the session, its sequence 1.
   std::uint64_t create(const StoredSession& session, const LogEntry& first);
@@ -49,7 +53,8 @@ class SessionStore {
   /// It does not come back from now on; what it takes is freed by remove_closed(), which takes its
   /// time.
   void close(std::uint64_t session);
-  void remove_closed();
+  /// Which ones.
+  std::vector<std::uint64_t> remove_closed();
 
   /// All entries or none.
   void append(std::uint64_t session, std::span<const LogEntry> entries);
@@ -80,8 +85,9 @@ class SessionStore {
   /// Some of those that trim() removes; false where there are none.
   bool trim_some(std::uint64_t session, std::uint64_t last, std::uint64_t kept);
 
-  std::mutex mutex_;
-  Database database_;
+  const std::shared_ptr<MainDatabase> main_;
+  std::mutex& mutex_;
+  Database& database_;
   Database mover_;
   Statement insert_entry_;
   Statement write_beat_;

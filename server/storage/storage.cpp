@@ -13,6 +13,9 @@ namespace vat {
 namespace {
 
 constexpr auto kMoveInterval = std::chrono::seconds(1);
+// What the timer is set to at the end: a wait that is over, but not yet told so, cannot be
+// cancelled.
+constexpr auto kNoMoreMoves = std::chrono::steady_clock::time_point::min();
 // While commands keep coming the moved part of a log is not used again; beyond this they wait once,
 // for some milliseconds, so that it is.
 constexpr std::size_t kMostLogBytes = std::size_t{64} << 20;
@@ -22,19 +25,33 @@ void move_log(Store& store) {
   if (store.move_log(false) > kMostLogBytes) store.move_log(true);
 }
 
+std::string id_of(std::uint64_t session) {
+  return "s" + std::to_string(session);
+}
+
+std::vector<std::string> ids_of(const std::vector<StoredSession>& sessions) {
+  std::vector<std::string> ids;
+  for (const StoredSession& session : sessions) ids.push_back(id_of(session.number));
+  return ids;
+}
+
 }  // namespace
 
 Storage::Storage(const std::string& folder, const StorageLimits& limits)
     : folder_(folder),
       limits_(limits),
       sessions_(folder_.file("vat.db")),
-      checkpoints_(folder_.file("checkpoints.db"), limits.checkpoint_bytes) {
+      checkpoints_(folder_.file("checkpoints.db"), limits.checkpoint_bytes),
+      states_(folder_.file("states.db")),
+      scenes_(sessions_.main()),
+      tokens_(sessions_.main()) {
+  states_.keep_only(ids_of(sessions_.sessions()));
   remove_closed();
   boost::asio::post(thread_, [this] { wait_to_move(); });
 }
 
 Storage::~Storage() {
-  boost::asio::post(thread_, [this] { move_timer_.cancel(); });
+  boost::asio::post(thread_, [this] { move_timer_.expires_at(kNoMoreMoves); });
   thread_.join();
 }
 
@@ -57,9 +74,20 @@ void Storage::run(const std::function<void()>& task) {
   }
 }
 
+StorageCounts Storage::counts() const {
+  return {failures_, checkpoints_written_, std::chrono::nanoseconds(checkpoint_nanoseconds_)};
+}
+
+void Storage::count_checkpoint(std::chrono::duration<double> cost) {
+  ++checkpoints_written_;
+  checkpoint_nanoseconds_ += static_cast<std::uint64_t>(cost.count() * 1e9);
+}
+
 void Storage::remove_closed() {
   post([this] {
-    sessions_.remove_closed();
+    for (const std::uint64_t closed : sessions_.remove_closed()) {
+      states_.remove_session(id_of(closed));
+    }
     std::vector<std::uint64_t> open;  // checkpoints are written on this thread: none comes between
     for (const StoredSession& session : sessions_.sessions()) open.push_back(session.number);
     checkpoints_.keep_only(open);
@@ -69,7 +97,7 @@ void Storage::remove_closed() {
 void Storage::wait_to_move() {
   move_timer_.expires_after(kMoveInterval);
   move_timer_.async_wait([this](const boost::system::error_code& failure) {
-    if (failure) return;
+    if (failure || move_timer_.expiry() == kNoMoreMoves) return;
     run([this] { move_logs(); });
     wait_to_move();
   });
@@ -78,6 +106,7 @@ void Storage::wait_to_move() {
 void Storage::move_logs() {
   move_log(sessions_);
   move_log(checkpoints_);
+  move_log(states_);
 }
 
 }  // namespace vat

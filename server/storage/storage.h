@@ -3,14 +3,19 @@
 #include <atomic>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
 
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/saved_scenes.h"
+#include "server/storage/saved_states.h"
 #include "server/storage/session_store.h"
+#include "server/storage/storage_counts.h"
 #include "server/storage/storage_limits.h"
+#include "server/storage/token_store.h"
 
 namespace vat {
 
@@ -30,6 +35,9 @@ class Storage {
   const StorageLimits& limits() const { return limits_; }
   SessionStore& sessions() { return sessions_; }
   CheckpointStore& checkpoints() { return checkpoints_; }
+  SavedStates& states() { return states_; }
+  SavedScenes& scenes() { return scenes_; }
+  TokenStore& tokens() { return tokens_; }
 
   /// Runs a task on the thread, in the order of the calls; what it throws is logged.
   void post(std::function<void()> task);
@@ -37,9 +45,12 @@ class Storage {
   void flush();
   /// Frees what closed sessions take.
   void remove_closed();
-  /// How often something could not be written.
-  std::uint64_t failures() const { return failures_; }
+  /// What /metrics tells of it.
+  StorageCounts counts() const;
+  /// Something could not be written.
   void count_failure() { ++failures_; }
+  /// One was written, in so much time of a processor.
+  void count_checkpoint(std::chrono::duration<double> cost);
 
  private:
   void run(const std::function<void()>& task);
@@ -50,7 +61,12 @@ class Storage {
   const StorageLimits limits_;
   SessionStore sessions_;
   CheckpointStore checkpoints_;
+  SavedStates states_;
+  SavedScenes scenes_;
+  TokenStore tokens_;
   std::atomic<std::uint64_t> failures_ = 0;
+  std::atomic<std::uint64_t> checkpoints_written_ = 0;
+  std::atomic<std::uint64_t> checkpoint_nanoseconds_ = 0;
   boost::asio::thread_pool thread_{1};
   boost::asio::steady_timer move_timer_{thread_};
 };

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "server/replay/recording.h"
+#include "server/session/session_environment.h"
+
+namespace vat {
+
+/// Goes to so many random positions of a recording, and again once moments have been filled in as
+/// a server does it; prints how long that took, and what is kept.
+void time_seeks(std::shared_ptr<const Recording> recording, const SessionEnvironment& environment,
+                std::size_t count);
+
+}  // namespace vat

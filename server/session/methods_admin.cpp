@@ -1,0 +1,60 @@
+// server.sessions, server.drain
+
+#include <chrono>
+#include <cmath>
+
+#include "server/session/method_parts.h"
+
+namespace vat {
+namespace {
+
+constexpr double kMostDrainSeconds = 3600;
+
+Json describe_people(const SessionSummary& summary) {
+  Json people = Json::array();
+  if (summary.people == nullptr) return people;
+  for (const PersonSummary& person : *summary.people) {
+    Json one{{"participant", person.number},
+             {"name", person.name},
+             {"role", to_string(person.role)},
+             {"away", person.address.empty()}};
+    if (!person.address.empty()) one["address"] = person.address;
+    people.push_back(std::move(one));
+  }
+  return people;
+}
+
+void add_people(Json& session, const SessionSummary& summary) {
+  session["hibernating"] = summary.hibernating;
+  session["participants"] = describe_people(summary);
+}
+
+ServerAction read_sessions(ObjectReader&, Errors&) {
+  return [](SessionDirectory& directory, Caller& caller) {
+    return list_sessions(directory, caller, add_people);
+  };
+}
+
+ServerAction read_drain(ObjectReader& params, Errors&) {
+  std::optional<std::chrono::milliseconds> time;
+  if (params.has("seconds")) {
+    time = std::chrono::milliseconds(
+        std::llround(1000 * params.real("seconds", 0, kMostDrainSeconds)));
+  }
+  return [time](SessionDirectory& directory, Caller&) -> std::optional<RpcResult> {
+    return directory.request_drain(time);
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"server.sessions", read_sessions},
+    {"server.drain", read_drain},
+};
+
+}  // namespace
+
+std::span<const Method> admin_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

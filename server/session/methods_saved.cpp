@@ -1,0 +1,163 @@
+// session.save, load, saves, delete_save, scene.save, scene.delete
+
+#include <stdexcept>
+
+#include "core/limits.h"
+#include "server/session/describe.h"
+#include "server/session/method_table.h"
+#include "server/session/person_name.h"
+#include "server/session/saved_state.h"
+#include "server/session/scene_loading.h"
+#include "server/storage/saved_scenes.h"
+#include "server/wall_clock.h"
+
+namespace vat {
+namespace {
+
+SessionAction read_save(ObjectReader& params, Errors& errors) {
+  const std::string name = read_person_name(params, "name", errors);
+  return [name](SessionCore& core, Participant& participant) -> ActionResult {
+    if (core.replay() != nullptr) return not_allowed("a replay keeps no states");
+    if (core.has_diverged()) return not_allowed("the session is not what its log leads to");
+    return SaveState{name, participant.name};
+  };
+}
+
+SessionAction read_load(ObjectReader& params, Errors& errors) {
+  read_person_name(params, "name", errors);
+  return [](SessionCore&, Participant&) -> ActionResult {
+    throw std::logic_error("a state is loaded by its entry of the log");
+  };
+}
+
+SessionAction read_saves(ObjectReader&, Errors&) {
+  return [](SessionCore& core, Participant&) -> ActionResult {
+    Json states = Json::array();
+    for (const SavedStateEntry& entry : core.environment().states->list(core.id())) {
+      states.push_back({{"name", entry.name},
+                        {"saved_by", entry.saved_by},
+                        {"saved", entry.time},
+                        {"at_tick", entry.tick},
+                        {"time", entry.simulation_time},
+                        {"hash", describe_hash(entry.hash)},
+                        {"bytes", entry.bytes}});
+    }
+    return Json{{"states", std::move(states)}};
+  };
+}
+
+SessionAction read_delete_save(ObjectReader& params, Errors& errors) {
+  const std::string name = read_person_name(params, "name", errors);
+  return [name](SessionCore& core, Participant&) -> ActionResult {
+    if (!core.environment().states->remove(core.id(), name)) return no_such_state(name);
+    return Json::object();
+  };
+}
+
+/// A scene to be saved, and by whom.
+struct SceneToSave {
+  std::string name;
+  std::string key;    ///< of the one that it replaces; empty: none
+  const Json* scene;  ///< null: that of the session
+};
+
+std::variant<Scene, RpcError> scene_to_save(const SessionCore& core, const SceneToSave& wanted) {
+  if (wanted.scene == nullptr) return core.run().as_loaded().scene();
+  auto scene = read_client_scene(*wanted.scene, core.environment().catalogue);
+  if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
+  // One that cannot be run, or not here, is not worth keeping.
+  auto simulation = make_simulation(std::get<Scene>(scene), core.environment(),
+                                    core.run().simulation().instruction_set());
+  if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+  return scene;
+}
+
+/// Whether this key, or role, may replace or delete it.
+bool may_change(const SavedScene& scene, const std::string& key, Role role) {
+  return role == Role::admin || are_same(scene.key, hash_of_token(key));
+}
+
+RpcError scene_of_another(const std::string& name) {
+  return not_allowed("the scene " + name +
+                     " is somebody else's; its key, or an admin, may change it");
+}
+
+SavedSceneLimits limits_of(const ServerLimits& limits) {
+  return {limits.max_scenes_per_address, limits.max_scene_bytes_per_address,
+          limits.max_scenes_in_all, limits.max_scene_bytes_in_all};
+}
+
+ActionResult save_scene(const SessionCore& core, const Participant& participant,
+                        const SceneToSave& wanted) {
+  const SessionEnvironment& environment = core.environment();
+  if (environment.catalogue.find(wanted.name) != nullptr) {
+    return not_allowed("the catalogue has a scene of this name");
+  }
+  const auto before = environment.scenes->find(wanted.name);
+  if (before && !may_change(*before, wanted.key, participant.role)) {
+    return scene_of_another(wanted.name);
+  }
+  auto read = scene_to_save(core, wanted);
+  if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
+  auto& scene = std::get<Scene>(read);
+  scene.name = wanted.name;
+  SavedScene saved;
+  const std::string key = make_token();
+  saved.entry = {wanted.name, scene.title, scene.description, participant.name, wall_clock(), 0};
+  saved.address = before ? before->address : participant.outbox->address();
+  saved.key = before ? before->key : hash_of_token(key);
+  saved.scene = write_scene(scene).dump();
+  if (const auto excess = environment.scenes->write(saved, limits_of(environment.limits))) {
+    return limit_reached(excess->limit, excess->maximum);
+  }
+  Json answer{{"name", wanted.name}, {"bytes", saved.scene.size()}};
+  if (!before) answer["key"] = key;
+  return answer;
+}
+
+SessionAction read_save_scene(ObjectReader& params, Errors& errors) {
+  SceneToSave wanted{read_person_name(params, "name", errors), "", nullptr};
+  if (params.has("key")) wanted.key = params.text("key", kMaxTokenBytes);
+  const Json* given = params.member("scene");
+  if (given != nullptr && !given->is_object()) {
+    add_error(errors, "wrong_type", params.path_of("scene"), "must be a scene, not a name");
+  }
+  const std::optional<Json> scene = given == nullptr ? std::nullopt : std::optional(*given);
+  return [wanted, scene](SessionCore& core, Participant& participant) {
+    return save_scene(core, participant, {wanted.name, wanted.key, scene ? &*scene : nullptr});
+  };
+}
+
+RpcResult delete_scene(SessionDirectory& directory, const Caller& caller, const std::string& name,
+                       const std::string& key) {
+  SavedScenes& scenes = directory.saved_scenes();
+  const auto scene = scenes.find(name);
+  if (!scene) return no_such_scene(name, "/name");
+  const Role role = directory.find_client(caller.client()->id()).role;
+  if (!may_change(*scene, key, role)) return scene_of_another(name);
+  scenes.remove(name);
+  return Json::object();
+}
+
+ServerAction read_delete_scene(ObjectReader& params, Errors& errors) {
+  const std::string name = read_person_name(params, "name", errors);
+  std::string key;
+  if (params.has("key")) key = params.text("key", kMaxTokenBytes);
+  return [name, key](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
+    return delete_scene(directory, caller, name, key);
+  };
+}
+
+constexpr Method kMethods[] = {
+    {"session.save", read_save},     {"session.load", read_load},
+    {"session.saves", read_saves},   {"session.delete_save", read_delete_save},
+    {"scene.save", read_save_scene}, {"scene.delete", read_delete_scene},
+};
+
+}  // namespace
+
+std::span<const Method> saved_methods() {
+  return kMethods;
+}
+
+}  // namespace vat

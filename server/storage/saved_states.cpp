@@ -1,0 +1,152 @@
+#include "server/storage/saved_states.h"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <string_view>
+
+#include "server/storage/schema.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint32_t kApplication = 0x76617474;  // "vatt"
+
+constexpr const char* kSteps[] = {R"(
+CREATE TABLE states (
+  number INTEGER PRIMARY KEY,
+  session TEXT NOT NULL,
+  name TEXT NOT NULL,
+  saved_by TEXT NOT NULL,
+  time REAL NOT NULL,
+  tick INTEGER NOT NULL,
+  simulation_time REAL NOT NULL,
+  hash INTEGER NOT NULL,
+  bytes INTEGER NOT NULL,
+  fields TEXT NOT NULL,
+  state BLOB NOT NULL,
+  UNIQUE (session, name)
+) STRICT;
+CREATE INDEX bytes_of_states ON states (session, name, bytes);
+)"};
+
+constexpr const char* kWrite =
+    "INSERT OR REPLACE INTO states"
+    " (session, name, saved_by, time, tick, simulation_time, hash, bytes, fields, state)"
+    " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+constexpr const char* kColumns = "name, saved_by, time, tick, simulation_time, hash, bytes";
+
+SavedStateEntry to_entry(const Statement& row) {
+  return {std::string(row.text(0)),
+          std::string(row.text(1)),
+          row.real(2),
+          row.count(3),
+          row.real(4),
+          std::bit_cast<std::uint64_t>(row.integer(5)),
+          static_cast<std::size_t>(row.count(6))};
+}
+
+std::size_t bytes_of(const SavedState& state) {
+  return state.fields.size() + state.state.size();
+}
+
+}  // namespace
+
+SavedStates::SavedStates(const std::string& path)
+    : database_(open_database(path, {kApplication, kSteps})) {}
+
+std::optional<SavedExcess> SavedStates::find_excess(const std::string& session,
+                                                    const SavedState& state,
+                                                    const SavedStateLimits& limits) {
+  // One that is replaced counts no more.
+  Statement query = database_.prepare(
+      "SELECT coalesce(sum(session = ?1), 0), coalesce(sum(iif(session = ?1, bytes, 0)), 0),"
+      " coalesce(sum(bytes), 0) FROM states WHERE session <> ?1 OR name <> ?2");
+  query.bind(0, std::string_view(session)).bind(1, std::string_view(state.entry.name));
+  if (!query.step()) return {};
+  const std::size_t bytes = bytes_of(state);
+  const SavedExcess limit[] = {{"states_per_session", limits.per_session},
+                               {"state_bytes_per_session", limits.bytes_per_session},
+                               {"state_bytes_in_all", limits.bytes_in_all}};
+  const std::size_t wanted[] = {query.count(0) + 1, query.count(1) + bytes, query.count(2) + bytes};
+  for (std::size_t i = 0; i < std::size(limit); ++i) {
+    if (wanted[i] > limit[i].maximum) return limit[i];
+  }
+  return {};
+}
+
+std::optional<SavedExcess> SavedStates::write(const std::string& session, const SavedState& state,
+                                              const SavedStateLimits& limits) {
+  const std::lock_guard lock(mutex_);
+  if (auto excess = find_excess(session, state, limits)) return excess;
+  const SavedStateEntry& entry = state.entry;
+  database_.prepare(kWrite)
+      .bind(0, std::string_view(session))
+      .bind(1, std::string_view(entry.name))
+      .bind(2, std::string_view(entry.saved_by))
+      .bind(3, entry.time)
+      .bind(4, entry.tick)
+      .bind(5, entry.simulation_time)
+      .bind(6, std::bit_cast<std::int64_t>(entry.hash))
+      .bind(7, std::uint64_t{bytes_of(state)})
+      .bind(8, std::string_view(state.fields))
+      .bind(9, std::span<const std::uint8_t>(state.state))
+      .run();
+  return {};
+}
+
+std::vector<SavedStateEntry> SavedStates::list(const std::string& session) {
+  const std::lock_guard lock(mutex_);
+  std::vector<SavedStateEntry> entries;
+  Statement query = database_.prepare(std::string("SELECT ") + kColumns +
+                                      " FROM states WHERE session = ? ORDER BY name");
+  query.bind(0, std::string_view(session));
+  while (query.step()) entries.push_back(to_entry(query));
+  return entries;
+}
+
+std::optional<SavedState> SavedStates::find(const std::string& session, const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  Statement query = database_.prepare(std::string("SELECT ") + kColumns +
+                                      ", fields, state FROM states WHERE session = ? AND name = ?");
+  query.bind(0, std::string_view(session)).bind(1, std::string_view(name));
+  if (!query.step()) return {};
+  const std::span<const std::uint8_t> state = query.bytes(8);
+  return SavedState{to_entry(query), std::string(query.text(7)), {state.begin(), state.end()}};
+}
+
+bool SavedStates::remove(const std::string& session, const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  database_.prepare("DELETE FROM states WHERE session = ? AND name = ?")
+      .bind(0, std::string_view(session))
+      .bind(1, std::string_view(name))
+      .run();
+  return database_.number("SELECT changes()") > 0;
+}
+
+void SavedStates::remove_session(const std::string& session) {
+  const std::lock_guard lock(mutex_);
+  database_.prepare("DELETE FROM states WHERE session = ?")
+      .bind(0, std::string_view(session))
+      .run();
+}
+
+void SavedStates::keep_only(const std::vector<std::string>& sessions) {
+  std::vector<std::string> gone;
+  {
+    const std::lock_guard lock(mutex_);
+    Statement query = database_.prepare("SELECT DISTINCT session FROM states");
+    while (query.step()) {
+      const std::string session(query.text(0));
+      if (std::ranges::find(sessions, session) == sessions.end()) gone.push_back(session);
+    }
+  }
+  for (const std::string& session : gone) remove_session(session);
+}
+
+std::size_t SavedStates::move_log(bool wait) {
+  const std::lock_guard lock(mutex_);
+  return database_.move_log(wait);
+}
+
+}  // namespace vat
