@@ -9,6 +9,8 @@
 #include "tests/bench/document.h"
 #include "tests/bench/fanout.h"
 #include "tests/bench/instructions.h"
+#include "tests/bench/seeks.h"
+#include "tests/bench/soak.h"
 #include "tests/bench/speed.h"
 #include "tests/bench/stability.h"
 #include "tests/bench/validate.h"
@@ -32,6 +34,8 @@ int run(int argc, char** argv) {
   vat::bench::add_stability_command(app, exit_code);
   vat::bench::add_codec_command(app, exit_code);
   vat::bench::add_fanout_command(app, exit_code);
+  vat::bench::add_seeks_command(app, exit_code);
+  vat::bench::add_soak_command(app, exit_code);
   vat::bench::add_document_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -60,6 +60,9 @@ TEST_F(VatScript, AMistakeInAScriptIsWrongUse) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("mistaken.jsonl:1: no known action"));
   EXPECT_EQ(play({(folder_.path() / "none.jsonl").string()}).exit_code, 2);
+  const ProgramResult folder = play({folder_.path().string()});
+  EXPECT_EQ(folder.exit_code, 2);
+  EXPECT_THAT(folder.err, HasSubstr(": is a folder"));
   EXPECT_EQ(play({"--patience", "nan", met()}).exit_code, 2);
 }
 

@@ -72,5 +72,12 @@ TEST(ServeSettings, AVariableWithABadValueIsRefused) {
   EXPECT_THAT(result.err, HasSubstr("VAT_PORT: must be a whole number from 0 to 65535"));
 }
 
+TEST(ServeSettings, AVariableThatIsNoSettingIsTold) {
+  const Variable port("VAT_PROT", "1");
+  const ProgramResult result = run_vat({"serve", "--print-config"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("a variable is no setting: VAT_PROT, not VAT_PORT?"));
+}
+
 }  // namespace
 }  // namespace vat::test

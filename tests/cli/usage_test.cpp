@@ -126,9 +126,15 @@ TEST(Usage, UnknownSceneListsTheCatalogue) {
 TEST(Usage, SceneFolderCanBeChosen) {
   const std::string folder = VAT_SOURCE_DIR "/tests/cli/scenes";
   EXPECT_EQ(run_vat({"validate", "pair", "--scenes", folder}).exit_code, 0);
-  const ProgramResult missing = run_vat({"validate", "pair", "--scenes", folder + "/none"});
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.err, HasSubstr(folder + "/none: "));
+  using Words = std::vector<std::string>;
+  for (const Words& command : {Words{"validate", "pair"}, Words{"serve"}}) {
+    Words words = command;
+    words.insert(words.end(), {"--scenes", folder + "/none"});
+    const ProgramResult missing = run_vat(words);
+    EXPECT_EQ(missing.exit_code, 1);
+    EXPECT_EQ(missing.err,
+              folder + "/none: the scenes cannot be listed: No such file or directory\n");
+  }
 }
 
 TEST(Usage, UnreadableScenesAreErrors) {

@@ -17,8 +17,9 @@ def main():
              "--log-level", "error"]
     with subprocess.Popen(serve, stdout=subprocess.PIPE, text=True) as server:
         try:
-            port = re.search(r"http://127\.0\.0\.1:(\d+)/", server.stdout.readline())[1]
-            done = subprocess.run([*command, f"ws://127.0.0.1:{port}/ws"], text=True,
+            secure, port = re.search(r"http(s?)://127\.0\.0\.1:(\d+)/",
+                                     server.stdout.readline()).groups()
+            done = subprocess.run([*command, f"ws{secure}://127.0.0.1:{port}/ws"], text=True,
                                   stdout=subprocess.PIPE, timeout=PATIENCE)
         finally:
             server.terminate()

@@ -1,6 +1,8 @@
-"""vat_client_test.py PROGRAM: the Python client against a server, where the example does not go."""
+"""vat_client_test.py PROGRAM CERTIFICATE KEY: the Python client against servers, where the example
+does not go; those with TLS have this certificate, which is its own authority."""
 
 import re
+import ssl
 import subprocess
 import sys
 import unittest
@@ -12,7 +14,7 @@ sys.path.insert(0, str(ROOT / "protocol" / "python"))
 
 from vat_client import Client, Closed, VatError
 
-PROGRAM = sys.argv.pop(1)
+PROGRAM, CERTIFICATE, KEY = (sys.argv.pop(1) for _ in range(3))
 
 
 class ServerTest(unittest.TestCase):
@@ -25,8 +27,9 @@ class ServerTest(unittest.TestCase):
         cls.server = subprocess.Popen(
             [PROGRAM, "serve", "--port", "0", "--scenes", SCENES, "--scene", "pool",
              "--log-level", "error", *cls.arguments], stdout=subprocess.PIPE, text=True)
-        port = re.search(r"http://127\.0\.0\.1:(\d+)/", cls.server.stdout.readline())[1]
-        cls.url = f"ws://127.0.0.1:{port}/ws"
+        secure, port = re.search(r"http(s?)://127\.0\.0\.1:(\d+)/",
+                                 cls.server.stdout.readline()).groups()
+        cls.url = f"ws{secure}://127.0.0.1:{port}/ws"
 
     @classmethod
     def tearDownClass(cls):
@@ -73,6 +76,8 @@ class VatClient(ServerTest):
     def test_what_is_no_server_is_refused(self):
         with self.assertRaises(ValueError):
             Client("http://127.0.0.1")
+        with self.assertRaises(ValueError):
+            Client("wss://")
         with self.assertRaises(ConnectionError):
             Client(self.url.replace("/ws", "/elsewhere"))
 
@@ -88,6 +93,31 @@ class FullServer(ServerTest):
         self.assertEqual(closed.exception.code, 1013)
         for client in [*clients, extra]:
             client.close()
+
+
+class SecureServer(ServerTest):
+    arguments = ("--tls-certificate", CERTIFICATE, "--tls-key", KEY)
+
+    def test_messages_of_every_kind(self):
+        with Client(self.url, tls=ssl.create_default_context(cafile=CERTIFICATE)) as client:
+            self.assertEqual(client.call("session.join")["description"]["scene"], "pool")
+            client.call("frames.subscribe")
+            for _ in range(10):
+                client.next_frame()
+            with self.assertRaises(VatError) as refused:
+                client.call("server.info", x="x" * 70000)
+            self.assertEqual(refused.exception.data["limit"], "message_bytes")
+            with self.assertRaises(TimeoutError):
+                client.wait_event("session.closed", timeout=0.05)
+
+    def test_who_is_not_trusted_is_refused(self):
+        with self.assertRaises(ssl.SSLCertVerificationError):
+            Client(self.url)
+
+    def test_a_certificate_is_for_one_server(self):
+        with self.assertRaises(ssl.SSLCertVerificationError):
+            Client(self.url.replace("127.0.0.1", "127.1"),  # another name of the same address
+                   tls=ssl.create_default_context(cafile=CERTIFICATE))
 
 
 if __name__ == "__main__":

@@ -30,10 +30,18 @@ TEST(WebSocketUrl, AddressesOfIpv6StandInBrackets) {
   EXPECT_EQ(url.authority(), "[::1]:9");
 }
 
+TEST(WebSocketUrl, IsSecureByItsScheme) {
+  EXPECT_FALSE(read_websocket_url("ws://example.org:443").is_secure);
+  const WebSocketUrl url = read_websocket_url("wss://example.org");
+  EXPECT_TRUE(url.is_secure);
+  EXPECT_EQ(url.authority(), "example.org:443");
+  EXPECT_EQ(read_websocket_url("wss://example.org:8080/there").authority(), "example.org:8080");
+}
+
 TEST(WebSocketUrl, RefusesWhatIsNone) {
-  for (const char* text : {"", "localhost:80", "http://localhost", "ws://", "ws://:80", "ws:///ws",
-                           "ws://h:", "ws://h:x", "ws://h:65536", "ws://h:1e2", "ws://[::1",
-                           "ws://[::1]9", "ws://[]:1"}) {
+  for (const char* text : {"", "localhost:80", "http://localhost", "ws://", "wss://", "wss:/h",
+                           "ws://:80", "ws:///ws", "ws://h:", "ws://h:x", "ws://h:65536",
+                           "ws://h:1e2", "ws://[::1", "ws://[::1]9", "ws://[]:1"}) {
     EXPECT_THROW(read_websocket_url(text), std::invalid_argument) << text;
   }
 }

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "protocol/json_reader.h"
 #include "server/script/client.h"
+#include "tests/server/message_record.h"
 
 namespace vat::test {
 
@@ -16,7 +20,7 @@ class WaitingClient {
  public:
   explicit WaitingClient(std::uint16_t port) {
     const std::string url = "ws://127.0.0.1:" + std::to_string(port) + "/ws";
-    client_ = connect_websocket(script::read_websocket_url(url), {}, deadline()).client;
+    client_ = connect_websocket(script::read_websocket_url(url), {}, {}, deadline()).client;
   }
   bool is_connected() const { return client_ != nullptr; }
   void close() { client_->close(); }
@@ -24,7 +28,9 @@ class WaitingClient {
   /// The whole reply.
   Json call(const std::string& method, const Json& params = Json::object()) {
     const Json request{{"jsonrpc", "2.0"}, {"id", ++id_}, {"method", method}, {"params", params}};
-    client_->send_text(request.dump());
+    const std::string text = request.dump();
+    if (auto* record = next_record()) record->sent(name_, text);
+    client_->send_text(text);
     return wait(id_);
   }
   Json result(const std::string& method, const Json& params = Json::object()) {
@@ -32,17 +38,26 @@ class WaitingClient {
     if (!reply.contains("result")) throw std::runtime_error(method + ": " + reply.dump());
     return reply.at("result");
   }
-  /// The next message that has this id or event; {"closed": code} once the connection has ended.
+  /// The next message that has this id or event, or the event of that kind that came while another
+  /// message was waited for; {"closed": code} once the connection has ended.
   Json wait(const Json& id_or_event) {
+    if (id_or_event.is_string()) {
+      if (auto passed = passed_.extract(id_or_event.get<std::string>()))
+        return std::move(passed.mapped());
+    }
     for (;;) {
       const auto message = client_->next(deadline());
       if (!message) throw std::runtime_error("no " + id_or_event.dump());
       if (message->kind == script::Message::Kind::closed) return {{"closed", message->close_code}};
       if (message->kind != script::Message::Kind::text) continue;
+      if (auto* record = next_record()) record->received(name_, message->bytes);
       Json json = Json::parse(message->bytes);
       if (json.value("method", "") == "session.diverged") throw std::runtime_error(json.dump());
       if (json.value("id", Json()) == id_or_event) return json;
       if (json.value("method", Json()) == id_or_event) return json;
+      if (const std::string event = json.value("method", ""); !event.empty()) {
+        passed_[event] = std::move(json);
+      }
     }
   }
 
@@ -50,7 +65,19 @@ class WaitingClient {
   static script::Deadline deadline() {
     return std::chrono::steady_clock::now() + std::chrono::seconds(10);
   }
+  /// Of the first messages alone: a load sends the same again and again.
+  script::Transcript* next_record() {
+    return ++messages_ <= kMostRecorded ? message_record() : nullptr;
+  }
+  static constexpr int kMostRecorded = 40;
+  int messages_ = 0;
+  static std::string next_name() {
+    static std::atomic<int> last = 0;
+    return std::to_string(++last);
+  }
+  const std::string name_ = next_name();  ///< in the record
   std::unique_ptr<script::Client> client_;
+  std::map<std::string, Json> passed_;  ///< the last event of each kind
   int id_ = 0;
 };
 

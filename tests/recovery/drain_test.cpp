@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <future>
+#include <thread>
 
 #include "server/script/server_process.h"
 #include "tests/recovery/client.h"
@@ -60,6 +62,26 @@ TEST_F(Drain, WhoStaysIsClosedAtTheDeadline) {
   EXPECT_EQ(client.wait(0).at("closed"), 1001);
   EXPECT_GE(steady_clock::now() - begin, 1s);
   EXPECT_EQ(status.get(), 0);
+}
+
+TEST_F(Drain, AnAdminEndsTheServerAsWell) {
+  constexpr const char* kToken = "the admin token of the test";
+  setenv("VAT_ADMIN_TOKEN", kToken, 1);
+  script::ServerProcess server = start("30");
+  unsetenv("VAT_ADMIN_TOKEN");
+  WaitingClient client(server.port());
+  client.result("session.join");
+  EXPECT_EQ(client.call("server.drain").at("error").at("data").at("least_role"), "admin");
+  client.result("access.enter", {{"token", kToken}});
+  const auto begin = steady_clock::now();
+  EXPECT_EQ(client.result("server.drain", {{"seconds", 1}}).at("seconds"), 1);
+  EXPECT_EQ(client.wait("server.draining").at("params").at("seconds"), 1);
+  EXPECT_EQ(client.wait(0).at("closed"), 1001);
+  EXPECT_GE(steady_clock::now() - begin, 1s);
+  while (server.is_running() && steady_clock::now() - begin < 20s)
+    std::this_thread::sleep_for(10ms);
+  ASSERT_FALSE(server.is_running());
+  EXPECT_EQ(server.stop(), 0);
 }
 
 }  // namespace

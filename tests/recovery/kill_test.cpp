@@ -12,6 +12,7 @@
 #include "server/script/server_process.h"
 #include "tests/recovery/load.h"
 #include "tests/recovery/past.h"
+#include "tests/support/pool_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test {
@@ -27,22 +28,7 @@ int kill_count() {
 
 class Kill : public testing::Test {
  protected:
-  Kill() {
-    scenes.write("pool.json", R"({
-      "format": "vat.scene/1", "name": "pool", "title": "Pool", "description": "A ball in a pool",
-      "materials": [
-        {"name": "water", "density": 1000,
-         "liquid": {"stiffness": 50, "viscosity": 1, "support_radius": 0.2}},
-        {"name": "wood", "density": 600}],
-      "default_interface": {"stiffness": 1000, "damping": 1},
-      "vat": {"min": [0, 0, 0], "max": [1, 1, 1], "lid": true},
-      "numerics": {"integrator": "velocity_verlet", "step": 0.002, "tick": 0.02},
-      "bodies": [
-        {"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.1,
-         "shape": {"type": "box", "center": [0.5, 0.5, 0.2], "size": [0.5, 0.5, 0.3]}},
-        {"name": "ball", "kind": "rigid", "material": "wood", "spacing": 0.1,
-         "shape": {"type": "sphere", "radius": 0.15}, "position": [0.7, 0.7, 0.7]}]})");
-  }
+  Kill() { scenes.write("pool.json", kPoolScene); }
 
   script::ServerProcess start() {
     return {

@@ -1,12 +1,12 @@
 #include "tests/recovery/past.h"
 
 #include <algorithm>
-#include <boost/asio/thread_pool.hpp>
 #include <limits>
 
 #include "server/session/describe.h"
 #include "server/session/scene_loading.h"
 #include "server/session/session_recovery.h"
+#include "tests/support/lone_environment.h"
 
 namespace vat::test {
 
@@ -28,16 +28,10 @@ std::map<std::string, StoredPast> read_past(const std::string& data_folder) {
 
 std::map<std::uint64_t, std::set<std::string>> hashes_of(const StoredPast& past,
                                                          const Catalogue& catalogue) {
-  ServerLimits limits;
-  limits.max_particles = limits.max_springs = limits.max_particle_steps_per_tick =
-      limits.max_grabs_per_client = std::numeric_limits<std::size_t>::max();
-  ThreadPoolRunner runner(1);
-  ServerMetrics metrics;
-  boost::asio::thread_pool threads(1);
-  ResourceBudget resources(kUnlimitedResources);
-  AccessTokens tokens(1);
-  const SessionEnvironment environment{
-      catalogue, limits, best_instruction_set(), runner, metrics, resources, threads, tokens};
+  LoneEnvironment lone(catalogue);
+  lone.limits.max_particles = lone.limits.max_springs = lone.limits.max_particle_steps_per_tick =
+      lone.limits.max_grabs_per_client = std::numeric_limits<std::size_t>::max();
+  const SessionEnvironment& environment = lone.shared;
   const std::atomic<bool> never = false;
   const Json params = Json::parse(past.log.front().params);
   const Scene scene = std::get<Scene>(read_client_scene(params.at("scene"), catalogue));

@@ -13,7 +13,7 @@ namespace vat::test {
 class AccessTest : public testing::Test {
  protected:
   explicit AccessTest(AccessSettings access = {})
-      : catalogue(test_catalogue()), server(catalogue, settings(access)) {
+      : catalogue(make_catalogue()), server(catalogue, settings(access)) {
     if (!server.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
     }

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "protocol/frame_codec.h"
-#include "server/limits.h"
 #include "tests/server/fake_connection.h"
 
 namespace vat::test {
@@ -36,6 +35,8 @@ class CountingWaker final : public FrameWaker {
 };
 
 constexpr std::uint32_t kEpoch = 5;
+constexpr std::size_t kQueueBytes = 1024 * 1024;
+constexpr std::size_t kMessageCost = ControlQueue::kMessageCost;
 
 class Outbox : public testing::Test {
  protected:
@@ -59,7 +60,7 @@ class Outbox : public testing::Test {
   SteadyClock::time_point now{std::chrono::hours(1)};
   const std::shared_ptr<FakeConnection> connection = std::make_shared<FakeConnection>(1);
   const std::shared_ptr<CountingWaker> waker = std::make_shared<CountingWaker>();
-  ClientOutbox outbox{connection};
+  ClientOutbox outbox{connection, kQueueBytes};
   std::uint64_t membership = outbox.join();
   std::uint64_t subscription = 0;
 };
@@ -179,13 +180,13 @@ TEST_F(Outbox, NothingOfAnEarlierSubscriptionOrEpochIsSent) {
 
 TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
   connection->stall(true);
-  const std::string event = make_text(1024);
+  const std::string event = make_text(1024 - kMessageCost);
   for (int i = 0; i < 1024; ++i) outbox.send_event(membership, event);
   EXPECT_FALSE(connection->close_code().has_value()) << "1 MiB is allowed";
   outbox.send("1");
   EXPECT_EQ(connection->close_code(), 4008);
   const std::size_t queued = connection->queued();
-  EXPECT_LE(queued, kMaxControlQueueBytes);
+  EXPECT_LE(queued, kQueueBytes);
   for (int i = 0; i < 1000; ++i) {
     outbox.send(event);
     offer(1, 1);
@@ -221,15 +222,26 @@ TEST_F(Outbox, WhatTheSocketHasTakenIsQueuedNoLonger) {
 
 TEST_F(Outbox, TwoMessagesMayBeLongerThanTheQueue) {
   connection->stall(true);
-  outbox.send(make_text(3 * kMaxControlQueueBytes));
-  outbox.send(make_text(kMaxControlQueueBytes));
-  outbox.send(make_text(kMaxControlQueueBytes + 1));
+  constexpr std::size_t kWhole = kQueueBytes - kMessageCost;
+  outbox.send(make_text(3 * kQueueBytes));
+  outbox.send(make_text(kWhole));
+  outbox.send(make_text(kWhole + 1));
   EXPECT_FALSE(connection->close_code().has_value());
-  outbox.send(make_text(kMaxControlQueueBytes + 1));
+  outbox.send(make_text(kWhole + 1));
   EXPECT_EQ(connection->close_code(), 4008);
 }
 
 // Joining again and again would otherwise send key frames without end.
+TEST_F(Outbox, TheQueuesBoundIsKeptToTheByte) {
+  connection->stall(true);
+  ClientOutbox other(connection, 1000 + 2 * kMessageCost);
+  other.send(make_text(600));
+  other.send(make_text(400));
+  EXPECT_FALSE(connection->close_code().has_value());
+  other.send(make_text(2));
+  EXPECT_EQ(connection->close_code(), 4008);
+}
+
 TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
   connection->stall(true);
   offer(1, 1);
@@ -282,13 +294,13 @@ TEST_F(Outbox, SilenceIsAllowedWhereThereIsNothingToAcknowledge) {
 }
 
 TEST_F(Outbox, CommandsInFlightAreBounded) {
-  EXPECT_TRUE(outbox.begin_command(10, 2, 100));
-  EXPECT_FALSE(outbox.begin_command(91, 2, 100)) << "too many bytes";
-  EXPECT_TRUE(outbox.begin_command(90, 2, 100));
-  EXPECT_FALSE(outbox.begin_command(0, 2, 100)) << "too many commands";
+  EXPECT_FALSE(outbox.begin_command(10, 2, 100));
+  EXPECT_EQ(outbox.begin_command(91, 2, 100).value().limit, "command_bytes_in_flight");
+  EXPECT_FALSE(outbox.begin_command(90, 2, 100));
+  EXPECT_EQ(outbox.begin_command(0, 2, 100).value().limit, "commands_in_flight");
   outbox.end_command(10);
-  EXPECT_FALSE(outbox.begin_command(11, 2, 100));
-  EXPECT_TRUE(outbox.begin_command(10, 2, 100));
+  EXPECT_TRUE(outbox.begin_command(11, 2, 100));
+  EXPECT_FALSE(outbox.begin_command(10, 2, 100));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ class FrameDeliveryTest : public testing::Test {
     state.header.tick = tick;
     state.bodies.resize(1);
     state.bodies[0].id = 1;
-    state.bodies[0].positions = {{x, 0.5, 0.5}};
+    state.bodies[0].positions.assign(particles, {x, 0.5, 0.5});
     now += std::chrono::milliseconds(20);
     delivery.publish(state, now);
   }
@@ -73,6 +73,8 @@ class FrameDeliveryTest : public testing::Test {
   ServerMetrics metrics;
   const std::shared_ptr<Wakes> wakes = std::make_shared<Wakes>();
   FrameDelivery delivery{Vat{Vec3::Zero(), Vec3::Ones(), true, {}}, metrics};
+
+  std::size_t particles = 1;
 
  private:
   ConnectionId last_id_ = 0;
@@ -266,6 +268,20 @@ TEST_F(FrameDeliveryTest, WhoIsKeptSlowSeesTheStateAtWhichTheSessionPauses) {
   EXPECT_LT(slow.last().tick, tick) << "it is not its turn";
   publish(tick, 0.9, false);
   EXPECT_EQ(slow.last().tick, tick);
+}
+
+// An eighth of a small body is no body any more, and its frames are short as it is.
+TEST_F(FrameDeliveryTest, WhoIsSlowStillGetsAllOfFewParticles) {
+  for (const auto& [count, least] : {std::pair(1000U, 3), std::pair(16000U, 0)}) {
+    particles = count;
+    const TestViewer slow = add();
+    for (std::uint64_t tick = 1; tick < 1000; ++tick) {
+      publish(tick);
+      if (tick % 12 == 0) acknowledge_all(slow);
+    }
+    EXPECT_EQ(slow.connection->frames().back().detail, least) << count;
+    EXPECT_EQ(slow.last().stride, 4U);
+  }
 }
 
 // Whatever is dropped, skipped, or joined late: each frame that comes is decoded from the ones

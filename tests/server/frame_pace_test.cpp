@@ -106,6 +106,30 @@ TEST_F(FramePaceTest, ARiseThatFailsIsTriedLessAndLessOften) {
   EXPECT_EQ(level(), kBest) << "and stays where it holds";
 }
 
+TEST_F(FramePaceTest, TheDetailGoesDownNoFurtherThanHelps) {
+  pace.set_least_detail(2);
+  run(20s, false);
+  EXPECT_EQ(level(), (Level{4, 4, 2}));
+  run(2s, true);
+  EXPECT_EQ(level(), (Level{4, 4, 3})) << "it has not gone further in secret";
+  pace.set_least_detail(0);
+  run(20s, false);
+  EXPECT_EQ(level(), kWorst);
+  pace.set_least_detail(3);
+  EXPECT_EQ(level(), (Level{4, 4, 3}));
+}
+
+// Level d shows one in 2^(3 - d), of which there are to be 2000 at least.
+TEST(LeastDetail, LeavesOutNothingOfAFewThousandParticles) {
+  for (const std::size_t few : {0U, 1U, 2000U, 3999U}) EXPECT_EQ(least_detail(few), 3) << few;
+  EXPECT_EQ(least_detail(4000), 2);
+  EXPECT_EQ(least_detail(7999), 2);
+  EXPECT_EQ(least_detail(8000), 1);
+  EXPECT_EQ(least_detail(15999), 1);
+  EXPECT_EQ(least_detail(16000), 0);
+  EXPECT_EQ(least_detail(1000000), 0);
+}
+
 TEST_F(FramePaceTest, TheRateGoesDownNoFurtherThanIsAllowed) {
   pace = FramePace(1);
   run(20s, false);

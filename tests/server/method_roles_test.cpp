@@ -24,6 +24,10 @@ const std::map<std::string_view, Json>& good_params() {
       {"world.set_gravity", {{"gravity", kTarget}}},
       {"world.set_interface", {{"interface", Json::object()}}},
       {"world.apply_force", {{"body", 99}, {"force", kTarget}, {"duration", 1}}},
+      {"world.move_body", {{"body", 99}, {"position", kTarget}}},
+      {"world.set_material", {{"material", Json::object()}}},
+      {"world.set_numerics", {{"integrator", "heun"}}},
+      {"world.move_vat", {{"offset", kTarget}}},
       {"grab.start", {{"body", 99}, {"particle", 0}, {"target", kTarget}}},
       {"grab.move", {{"grab", 99}, {"target", kTarget}}},
       {"grab.end", {{"grab", 99}}},
@@ -34,7 +38,15 @@ const std::map<std::string_view, Json>& good_params() {
       {"participant.kick", {{"participant", 99}}},
       {"control.hand_over", {{"participant", 99}}},
       {"access.enter", {{"token", kAdminToken}}},
+      {"session.save", {{"name", "n"}}},
+      {"session.load", {{"name", "n"}}},
+      {"session.delete_save", {{"name", "n"}}},
+      {"scene.save", {{"name", "n"}}},
+      {"scene.delete", {{"name", "n"}}},
       {"access.ticket", {{"role", "viewer"}, {"session", "SESSION"}}},
+      {"recording.import", {{"size", 9}, {"offset", 0}, {"data", "AAAA"}}},
+      {"replay.open", {{"session", "SESSION"}}},
+      {"replay.seek", {{"tick", 1}}},
   };
   return kParams;
 }
@@ -43,7 +55,7 @@ constexpr Role kRoles[] = {Role::none, Role::viewer, Role::controller, Role::own
 
 class MethodRoles : public testing::Test {
  protected:
-  MethodRoles() : catalogue(test_catalogue()), server(catalogue, settings()) {}
+  MethodRoles() : catalogue(make_catalogue()), server(catalogue, settings()) {}
 
   static ServerSettings settings() {
     ServerSettings settings;

@@ -1,12 +1,16 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <optional>
+#include <thread>
 
 #include "server/http/downloads.h"
 #include "server/replay/replay_player.h"
+#include "server/session/scene_loading.h"
 #include "tests/server/session_fixture.h"
+#include "tests/support/lone_environment.h"
 #include "tests/support/temporary_folder.h"
 
 // What a session did is exported, and run again elsewhere.
@@ -14,20 +18,23 @@
 namespace vat::test {
 namespace {
 
+using namespace std::chrono_literals;
+
 const std::atomic<bool> kGoOn = false;
 
 /// A server that keeps its sessions, with one of them, and what such a session needs elsewhere.
 class ReplayTest : public testing::Test {
  protected:
-  ReplayTest() : catalogue_(make_catalogue()), server_(catalogue_, settings()) {
+  explicit ReplayTest(const ServerLimits& limits = {}, const StorageLimits& storage = {})
+      : catalogue_(make_catalogue()), server_(catalogue_, settings(limits, storage)) {
     EXPECT_TRUE(server_.create_session("first", to_scene(mixed_scene_text())).ok());
     client_.emplace(server_, 1);
     client_->result("session.join");
     client_->result("control.pause");
     client_->result("control.reset");
-    limits_.max_particles = limits_.max_particle_steps_per_tick = 1'000'000'000;
+    elsewhere_.limits.max_particles = elsewhere_.limits.max_particle_steps_per_tick = 1'000'000'000;
   }
-  ~ReplayTest() override { client_->disconnect(); }
+  void TearDown() override { client_->disconnect(); }
 
   /// All kinds of entries, with ticks between them.
   void live() {
@@ -39,6 +46,7 @@ class ReplayTest : public testing::Test {
     client_->result("grab.move", {{"grab", grab.at("grab")}, {"target", {0.4, 0.5, 0.9}}});
     step(4);
     client_->error("grab.start", {{"body", 77}, {"particle", 0}, {"target", {0, 0, 0}}});
+    edit();
     client_->result("world.remove_body", {{"body", 3}});
     add("new", 0.3);
     step(6);
@@ -54,7 +62,23 @@ class ReplayTest : public testing::Test {
     other.result("session.leave");
     step(7);
   }
-  static constexpr std::uint64_t kTicks = 5 + 3 + 4 + 6 + 2 + 3 + 7;
+  /// What a scene's editor does.
+  void edit() {
+    Json material = client_->result("scene.get").at("scene").at("materials").at(0);
+    material["density"] = 800;
+    client_->result("world.set_material", {{"material", material}});
+    client_->result("world.move_vat", {{"offset", {0.2, -0.1, 0}}});
+    step(2);
+    client_->result("world.move_body",
+                    {{"body", 2}, {"position", {0.5, 0.5, 0.8}}, {"velocity", {0.1, 0, -1}}});
+    step(2);
+    client_->result("world.move_vat", {{"offset", {0, 0, 0}}});
+    client_->error("world.move_body", {{"body", 2}, {"position", {5, 0, 0}}});
+    client_->result("world.set_numerics", {{"integrator", "heun"}, {"step", 0.001}});
+    client_->error("world.set_numerics", {{"step", 0.003}});
+  }
+  static constexpr std::uint64_t kGrown = 5 + 3 + 4 + 2 + 2 + 6;  // two were added, one removed
+  static constexpr std::uint64_t kTicks = kGrown + 2 + 3 + 7;
 
   void add(const std::string& name, double x) {
     client_->result("world.add_body", {{"body",
@@ -98,8 +122,10 @@ class ReplayTest : public testing::Test {
   };
 
  private:
-  ServerSettings settings() const {
+  ServerSettings settings(const ServerLimits& limits, const StorageLimits& storage) const {
     ServerSettings settings;
+    settings.limits = limits;
+    settings.storage = storage;
     settings.threads = 2;
     settings.data_folder = folder_.file("data");
     return settings;
@@ -110,14 +136,8 @@ class ReplayTest : public testing::Test {
   const Catalogue catalogue_;
   SessionServer server_;
   std::optional<TestClient> client_;
-  ServerLimits limits_;
-  ThreadPoolRunner runner_{2};
-  ServerMetrics metrics_;
-  ResourceBudget resources_{kUnlimitedResources};
-  boost::asio::thread_pool frame_threads_{1};
-  AccessTokens tokens_{1};
-  const SessionEnvironment environment_{catalogue_, limits_,    best_instruction_set(), runner_,
-                                        metrics_,   resources_, frame_threads_,         tokens_};
+  LoneEnvironment elsewhere_{catalogue_, 2};
+  const SessionEnvironment& environment_ = elsewhere_.shared;
 };
 
 TEST_F(ReplayTest, EndsInTheStateOfTheSession) {
@@ -164,8 +184,8 @@ TEST_F(ReplayTest, KeepsMomentsWithinItsMemory) {
   constexpr std::size_t kBytes = 40'000;
   replay.player.set_keeping({std::chrono::seconds(0), kBytes});
   replay.player.play_to(replay.core, recording.end, kGoOn);
-  EXPECT_GT(replay.player.kept_moments(), 0U);
-  EXPECT_LE(replay.player.kept_bytes(), kBytes);
+  EXPECT_GT(replay.player.kept().count(), 0U);
+  EXPECT_LE(replay.player.kept().bytes(), kBytes);
 }
 
 TEST_F(ReplayTest, SaysWhereItLeadsElsewhere) {
@@ -196,6 +216,108 @@ TEST_F(ReplayTest, SaysWhereItLeadsElsewhere) {
   }
 }
 
+TEST_F(ReplayTest, PassesOverAHashOfAPlaceThatThereIsNot) {
+  live();
+  Recording recording = record();
+  const auto second =
+      std::ranges::find(recording.hashes, recording.begin + 2, &RecordedHash::position);
+  ASSERT_NE(second, recording.hashes.end());
+  recording.hashes.insert(second, {second->position, second->sequence - 1, 1});
+  Replay replay(recording, environment_);
+  replay.player.play_to(replay.core, recording.end, kGoOn);
+  EXPECT_EQ(replay.hash(), live_hash());
+}
+
+TEST_F(ReplayTest, HasAHashOfEveryTick) {
+  live();
+  const Recording recording = record();
+  for (std::uint64_t at = recording.begin + 1; at <= recording.end; ++at) {
+    EXPECT_TRUE(std::ranges::count(recording.hashes, at, &RecordedHash::position) > 0) << at;
+  }
+}
+
+TEST_F(ReplayTest, TellsTheFirstTickThatDiffers) {
+  live();
+  Recording recording = record();
+  const auto gravity = std::ranges::find(recording.log, "world.set_gravity", &LogEntry::method);
+  ASSERT_NE(gravity, recording.log.end());
+  gravity->params = R"({"gravity":[1,0,-5.000001]})";
+  recording.moments.clear();
+  Replay replay(recording, environment_);
+  try {
+    replay.player.play_to(replay.core, recording.end, kGoOn);
+    ADD_FAILURE() << "nothing was noticed";
+  } catch (const Diverged& difference) {
+    EXPECT_EQ(replay.core.run().position(), gravity->position + 1);
+    EXPECT_NE(std::string(difference.what()).find("at tick 6 "), std::string::npos)
+        << difference.what();
+    EXPECT_NE(std::string(difference.what()).find("the same up to tick 5"), std::string::npos);
+  }
+}
+
+/// Why going to a position fails.
+std::string fault_of_seek(ReplayPlayer& player, SessionCore& core, std::uint64_t position) {
+  try {
+    player.begin_seek(core, position);
+    return "";
+  } catch (const StorageError& error) {
+    return error.what();
+  }
+}
+
+TEST_F(ReplayTest, RefusesAMomentThatTellsOfAnotherPlace) {
+  live();
+  Recording recording = record();
+  RecordedMoment& last = recording.moments.back();
+  Replay good(recording, environment_);
+  EXPECT_EQ(fault_of_seek(good.player, good.core, recording.end), "");
+  for (const char* field : {"position", "sequence"}) {
+    Json fields = Json::parse(last.fields);
+    fields[field] = fields.at(field).get<std::uint64_t>() - 1;
+    Recording other = recording;
+    other.moments.back().fields = fields.dump();
+    ReplayPlayer player(other, environment_);
+    SessionCore core("replay", {"replay"}, player.begin(), environment_);
+    player.go_to_begin(core);
+    EXPECT_THAT(fault_of_seek(player, core, other.end), testing::HasSubstr("another place"))
+        << field;
+  }
+}
+
+/// What a session had more of later than its scene has counts where a replay goes there.
+TEST_F(ReplayTest, GoesToNoMomentBeyondTheLimits) {
+  live();
+  const Recording recording = record();
+  const auto moments = std::make_shared<KeptMoments>(std::chrono::seconds(0), 10'000'000);
+  Replay straight(recording, environment_);
+  straight.player.share(moments);
+  straight.player.play_to(straight.core, recording.end, kGoOn);
+
+  const Simulation scene = straight.player.begin();
+  const std::size_t particles = resources_of(scene).particles;
+  ResourceBudget few({particles, kUnlimitedResources.springs});
+  const SessionEnvironment shared = elsewhere_.with(few);
+  Recording without = recording;
+  without.moments.clear();
+  {
+    ReplayPlayer player(without, shared);
+    SessionCore core("replay", {"replay"}, player.begin(), shared);
+    player.go_to_begin(core);
+    player.share(moments);
+    EXPECT_THAT(fault_of_seek(player, core, recording.begin + kGrown),
+                testing::HasSubstr("particles"));
+  }
+  for (const bool is_small : {false, true}) {
+    if (is_small) elsewhere_.limits.max_particles = particles;
+    ReplayPlayer player(without, environment_);
+    SessionCore core("replay", {"replay"}, player.begin(), environment_);
+    player.go_to_begin(core);
+    player.share(moments);
+    const std::string fault = fault_of_seek(player, core, recording.begin + kGrown);
+    EXPECT_EQ(fault.find("state: ") != std::string::npos, is_small) << fault;
+  }
+}
+
 TEST_F(ReplayTest, TellsNothingThatLetsAnybodyIn) {
   const std::string token = client_->result("session.join").at("resume");
   live();
@@ -210,32 +332,152 @@ TEST_F(ReplayTest, TellsNothingThatLetsAnybodyIn) {
   }
 }
 
-TEST(Downloads, AreFetchedOnceAndInTime) {
-  Downloads downloads;
-  const Downloads::Clock::time_point now{};
-  const std::string first = downloads.add({"a", "one"}, now).value();
-  const std::string second = downloads.add({"b", "two"}, now).value();
-  EXPECT_NE(first, second);
-  EXPECT_FALSE(downloads.take("/downloads/", now).has_value());
-  EXPECT_EQ(downloads.take(first, now)->content, "one");
-  EXPECT_FALSE(downloads.take(first, now).has_value());
-  EXPECT_FALSE(downloads.take(second, now + Downloads::kPatience).has_value());
+ServerLimits small_recordings() {
+  ServerLimits limits;
+  limits.max_recording_bytes = 1024;  // a state of the scene has more
+  return limits;
 }
 
-TEST(Downloads, AreServedByTheSite) {
-  Downloads downloads;
-  const HttpHandler site = with_downloads(
-      [](std::string_view, std::string_view) {
-        return HttpResponse{404, "", "", {}};
-      },
-      downloads);
-  const std::string path = downloads.add({"a.vatrec", "one"}, Downloads::Clock::now()).value();
-  EXPECT_EQ(site("POST", path).status, 404);
-  EXPECT_EQ(site("HEAD", path).status, 404);
-  const HttpResponse response = site("GET", path);
-  EXPECT_EQ(response.status, 200);
-  EXPECT_EQ(response.body, "one");
-  EXPECT_EQ(site("GET", path).status, 404);
+class LimitedRecordings : public ReplayTest {
+ protected:
+  LimitedRecordings() : ReplayTest(small_recordings()) {}
+};
+
+TEST_F(LimitedRecordings, AreRefusedBeyondTheirSize) {
+  step(3);
+  const Json data = client_->error("recording.export").at("data");
+  EXPECT_EQ(data.at("kind"), "limit_reached");
+  EXPECT_EQ(data.at("limit"), "recording_bytes");
+  EXPECT_EQ(data.at("maximum"), 1024);
+}
+
+constexpr std::size_t kFewBytes = 45'000;
+
+class LongRecordings : public ReplayTest {
+ protected:
+  LongRecordings() : ReplayTest(few_bytes(), rare_checkpoints()) {}
+  static ServerLimits few_bytes() {
+    ServerLimits limits;
+    limits.max_recording_bytes = kFewBytes;
+    return limits;
+  }
+  static StorageLimits rare_checkpoints() {
+    StorageLimits limits;
+    limits.checkpoint_after = std::chrono::hours(1);
+    return limits;
+  }
+};
+
+TEST_F(LongRecordings, CountTheHashOfEachTick) {
+  step(3);
+  EXPECT_LT(client_->result("recording.export").at("bytes"), kFewBytes / 2);
+  for (std::size_t ticks = 0; ticks * sizeof(RecordedHash) < kFewBytes; ticks += 500) step(500);
+  EXPECT_EQ(client_->error("recording.export").at("data").at("limit"), "recording_bytes");
+  const Json replayed = client_->error("replay.open", {{"session", "s1"}});
+  EXPECT_EQ(replayed.at("data").at("limit"), "recording_bytes");
+}
+
+/// A session whose log is full, and begins at a checkpoint: with commands behind that, or with
+/// none.
+class ShortenedLog : public ReplayTest, public testing::WithParamInterface<bool> {
+ protected:
+  ShortenedLog() : ReplayTest(unhurried(), short_logs()) {}
+  static ServerLimits unhurried() {
+    ServerLimits limits;
+    limits.burst_seconds = 1e9;
+    return limits;
+  }
+  static StorageLimits short_logs() {
+    StorageLimits limits;
+    limits.log_bytes = GetParam() ? 12'000 : 1000;  // the scene takes 1500
+    limits.checkpoint_after = std::chrono::milliseconds(1);
+    return limits;
+  }
+};
+
+TEST_P(ShortenedLog, IsReplayedFromItsFirstCheckpointOn) {
+  Recording recording;
+  for (int round = 0; round < 60; ++round) {
+    for (int i = 0; i < 10; ++i) {
+      client_->result("world.set_gravity", {{"gravity", {0.1 * i, 0, -9}}});
+      step(1);
+    }
+    recording = record();
+    if (!recording.is_whole() && (recording.log.size() > 1) == GetParam()) break;
+  }
+  ASSERT_FALSE(recording.is_whole());
+  ASSERT_EQ(recording.log.size() > 1, GetParam());
+  for (const RecordedMoment& moment : recording.moments) {
+    EXPECT_GE(moment.sequence,
+              GetParam() ? recording.log[1].sequence - 1 : recording.last_sequence());
+  }
+  ASSERT_FALSE(recording.moments.empty());
+  EXPECT_EQ(recording.moments.front().position, recording.begin);
+  step(5);
+  recording = record();
+  ReplayPlayer player(recording, environment_);
+  SessionCore core("replay", {"replay"}, player.begin(), environment_);
+  std::size_t compared = 0;
+  player.on_same = [&](const RecordedHash&) { ++compared; };
+  player.go_to_begin(core);
+  player.play_to(core, recording.end, kGoOn);
+  EXPECT_EQ(hash_of(core.run().simulation()), live_hash());
+  EXPECT_EQ(compared, recording.hashes.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Logs, ShortenedLog, testing::Bool(), [](const auto& goes_on) {
+  return goes_on.param ? "WithCommands" : "WithNone";
+});
+
+constexpr std::size_t kDownloadBytes = 200'000;
+
+ServerLimits few_downloads() {
+  ServerLimits limits;
+  limits.max_download_bytes = kDownloadBytes;
+  return limits;
+}
+
+class LimitedDownloads : public ReplayTest {
+ protected:
+  LimitedDownloads() : ReplayTest(few_downloads()) {}
+};
+
+TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {
+  step(3);
+  std::vector<Json> waiting;
+  Json reply;
+  std::size_t bytes = 0;
+  while (waiting.size() < 200 && !(reply = client_->call("recording.export")).contains("error")) {
+    waiting.push_back(reply.at("result"));
+    bytes += waiting.back().at("bytes").get<std::size_t>();
+  }
+  ASSERT_TRUE(reply.contains("error"));
+  EXPECT_EQ(reply.at("error").at("data").at("limit"), "download_bytes");
+  EXPECT_LE(bytes, kDownloadBytes);
+  ASSERT_FALSE(waiting.empty());
+  const std::string path = waiting.front().at("path");
+  EXPECT_TRUE(server_.downloads().take(path, Downloads::Clock::now()).has_value());
+  client_->result("recording.export");
+}
+
+ServerLimits looked_at_often() {
+  ServerLimits limits;
+  limits.expire_after = 100ms;
+  return limits;
+}
+
+class OldDownloads : public ReplayTest {
+ protected:
+  OldDownloads() : ReplayTest(looked_at_often()) {}
+};
+
+TEST_F(OldDownloads, GoThoughNobodyAsksForAnother) {
+  const auto now = Downloads::Clock::now();
+  Downloads& downloads = server_.downloads();
+  ASSERT_TRUE(downloads.add({"old", "content"}, now - Downloads::kPatience + 500ms));
+  const auto held = [&] { return downloads.forget_old({}); };  // long before: nothing goes by this
+  while (held() > 0 && Downloads::Clock::now() < now + 20s) std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(held(), 0U);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ ServerMetrics::Present make_present() {
   present.connections = 7;
   present.clients = 5;
   present.particles = 1200;
+  present.heap = 9'000'000;
   return present;
 }
 
@@ -32,7 +33,7 @@ TEST(ServerMetrics, WhatIsSoNow) {
                         "vat_build_info{version=\"1.2.3\",instruction_set=\"avx2\"} 1\n"));
   for (const char* sample : {"\nvat_threads 4\n", "\nvat_sessions{state=\"playing\"} 2\n",
                              "\nvat_sessions{state=\"paused\"} 1\n", "\nvat_connections 7\n",
-                             "\nvat_clients 5\n", "\nvat_particles 1200\n"}) {
+                             "\nvat_clients 5\n", "\nvat_particles 1200\n", "\nvat_heap_bytes 9000000\n"}) {
     EXPECT_THAT(text, HasSubstr(sample));
   }
 }

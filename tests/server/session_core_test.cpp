@@ -9,6 +9,7 @@
 #include "protocol/scene_json.h"
 #include "tests/server/fake_connection.h"
 #include "tests/server/session_fixture.h"
+#include "tests/support/lone_environment.h"
 
 namespace vat::test {
 namespace {
@@ -37,29 +38,17 @@ class SessionCoreTest : public testing::Test {
   /// Until the frame threads have done what was posted to them.
   void wait() {
     std::promise<void> done;
-    boost::asio::post(frame_threads, [&] { done.set_value(); });
+    boost::asio::post(environment.shared.frame_threads, [&] { done.set_value(); });
     done.get_future().wait();
   }
   bool counted(const std::string& sample) const {
-    return metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
+    return environment.shared.metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
   }
 
   const SteadyClock::time_point now = SteadyClock::now();
-  const Catalogue catalogue;
-  const ServerLimits limits;
-  ThreadPoolRunner runner{1};
-  ServerMetrics metrics;
-  ResourceBudget resources{{limits.max_particles_in_all, limits.max_springs_in_all}};
-  boost::asio::thread_pool frame_threads{1};
-  AccessTokens tokens{1};
-  const SessionEnvironment environment{catalogue,     limits,  InstructionSet::baseline,
-                                       runner,        metrics, resources,
-                                       frame_threads, tokens};
-  SessionCore core{"s1",
-                   {"one"},
-                   Simulation::create(to_scene(mixed_scene_text())).value(),
-                   resources.take_anyway({}),
-                   environment};
+  const LoneEnvironment environment;
+  SessionCore core{
+      "s1", {"one"}, Simulation::create(to_scene(mixed_scene_text())).value(), environment.shared};
 
  private:
   std::vector<std::pair<std::shared_ptr<FakeConnection>, std::shared_ptr<ClientOutbox>>> viewers_;

@@ -27,14 +27,6 @@ Json make_request(std::string_view method, const Json& params) {
 
 }  // namespace
 
-Catalogue test_catalogue() {
-  const TemporaryFolder folder;
-  folder.write("mixed.json", mixed_scene_text());
-  folder.write("unstable.json", unstable_scene_text());
-  Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
-  return std::move(catalogue).value();
-}
-
 const std::string& mixed_scene_text() {
   static const std::string kText = R"({
     "format": "vat.scene/1", "name": "mixed", "title": "Mixed", "description": "All kinds",
@@ -113,9 +105,9 @@ void TestClient::notify_wrong(std::string_view method, const Json& params) {
   send_raw(make_request(method, params).dump(), true);
 }
 
-Json TestClient::wait_reply(int id) {
+Json TestClient::wait_reply(const Json& id) {
   return connection->wait_text(
-      [id](const Json& text) { return text.contains("id") && text.at("id") == id; });
+      [&id](const Json& text) { return text.contains("id") && text.at("id") == id; });
 }
 
 Json TestClient::call(std::string_view method, const Json& params) {
@@ -160,7 +152,7 @@ std::vector<Json> TestClient::events(std::string_view event) const {
 }
 
 SessionTest::SessionTest(const ServerLimits& limits)
-    : catalogue(test_catalogue()), server(catalogue, make_settings(limits)) {
+    : catalogue(make_catalogue()), server(catalogue, make_settings(limits)) {
   if (!server.create_session("first", to_scene(mixed_scene_text()))) {
     throw std::runtime_error("the first session was refused");
   }

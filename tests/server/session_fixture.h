@@ -22,8 +22,6 @@ const std::string& unstable_scene_text();
 /// Has `mixed` and `unstable`.
 Catalogue make_catalogue();
 Scene to_scene(const std::string& text);
-/// With both of them, as `mixed` and `unstable`.
-Catalogue test_catalogue();
 
 inline constexpr std::string_view kAdminToken = "the admin token of the tests";
 
@@ -45,7 +43,7 @@ class TestClient {
   void send_raw(std::string_view text, bool wrong = false);
 
   /// The reply to a request that was sent.
-  Json wait_reply(int id);
+  Json wait_reply(const Json& id);
   /// Sends and waits: the whole reply, its `result`, or its `error`. The last two fail the test,
   /// and return null, where the reply is of the other sort.
   Json call(std::string_view method, const Json& params = nullptr);

@@ -81,7 +81,7 @@ TEST_F(SessionFrames, AttributesComeWhereTheyAreAskedFor) {
   client->result("control.step", {{"ticks", 5}});
   client->result("frames.subscribe", {{"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});
   const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
-  EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{2e-3, 1, 0}));
+  EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{2e-3, 1, 0, 0}));
   const GridBlock& pool = frame.blocks.at(1);
   const Json state = client->result("state.query", {{"bodies", {"pool"}}});
   const Json& velocities = state.at("bodies").at(0).at("velocities");
@@ -93,6 +93,29 @@ TEST_F(SessionFrames, AttributesComeWhereTheyAreAskedFor) {
   }
   EXPECT_EQ(pool.attributes[1].size(), velocities.size());
   EXPECT_TRUE(pool.attributes[2].empty());
+}
+
+// What nothing touches falls: with the acceleration of gravity over each tick.
+TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
+  client->result("world.set_gravity", {{"gravity", {0, 0, -5}}});
+  client->result("frames.subscribe", {{"attributes", {{"acceleration", 1e-3}}}});
+  const auto cube_at = [&](std::uint64_t tick) {
+    const GridFrame frame =
+        client->wait_frame([&](const GridFrame& f) { return f.header.tick == tick; });
+    EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{0, 0, 0, 2e-3}));
+    const GridBlock& cube = frame.blocks.at(2);
+    EXPECT_EQ(cube.attributes[3].size(), cube.particle_count());
+    return cube.attributes[3].empty() ? 0 : 2e-3 * cube.attributes[3].at(0);
+  };
+  EXPECT_EQ(cube_at(0), 0) << "no tick was run";
+  client->result("control.step");
+  EXPECT_NEAR(cube_at(1), 5, 1.1e-3);
+  client->result("world.set_gravity", {{"gravity", {3, 0, -4}}});
+  client->result("control.step", {{"ticks", 2}});
+  EXPECT_NEAR(cube_at(3), 5, 1.1e-3);
+  client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
+  client->result("control.step");
+  EXPECT_NEAR(cube_at(4), 1, 1.1e-3);
 }
 
 TEST_F(SessionFrames, OnlyTheParticlesThatAreAskedForCome) {
@@ -168,6 +191,7 @@ TEST_F(SessionFrames, ASlowClientGetsTheNewestAndHindersNobody) {
   }
   ASSERT_EQ(frames(*slow).size(), 3u) << "the window";
   slow->notify("frames.ack", {{"number", 3}});
+  slow->connection->wait_frames(4);
   const std::vector<GridFrame> all = frames(*slow);
   ASSERT_EQ(all.size(), 4u);
   EXPECT_EQ(all.back().header.tick, 100u);

@@ -183,6 +183,33 @@ TEST_F(SessionRecoveryTest, WhatWasAcceptedIsAcceptedAgainAndWhatWasRefusedIsNot
             "second");
 }
 
+TEST_F(SessionRecoveryTest, ACrashBetweenARefusalAndItsMarkIsNoDivergence) {
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 3}});
+  client().error("world.remove_body", {{"body", 99}});
+  const std::string before = life->hash();
+  execute("UPDATE log SET refused = 0");
+  crash();
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  EXPECT_EQ(life->hash(), before);
+  // It is marked now: others may come behind it.
+  client().result("control.step", {{"ticks", 2}});
+  crash();
+  EXPECT_TRUE(client().events("session.diverged").empty());
+}
+
+TEST_F(SessionRecoveryTest, ARefusalWithoutAMarkThatOthersCameBehindIsADivergence) {
+  begin();
+  client().result("control.pause");
+  client().error("world.remove_body", {{"body", 99}});
+  client().result("control.step", {{"ticks", 3}});
+  client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});
+  execute("UPDATE log SET refused = 0");
+  crash();
+  client().wait_event("session.diverged");
+}
+
 TEST_F(SessionRecoveryTest, ASessionThatPlaysIsBackAtMostASecondEarlierAndPlays) {
   begin();
   client().result("control.set_speed", {{"speed", 2}});
@@ -252,6 +279,7 @@ TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTel
   const Json told = client().wait_event("session.diverged");
   EXPECT_NE(told.at("reason").get<std::string>().find("hash"), std::string::npos) << told;
   EXPECT_FALSE(life->joined.at("description").at("playing"));
+  EXPECT_EQ(client().error("session.save", {{"name", "n"}}).at("data").at("kind"), "not_allowed");
   life.reset();  // nobody has touched it
   begin();
   client().wait_event("session.diverged");
@@ -274,7 +302,7 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
   {
     SessionServer server(catalogue, settings);
     EXPECT_EQ(server.recover(), 1U);
-    for (int i = 0; i < 100 && !server.is_ready(); ++i) std::this_thread::sleep_for(20ms);
+    for (int i = 0; i < 1000 && !server.is_ready(); ++i) std::this_thread::sleep_for(20ms);
     TestClient visitor(server, 1);
     const Json sessions = visitor.result("session.list").at("sessions");
     ASSERT_EQ(sessions.size(), 1U);
@@ -283,9 +311,37 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
     const Json error = visitor.error("session.join", {{"session", "s1"}});
     EXPECT_EQ(error.at("code"), 1011);
     EXPECT_EQ(error.at("data").at("state"), "lost");
+    EXPECT_EQ(visitor.error("replay.open", {{"session", "s1"}}).at("data").at("state"), "lost");
+    const Json ticket = visitor.error("access.ticket", {{"session", "s1"}, {"role", "controller"}});
+    EXPECT_EQ(ticket.at("data").at("state"), "lost");
+    const Json refused = visitor.error("session.close", {{"session", "s1"}});
+    EXPECT_EQ(refused.at("data").at("least_role"), "owner");
+    EXPECT_EQ(visitor.result("session.list").at("sessions").size(), 1U);
   }
   SessionServer server(catalogue, settings);
   EXPECT_EQ(server.recover(), 1U);
+}
+
+TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 1000}});
+  life.reset();
+  execute("DELETE FROM checkpoints", "/checkpoints.db");  // all ticks are to be run again
+  ServerSettings settings;
+  settings.data_folder = data;
+  SessionServer server(catalogue, settings);
+  EXPECT_EQ(server.recover(), 1U);
+  EXPECT_FALSE(server.is_ready());
+  TestClient visitor(server, 1);
+  EXPECT_EQ(visitor.result("session.list").at("sessions")[0].at("state"), "recovering");
+  const Json error = visitor.error("replay.open", {{"session", "s1"}});
+  EXPECT_EQ(error.at("code"), 1011);
+  EXPECT_EQ(error.at("data").at("state"), "recovering");
+  const int joining = visitor.send("session.join", {{"session", "s1"}});
+  for (int i = 0; i < 3000 && !server.is_ready(); ++i) std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(server.is_ready());
+  EXPECT_TRUE(visitor.wait_reply(joining).contains("result"));
 }
 
 TEST_F(SessionRecoveryTest, AClosedSessionStaysAwayAndANewOneGetsAnotherId) {

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "protocol/frame_codec.h"
+#include "tests/server/message_record.h"
 #include "tests/server/network_proxy.h"
 #include "tests/server/session_fixture.h"
 #include "tests/server/transport_client.h"
@@ -56,16 +57,19 @@ class SlowNetwork : public testing::Test {
 
   void watch(NetworkProxy& proxy) {
     client_ = std::make_unique<WsClient>(proxy.port());
-    client_->send_text(R"({"jsonrpc":"2.0","method":"session.join"})");
-    client_->send_text(R"({"jsonrpc":"2.0","method":"frames.subscribe"})");
+    send(R"({"jsonrpc":"2.0","method":"session.join"})");
+    send(R"({"jsonrpc":"2.0","method":"frames.subscribe"})");
   }
   /// Reads and acknowledges for so long, or until a frame is as wanted; what came.
   std::vector<Seen> look(Seconds time, const std::function<bool(const Seen&)>& until = {}) {
     std::vector<Seen> all;
     for (const double end = wall_clock() + time.count(); wall_clock() < end;) {
       const auto message = client_->read_message();
-      if (message.opcode == 1) text_bytes_ += static_cast<double>(message.payload.size());
-      if (message.opcode != 2) continue;
+      if (message.opcode != 2) {
+        text_bytes_ += static_cast<double>(message.payload.size());
+        if (auto* record = message_record()) record->received("watching", message.payload);
+        continue;
+      }
       all.push_back(take(message.payload));
       if (until && until(all.back())) break;
     }
@@ -75,6 +79,10 @@ class SlowNetwork : public testing::Test {
   double text_bytes() const { return text_bytes_; }
 
  private:
+  void send(const std::string& text) {
+    if (auto* record = message_record()) record->sent("watching", text);
+    client_->send_text(text);
+  }
   static ServerSettings settings() {
     ServerSettings settings;
     settings.threads = 2;
@@ -90,8 +98,8 @@ class SlowNetwork : public testing::Test {
     const auto frame = decoder_.decode({data, bytes.size()});
     if (!frame) throw std::runtime_error("a damaged frame: " + frame.errors().front().code);
     const FrameHeader& header = frame.value()->header;
-    client_->send_text(R"({"jsonrpc":"2.0","method":"frames.ack","params":{"number":)" +
-                       std::to_string(header.number) + "}}");
+    send(R"({"jsonrpc":"2.0","method":"frames.ack","params":{"number":)" +
+         std::to_string(header.number) + "}}");
     const double now = wall_clock();
     return {now, now - header.published, header.number, header.stride,
             static_cast<double>(bytes.size())};

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "protocol/frame_codec.h"
+#include "server/heap.h"
 #include "server/limits.h"
 #include "server/session/frame_delivery.h"
 #include "tests/server/transport_fixture.h"
@@ -72,6 +73,29 @@ TEST_F(StalledReader, OneFrameAtMostWaitsOutsideTheSystem) {
 
   outbox->close_if_silent(now + std::chrono::seconds(31), std::chrono::seconds(30));
   EXPECT_EQ(client.read_close(), 4008);
+}
+
+// Of short messages most is not their text.
+TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
+  if (heap_in_use() == 0) GTEST_SKIP() << "a sanitizer has taken the allocator's place";
+  constexpr std::size_t kMessages = 20'000;
+  constexpr std::size_t kText = 60;
+  start();
+  WsClient client(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  ClientOutbox outbox(recorder.connection(1), std::size_t{1} << 30);
+  outbox.send(std::string(std::size_t{4} << 20, 'x'));  // more than the system takes
+  const std::size_t before = heap_in_use();
+  for (std::size_t i = 0; i < kMessages; ++i) outbox.send(std::string(kText, 'y'));
+  const auto taken = [&] { return (heap_in_use() - before) / kMessages; };
+  // Until the transport's thread has them, they are in its lane too.
+  const auto deadline = SteadyClock::now() + kPatience;
+  constexpr std::size_t kCounted = kText + ControlQueue::kMessageCost;
+  while (taken() > kCounted && SteadyClock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_LE(taken(), kCounted);
+  EXPECT_GE(taken(), kCounted / 2) << "and not much less";
 }
 
 }  // namespace

@@ -1,12 +1,19 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/compression.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/saved_scenes.h"
 #include "server/storage/storage.h"
 #include "tests/support/temporary_folder.h"
 
@@ -55,6 +62,40 @@ TEST_F(StorageCheckpoints, ComeBackAsTheyWere) {
   EXPECT_EQ(read->fields, written.fields);
   EXPECT_EQ(read->state, written.state);
   EXPECT_TRUE(store.places(8).empty());
+}
+
+std::vector<std::uint64_t> hash_positions(CheckpointStore& store, std::uint64_t from = 0) {
+  std::vector<std::uint64_t> positions;
+  for (const TickHash& one : store.hashes(7, from)) {
+    EXPECT_EQ(one.hash, one.position * 3);
+    positions.push_back(one.position);
+  }
+  return positions;
+}
+
+TEST_F(StorageCheckpoints, HaveHashesThatEndWhereTheSessionGoesOn) {
+  {
+    CheckpointStore store(path, 1 << 20);
+    store.write_hashes(7, std::vector<TickHash>{{1, 3}, {2, 6}, {3, 9}});
+    store.write_hashes(8, std::vector<TickHash>{{4, 1}});
+    store.write_hashes(7, std::vector<TickHash>{{4, 12}, {5, 15}});
+    store.write_hashes(7, std::vector<TickHash>{{6, 18}});
+    store.write_hashes(7, {});
+  }
+  CheckpointStore store(path, 1 << 20);
+  EXPECT_EQ(hash_positions(store), (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(hash_positions(store, 4), (std::vector<std::uint64_t>{4, 5, 6}));
+  store.drop_hashes(7, 6);
+  EXPECT_EQ(store.hash_count(7), 6U);
+  store.drop_hashes(7, 4);
+  EXPECT_EQ(hash_positions(store), (std::vector<std::uint64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(store.hash_count(7), 4U);
+  store.write_hashes(7, std::vector<TickHash>{{CheckpointStore::kMostHashes + 4,
+                                               3 * (CheckpointStore::kMostHashes + 4)}});
+  EXPECT_EQ(hash_positions(store).front(), 4U);  // the rows before end too far back
+  store.keep_only({8});
+  EXPECT_EQ(store.hash_count(7), 0U);
+  EXPECT_EQ(store.hash_count(8), 1U);
 }
 
 TEST_F(StorageCheckpoints, BeyondTheirBytesTheyAreThinnedEvenly) {
@@ -119,6 +160,33 @@ TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
   EXPECT_TRUE(decompress(compress({}), 0).empty());
 }
 
+TEST(StorageStates, GoWithTheSessionsThatAreGone) {
+  SavedStates states(MainDatabase::kInMemory);
+  const SavedStateLimits limits{10, 1000, 1000};
+  for (const char* session : {"s1", "s2"}) {
+    SavedState state;
+    state.entry.name = "n";
+    state.state = {1};
+    EXPECT_FALSE(states.write(session, state, limits));
+  }
+  states.keep_only({"s1", "s3"});
+  EXPECT_EQ(states.list("s1").size(), 1U);
+  EXPECT_TRUE(states.list("s2").empty());
+}
+
+TEST(StorageScenes, WhoseKeyHasAnotherSizeAreDamaged) {
+  const auto main = std::make_shared<MainDatabase>(MainDatabase::kInMemory);
+  SavedScenes scenes(main);
+  SavedScene scene;
+  scene.entry.name = "n";
+  EXPECT_FALSE(scenes.write(scene, {1, 1000, 1, 1000}));
+  EXPECT_TRUE(scenes.find("n"));
+  for (const char* key : {"zeroblob(0)", "zeroblob(31)", "zeroblob(33)"}) {
+    main->database.prepare("UPDATE scenes SET key = " + std::string(key)).run();
+    EXPECT_THROW(scenes.find("n"), StorageError) << key;
+  }
+}
+
 TEST(StorageFolder, IsOneServersAtATime) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("data");
@@ -164,13 +232,30 @@ TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
   EXPECT_EQ(storage.checkpoints().places(kept).size(), 1U);
 }
 
+// Its timer then cannot be cancelled any more.
+TEST(Storage, EndsWhereItsThreadIsLateForItsTimer) {
+  const test::TemporaryFolder folder;
+  auto storage = std::make_unique<Storage>(folder.file("data"), StorageLimits{});
+  storage->flush();
+  storage->post([] { std::this_thread::sleep_for(std::chrono::milliseconds(1200)); });
+  storage->post([] {});
+  const auto has_ended = std::make_shared<std::promise<void>>();
+  std::future<void> end = has_ended->get_future();
+  // Detached: one that never ends must not hold up the test.
+  std::thread([storage = std::move(storage), has_ended]() mutable {
+    storage.reset();
+    has_ended->set_value();
+  }).detach();
+  EXPECT_EQ(end.wait_for(std::chrono::seconds(60)), std::future_status::ready);
+}
+
 TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
   const test::TemporaryFolder folder;
   bool ran = false;
   {
     Storage storage(folder.file("data"), {});
     storage.post([] { throw StorageError(StorageError::Kind::full, "the disk is full"); });
-    storage.post([&] { ran = storage.failures() == 1; });
+    storage.post([&] { ran = storage.counts().failures == 1; });
   }
   EXPECT_TRUE(ran);
 }

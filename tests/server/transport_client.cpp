@@ -168,7 +168,7 @@ HttpReply try_upgrade(std::uint16_t port, std::string_view target, std::string_v
   return reply;
 }
 
-WsClient::WsClient(std::uint16_t port) : raw_(port) {
+WsClient::WsClient(std::uint16_t port, const char* from) : raw_(port, from) {
   raw_.write(request(port, "GET", "/ws", upgrade_headers(), ""));
   const HttpReply reply = read_head(raw_, buffer_);
   if (reply.status != 101) throw std::runtime_error("upgrade refused: " + reply.head);

@@ -65,7 +65,7 @@ std::string client_frame(int opcode, std::string_view payload, bool final = true
 class WsClient {
  public:
   /// Opens /ws with vat.v1; throws where the server refuses.
-  explicit WsClient(std::uint16_t port);
+  explicit WsClient(std::uint16_t port, const char* from = "127.0.0.1");
 
   void send_text(std::string_view text) { raw_.write(client_frame(1, text)); }
   void send_binary(std::string_view bytes) { raw_.write(client_frame(2, bytes)); }

@@ -66,6 +66,49 @@ TEST_F(TransportSocketsTest, HoldLittle) {
   EXPECT_EQ(option(sockets[0], SOL_SOCKET, SO_SNDBUF), 200'000);
 }
 
+bool wait_for_no_socket(std::uint16_t port, std::chrono::milliseconds most) {
+  const auto deadline = std::chrono::steady_clock::now() + most;
+  while (!sockets_of(port, false).empty()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+// As browsers do: the close frame is answered, and the connection ended once the server has ended
+// its half. The server is at something else meanwhile, and learns of all of that end at once.
+TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
+  http_handler = [](std::string_view, std::string_view) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    return HttpResponse{200, "text/plain", "slow", {}};
+  };
+  start();
+  WsClient client(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  recorder.connection(1)->close(4003, "kicked");
+  EXPECT_EQ(client.read_close(), 4003);
+  client.raw().read_all();
+  RawClient slow(port);
+  slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  client.raw().close();
+  slow.read_all();
+  slow.close();
+  EXPECT_TRUE(wait_for_no_socket(port, kPatience));
+}
+
+// At once, not after the second that a peer may take for its half.
+TEST_F(TransportSocketsTest, AreGivenBackAfterTheClientHasClosed) {
+  start();
+  WsClient client(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  client.raw().write(client_frame(8, "\x03\xe8"));
+  client.raw().read_all();
+  client.raw().close();
+  EXPECT_TRUE(wait_for_no_socket(port, std::chrono::milliseconds(500)));
+  EXPECT_TRUE(recorder.wait_closed(1));
+}
+
 // Many come at once, when a server starts again. tcpi_sacked of a socket that listens is how many
 // may wait.
 TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {

@@ -1,3 +1,4 @@
+#include "server/net/ws_upgrade.h"
 #include "tests/server/transport_fixture.h"
 
 namespace vat::test {
@@ -65,6 +66,24 @@ TEST_F(TransportUpgradeTest, AdmitsPagesOfThisServerOnly) {
                                                  "http://example.org/http://" + host()};
   for (const std::string& foreign : foreign_origins) {
     EXPECT_EQ(try_upgrade(port, "/ws", origin(foreign)).status, 403) << foreign;
+  }
+}
+
+// By their whole names, whatever the case of their letters.
+TEST(TransportOrigins, ThoseOfTheListAreAdmitted) {
+  const std::vector<std::string> allowed{"https://example.org", "http://b.example:8443"};
+  const std::vector<std::string> offered{"vat.v1"};
+  const auto refused = [&](const char* origin) {
+    return refuse_upgrade({"/ws", "host:80", origin, "13", offered}, allowed).has_value();
+  };
+  for (const char* good : {"https://example.org", "https://EXAMPLE.org", "http://b.example:8443",
+                           "http://host:80", ""}) {
+    EXPECT_FALSE(refused(good)) << good;
+  }
+  for (const char* foreign :
+       {"http://example.org", "https://example.org:8443", "https://a.example.org",
+        "https://example.org.evil", "https://b.example:8443", "null", "https://", "*"}) {
+    EXPECT_TRUE(refused(foreign)) << foreign;
   }
 }
 

@@ -2,6 +2,7 @@
 
 import posixpath
 import re
+from fnmatch import fnmatchcase
 
 REFERENCES = "core/REFERENCES.md"
 PACKAGES = "docker/packages.txt"
@@ -13,6 +14,8 @@ KEY = re.compile(r"\[[A-Z][A-Za-z]*\d\d\]")
 ROW = re.compile(r"^\| ([^|]+) \| ([^|]+) \|")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 PACKAGES_CALL = re.compile(r"(?<![\w-])packages ((?:[a-z]+ ?)+?)(?: ?&&| ?;;|$)", re.MULTILINE)
+TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P)\(\s*(\w+),\s*(\w+)\)", re.MULTILINE)
+NAMED_TEST = re.compile(r"`([A-Z]\w+\.(?:[A-Z]\w*\*?|\*)|vat_\w+)`")
 CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 
 
@@ -110,4 +113,41 @@ def commands(tree):
     return faults + [f"README.md: ./vat help has no {name}" for name in sorted(told - helped)]
 
 
-RULES = (citations, bibliography, links, packages, commands)
+def rows_with_tests(text):
+    """The rows of the tables that have a column of tests: [(first cell, cell of tests)]."""
+    rows, has_tests = [], False
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")] if line[:1] == "|" else []
+        if not cells:
+            has_tests = False
+        elif cells[-1] == "tests":
+            has_tests = True
+        elif has_tests and not set(cells[0]) <= set("- :"):
+            rows.append((cells[0], cells[-1]))
+    return rows
+
+
+def named_tests(tree):
+    """The tests that a table says hold a row are there, and each row has one, or "the build"."""
+    tests = {
+        f"{suite}.{name}"
+        for _, text in tree.matching(["tests/"], [".cpp"])
+        for suite, name in TEST.findall(text)
+        if not name.startswith("DISABLED_")
+    }
+    lists = "".join(text for _, text in tree.matching(["tests/"], ["CMakeLists.txt"]))
+    programs = set(re.findall(r"\bvat_\w+", lists))
+    faults = []
+    for path, text in tree.matching([""], [".md"]):
+        for row, cell in rows_with_tests(text):
+            names = NAMED_TEST.findall(cell)
+            if not names and cell != "the build":
+                faults.append(f"{path}: the row \"{row}\" names no test")
+            faults += [
+                f"{path}: no test is {name}" for name in names
+                if not (name in programs or any(fnmatchcase(test, name) for test in tests))
+            ]
+    return faults
+
+
+RULES = (citations, bibliography, links, packages, commands, named_tests)

@@ -161,6 +161,22 @@ class DocumentRules(RuleTest):
         self.refuses(rule, self.changed(files, "vat", "  test       try\n", ""), "has no test")
         self.refuses(rule, files | {"README.md": "| `./vat serve` | x |\n"}, "no row for ./vat test")
 
+    def test_named_tests(self):
+        rule = document_rules.named_tests
+        table = ("| point | what | tests |\n|---|---|---|\n| a | b | `Of.It`, `Of.I*` |\n"
+                 "| c | d | `Other.*`, `vat_fuzz_it` |\n| e | f | the build |\n\n| x | y |\n| 1 | 2 |\n")
+        files = {"a.md": table, "tests/a/a.cpp": "TEST_F(Of, It) {\nTEST_P(\n    Other, One) {\n",
+                 "tests/a/CMakeLists.txt": "add(vat_fuzz_it)\n"}
+        self.accepts(rule, files)
+        for old, new, mentioned in (
+            ("`Of.It`", "`Of.That`", "Of.That"), ("`Other.*`", "`Others.*`", "Others.*"),
+            ("vat_fuzz_it", "vat_fuzz_that", "vat_fuzz_that"), ("the build", "care", '"e"'),
+        ):
+            with self.subTest(new=new):
+                self.refuses(rule, self.changed(files, "a.md", old, new), mentioned)
+        self.refuses(rule, self.changed(files, "tests/a/a.cpp", "Other, One", "Other, DISABLED_One"),
+                     "Other.*")
+
 
 class Coverage(unittest.TestCase):
     def test_every_rule_has_a_test(self):

@@ -15,7 +15,7 @@ LAYERS = {
     "server/": (
         ("core/", "protocol/", "server/"),
         ("CLI/", "Eigen/", "boost/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/",
-         "fcntl.h", "poll.h", "openssl/", "sqlite3.h", "zstd.h"),
+         "fcntl.h", "malloc.h", "poll.h", "openssl/", "sqlite3.h", "zstd.h"),
     ),
 }
 NOT_IN_CORE = {"chrono", "ctime", "iostream", "fstream", "filesystem", "random", "thread"}

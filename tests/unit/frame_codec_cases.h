@@ -114,6 +114,7 @@ class World {
       body.attributes[0].push_back(static_cast<float>(drop.velocity.norm()));
       body.attributes[1].push_back(static_cast<float>(1000 + drop.position.z()));
       body.attributes[2].push_back(static_cast<float>(1e4 * (1 - drop.position.z())));
+      body.attributes[3].push_back(static_cast<float>(5 + 4 * std::sin(9 * drop.position.x())));
     }
   }
 
@@ -131,6 +132,12 @@ inline FrameScale plain_scale(double max_error = 1e-3) {
 inline FrameScale scale_with_attributes() {
   FrameScale scale = plain_scale();
   scale.attribute_quanta = {0.01, 0.001, 5};
+  return scale;
+}
+
+inline FrameScale scale_with_accelerations() {
+  FrameScale scale = plain_scale();
+  scale.attribute_quanta = {0.01, 0, 0, 0.02};
   return scale;
 }
 
@@ -197,20 +204,21 @@ inline Stream moving_stream() {
   return stream;
 }
 
-inline Stream attribute_stream() {
+/// Frames "v2-NAME", "v2-NAME-one" and "v2-NAME-two".
+inline Stream attribute_stream(const std::string& name, const FrameScale& scale) {
   World world(40, 5);
   Stream stream;
-  const auto show = [&](const char* name, std::optional<std::size_t> first,
+  const auto show = [&](const char* end, std::optional<std::size_t> first,
                         std::optional<std::size_t> second) {
-    stream.push_back({name, on_grid(world.state(), scale_with_attributes()), first, second});
+    stream.push_back({"v2-" + name + end, on_grid(world.state(), scale), first, second});
   };
-  show("v2-attributes", {}, {});
+  show("", {}, {});
   world.advance(1);
-  show("v2-attributes-one", 0, {});
+  show("-one", 0, {});
   world.advance(1);
   world.pour(3);
   world.drain(0.25);
-  show("v2-attributes-two", 1, 0);
+  show("-two", 1, 0);
   return stream;
 }
 

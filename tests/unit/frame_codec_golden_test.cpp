@@ -11,6 +11,12 @@ namespace {
 
 using namespace frame_cases;
 
+/// The first three, and accelerations where frames have them.
+template <class T>
+std::vector<T> told(const FrameScale& scale, const ByAttribute<T>& values) {
+  return {values.begin(), scale.attribute_quanta[3] > 0 ? values.end() : values.end() - 1};
+}
+
 Json to_json(const GridFrame& frame, std::uint8_t stride) {
   const FrameHeader& header = frame.header;
   return {{"playing", header.playing},
@@ -25,11 +31,11 @@ Json to_json(const GridFrame& frame, std::uint8_t stride) {
           {"published", header.published},
           {"origin", frame.scale.grid.origin},
           {"quantum", frame.scale.grid.quantum},
-          {"attribute_quanta", frame.scale.attribute_quanta},
+          {"attribute_quanta", told(frame.scale, frame.scale.attribute_quanta)},
           {"real_time_factor", header.real_time_factor}};
 }
 
-Json to_json(const GridBlock& block) {
+Json to_json(const FrameScale& scale, const GridBlock& block) {
   constexpr std::array kKinds{"liquid", "deformable", "rigid", "vat"};
   Json json = {{"body", block.body}, {"kind", kKinds.at(static_cast<std::size_t>(block.kind))}};
   if (!block.has_particles()) {
@@ -43,13 +49,13 @@ Json to_json(const GridBlock& block) {
   for (std::size_t i = 0; i < block.particle_count(); ++i) numbers.push_back(block.number(i));
   json["numbers"] = numbers;
   json["grid_positions"] = block.positions;
-  json["attributes"] = block.attributes;
+  json["attributes"] = told(scale, block.attributes);
   return json;
 }
 
 Json blocks_to_json(const GridFrame& frame) {
   Json blocks = Json::array();
-  for (const GridBlock& block : frame.blocks) blocks.push_back(to_json(block));
+  for (const GridBlock& block : frame.blocks) blocks.push_back(to_json(frame.scale, block));
   return blocks;
 }
 

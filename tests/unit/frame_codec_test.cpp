@@ -122,7 +122,8 @@ TEST(FrameCodec, NoFlippedBitOfTheBlocksChangesThem) {
   for (const Stream& stream : all_streams()) {
     for (std::size_t i = 0; i < stream.size(); ++i) {
       const std::vector<std::uint8_t> good = encode(stream, i);
-      const std::size_t header = is_key_frame(good) ? 108 : 52;
+      const std::size_t key_header = stream[i].frame.scale.attribute_quanta[3] > 0 ? 116 : 108;
+      const std::size_t header = is_key_frame(good) ? key_header : 52;
       for (std::size_t bit = 8 * header; bit < 8 * good.size(); ++bit) {
         std::vector<std::uint8_t> bytes = good;
         bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));

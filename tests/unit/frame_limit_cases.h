@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "tests/unit/frame_codec_cases.h"
 
 /// Streams at the limits of PROTOCOL.md, "Frames", each of which ends elsewhere in a decoder that
@@ -80,7 +82,7 @@ inline Stream wild_stream() {
         if (i == 3) place = 65535;
         liquid.positions.push_back(static_cast<std::uint16_t>(place));
       }
-      for (auto& column : liquid.attributes) {
+      for (auto& column : std::span(liquid.attributes).first(3)) {
         column.push_back(static_cast<std::int32_t>((2 * chance.next() - 1) * kLastAttribute));
         if (i == 5) column.back() = f % 2 == 0 ? kLastAttribute : -kLastAttribute;
       }
@@ -152,8 +154,8 @@ inline Stream corner_stream() {
   Stream stream{{"v2-corner", frame_of(1, {65534, 1, 65535}), {}, {}},
                 {"v2-corner-one", frame_of(2, {65535, 0, 0}), 0, {}}};
   for (Step& step : stream) step.frame.scale = scale;
-  stream[0].frame.blocks[0].attributes = {{{kLastAttribute}, {-kLastAttribute}, {0}}};
-  stream[1].frame.blocks[0].attributes = {{{-kLastAttribute}, {kLastAttribute}, {0}}};
+  stream[0].frame.blocks[0].attributes = {{{kLastAttribute}, {-kLastAttribute}, {0}, {}}};
+  stream[1].frame.blocks[0].attributes = {{{-kLastAttribute}, {kLastAttribute}, {0}, {}}};
   return stream;
 }
 
@@ -163,7 +165,9 @@ inline std::vector<Stream> limit_streams() {
 }
 
 inline std::vector<Stream> all_streams() {
-  std::vector<Stream> streams{edge_stream(), moving_stream(), attribute_stream()};
+  std::vector<Stream> streams{edge_stream(), moving_stream(),
+                              attribute_stream("attributes", scale_with_attributes()),
+                              attribute_stream("accelerations", scale_with_accelerations())};
   for (Stream& stream : limit_streams()) streams.push_back(std::move(stream));
   return streams;
 }

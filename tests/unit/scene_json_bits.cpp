@@ -82,7 +82,7 @@ class BitWriter {
     put_all(no_slip, velocity);
   }
   void put(const Vat& vat) {
-    const auto& [min, max, lid, motion, walls] = vat;
+    const auto& [min, max, lid, motion, walls, hand] = vat;  // a hand is in no scene file
     put_all(min, max, lid, motion, walls);
   }
   void put(const Periodicity& periodic) {

@@ -9,17 +9,20 @@ from pathlib import Path
 import schemas
 
 LEAST_SCRIPTS = 40
-# Kinds of errors and events that no client can bring about, and what needs a data folder.
+# Kinds of errors and events that no client can bring about, and what ends the server.
 NOT_SHOWN = {
     "internal_error", "storage_failed", "not_recovered", "session.diverged", "server.draining",
-    "recording.export",
+    "server.drain",
 }
+# Limits of what comes before a WebSocket, or below its messages.
+BELOW_MESSAGES = {"handshake_seconds", "ping_seconds"}
 # What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
 # error; a number: the code that a connection is closed with; a script: it is all about that.
 LIMITS = {
     "burst_seconds": ("script", "too-often"), "connections_per_address": ("script", "sharing"),
     "controls_per_second": "limit", "expire_after_seconds": ("script", "empty-sessions"),
     "hibernate_after_seconds": ("script", "empty-sessions"),
+    "replay_expire_after_seconds": ("script", "empty-replays"),
     "message_bytes_per_second": ("closed", 4009), "particles_in_all": "limit",
     "pointer_moves_per_second": "limit", "queries_per_second": "limit",
     "refusals_per_second": ("closed", 4009), "scenes_per_second": "limit",
@@ -34,8 +37,14 @@ LIMITS = {
     "message_values": ("reason", "too_many_values"), "name_bytes": ("path", "/name"),
     "download_bytes": ("script", "recordings"), "particle_steps_per_tick": "limit",
     "particles": "limit", "presence": ("script", "presence"),
-    "recording_bytes": ("script", "recordings"),
+    "connections_listed": ("path", "/most"),
+    "recording_bytes": ("path", "/size"), "recording_ticks": ("script", "recordings"),
+    "recording_entries": ("script", "recordings"), "imports": "limit",
+    "import_bytes": ("script", "recordings"), "replays": ("script", "replays"),
     "resume_seconds": ("script", "coming-back"), "scene_message_bytes": ("closed", 1009),
+    "states_per_session": "limit", "state_bytes_per_session": "limit",
+    "state_bytes_in_all": "limit", "scenes_per_address": "limit",
+    "scene_bytes_per_address": "limit", "scenes_in_all": "limit", "scene_bytes_in_all": "limit",
     "sessions": "limit", "ticks_per_step": ("path", "/ticks"), "tokens": "limit",
 }
 
@@ -85,7 +94,7 @@ class Seen:
         events = set(schemas.definitions("events"))
         yield from (f"no event {name}" for name in sorted(events - NOT_SHOWN - self.events))
         yield from (f"no error {kind}" for kind in sorted(kinds() - NOT_SHOWN - self.kinds))
-        yield from (f"no word here on the limit {name}" for name in sorted(self.limits - set(LIMITS)))
+        yield from (f"no word here on the limit {name}" for name in sorted(self.limits - set(LIMITS) - BELOW_MESSAGES))
         yield from (f"no limit {name} in server.info" for name in sorted(set(LIMITS) - self.limits))
         for name, how in LIMITS.items():
             if (("limit", name) if how == "limit" else how) not in self.shown:

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace vat::bench {
+
+/// What the clients of a soak did, and what went wrong for them.
+struct Tally {
+  std::atomic<std::uint64_t> joins = 0;
+  std::atomic<std::uint64_t> requests = 0;  ///< that were answered, of clients that behave
+  std::atomic<std::uint64_t> refused = 0;   ///< of them
+  std::atomic<std::uint64_t> frames = 0;
+  std::atomic<std::uint64_t> garbage = 0;  ///< messages without sense
+  std::atomic<std::uint64_t> flood = 0;    ///< messages of clients that send too many
+  std::atomic<std::uint64_t> closed = 0;   ///< connections that the server ended, of those two
+  std::atomic<std::uint64_t> stalls = 0;
+  std::atomic<std::uint64_t> recordings = 0;  ///< that were fetched
+
+  void add_fault(const std::string& fault) {
+    const std::lock_guard lock(mutex_);
+    if (faults_.size() < kMostFaults) faults_.push_back(fault);
+  }
+  std::vector<std::string> faults() const {
+    const std::lock_guard lock(mutex_);
+    return faults_;
+  }
+  /// The longest that an answer took [s].
+  double longest() const {
+    const std::lock_guard lock(mutex_);
+    return longest_;
+  }
+  void add_wait(double seconds) {
+    const std::lock_guard lock(mutex_);
+    longest_ = seconds > longest_ ? seconds : longest_;
+  }
+
+ private:
+  static constexpr std::size_t kMostFaults = 20;
+  mutable std::mutex mutex_;
+  std::vector<std::string> faults_;
+  double longest_ = 0;
+};
+
+}  // namespace vat::bench

@@ -1,0 +1,34 @@
+#include <fstream>
+
+#include "server/settings/serve_settings.h"
+#include "server/settings/setting_sources.h"
+#include "tests/fuzz/target.h"
+#include "tests/support/temporary_folder.h"
+
+// A configuration file. One that is refused has changed nothing; what a taken one has set is, as it
+// would be printed, a file that sets the same.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace vat;
+  static const test::TemporaryFolder folder;
+  static const std::string file = folder.file("vat.json");
+  const auto apply = [](std::string_view text, ServeSettings& target) {
+    std::ofstream(file, std::ios::binary) << text;
+    SettingSources sources;
+    return apply_file(serve_settings(target), file, sources);
+  };
+  const auto printed = [](ServeSettings& target) {
+    return describe(serve_settings(target), {}).at("settings");
+  };
+  ServeSettings target;
+  const Json before = printed(target);
+  if (const Status applied = apply(fuzz::to_text(data, size), target); !applied) {
+    VAT_CHECK(printed(target) == before);
+    for (const Error& error : applied.errors())
+      VAT_CHECK(!error.code.empty() && !error.message.empty());
+    return 0;
+  }
+  ServeSettings again;
+  VAT_CHECK(apply(printed(target).dump(), again));
+  VAT_CHECK(printed(again) == printed(target));
+  return 0;
+}

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "tests/server/session_fixture.h"
+
+namespace vat::test {
+
+inline ServerLimits unhurried_limits() {
+  ServerLimits limits;
+  limits.burst_seconds = 1e9;
+  return limits;
+}
+
+/// A server on a data folder, or on none where that is empty, and a client in its session s1, which
+/// is paused at tick 0.
+class Host {
+ public:
+  Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits)
+      : server(catalogue, settings(folder, limits)) {
+    if (server.recover() == 0 && !server.create_session("first", to_scene(mixed_scene_text()))) {
+      throw std::runtime_error("the first session was refused");
+    }
+    client.emplace(server, 1);
+    client->result("session.join", {{"session", "s1"}, {"name", "Ada"}});
+    client->result("control.pause");
+  }
+  std::string hash() { return client->result("session.hash").at("hash"); }
+  std::uint64_t tick() { return client->result("session.hash").at("tick"); }
+  void step(int ticks) { client->result("control.step", {{"ticks", ticks}}); }
+
+ private:
+  static ServerSettings settings(const std::string& folder, const ServerLimits& limits) {
+    ServerSettings settings;
+    settings.limits = limits;
+    settings.threads = 2;
+    settings.data_folder = folder;
+    settings.access.admin = hash_of_token(kAdminToken);
+    return settings;
+  }
+
+ public:
+  SessionServer server;
+  std::optional<TestClient> client;
+};
+
+}  // namespace vat::test

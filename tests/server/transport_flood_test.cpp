@@ -1,0 +1,199 @@
+// What attackers send: the memory that it costs, and what another user notices of it. Both are
+// measured; memory is that of this process, attackers included.
+
+#include <algorithm>
+#include <atomic>
+#include <iostream>
+#include <thread>
+
+#include "tests/server/transport_fixture.h"
+#include "tests/support/resident_bytes.h"
+
+namespace vat::test {
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kMostMemory = 48e6;  // [bytes] beyond what was used before
+/// Of a message to the server and back. A server that waits for its attackers takes 10 s.
+constexpr double kMostDelay = 2;  // [s]
+
+class TransportFloodTest : public TransportTest {
+ protected:
+  /// Attacks beside another user, who is asked all the time.
+  template <class Attack>
+  void withstand(Attack&& attack) {
+    recorder.echo = true;
+    start();
+    WsClient user(port, "127.0.0.2");
+    const double before = resident_bytes();
+    std::atomic<bool> attacked = false;
+    std::atomic<double> most = before;
+    std::vector<double> delays;
+    std::thread other([&] {
+      while (!attacked || delays.size() < 20) {
+        const auto begin = steady_clock::now();
+        user.send_text("alive?");
+        EXPECT_EQ(user.read_message().payload, "alive?");
+        delays.push_back(Seconds(steady_clock::now() - begin).count());
+        most = std::max<double>(most, resident_bytes());
+        std::this_thread::sleep_for(milliseconds(5));
+      }
+    });
+    attack();
+    attacked = true;
+    other.join();
+    std::ranges::sort(delays);
+    std::cout << "memory +" << (most - before) / 1e6 << " MB; another's message and back: median "
+              << 1e3 * delays[delays.size() / 2] << " ms, worst " << 1e3 * delays.back() << " ms\n";
+    EXPECT_LT(most - before, kMostMemory);
+    EXPECT_LT(delays.back(), kMostDelay);
+  }
+  /// Writes until the peer ends it; what was written.
+  static std::size_t write_until_closed(RawClient& client, const std::string& bytes,
+                                        std::size_t most, milliseconds pause = milliseconds(0)) {
+    std::size_t written = 0;
+    try {
+      for (; written < most; written += bytes.size()) {
+        client.write(bytes);
+        std::this_thread::sleep_for(pause);
+      }
+    } catch (const std::runtime_error&) {  // cut off
+    }
+    return written;
+  }
+};
+
+// Slowloris: a byte of a header now and then, on many connections.
+TEST_F(TransportFloodTest, DripsOfHeaders) {
+  settings.handshake_timeout = milliseconds(1000);
+  withstand([&] {
+    std::vector<std::unique_ptr<RawClient>> drips;
+    for (int i = 0; i < 200; ++i) {
+      drips.push_back(std::make_unique<RawClient>(port));
+      drips.back()->write("GET /ws HTTP/1.1\r\nHost: x\r\nX-Header: ");
+    }
+    const auto end = steady_clock::now() + milliseconds(3000);
+    while (steady_clock::now() < end) {
+      std::erase_if(drips, [](const auto& d) { return write_until_closed(*d, "x", 1) == 0; });
+      std::this_thread::sleep_for(milliseconds(100));
+    }
+    EXPECT_TRUE(drips.empty()) << "cut off once their time was over, however much they still sent";
+  });
+}
+
+TEST_F(TransportFloodTest, DripsOfBodies) {
+  settings.handshake_timeout = milliseconds(1000);
+  withstand([&] {
+    std::vector<std::unique_ptr<RawClient>> drips;
+    for (int i = 0; i < 100; ++i) {
+      drips.push_back(std::make_unique<RawClient>(port));
+      drips.back()->write("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000\r\n\r\n");
+    }
+    const auto end = steady_clock::now() + milliseconds(3000);
+    while (steady_clock::now() < end) {
+      std::erase_if(drips, [](const auto& d) { return write_until_closed(*d, "x", 1) == 0; });
+      std::this_thread::sleep_for(milliseconds(100));
+    }
+    EXPECT_TRUE(drips.empty());
+  });
+}
+
+// A message of which a byte comes now and then holds its connection only, which must answer pings.
+TEST_F(TransportFloodTest, DripsOfMessages) {
+  settings.ping_interval = milliseconds(300);
+  withstand([&] {
+    WsClient drip(port);
+    const std::string frame = client_frame(1, std::string(100'000, 'x'));
+    drip.raw().write(frame.substr(0, 100));
+    EXPECT_LT(write_until_closed(drip.raw(), "x", 100, milliseconds(50)), 100U);
+  });
+}
+
+TEST_F(TransportFloodTest, HandshakesAsFastAsTheyCome) {
+  withstand([&] {
+    constexpr int kThreads = 4;
+    constexpr int kEach = 500;
+    const auto begin = steady_clock::now();
+    std::vector<std::thread> attackers;
+    for (int t = 0; t < kThreads; ++t) {
+      attackers.emplace_back([&] {
+        for (int i = 0; i < kEach; ++i) WsClient{port}.raw().reset();
+      });
+    }
+    for (std::thread& attacker : attackers) attacker.join();
+    const Seconds time = steady_clock::now() - begin;
+    std::cout << kThreads * kEach / time.count() << " handshakes a second\n";
+  });
+}
+
+TEST_F(TransportFloodTest, ConnectionsThatSayNothingAsFastAsTheyCome) {
+  settings.max_connections_per_address = 32;
+  withstand([&] {
+    const auto begin = steady_clock::now();
+    std::vector<std::unique_ptr<RawClient>> open;
+    for (int i = 0; i < 3000; ++i) {
+      open.push_back(std::make_unique<RawClient>(port));
+      if (open.size() > 200) open.erase(open.begin());
+    }
+    const Seconds time = steady_clock::now() - begin;
+    std::cout << 3000 / time.count() << " connections a second\n";
+  });
+}
+
+// A length is not believed before the bytes are there.
+TEST_F(TransportFloodTest, FramesThatSayTheyAreHuge) {
+  withstand([&] {
+    for (int i = 0; i < 200; ++i) {
+      WsClient client(port);
+      std::string header("\x82\xff", 2);
+      header += std::string("\x3f\xff\xff\xff\xff\xff\xff\xff", 8) + "\1\2\3\4";
+      client.raw().write(header);
+      EXPECT_EQ(client.read_close(), 1009);
+    }
+  });
+}
+
+// As much as a message may be on many connections, and never its end: the greatest cost by design,
+// a megabyte each here.
+TEST_F(TransportFloodTest, MessagesThatNeverEnd) {
+  withstand([&] {
+    std::vector<std::unique_ptr<WsClient>> clients;
+    for (int i = 0; i < 20; ++i) {
+      clients.push_back(std::make_unique<WsClient>(port));
+      clients.back()->raw().write(client_frame(1, std::string(1'000'000, 'x'), false));
+    }
+  });
+}
+
+TEST_F(TransportFloodTest, FragmentsWithoutEnd) {
+  withstand([&] {
+    WsClient client(port);
+    client.raw().write(client_frame(1, "", false));
+    std::string empty;
+    for (int i = 0; i < 1000; ++i) empty += client_frame(0, "", false);
+    for (int i = 0; i < 500; ++i) client.raw().write(empty);
+    std::string single;
+    for (int i = 0; i < 1000; ++i) single += client_frame(0, "x", false);
+    write_until_closed(client.raw(), single, 3'000'000 * 7);
+    EXPECT_EQ(client.read_close(), 1009);
+  });
+}
+
+TEST_F(TransportFloodTest, PingsAndPongsWithoutEnd) {
+  withstand([&] {
+    WsClient client(port);
+    std::string batch;
+    for (int i = 0; i < 100; ++i) {
+      batch += client_frame(9, std::string(125, 'p')) + client_frame(10, "nobody asked");
+    }
+    for (int i = 0; i < 1000; ++i) client.raw().write(batch);
+  });
+}
+
+}  // namespace
+
+}  // namespace vat::test

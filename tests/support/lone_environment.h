@@ -1,0 +1,37 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <cstddef>
+#include <utility>
+
+#include "server/session/session_environment.h"
+
+namespace vat::test {
+
+/// What a session needs that is run without a server. Its limits may change while it is in use.
+class LoneEnvironment {
+ public:
+  explicit LoneEnvironment(Catalogue catalogue = {}, std::size_t threads = 1)
+      : catalogue_(std::move(catalogue)), runner_(threads) {}
+
+  /// The same with another budget.
+  SessionEnvironment with(ResourceBudget& resources) {
+    return {catalogue_, limits,    best_instruction_set(), runner_,
+            metrics_,   resources, frame_threads_,         tokens_};
+  }
+
+  ServerLimits limits;
+
+ private:
+  const Catalogue catalogue_;
+  ThreadPoolRunner runner_;
+  ServerMetrics metrics_;
+  ResourceBudget resources_{kUnlimitedResources};
+  boost::asio::thread_pool frame_threads_{1};
+  AccessTokens tokens_{1};
+
+ public:
+  const SessionEnvironment shared = with(resources_);
+};
+
+}  // namespace vat::test

@@ -1,0 +1,144 @@
+// A body that was removed comes back as it was.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/limits.h"
+#include "tests/support/edited_scene.h"
+#include "tests/support/saved_bits.h"
+
+namespace vat {
+namespace {
+
+using namespace test;
+
+BodyMotion motion_of(const BodyView& body) {
+  if (body.pose) return {{}, {}, body.pose};
+  return {copy_of(body.positions), copy_of(body.velocities)};
+}
+
+class RestoredBody : public testing::Test {
+ protected:
+  BodyView body(std::size_t index) const { return simulation.bodies()[index]; }
+  /// Its description, and how it moves.
+  std::pair<BodyDescription, BodyMotion> take(std::size_t index) {
+    std::pair<BodyDescription, BodyMotion> taken{simulation.scene().bodies[index],
+                                                 motion_of(body(index))};
+    EXPECT_TRUE(simulation.remove_body(body(index).id).ok());
+    return taken;
+  }
+  Simulation simulation = make_simulation(sampled_scene());
+};
+
+TEST_F(RestoredBody, IsBentAndMovesAsItDid) {
+  simulation.advance(150);
+  for (int body_of_each_kind = 0; body_of_each_kind < 3; ++body_of_each_kind) {
+    const std::string name(body(0).name);
+    const auto [description, motion] = take(0);
+    const Result<BodyId> id = simulation.add_body(description, motion);
+    ASSERT_TRUE(id.ok()) << id.errors()[0].path << ' ' << id.errors()[0].message;
+    const BodyView back = body(2);
+    EXPECT_EQ(back.id, id.value());
+    EXPECT_EQ(back.name, name);
+    EXPECT_EQ(simulation.scene().bodies[2].position, description.position);
+    if (!back.pose) {
+      EXPECT_EQ(copy_of(back.positions), motion.positions);
+      EXPECT_EQ(copy_of(back.velocities), motion.velocities);
+      continue;
+    }
+    EXPECT_EQ(back.pose->center_of_mass, motion.pose->center_of_mass);
+    EXPECT_LT(back.pose->orientation.angularDistance(motion.pose->orientation), 1e-7);
+    EXPECT_LT((back.pose->velocity - motion.pose->velocity).norm(), 1e-14);
+    EXPECT_LT((back.pose->angular_velocity - motion.pose->angular_velocity).norm(), 1e-13);
+  }
+  expect_goes_on(simulation, 5);
+}
+
+// As if nothing had been: the last body takes its own place again.
+TEST_F(RestoredBody, GoesOnAsItWouldHave) {
+  simulation.advance(150);
+  const Snapshot before = simulation.snapshot();
+  simulation.advance(100);
+  const RigidPose expected = *body(2).pose;
+  const auto others = copy_of(body(1).positions);
+  simulation.restore(before);
+  const auto [description, motion] = take(2);
+  ASSERT_TRUE(simulation.add_body(description, motion).ok());
+  simulation.advance(100);
+  // Rounding of the momenta by their velocities, and what collisions make of it.
+  EXPECT_LT((body(2).pose->center_of_mass - expected.center_of_mass).norm(), 1e-10);
+  EXPECT_LT((body(2).pose->velocity - expected.velocity).norm(), 1e-8);
+  const auto now = copy_of(body(1).positions);
+  for (std::size_t i = 0; i < now.size(); ++i) EXPECT_LT((now[i] - others[i]).norm(), 1e-10);
+}
+
+TEST_F(RestoredBody, ParticlesOfARigidOneAreWhereTheyWere) {
+  simulation.advance(150);
+  const auto places = copy_of(body(2).positions);
+  const auto velocities = copy_of(body(2).velocities);
+  const auto [description, motion] = take(2);
+  ASSERT_TRUE(simulation.add_body(description, motion).ok());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_LT((body(2).positions[i] - places[i]).norm(), 1e-14);
+    EXPECT_LT((body(2).velocities[i] - velocities[i]).norm(), 1e-13);
+  }
+}
+
+TEST_F(RestoredBody, MayHaveBegunWhereTheVatIsNoMore) {
+  ASSERT_TRUE(simulation.move_vat({1, 0, 0}).ok());
+  simulation.advance(3000);
+  ASSERT_GT(simulation.vat_offset().x(), 0.999);
+  for (int n = 0; n < 3; ++n) {
+    const auto [description, motion] = take(0);
+    EXPECT_FALSE(simulation.add_body(description).ok());
+    EXPECT_TRUE(simulation.add_body(description, motion).ok()) << description.name;
+  }
+}
+
+TEST_F(RestoredBody, IsRefusedByWhatIsWrongAndChangesNothing) {
+  const auto [pool, flowing] = take(0);
+  const auto [cube, bent] = take(0);
+  const auto [crate, turning] = take(0);
+  const std::uint64_t hash = simulation.state_hash();
+  const auto error = [&](const BodyDescription& description, const BodyMotion& motion) {
+    const Result<BodyId> id = simulation.add_body(description, motion);
+    EXPECT_EQ(simulation.state_hash(), hash);
+    return id ? "none" : id.errors()[0].code + ' ' + id.errors()[0].path;
+  };
+  BodyMotion motion = bent;
+  motion.positions.pop_back();
+  EXPECT_EQ(error(cube, motion), "out_of_range /state/positions");
+  motion = bent;
+  motion.velocities.emplace_back(0, 0, 0);
+  EXPECT_EQ(error(cube, motion), "out_of_range /state/velocities");
+  motion = bent;
+  motion.positions[3].z() = std::nan("");
+  EXPECT_EQ(error(cube, motion), "out_of_range /state/positions/3");
+  motion = flowing;
+  motion.velocities[2] = {2 * kMaxSpeed, 0, 0};
+  EXPECT_EQ(error(pool, motion), "out_of_range /state/velocities/2");
+  motion = flowing;
+  motion.positions[5].z() = -0.1;
+  EXPECT_EQ(error(pool, motion), "outside_vat /state");
+  EXPECT_EQ(error(cube, turning), "out_of_range /state/positions");
+  EXPECT_EQ(error(crate, bent), "missing /state");
+  motion = turning;
+  motion.pose->orientation = Quat(2, 0, 0, 0);
+  EXPECT_EQ(error(crate, motion), "out_of_range /state/orientation");
+  motion = turning;
+  motion.pose->center_of_mass.x() = 0.95;
+  EXPECT_EQ(error(crate, motion), "outside_vat /state");
+  motion = turning;
+  motion.pose->velocity.x() = std::nan("");
+  EXPECT_EQ(error(crate, motion), "out_of_range /state/velocity");
+  motion = turning;
+  motion.pose->angular_velocity.x() = 2 * kMaxAngularSpeed;
+  EXPECT_EQ(error(crate, motion), "out_of_range /state/angular_velocity");
+  BodyDescription wrong = cube;
+  wrong.material = "gold";
+  EXPECT_EQ(error(wrong, bent), "unknown_name /body/material");
+}
+
+}  // namespace
+}  // namespace vat

@@ -1,0 +1,242 @@
+// A vat that users move: the motion itself, and what it does to what is in the vat.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/forces/vat_motion.h"
+#include "core/limits.h"
+#include "tests/support/scenes.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kV = kMaxHandSpeed;
+constexpr Real kA = kMaxHandAcceleration;
+
+/// Along x.
+HandMotion to(Real target, Real offset = 0, Real velocity = 0, Real start = 0) {
+  return {start, {offset, 0, 0}, {velocity, 0, 0}, {target, 0, 0}};
+}
+
+/// The first time at which it is at rest, by halving; it is so from then on.
+Real end_of(const HandMotion& hand) {
+  Real moving = hand.start;
+  Real resting = hand.start + 1000;
+  while (resting - moving > 1e-9) {
+    const Real middle = (moving + resting) / 2;
+    (is_moving(hand, middle) ? moving : resting) = middle;
+  }
+  return resting - hand.start;
+}
+
+TEST(HandMotion, TakesTheLeastTimeFromRestToRest) {
+  EXPECT_NEAR(end_of(to(0.1)), 2 * std::sqrt(0.1 / kA), 1e-8);  // never at full speed
+  EXPECT_NEAR(end_of(to(3)), 3 / kV + kV / kA, 1e-8);           // at full speed for a while
+  EXPECT_NEAR(end_of(to(-3)), 3 / kV + kV / kA, 1e-8);
+  EXPECT_NEAR(end_of(to(0.1, 0, 1)), 1 / kA, 1e-8);                 // what slowing down takes
+  EXPECT_NEAR(end_of(to(0, 0, 1)), (1 + std::sqrt(2)) / kA, 1e-8);  // out and back, from 1 m/s
+  EXPECT_FALSE(is_moving(to(0.3, 0.3), 0));
+}
+
+TEST(HandMotion, IsSmoothWithinItsBoundsAndEndsAtTheTarget) {
+  for (const Real offset : {0.0, 0.4, -2.0}) {
+    for (const Real velocity : {0.0, 0.3, -1.0, 1.0}) {
+      for (const Real target : {0.0, 0.05, -0.3, 2.5}) {
+        SCOPED_TRACE(testing::Message() << offset << ' ' << velocity << ' ' << target);
+        const HandMotion hand = to(target, offset, velocity, 7);
+        constexpr Real kStep = 1e-4;
+        VatMotion before = hand_motion(hand, 7);
+        EXPECT_NEAR(before.offset.x(), offset, 1e-15);
+        EXPECT_NEAR(before.velocity.x(), velocity, 1e-15);
+        for (Real time = 7 + kStep; is_moving(hand, time - kStep); time += kStep) {
+          const VatMotion now = hand_motion(hand, time);
+          EXPECT_LE(std::abs(now.velocity.x()), kV + 1e-12);
+          EXPECT_LE(std::abs(now.acceleration.x()), kA);
+          // The trapezium's rule, which a change of acceleration within the step leaves so wrong.
+          ASSERT_NEAR(now.offset.x() - before.offset.x(),
+                      kStep / 2 * (now.velocity.x() + before.velocity.x()), kA * kStep * kStep);
+          ASSERT_LE(std::abs(now.velocity.x() - before.velocity.x()), kA * kStep * (1 + 1e-6));
+          before = now;
+        }
+        const VatMotion end = hand_motion(hand, 7 + end_of(hand) + 1e-6);
+        EXPECT_NEAR(end.offset.x(), target, 1e-15);
+        EXPECT_EQ(end.velocity.x(), 0);
+        EXPECT_EQ(end.acceleration.x(), 0);
+      }
+    }
+  }
+}
+
+TEST(HandMotion, GoesOnSmoothlyWhereTheTargetChanges) {
+  const HandMotion first = to(2);
+  const VatMotion then = hand_motion(first, 0.3);
+  const HandMotion second = to(-1, then.offset.x(), then.velocity.x(), 0.3);
+  EXPECT_EQ(hand_motion(second, 0.3).offset, then.offset);
+  EXPECT_EQ(hand_motion(second, 0.3).velocity, then.velocity);
+  EXPECT_EQ(hand_motion(second, 0.29).offset, then.offset) << "not before its start";
+}
+
+/// A ball of one particle that hits the wall at x_max of a vat, with friction on the floor.
+Scene ball_in_vat(IntegratorId integrator, StepControl control) {
+  Scene scene = test::make_scene(integrator, 1e-4);
+  scene.numerics.control = control;
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {test::make_material("stone")};
+  scene.default_interface = {1e4, 10};
+  scene.default_interface.friction = 0.1;
+  scene.vat = Vat{{-1, -1, 0}, {1, 1, 2}, false, {}};
+  BodyDescription ball =
+      test::make_body("ball", BodyKind::rigid, "stone",
+                      test::make_particles(test::make_lattice(2, 2, 2, 0.1), 0.5), 0.05);
+  ball.position = {0.8, 0, 0.0995};
+  scene.bodies = {ball};
+  return scene;
+}
+
+struct HandCase {
+  IntegratorId integrator;
+  StepControl control;
+};
+
+class VatByHand : public testing::TestWithParam<HandCase> {
+ protected:
+  Scene scene() const { return ball_in_vat(GetParam().integrator, GetParam().control); }
+};
+
+// What happens in a vat at a constant speed is what happens in one at rest.
+TEST_P(VatByHand, AtFullSpeedIsAsOneAtRest) {
+  Simulation resting = test::make_simulation(scene());
+  const BodyId ball = resting.bodies()[0].id;
+  const Vec3 start = resting.find_body(ball)->pose->center_of_mass;
+  ASSERT_TRUE(resting.move_body(ball, {start, Quat::Identity(), Vec3(2, 0, 0)}).ok());
+  test::advance_to(resting, 0.5);
+
+  Simulation moving = test::make_simulation(scene());
+  ASSERT_TRUE(moving.move_vat({1.9, 0, 0}).ok());
+  test::advance_to(moving, 0.3);  // at full speed after 0.2 s, for 1.7 s
+  const Vec3 speed(kV, 0, 0);
+  const Vec3 offset = moving.vat_offset();
+  ASSERT_NEAR(offset.x(), kV * kV / kA / 2 + 0.1 * kV, 1e-12);
+  ASSERT_TRUE(
+      moving.move_body(ball, {start + offset, Quat::Identity(), Vec3(2, 0, 0) + speed}).ok());
+  test::advance_to(moving, 0.8);
+
+  const RigidPose at_rest = *resting.find_body(ball)->pose;
+  const RigidPose seen = *moving.find_body(ball)->pose;
+  ASSERT_LT(at_rest.velocity.x(), -0.5) << "the ball has bounced";
+  // Rounding; where steps vary they are chosen to be right to a hundredth.
+  const Real tolerance = GetParam().control == StepControl::fixed ? 1e-9 : 0.01;
+  EXPECT_LT((seen.center_of_mass - moving.vat_offset() - at_rest.center_of_mass).norm(), tolerance);
+  EXPECT_LT((seen.velocity - speed - at_rest.velocity).norm(), 10 * tolerance);
+}
+
+TEST_P(VatByHand, TakesWhatIsInItAlong) {
+  Simulation simulation = test::make_simulation(scene());
+  ASSERT_TRUE(simulation.move_vat({-1.9, 0, 0}).ok());
+  test::advance_to(simulation, 3);
+  EXPECT_EQ(simulation.vat_offset(), Vec3(-1.9, 0, 0));
+  const Vec3 center = simulation.bodies()[0].pose->center_of_mass;
+  EXPECT_LT(center.x(), -0.9);
+  EXPECT_GT(center.x(), -2.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Steps, VatByHand,
+    testing::Values(HandCase{IntegratorId::velocity_verlet, StepControl::fixed},
+                    HandCase{IntegratorId::runge_kutta_4, StepControl::fixed},
+                    HandCase{IntegratorId::velocity_verlet, StepControl::adaptive}),
+    [](const auto& test) {
+      return std::string(to_string(test.param.integrator)) + "_" + to_string(test.param.control);
+    });
+
+Scene plain() {
+  return ball_in_vat(IntegratorId::velocity_verlet, StepControl::fixed);
+}
+
+TEST(MovedVat, GoesOnFromItsBytesWithTheSameBits) {
+  Simulation simulation = test::make_simulation(plain());
+  Simulation unmoved = test::make_simulation(plain());
+  unmoved.advance(1000);
+  ASSERT_TRUE(simulation.move_vat({0.5, 0.1, 0}).ok());
+  simulation.advance(1000);
+  const Snapshot snapshot = simulation.snapshot();
+  const std::vector<std::uint8_t> bytes = snapshot.to_bytes();
+  EXPECT_EQ(bytes.size(), unmoved.snapshot().to_bytes().size() + 10 * sizeof(Real));
+  Result<Simulation> loaded = Simulation::load(bytes);
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_EQ(loaded.value().state_hash(), simulation.state_hash());
+  simulation.advance(7000);
+  loaded.value().advance(7000);
+  EXPECT_EQ(loaded.value().vat_offset(), Vec3(0.5, 0.1, 0));
+  EXPECT_EQ(loaded.value().state_hash(), simulation.state_hash());
+  simulation.restore(snapshot);
+  simulation.advance(7000);
+  EXPECT_EQ(loaded.value().state_hash(), simulation.state_hash());
+}
+
+TEST(MovedVat, HasAStateOfItsOwn) {
+  Simulation simulation = test::make_simulation(plain());
+  const Snapshot start = simulation.snapshot();
+  const std::uint64_t hash = simulation.state_hash();
+  ASSERT_TRUE(simulation.move_vat(Vec3::Zero()).ok());
+  EXPECT_EQ(simulation.state_hash(), hash) << "it is there";
+  ASSERT_TRUE(simulation.move_vat({0.1, 0, 0}).ok());
+  const std::uint64_t moved = simulation.state_hash();
+  EXPECT_NE(moved, hash);
+  ASSERT_TRUE(simulation.move_vat({0.1, 0, 0}).ok());
+  EXPECT_EQ(simulation.state_hash(), moved) << "it is on its way there";
+  ASSERT_TRUE(simulation.move_vat({0.2, 0, 0}).ok());
+  EXPECT_NE(simulation.state_hash(), moved);
+  simulation.restore(start);
+  simulation.advance(100);
+  EXPECT_EQ(simulation.vat_offset(), Vec3::Zero());
+}
+
+TEST(MovedVat, AddsToItsOwnMotion) {
+  Scene scene = plain();
+  scene.vat->motion = SlideMotion{{0, 1, 0}, 0.2, 1};
+  Simulation simulation = test::make_simulation(scene);
+  ASSERT_TRUE(simulation.move_vat({0.3, 0.1, 0}).ok());
+  test::advance_to(simulation, 1.5);
+  EXPECT_LT((simulation.vat_offset() - Vec3(0.3, 0.3, 0)).norm(), 1e-12);
+}
+
+TEST(MovedVat, WakesWhatSleeps) {
+  Scene scene = plain();
+  scene.sleeping = Sleeping{0.05, 0.1};
+  Simulation simulation = test::make_simulation(scene);
+  simulation.advance(20000);
+  ASSERT_EQ(simulation.sleeping_body_count(), 1U);
+  ASSERT_TRUE(simulation.move_vat({0.5, 0, 0}).ok());
+  EXPECT_EQ(simulation.sleeping_body_count(), 0U);
+  simulation.advance(6000);  // of 7000
+  EXPECT_EQ(simulation.sleeping_body_count(), 0U) << "not while it moves";
+  simulation.advance(30000);
+  EXPECT_EQ(simulation.sleeping_body_count(), 1U);
+}
+
+TEST(MovedVat, IsRefusedWhereItCannotBe) {
+  const auto error = [](const Scene& scene, const Vec3& offset) {
+    Simulation simulation = test::make_simulation(scene);
+    const std::uint64_t hash = simulation.state_hash();
+    const Status status = simulation.move_vat(offset);
+    if (status) return std::string("none");
+    EXPECT_EQ(simulation.state_hash(), hash);
+    EXPECT_EQ(status.errors()[0].path, "/offset");
+    return status.errors()[0].code;
+  };
+  EXPECT_EQ(error(plain(), {2, -2, 2}), "none");
+  EXPECT_EQ(error(plain(), {0, -2.001, 0}), "out_of_range");
+  EXPECT_EQ(error(plain(), {0, 0, std::nan("")}), "out_of_range");
+  Scene scene = plain();
+  scene.vat.reset();
+  EXPECT_EQ(error(scene, {0, 0, 0}), "no_vat");
+  scene = plain();
+  scene.periodic = Periodicity{{-1, -1, 0}, {1, 1, 0}, {false, true, false}};
+  EXPECT_EQ(error(scene, {1, 0, 0}), "none");
+  EXPECT_EQ(error(scene, {0, 1, 0}), "not_allowed");
+}
+
+}  // namespace
+}  // namespace vat
