@@ -3,6 +3,9 @@ import { defineConfig } from 'vite';
 
 const server = process.env.VAT_SERVER ?? 'http://127.0.0.1:8080';
 
+/** A folder of the repository. */
+const above = (folder: string): string => fileURLToPath(new URL(`../${folder}`, import.meta.url));
+
 export default defineConfig({
   root: fileURLToPath(new URL('viewer', import.meta.url)),
   base: './',
@@ -15,5 +18,8 @@ export default defineConfig({
     chunkSizeWarningLimit: 900,
   },
   // `npm run dev` serves the page by itself and takes the protocol from a running server.
-  server: { proxy: { '/ws': { target: server, ws: true } } },
+  server: {
+    proxy: { '/ws': { target: server, ws: true } },
+    fs: { allow: ['web', 'protocol/scenes'].map(above) },
+  },
 });

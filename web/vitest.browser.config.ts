@@ -18,7 +18,6 @@ export default defineConfig({
   },
   test: {
     include: ['tests/browser/**/*.test.ts'],
-    bail: 1,
     fileParallelism: false,
     testTimeout: 180_000,
     hookTimeout: 180_000,

@@ -1,9 +1,9 @@
-import { isEventName, kSubprotocol } from './messages';
-import type { Event, MethodName, Params, Result } from './messages';
-import { PendingRequests, RequestError } from './requests';
-import type { Reply } from './requests';
-import { describeClose, isFinal } from './socket';
-import type { Socket, SocketClose, SocketConstructor } from './socket';
+import { isEventName, kSubprotocol } from './messages.js';
+import type { Event, MethodName, Params, Result } from './messages.js';
+import { PendingRequests, RequestError } from './requests.js';
+import type { Reply } from './requests.js';
+import { describeClose, isFinal } from './socket.js';
+import type { Socket, SocketClose, SocketConstructor } from './socket.js';
 
 export type ConnectionState =
   | { name: 'connecting' }
@@ -73,8 +73,9 @@ export class Connection {
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => this.handleOpen();
     socket.onmessage = (event: { data: unknown }) => this.handleMessage(event.data);
-    socket.onclose = (event: SocketClose) => this.handleClose(event);
-    socket.onerror = () => undefined; // a close event with the reason always follows
+    let fault: string | undefined;
+    socket.onerror = ({ message }: { message?: string }) => (fault = message);
+    socket.onclose = (event: SocketClose) => this.handleClose(event, fault);
     this.socket = socket;
     this.timer = setTimeout(() => this.retryLater('the server does not answer'), this.timeoutMs);
   }
@@ -115,9 +116,10 @@ export class Connection {
     this.handlers.onState?.({ name: 'open' });
   }
 
-  private handleClose(event: SocketClose): void {
+  /** `fault`: what Node says of a line that broke; browsers say nothing. */
+  private handleClose(event: SocketClose, fault?: string): void {
     const wasOpen = this.isOpen;
-    const reason = describeClose(event);
+    const reason = fault ? `${describeClose(event)}: ${fault}` : describeClose(event);
     if (isFinal(event)) {
       this.drop(reason);
       this.handlers.onState?.({ name: 'closed', reason });

@@ -1,18 +1,18 @@
-import { FrameError } from './frame/frame_error';
-import { FrameBlocks } from './frame/frame_blocks';
-import { emptyFrame, writeBlocks } from './frame/frame_output';
-import type { Frame } from './frame/frame_output';
-import { FrameRing } from './frame/frame_ring';
-import { HeaderBytes } from './frame/header';
-import { SymbolReader } from './frame/symbols';
+import { FrameError } from './frame/frame_error.js';
+import { FrameBlocks } from './frame/frame_blocks.js';
+import { emptyFrame, writeBlocks } from './frame/frame_output.js';
+import type { Frame } from './frame/frame_output.js';
+import { FrameRing } from './frame/frame_ring.js';
+import { HeaderBytes } from './frame/header.js';
+import { SymbolReader } from './frame/symbols.js';
 
-export { BodyKind } from './frame/block_data';
-export { FrameError } from './frame/frame_error';
-export type { FrameErrorCode } from './frame/frame_error';
-export { emptyFrame } from './frame/frame_output';
-export type { Frame, FrameBlock, GridBlock, PoseBlock, VatBlock } from './frame/frame_output';
-export { frameNumber } from './frame/header';
-export type { FrameHeader, FrameScale } from './frame/header';
+export { BodyKind } from './frame/block_data.js';
+export { FrameError } from './frame/frame_error.js';
+export type { FrameErrorCode } from './frame/frame_error.js';
+export { emptyFrame } from './frame/frame_output.js';
+export type { Frame, FrameBlock, GridBlock, PoseBlock, VatBlock } from './frame/frame_output.js';
+export { frameNumber } from './frame/header.js';
+export type { FrameHeader, FrameScale } from './frame/header.js';
 
 /** Decodes the frames of one connection in their order: protocol/PROTOCOL.md, "Frames". */
 export class FrameDecoder {

@@ -1,8 +1,8 @@
 /** Client of the vat.v1 protocol for browsers and Node: no DOM, the WebSocket is handed in. */
-export * from './clock';
-export * from './connection';
-export * from './frame';
-export * from './messages';
-export * from './requests';
-export * from './session';
-export * from './socket';
+export * from './clock.js';
+export * from './connection.js';
+export * from './frame.js';
+export * from './messages.js';
+export * from './requests.js';
+export * from './session.js';
+export * from './socket.js';

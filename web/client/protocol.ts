@@ -1,5 +1,5 @@
 // Written from protocol/schemas/ by `npm run types`; not to be edited.
-import type {Body as SceneBody, Interface as SceneInterface, Scene} from './scene_format';
+import type {Body as SceneBody, Interface as SceneInterface, Scene} from './scene_format.js';
 
 /** A secret that lets somebody in */
 export type Token = string;
@@ -37,6 +37,21 @@ export type Hash = string;
 export type SceneReference = string | Scene;
 /** No parameters */
 export type Nothing = Record<string, never>;
+/** Ticks that a session had ever run, resets and loads included */
+export type Position = number;
+/** Who took part when it was recorded; nobody of them is here */
+export type RecordedPeople = {
+  /** The number of the participant then */
+  person: number;
+  name: string;
+  role: Role;
+  /** Bodies that were held */
+  grabs: BodyId[];
+  /** To where what was held was drawn */
+  pointer: null | {
+    position: Vector;
+  };
+}[];
 /** The parameter that is at fault, a JSON pointer into params */
 export type Path = string;
 /** What to do */
@@ -59,6 +74,10 @@ export type ReplyError =
   | RateLimited
   | StorageFailed
   | NotRecovered;
+/** Body, number of its particle, other body, number of its particle; and so on */
+export type ConnectedPairs = number[];
+
+export type Motion = [number, number, number];
 
 /** Shows a token: an admin's, an invitation, a ticket, or that of a participant */
 export interface AccessEnterParams {
@@ -130,6 +149,12 @@ export interface BodyDescription {
   /** Rigid bodies: particles about the centre of mass in body axes, 3 numbers each */
   local_positions?: number[];
 }
+/** The first tick at which a replay is not what was recorded; it pauses there */
+export interface Divergence {
+  position: Position;
+  tick: Tick;
+  reason: string;
+}
 
 export interface SessionDescription {
   session: SessionId;
@@ -151,6 +176,12 @@ export interface SessionDescription {
   vat: null | VatDescription;
   /** In the order of a frame's blocks */
   bodies: BodyDescription[];
+  /** Of a session that shows a recording */
+  replay?: {
+    begin: Position;
+    end: Position;
+    position: Position;
+  };
 }
 /** Pauses, then runs so many ticks */
 export interface ControlStepParams {
@@ -353,6 +384,7 @@ export interface SessionStatus {
   /** Participants that are connected */
   clients: number;
   particles: number;
+  position?: Position;
 }
 /** A step with impossible values was undone */
 export interface SessionGuard {
@@ -375,6 +407,15 @@ export interface SessionDiverged {
   position: number;
   tick: Tick;
   reason: string;
+}
+/** The replay has come to its last position, and pauses */
+export interface ReplayEnded {
+  position: Position;
+  tick: Tick;
+}
+/** Those who were recorded have changed; at most ten times a second */
+export interface ReplayPeople {
+  people: RecordedPeople;
 }
 
 export interface SessionClosed {
@@ -411,11 +452,12 @@ export interface FramesSubscribeParams {
     min: Point;
     max: Point;
   };
-  /** Those that are wanted, each with its greatest error [m/s, kg/m^3, Pa] */
+  /** Those that are wanted, each with its greatest error [m/s, kg/m^3, Pa, m/s^2] */
   attributes?: {
     speed?: number;
     density?: number;
     pressure?: number;
+    acceleration?: number;
   };
 }
 /** Acknowledges frames, so that more come */
@@ -483,9 +525,78 @@ export interface RecordingExportResult {
   /** Until when it can be fetched [s] */
   expires: number;
 }
+/** Brings a recording, part by part */
+export interface RecordingImportParams {
+  /** That the answer to the first part gave, which has none */
+  recording?: string;
+  /** Of the whole file [bytes] */
+  size: number;
+  /** Where the part begins */
+  offset: number;
+  /** Base64 with padding */
+  data: string;
+}
+
+export interface RecordingImportResult {
+  /** For further parts, and replay.open */
+  recording: string;
+  /** Bytes so far */
+  received: number;
+  /** Whether it is read, and what follows is told */
+  whole: boolean;
+  /** Of the session that was recorded */
+  name?: string;
+  /** That it covers */
+  ticks?: number;
+  instruction_set?: InstructionSet;
+}
+/** Makes a session that shows a recording; nobody has joined it yet */
+export interface ReplayOpenParams {
+  session?: SessionId;
+  /** Instead: one that was imported */
+  recording?: string;
+  name?: Name;
+}
+
+export interface ReplayOpenResult {
+  tick: Tick;
+  session: SessionId;
+  begin: Position;
+  end: Position;
+}
+
+export interface ReplayInfoResult {
+  tick: Tick;
+  /** Of the session that was recorded */
+  name: string;
+  begin: Position;
+  end: Position;
+  position: Position;
+  playing: boolean;
+  speed: number;
+  /** From which it goes anywhere, ascending */
+  checkpoints: Position[];
+  /** Whether no more of them are to come by themselves */
+  filled: boolean;
+  /** Of states that are compared */
+  hashes: number;
+  /** Where it differed since the last seek */
+  diverged: null | Divergence;
+  people: RecordedPeople;
+}
+/** Goes to a position, or to a tick of the present run */
+export interface ReplaySeekParams {
+  position?: Position;
+  tick?: Tick;
+}
+
+export interface ReplaySeekResult {
+  tick: Tick;
+  position: Position;
+}
 
 export interface SceneListResult {
-  /** Of the catalogue */
+  /** Of the catalogue, and then those that users have saved */
   scenes: SceneEntry[];
 }
 
@@ -493,11 +604,47 @@ export interface SceneEntry {
   name: string;
   title: string;
   description: string;
+  /** Of one that a user has saved: the name of a participant */
+  saved_by?: string;
+  /** The same: when [s since 1970] */
+  saved?: number;
+}
+/** A scene, written out */
+export interface SceneGetParams {
+  scene?: Name;
+  /** The session's with what commands and time have made of its bodies; default: as it was loaded */
+  current?: boolean;
+}
+
+export interface SceneGetResult {
+  tick: Tick;
+  scene: Scene;
 }
 /** Puts another scene into the session, at tick 0 */
 export interface SceneLoadParams {
   scene: SceneReference;
 }
+/** Keeps a scene for all sessions */
+export interface SceneSaveParams {
+  name: PersonName;
+  scene?: Scene;
+  key?: Token;
+}
+
+export interface SceneSaveResult {
+  tick: Tick;
+  name: string;
+  /** That it takes */
+  bytes: number;
+  key?: Token;
+}
+/** Deletes a scene that was saved */
+export interface SceneDeleteParams {
+  name: PersonName;
+  key?: Token;
+}
+
+export interface SceneDeleteResult {}
 /** What the server is and allows */
 export interface ServerInfoResult {
   name: 'vat';
@@ -506,6 +653,8 @@ export interface ServerInfoResult {
   instruction_set: InstructionSet;
   /** Whether a token has to be shown first */
   access: 'open' | 'token';
+  /** Where what is kept lives: in a folder, or in memory, where it ends with the server */
+  storage: 'folder' | 'memory';
   /** The server's clock [s since 1970] */
   time: number;
   /** Every limit by its name, as in the errors limit_reached */
@@ -514,6 +663,46 @@ export interface ServerInfoResult {
   };
   /** The names of all methods */
   methods: string[];
+}
+
+export interface ServerSessionsResult {
+  sessions: WatchedSession[];
+}
+
+export interface WatchedSession {
+  session: SessionId;
+  name: string;
+  /** Of one that is not running only the name is known */
+  state: 'running' | 'recovering' | 'lost';
+  /** A replay shows a recording */
+  kind: 'live' | 'replay';
+  scene: string;
+  playing: boolean;
+  /** It plays, but stands still while nobody is in it */
+  hibernating: boolean;
+  tick: Tick;
+  particles: number;
+  participants: WatchedParticipant[];
+}
+
+export interface WatchedParticipant {
+  participant: ParticipantId;
+  name: string;
+  role: Role;
+  /** It has no connection just now */
+  away: boolean;
+  /** From which it is connected */
+  address?: string;
+}
+/** Ends the server, once clients have had some time */
+export interface ServerDrainParams {
+  /** That clients may stay at most; by default the server's setting [s] */
+  seconds?: number;
+}
+
+export interface ServerDrainResult {
+  /** That clients may stay at most [s] */
+  seconds: number;
 }
 /** Makes a session, which plays; nobody has joined it yet */
 export interface SessionCreateParams {
@@ -535,6 +724,8 @@ export interface SessionEntry {
   name: string;
   /** Of one that is not running only the name is known */
   state: 'running' | 'recovering' | 'lost';
+  /** A replay shows a recording */
+  kind: 'live' | 'replay';
   scene: string;
   /** Participants that are connected */
   clients: number;
@@ -606,12 +797,21 @@ export interface SessionHashResult {
   /** Ticks that the session has ever run */
   position: number;
 }
+/** What the session's ticks have cost, and sums over what they lead to */
+export interface SessionStatsParams {
+  /** Whether energies and the like are measured, at the cost of about one of a tick's steps; default false */
+  diagnostics?: boolean;
+}
 
 export interface SessionStatsResult {
   tick: Tick;
   instruction_set: InstructionSet;
   /** That step sessions */
   threads: number;
+  /** Simulated time [s] */
+  time: number;
+  /** Simulated seconds per second that are achieved */
+  real_time_factor: number;
   particles: number;
   sleeping_bodies: number;
   /** This and what follows: since the scene was loaded */
@@ -628,6 +828,68 @@ export interface SessionStatsResult {
     calls: number;
     seconds: number;
   }[];
+  diagnostics?: Diagnostics;
+}
+/** Where it was asked for */
+export interface Diagnostics {
+  /** [J] */
+  kinetic_energy: number;
+  /** About the origin [J] */
+  gravitational_energy: number;
+  /** Of static springs and of cells that keep their volume [J] */
+  elastic_energy: number;
+  /** Between bodies and at walls [J] */
+  contact_energy: number;
+  momentum: Vector;
+  angular_momentum: Vector;
+  /** Of liquid: the mean of what is above the density at rest, over that */
+  mean_density_error: number;
+  /** The greatest of these */
+  max_density_error: number;
+  torn_springs: number;
+  /** Since time 0 */
+  emitted_particles: number;
+  /** The same */
+  drained_particles: number;
+}
+/** Keeps the session's state under a name */
+export interface SessionSaveParams {
+  name: PersonName;
+}
+
+export interface SessionSaveResult {
+  tick: Tick;
+  name: string;
+  hash: Hash;
+  /** That it takes */
+  bytes: number;
+}
+/** Goes to a state that was saved, and on from there */
+export interface SessionLoadParams {
+  name: PersonName;
+}
+
+export interface SessionSavesResult {
+  tick: Tick;
+  states: SavedState[];
+}
+
+export interface SavedState {
+  name: string;
+  /** Name of a participant */
+  saved_by: string;
+  /** When [s since 1970] */
+  saved: number;
+  /** The session's tick then */
+  at_tick: number;
+  /** Simulated time [s] */
+  time: number;
+  hash: Hash;
+  bytes: number;
+}
+/** Deletes a saved state */
+export interface SessionDeleteSaveParams {
+  name: PersonName;
 }
 /** The bodies' state in full precision */
 export interface StateQueryParams {
@@ -657,9 +919,61 @@ export interface BodyState {
   velocity?: Vector;
   angular_velocity?: Vector;
 }
+/** Springs and contacts */
+export interface StateConnectionsParams {
+  /** Name or id: those of this body alone */
+  body?: BodyId | Name;
+  /** Of springs, and of contacts; default 2000 */
+  most?: number;
+}
+
+export interface StateConnectionsResult {
+  tick: Tick;
+  /** Simulated time [s] */
+  time: number;
+  springs: ConnectedSprings;
+  contacts: ConnectedContacts;
+}
+
+export interface ConnectedSprings {
+  /** How many there are */
+  total: number;
+  /** Every so many of them is told */
+  every: number;
+  pairs: ConnectedPairs;
+  /** Length over length at rest, less 1, pair by pair */
+  strains: number[];
+}
+
+export interface ConnectedContacts {
+  /** How many there are */
+  total: number;
+  /** Every so many of them is told */
+  every: number;
+  pairs: ConnectedPairs;
+  /** Along the line between the two [N], pair by pair; below 0 where it pulls */
+  forces: number[];
+}
 /** Adds a body */
 export interface WorldAddBodyParams {
   body: SceneBody;
+  /** Where it is and how it moves, as state.query tells it, in place of what the body says */
+  state?: ParticleMotion | RigidMotion;
+}
+/** Of each particle of a liquid or deformable body */
+export interface ParticleMotion {
+  /** [m] */
+  positions: Point[];
+  /** [m/s] */
+  velocities: Motion[];
+}
+/** Of a rigid body */
+export interface RigidMotion {
+  center_of_mass: Point;
+  /** [w, x, y, z], of length 1 */
+  orientation: [number, number, number, number];
+  velocity: Motion;
+  angular_velocity: Motion;
 }
 
 export interface WorldAddBodyResult {
@@ -697,6 +1011,29 @@ export interface WorldApplyForceParams {
   /** [s] */
   duration: number;
 }
+/** Puts a body elsewhere, as it is */
+export interface WorldMoveBodyParams {
+  body: BodyId;
+  position: Point;
+  /** [w, x, y, z] of a rigid body, of length 1; by default as it is */
+  orientation?: [number, number, number, number];
+  /** Of all of it, which then does not turn [m/s]; by default as it is */
+  velocity?: [number, number, number];
+}
+/** Adds a material, or replaces the constants of the one of its name */
+export interface WorldSetMaterialParams {
+  material: unknown;
+}
+/** Steps with another integrator, or in steps of another length */
+export interface WorldSetNumericsParams {
+  integrator?: unknown;
+  /** [s]; the tick, which stays, is a whole number of them */
+  step?: number;
+}
+/** Moves the vat by hand */
+export interface WorldMoveVatParams {
+  offset: Point;
+}
 
 /** Every method: what it takes and what it answers. */
 export interface Methods {
@@ -721,9 +1058,18 @@ export interface Methods {
   'presence.list': { params: Nothing; result: PresenceListResult };
   'presence.point': { params: PresencePointParams; result: InEffect };
   'recording.export': { params: Nothing; result: RecordingExportResult };
+  'recording.import': { params: RecordingImportParams; result: RecordingImportResult };
+  'replay.open': { params: ReplayOpenParams; result: ReplayOpenResult };
+  'replay.info': { params: Nothing; result: ReplayInfoResult };
+  'replay.seek': { params: ReplaySeekParams; result: ReplaySeekResult };
   'scene.list': { params: Nothing; result: SceneListResult };
+  'scene.get': { params: SceneGetParams; result: SceneGetResult };
   'scene.load': { params: SceneLoadParams; result: InEffect };
+  'scene.save': { params: SceneSaveParams; result: SceneSaveResult };
+  'scene.delete': { params: SceneDeleteParams; result: SceneDeleteResult };
   'server.info': { params: Nothing; result: ServerInfoResult };
+  'server.sessions': { params: Nothing; result: ServerSessionsResult };
+  'server.drain': { params: ServerDrainParams; result: ServerDrainResult };
   'session.create': { params: SessionCreateParams; result: SessionCreateResult };
   'session.list': { params: Nothing; result: SessionListResult };
   'session.join': { params: SessionJoinParams; result: SessionJoinResult };
@@ -732,8 +1078,13 @@ export interface Methods {
   'session.leave': { params: Nothing; result: InEffect };
   'session.close': { params: SessionCloseParams; result: InEffect };
   'session.hash': { params: Nothing; result: SessionHashResult };
-  'session.stats': { params: Nothing; result: SessionStatsResult };
+  'session.stats': { params: SessionStatsParams; result: SessionStatsResult };
+  'session.save': { params: SessionSaveParams; result: SessionSaveResult };
+  'session.load': { params: SessionLoadParams; result: InEffect };
+  'session.saves': { params: Nothing; result: SessionSavesResult };
+  'session.delete_save': { params: SessionDeleteSaveParams; result: InEffect };
   'state.query': { params: StateQueryParams; result: StateQueryResult };
+  'state.connections': { params: StateConnectionsParams; result: StateConnectionsResult };
   'world.add_body': { params: WorldAddBodyParams; result: WorldAddBodyResult };
   'world.remove_body': { params: WorldRemoveBodyParams; result: InEffect };
   'world.melt_body': { params: WorldMeltBodyParams; result: InEffect };
@@ -741,6 +1092,10 @@ export interface Methods {
   'world.set_gravity': { params: WorldSetGravityParams; result: InEffect };
   'world.set_interface': { params: WorldSetInterfaceParams; result: InEffect };
   'world.apply_force': { params: WorldApplyForceParams; result: InEffect };
+  'world.move_body': { params: WorldMoveBodyParams; result: InEffect };
+  'world.set_material': { params: WorldSetMaterialParams; result: InEffect };
+  'world.set_numerics': { params: WorldSetNumericsParams; result: InEffect };
+  'world.move_vat': { params: WorldMoveVatParams; result: InEffect };
 }
 
 /** Every event: what its notification carries. */
@@ -750,6 +1105,9 @@ export interface Events {
   'session.guard': SessionGuard;
   'server.draining': ServerDraining;
   'session.diverged': SessionDiverged;
+  'replay.ended': ReplayEnded;
+  'replay.diverged': Divergence;
+  'replay.people': ReplayPeople;
   'session.closed': SessionClosed;
   'session.configured': Settings;
   'presence.changed': PresenceChanged;
@@ -763,6 +1121,9 @@ export const kEventNames = [
   'session.guard',
   'server.draining',
   'session.diverged',
+  'replay.ended',
+  'replay.diverged',
+  'replay.people',
   'session.closed',
   'session.configured',
   'presence.changed',

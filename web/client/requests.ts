@@ -1,4 +1,4 @@
-import type { ErrorData } from './messages';
+import type { ErrorData } from './messages.js';
 
 /** A request that the server refused, or that got no answer. */
 export class RequestError extends Error {

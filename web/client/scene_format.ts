@@ -86,6 +86,9 @@ export type DefaultInterface =
       law: 'sph';
     };
 
+export type Integrator =
+  'explicit_euler' | 'symplectic_euler' | 'velocity_verlet' | 'heun' | 'runge_kutta_4';
+
 export type Shape = Box | Sphere | Cylinder | MeshFile | Mesh | Particles;
 
 export type Emitter = {
@@ -186,7 +189,7 @@ export interface Periodic {
 }
 
 export interface Numerics {
-  integrator?: 'explicit_euler' | 'symplectic_euler' | 'velocity_verlet' | 'heun' | 'runge_kutta_4';
+  integrator?: Integrator;
   /** [s] */
   step?: number;
   /** [s] */

@@ -1,13 +1,23 @@
-import { ClockOffset } from './clock';
-import { Connection } from './connection';
-import type { ConnectionOptions, ConnectionState } from './connection';
-import { FrameDecoder, FrameError, frameNumber } from './frame';
-import type { Frame } from './frame';
-import type { Event, MethodName, Params, Result, SessionDescription } from './messages';
-import { RequestError } from './requests';
+import { ClockOffset } from './clock.js';
+import { Connection } from './connection.js';
+import type { ConnectionOptions, ConnectionState } from './connection.js';
+import { FrameDecoder, FrameError, frameNumber } from './frame.js';
+import type { Frame } from './frame.js';
+import type {
+  Attributes,
+  Event,
+  JoinedAs,
+  MethodName,
+  Params,
+  Result,
+  SessionDescription,
+} from './messages.js';
+import { RequestError } from './requests.js';
 
 export interface SessionHandlers {
   onState?(state: ConnectionState): void;
+  /** Who we are in the session and who else is there; before its description. */
+  onJoined?(joined: JoinedAs): void;
   /** After joining, and after each change of scene or bodies before its first frame. */
   onDescription?(description: SessionDescription): void;
   onEvent?(event: Event): void;
@@ -41,23 +51,30 @@ export interface SessionOptions extends ConnectionOptions {
   errorInRadii?: number;
 }
 
+const kSilent = 'the server gives no answer: it is busy, or the line is slow';
+
 /** One client in a session: joins, subscribes, and does so again after a break. */
 export class Session {
   private readonly connection: Connection;
   private clock = new ClockOffset();
   private decoder = new FrameDecoder();
   private clockTimer: ReturnType<typeof setTimeout> | undefined;
+  private isLetIn = false;
   private hasJoined = false;
   private isWatched = true;
+  /** The session to be in; undefined: the server's first. */
+  private wanted: string | undefined;
   private resume: string | undefined;
   /** What was subscribed to, or is to be [m]; undefined: what the session gives. */
   private maxError: number | undefined;
+  private attributes: Attributes = {};
 
   constructor(
     private readonly options: SessionOptions,
     private readonly handlers: SessionHandlers,
   ) {
     this.resume = options.resume;
+    this.wanted = options.session;
     this.connection = new Connection(options, {
       onState: (state) => this.handleState(state),
       onEvent: (event) => this.handleEvent(event),
@@ -72,6 +89,13 @@ export class Session {
 
   close(): void {
     this.connection.close();
+  }
+
+  /** Takes part in another session, by the same line; undefined: in the server's first. */
+  go(session: string | undefined): void {
+    this.wanted = session;
+    this.resume = undefined;
+    if (this.isLetIn) this.join().catch((error: unknown) => this.restart(error));
   }
 
   request<M extends MethodName>(method: M, params: Params<M>): Promise<Result<M>> {
@@ -95,11 +119,23 @@ export class Session {
     request.catch((error: unknown) => this.restart(error));
   }
 
+  /** Which values of particles frames are to have, and how exactly; none from the start. */
+  askFor(attributes: Attributes): void {
+    if (JSON.stringify(attributes) === JSON.stringify(this.attributes)) return;
+    this.attributes = { ...attributes };
+    this.subscribeAgain();
+  }
+
+  /** The newest frame once more, whole: the server forgets that we were too slow for such ones. */
+  refresh(): void {
+    this.subscribeAgain();
+  }
+
   private async subscribe(): Promise<void> {
-    await this.request(
-      'frames.subscribe',
-      this.maxError === undefined ? {} : { max_error: this.maxError },
-    );
+    await this.request('frames.subscribe', {
+      ...(this.maxError !== undefined && { max_error: this.maxError }),
+      ...(Object.keys(this.attributes).length > 0 && { attributes: this.attributes }),
+    });
   }
 
   private subscribeAgain(): void {
@@ -119,7 +155,7 @@ export class Session {
 
   private handleState(state: ConnectionState): void {
     clearTimeout(this.clockTimer);
-    this.hasJoined = false;
+    this.isLetIn = this.hasJoined = false;
     this.handlers.onState?.(state);
     if (state.name === 'open') void this.enter();
   }
@@ -127,23 +163,31 @@ export class Session {
   private async enter(): Promise<void> {
     this.hasJoined = false;
     try {
-      const { session } = this.options;
       this.clock = new ClockOffset();
-      this.decoder = new FrameDecoder();
       const { access } = await this.measureClock();
       await this.letIn(access);
-      const joined = await this.request('session.join', {
-        ...(session !== undefined && { session }),
-        ...(this.resume !== undefined && { resume: this.resume }),
-      });
-      this.resume = joined.resume;
-      this.handlers.onResumeToken?.(joined.resume);
-      this.describe(joined.description);
-      this.hasJoined = true;
-      if (this.isWatched) await this.subscribe();
+      this.isLetIn = true;
+      await this.join();
     } catch (error) {
       this.restart(error);
     }
+  }
+
+  private async join(): Promise<void> {
+    this.hasJoined = false;
+    const { wanted, resume } = this;
+    this.decoder = new FrameDecoder();
+    const joined = await this.request('session.join', {
+      ...(wanted !== undefined && { session: wanted }),
+      ...(resume !== undefined && { resume }),
+    });
+    if (wanted !== this.wanted) return; // gone on elsewhere
+    this.resume = joined.resume;
+    this.handlers.onResumeToken?.(joined.resume);
+    this.handlers.onJoined?.(joined);
+    this.describe(joined.description);
+    this.hasJoined = true;
+    if (this.isWatched) await this.subscribe();
   }
 
   /** Shows who we were, or what we were given, where that is asked for or changes our role. */
@@ -152,7 +196,8 @@ export class Session {
     if (access === 'token' && this.resume !== undefined && (await this.isGood(this.resume))) return;
     if (token !== undefined && (await this.isGood(token))) return;
     if (access !== 'token') return;
-    const words = 'this server lets in who has an invitation: open the link that you were given';
+    const words =
+      'this server lets in who has an invitation: open the link that you were given, or ask for one';
     throw new RequestError('not_authenticated', words);
   }
 
@@ -169,7 +214,8 @@ export class Session {
   /** A request that entering or measuring needs has failed: begin again on a new line. */
   private restart(error: unknown): void {
     if (!(error instanceof RequestError)) throw error;
-    this.connection.restart(error.message); // does nothing if the line is down already
+    // Who uses the page knows no methods. Does nothing if the line is down already.
+    this.connection.restart(error.kind === 'timed_out' ? kSilent : error.message);
   }
 
   private async measureClock(): Promise<Result<'server.info'>> {

@@ -142,7 +142,7 @@ export async function generate(): Promise<GeneratedFile[]> {
   const files = readSchemas();
   const groups = [...files.keys()].filter((name) => name !== 'scene_format' && name !== 'message');
   const imported =
-    "import type { Body as SceneBody, Interface as SceneInterface, Scene } from './scene_format';\n";
+    "import type { Body as SceneBody, Interface as SceneInterface, Scene } from './scene_format.js';\n";
   const texts: [string, string][] = [
     ['protocol.ts', await writeTypes(definitionsOf(files, groups), imported, tables(files))],
     ['scene_format.ts', await writeTypes(definitionsOf(files, ['scene_format']), '', '')],

@@ -3,6 +3,7 @@
  * it. VAT_PROGRAM names the program, CHROMIUM the browser.
  */
 import { fileURLToPath } from 'node:url';
+import { Observer } from '../../tests/browser/observer';
 import { Server } from '../../tests/browser/server';
 import { Viewer } from '../../tests/browser/viewer';
 
@@ -13,12 +14,22 @@ const kTick = 300;
 
 const server = new Server();
 await server.start();
+const observer = await Observer.join(server.url);
+// Stepped there and standing still: a busy machine would show fewer particles.
+await observer.request('scene.load', { scene: kScene });
+await observer.request('control.pause', {});
+await observer.request('control.reset', {});
+await observer.request('control.step', { ticks: kTick });
+observer.leave();
 try {
-  const viewer = await Viewer.open(server.url, { viewport: { width: 1280, height: 800 } });
+  const viewer = await Viewer.open(`${server.url}#view=liquid:fluid`, {
+    viewport: { width: 1280, height: 800 },
+    colorScheme: 'light',
+  });
   try {
     await viewer.untilScene(kScene);
-    await viewer.untilTick(kTick);
-    await viewer.until('#rate[data-slow="false"]'); // this machine may have been busy
+    await viewer.untilTick(kTick, kTick);
+    await viewer.page.waitForTimeout(2000); // who has left is away for a while
     await viewer.page.screenshot({ path: kPicture });
   } finally {
     await viewer.close();

@@ -1,87 +1,130 @@
 import type { Event, Frame, SessionDescription } from '../client/index';
 import { RequestError } from '../client/index';
+import { matterOf } from './build/matter';
+import { SceneDocument } from './build/scene_document';
+import { Controls } from './controls';
+import { Curves } from './curves/curves';
 import { Grabber } from './grab/grabber';
+import { KeyGrab } from './grab/key_grab';
+import { Links } from './links/links';
+import { addCameraKeys } from './panel/camera_keys';
 import { ConnectionLine } from './panel/connection_line';
 import { Counters } from './panel/counters';
 import { element } from './panel/elements';
+import { describeError, needsControl } from './panel/errors';
+import { eventInWords } from './panel/event_words';
 import { Hint } from './panel/hint';
-import { describeGuard, Notices } from './panel/notices';
-import { showObstacle } from './panel/obstacle';
-import { Playback } from './panel/playback';
-import { Scenes } from './panel/scenes';
+import { Inspector } from './panel/inspector';
+import { Keys } from './panel/keys';
+import { Notices } from './panel/notices';
+import type { Remedy } from './panel/notices';
+import { showObstacle, watchGraphics } from './panel/obstacle';
+import { Sheet } from './panel/sheet';
+import { LiveSummary } from './panel/live_summary';
+import { ThemeSwitch } from './panel/theme_switch';
+import { ViewOptions } from './panel/view_options';
+import { Company } from './people/company';
+import { addressOf } from './stream/address';
 import { now } from './stream/clock';
-import { NewestFrame } from './stream/newest_frame';
-import { Stream } from './stream/stream';
+import { Playout } from './stream/playout';
+import { chosenSession, Stream } from './stream/stream';
 import type { Report } from './stream/stream';
+import { WholePicture } from './stream/whole_picture';
 import { HeldMarker } from './view/held_marker';
-import { theme } from './view/palette';
-import { Stage } from './view/stage';
-import { World } from './view/world';
+import { linkedPose } from './view/pose';
+import { View } from './view/view';
+import './view/stage.css';
+import './panel/panel.css';
+import './panel/dialogs.css';
+import './people/people.css';
+import './panel/phone.css';
 
 /** Joins the stream from the server, the drawn world and the panel. */
 export class App {
   private readonly canvas = element('view', HTMLCanvasElement);
   private readonly stream = new Stream(location.href, (report) => this.handle(report));
-  private readonly darkness = window.matchMedia('(prefers-color-scheme: dark)');
-  private readonly world = new World(theme(this.darkness.matches));
+  private readonly whole = new WholePicture(() => this.stream.refresh());
+  private readonly playout = new Playout(this.stream);
+  private readonly view = new View(this.canvas, this.stream, this.playout, () => this.showNewest());
+  private readonly stage = this.view.stage;
+  private readonly world = this.view.world;
   private readonly marker = new HeldMarker();
-  private readonly stage = new Stage(this.canvas, () => this.showNewest());
   private readonly grabber = new Grabber(
     this.stage,
     this.world,
     this.marker,
     this.stream.request,
     (error) => this.refuse(error),
+    (body, particle) => this.inspector.inspect(body, particle),
   );
-  private readonly connection = new ConnectionLine(() => this.stream.open());
+  private readonly connection = new ConnectionLine(
+    () => this.stream.open(),
+    () => {
+      this.go(undefined);
+      this.stream.open();
+    },
+    () => chosenSession(location.href) !== undefined,
+  );
   private readonly counters = new Counters(now);
   private readonly notices = new Notices();
-  private readonly hint = new Hint();
-  private readonly scenes = new Scenes((scene) => this.command('scene.load', { scene }));
-  private readonly playback = new Playback({
-    play: () => this.command('control.play', {}),
-    pause: () => this.command('control.pause', {}),
-    step: () => this.command('control.step', {}),
-    reset: () => this.command('control.reset', {}),
-    setSpeed: (speed) => this.command('control.set_speed', { speed }),
+  private readonly keys = new Keys();
+  private readonly summary = new LiveSummary();
+  private readonly inspector = new Inspector(
+    (body, particle) => {
+      const found = this.world.particle(body, particle);
+      return found && { ...found, time: this.shownTime };
+    },
+    (name, particles) => matterOf(this.document, name, particles),
+  );
+  private readonly desk = {
+    request: this.stream.request,
+    refuse: (error: unknown) => this.refuse(error),
+    fail: (words: string) => this.notices.add('error', words),
+    say: (words: string) => this.notices.add('warning', words),
+  };
+  private readonly document = new SceneDocument(this.stream.request);
+  private readonly company = new Company(this.view, this.desk, (body) => this.nameOfBody(body));
+  private readonly controls = new Controls(this.desk, this.view, this.keys, {
+    document: this.document,
+    nameOfBody: (body) => this.nameOfBody(body),
+    placing: (isPlacing) => (this.grabber.isPaused = isPlacing),
+    go: (session) => this.go(session),
   });
+  private readonly curves = new Curves(this.desk, () => this.counters.figures);
+  private readonly links = new Links(this.desk, this.view);
+  private readonly hint = new Hint();
+  private shownTime = 0;
+  private shownTick = 0;
+  /** Of the link by which this page was opened; taken once there is something to see. */
+  private linkedPose = linkedPose(location.href);
   private description: SessionDescription | undefined;
   private clockOffset: number | undefined;
-  private readonly newest = new NewestFrame(this.stream);
 
   start(): void {
-    this.stage.scene.add(this.world.group, this.marker.group);
-    this.paint();
-    this.watchContext();
-    this.darkness.addEventListener('change', () => this.paint());
+    this.stage.scene.add(this.marker.group);
+    new ViewOptions(this.view).mount();
+    this.links.mount();
+    new Sheet();
+    this.addKeys();
+    this.company.people.subscribe(() => this.summary.showPeople(this.company.people));
+    watchGraphics(this.canvas, () => this.stage.invalidate());
+    window.addEventListener('popstate', () => this.stream.go(chosenSession(location.href)));
     // Hidden pages are not drawn.
     document.addEventListener('visibilitychange', () => this.stream.watch(!document.hidden));
     this.stream.watch(!document.hidden);
     this.stream.open();
   }
 
-  /** Browsers take the graphics away from pages, for instance when the machine sleeps. */
-  private watchContext(): void {
-    this.canvas.addEventListener('webglcontextlost', () =>
-      showObstacle('The browser has stopped the drawing. It goes on when the browser allows it.'),
-    );
-    this.canvas.addEventListener('webglcontextrestored', () => {
-      showObstacle(undefined);
-      this.stage.invalidate();
-    });
-  }
-
-  private paint(): void {
-    const look = theme(this.darkness.matches);
-    this.world.paint(look);
-    this.stage.paint(look);
-  }
-
   private handle(report: Report): void {
     switch (report.type) {
       case 'state':
         this.connection.show(report.state);
+        this.summary.showConnection(report.state);
         if (report.state.name !== 'open') this.leave();
+        break;
+      case 'joined':
+        this.connection.join();
+        this.company.people.join(report.joined);
         break;
       case 'description':
         this.describe(report.description);
@@ -91,10 +134,16 @@ export class App {
         break;
       case 'frame':
         this.counters.addFrame(report.bytes);
-        this.newest.put(report.frame);
+        this.playout.put(report.frame, now());
         break;
       case 'clock':
         this.clockOffset = report.offset;
+        break;
+      case 'broken':
+        showObstacle(
+          'page',
+          'A part of this page has failed, or was not loaded. Reload the page; if that does not help, tell who runs the server.',
+        );
         break;
       case 'fault':
         this.notices.add('error', `The server sent ${report.message}.`);
@@ -102,100 +151,135 @@ export class App {
     }
   }
 
-  private handleEvent({ event, params }: Event): void {
-    switch (event) {
-      case 'session.status':
-        this.counters.showStatus(params);
-        this.playback.showPlaying(params.playing);
-        this.playback.showSpeed(params.speed);
-        break;
-      case 'session.guard':
-        this.notices.add(
-          params.recovered ? 'warning' : 'error',
-          describeGuard(params, this.description),
-        );
-        break;
-      case 'session.closed':
-        this.leave();
-        this.notices.add('warning', `The session was closed: ${params.reason}`);
-        break;
-      case 'session.configured':
-      case 'control.requested':
-      case 'presence.changed':
-      case 'grab.ended':
-      case 'session.description': // comes as a report of its own
-        break;
+  private handleEvent(event: Event): void {
+    const words = eventInWords(event, this.description);
+    if (words) this.notices.add(words.level, words.text, this.answerTo(event));
+    if (event.event === 'session.status') {
+      this.counters.showStatus(event.params);
+      this.summary.showStatus(event.params);
+      this.curves.showStatus(event.params);
+      this.whole.showStatus(event.params);
     }
+    if (event.event === 'session.closed') this.leave();
+    this.company.handle(event);
+    this.controls.handle(event);
+  }
+
+  /** What a message about this offers to do. */
+  private answerTo({ event, params }: Event): Remedy | undefined {
+    if (event !== 'control.requested') return undefined;
+    return { label: 'Give control', act: () => this.company.giveControl(params.participant) };
   }
 
   /** A scene or its bodies have changed, or the session is entered anew. */
   private describe(description: SessionDescription): void {
     const isEntry = this.canvas.dataset.joined !== 'true';
-    this.grabber.release();
+    const isNew =
+      description.scene !== this.description?.scene ||
+      description.session !== this.description.session;
     // A view that the user has chosen is kept while the scene stays.
-    if (description.scene !== this.description?.scene) this.stage.reframe();
+    if (isNew) this.stage.reframe();
+    if (isNew) this.inspector.close();
+    // A reset, or a state that was saved.
+    const isEarlier = description.tick < this.shownTick;
+    this.shownTick = description.tick;
+    this.grabber.describe(description, isNew || isEarlier);
     this.description = description;
-    this.newest.skip(); // what was there before
-    this.world.describe(description);
-    this.scenes.describe(description);
-    this.playback.showPlaying(description.playing);
-    this.playback.showSpeed(description.speed);
+    this.document.forget();
+    this.playout.skip(); // what was there before
+    this.view.describe(description);
+    this.controls.describe(description, isNew, isEarlier);
+    this.summary.describe(description);
+    this.curves.describe(description, isNew);
+    this.links.describe();
     this.canvas.dataset.scene = description.scene;
     delete this.canvas.dataset.tick; // until a frame of this description is drawn
-    if (isEntry) this.enter();
-  }
-
-  private enter(): void {
     this.enable(true);
-    this.hint.begin();
-    this.stream.request('scene.list', {}).then(
-      ({ scenes }) => this.scenes.list(scenes),
-      (error: unknown) => this.refuse(error),
-    );
+    if (isEntry) this.hint.begin();
+    if (isEntry) this.controls.enter();
   }
 
   private leave(): void {
-    this.newest.forget();
+    this.playout.forget();
     this.counters.clearRates();
     this.enable(false);
   }
 
-  private enable(enabled: boolean): void {
-    this.canvas.dataset.joined = String(enabled);
-    this.playback.enable(enabled);
-    this.scenes.enable(enabled);
-    this.grabber.enable(enabled);
+  private enable(isJoined: boolean): void {
+    this.canvas.dataset.joined = String(isJoined);
+    this.grabber.enable(isJoined && !this.description?.replay);
+    this.company.enable(isJoined);
+    this.controls.enable(isJoined);
+    this.summary.enable(isJoined);
+    this.curves.enable(isJoined);
+    this.links.enable(isJoined);
   }
 
-  private command(...request: Parameters<Stream['request']>): void {
-    this.stream.request(...request).catch((error: unknown) => {
-      this.refuse(error);
-      this.scenes.refresh();
+  /** To another session; undefined: the server's first. */
+  private go(session: string | undefined): void {
+    history.pushState(undefined, '', addressOf(location.href, session));
+    this.stream.go(session);
+  }
+
+  private addKeys(): void {
+    const { keys } = this;
+    const theme = new ThemeSwitch();
+    const act = (words: string, key: string, action: () => void): void =>
+      keys.add({ keys: [key], sign: key.toUpperCase(), words, act: action });
+    act('share this session', 'l', () => this.company.share.open());
+    act('light, dark, or as the system', 't', () => theme.next());
+    new KeyGrab(
+      keys,
+      this.grabber,
+      this.stage,
+      this.world,
+      () => this.description?.bodies.map(({ body }) => body) ?? [],
+      (body) => this.summary.showHeld(body === undefined ? undefined : this.nameOfBody(body)),
+    );
+    addCameraKeys(keys, this.stage, () => {
+      this.stage.reframe();
+      this.stage.follow(this.world.bounds);
     });
+  }
+
+  private nameOfBody(id: number): string {
+    return this.description?.bodies.find(({ body }) => body === id)?.name ?? `body ${id}`;
   }
 
   /** What the server refuses is said; that the line is down is seen from the connection's state. */
   private refuse(error: unknown): void {
     if (!(error instanceof RequestError)) throw error;
-    if (error.kind !== 'disconnected') this.notices.add('error', error.message);
+    if (error.kind === 'disconnected') return;
+    const words = describeError(error);
+    if (!needsControl(error)) return this.notices.add('error', words);
+    const remedy = { label: 'Ask for control', act: () => this.company.askForControl() };
+    this.notices.add('warning', words, remedy);
   }
 
   private showNewest(): void {
-    const frame = this.newest.take();
-    if (frame) this.showFrame(frame);
+    this.playout.advance(now(), (frame) => this.showFrame(frame));
+    this.view.move(now());
     this.grabber.update();
+    this.company.cursors.update();
+    this.controls.update();
+    this.inspector.update(this.description);
   }
 
-  private showFrame(frame: Frame): void {
-    if (!this.world.show(frame)) {
-      this.stream.reuse(frame);
-      return;
-    }
-    this.newest.use(frame);
-    this.connection.showFrame(frame.header);
+  private showFrame(frame: Frame): boolean {
+    if (!this.view.show(frame)) return false;
+    const { header } = frame;
+    this.connection.showFrame(header);
+    this.whole.showFrame(header);
     this.stage.follow(this.world.bounds);
+    this.links.follow();
+    if (this.linkedPose) this.stage.pose = this.linkedPose;
+    this.linkedPose = undefined;
+    this.shownTime = header.time;
+    this.shownTick = header.tick;
+    this.summary.showFrame(header);
+    this.controls.showTick(header.tick);
     this.counters.showFrame(frame, this.clockOffset);
-    this.canvas.dataset.tick = String(frame.header.tick);
-    this.stage.invalidate();
+    this.canvas.dataset.tick = String(header.tick);
+    return true;
   }
 }

@@ -5,8 +5,10 @@ import { showObstacle } from './panel/obstacle';
 try {
   new App().start();
 } catch (error) {
-  showObstacle('This page cannot draw: it needs a browser with WebGL 2 switched on.');
-  element('hint', HTMLElement).hidden = true;
+  showObstacle(
+    'page',
+    'This page cannot draw: it needs a browser with WebGL 2 switched on. Switch it on in the browser’s settings, or open the page in another browser.',
+  );
   element('connection', HTMLElement).hidden = true;
   throw error;
 }

@@ -1,10 +1,10 @@
-import type { BlockData } from './block_data';
-import { kAttributes } from './block_data';
-import { badBlock } from './frame_error';
-import { classOfSize } from './neighbourhood';
-import { kClasses, kLeastKeyClass } from './residual_tables';
-import { kGrowth } from './room';
-import type { SymbolReader } from './symbols';
+import type { BlockData } from './block_data.js';
+import { kAttributes } from './block_data.js';
+import { badBlock } from './frame_error.js';
+import { classOfSize } from './neighbourhood.js';
+import { kClasses, kLeastKeyClass } from './residual_tables.js';
+import { kGrowth } from './room.js';
+import type { SymbolReader } from './symbols.js';
 
 const kFirstClass = kClasses - 1;
 const kMostSize = 131064;
@@ -126,7 +126,7 @@ export class AddedParticles {
         size += sizes[3 * (i - stride)] as number;
       }
       if (known > 1) size = Math.floor(size / known);
-      const value = this.readValue(symbols, known, sum, 0, size, attribute, 3 * i);
+      const value = this.readValue(symbols, known, sum, 0, size, attribute % 3, 3 * i);
       if (Math.abs(value) > kMostAttribute) badBlock('an attribute is too large');
       column[places[i] as number] = value;
     }

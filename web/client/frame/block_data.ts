@@ -1,11 +1,14 @@
-import { fitted } from './room';
+import { fitted } from './room.js';
 
 /** What a block is about; the values are those on the wire. */
 export const BodyKind = { liquid: 0, deformable: 1, rigid: 2, vat: 3 } as const;
 export type BodyKind = (typeof BodyKind)[keyof typeof BodyKind];
 
-export const kAttributes = 3;
-const kNoAttributes: readonly boolean[] = [false, false, false];
+/** Speed, density, pressure, acceleration. */
+export const kAttributes = 4;
+const kNoAttributes: readonly boolean[] = [false, false, false, false];
+/** Of these the check covers three in all frames, and acceleration where frames have it. */
+const kAlwaysChecked = 3;
 
 /** A body's part of a frame in whole steps. Its columns keep their memory. */
 export class BlockData {
@@ -17,7 +20,7 @@ export class BlockData {
   numbers = new Uint32Array(0);
   positions = new Uint16Array(0);
   hasAttribute = kNoAttributes;
-  readonly attributes = [new Int32Array(0), new Int32Array(0), new Int32Array(0)];
+  readonly attributes = Array.from({ length: kAttributes }, () => new Int32Array(0));
   readonly place = new Int32Array(3);
   readonly orientation = new Int32Array(4);
   orientationBits = 0;
@@ -83,7 +86,9 @@ export class BlockData {
       z = mix(z, positions[k + 2]!);
     }
     sum = mix(mix(mix(sum, x), y), z);
-    for (let q = 0; q < kAttributes; ++q) sum = mix(sum, checkOf(this.attribute(q)));
+    for (let q = 0; q < kAttributes; ++q) {
+      if (q < kAlwaysChecked || this.hasAttribute[q]) sum = mix(sum, checkOf(this.attribute(q)));
+    }
     return sum;
   }
 }

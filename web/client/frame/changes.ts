@@ -1,14 +1,14 @@
-import { AddedParticles, kMostAttribute } from './added';
-import type { BlockData } from './block_data';
-import { kAttributes } from './block_data';
-import { CellOrder } from './cell_order';
-import { badBlock } from './frame_error';
-import { KeptParticles, kNone } from './kept_particles';
-import type { Matched } from './kept_particles';
-import { Motion } from './motion';
-import { Neighbourhood } from './neighbourhood';
-import { fitted } from './room';
-import type { SymbolReader } from './symbols';
+import { AddedParticles, kMostAttribute } from './added.js';
+import type { BlockData } from './block_data.js';
+import { kAttributes } from './block_data.js';
+import { CellOrder } from './cell_order.js';
+import { badBlock } from './frame_error.js';
+import { KeptParticles, kNone } from './kept_particles.js';
+import type { Matched } from './kept_particles.js';
+import { Motion } from './motion.js';
+import { Neighbourhood } from './neighbourhood.js';
+import { fitted } from './room.js';
+import type { SymbolReader } from './symbols.js';
 
 const kEven = 2048;
 const kOnGrid = { lanes: [true, true, true], least: 0, span: 65535 };
@@ -34,8 +34,10 @@ export class ParticleChanges {
   private secondPlaces = new Int32Array(0);
   private newPlaces = new Int32Array(0);
   private numbers = new Uint32Array(0);
-  private readonly moved = [false, false, false];
+  private readonly moved = Array.from({ length: kAttributes }, () => false);
   private readonly factors = [0, 0, 0];
+  /** Of the three attributes that are read at a time. */
+  private readonly lanes = [false, false, false];
 
   constructor(private readonly symbols: SymbolReader) {}
 
@@ -61,7 +63,7 @@ export class ParticleChanges {
     const matched: Matched = { first, second, cells, secondPlaces, newPlaces };
     kept.reserve(first.count);
     if (moves) this.readPositions(matched, block);
-    if (moved.includes(true)) this.readAttributes(matched, block);
+    for (let begin = 0; begin < kAttributes; begin += 3) this.readAttributes(matched, block, begin);
     this.added.read(symbols, block);
   }
 
@@ -163,22 +165,25 @@ export class ParticleChanges {
     }
   }
 
-  private readAttributes(matched: Matched, block: BlockData): void {
-    const { symbols, cells, kept, moved, factors } = this;
-    for (let q = 0; q < kAttributes; ++q) factors[q] = moved[q] ? readFactor(symbols) : 0;
-    const count = this.predictAttributes(matched);
+  /** The three attributes from `begin` on, as far as there are any and they have changed. */
+  private readAttributes(matched: Matched, block: BlockData, begin: number): void {
+    const { symbols, cells, kept, moved, lanes, factors } = this;
+    for (let q = 0; q < 3; ++q) lanes[q] = moved[begin + q] === true;
+    if (!lanes.includes(true)) return;
+    for (let q = 0; q < 3; ++q) factors[q] = lanes[q] ? readFactor(symbols) : 0;
+    const count = this.predictAttributes(matched, begin);
     const { ends, values, targets } = kept;
-    const wanted = { lanes: moved, least: -kMostAttribute, span: 2 * kMostAttribute };
+    const wanted = { lanes, least: -kMostAttribute, span: 2 * kMostAttribute };
     this.neighbours.read(symbols, cells, ends, values, wanted);
-    for (let q = 0; q < kAttributes; ++q) {
-      if (!moved[q]) continue;
-      const column = block.attribute(q);
+    for (let q = 0; q < 3; ++q) {
+      if (!lanes[q]) continue;
+      const column = block.attribute(begin + q);
       for (let k = 0; k < count; ++k) column[targets[k]!] = values[3 * k + q]!;
     }
   }
 
   /** Of how many particles. */
-  private predictAttributes(matched: Matched): number {
+  private predictAttributes(matched: Matched, begin: number): number {
     const { ends, values, targets } = this.kept;
     const { second, secondPlaces, newPlaces } = matched;
     const { cellCount, begins, order } = this.cells;
@@ -189,8 +194,8 @@ export class ParticleChanges {
         const place = newPlaces[i]!;
         if (place === kNone) continue;
         const j = second ? secondPlaces[i]! : kNone;
-        for (let q = 0; q < kAttributes; ++q) {
-          values[3 * count + q] = this.moved[q] ? this.attributeAhead(matched, q, i, j) : 0;
+        for (let q = 0; q < 3; ++q) {
+          values[3 * count + q] = this.lanes[q] ? this.attributeAhead(matched, begin, q, i, j) : 0;
         }
         targets[count++] = place;
       }
@@ -199,9 +204,15 @@ export class ParticleChanges {
     return count;
   }
 
-  private attributeAhead({ first, second }: Matched, q: number, i: number, j: number): number {
-    const here = first.attribute(q)[i]!;
-    const step = second && j !== kNone ? here - second.attribute(q)[j]! : 0;
+  private attributeAhead(
+    { first, second }: Matched,
+    begin: number,
+    q: number,
+    i: number,
+    j: number,
+  ): number {
+    const here = first.attribute(begin + q)[i]!;
+    const step = second && j !== kNone ? here - second.attribute(begin + q)[j]! : 0;
     return 8 * here + Math.floor((8 * this.factors[q]! * step + 128) / 256);
   }
 }

@@ -1,10 +1,10 @@
-import type { BlockData } from './block_data';
-import { BodyKind } from './block_data';
-import { ParticleChanges, readFactor } from './changes';
-import { badBlock } from './frame_error';
-import type { FrameData } from './frame_ring';
-import type { FrameScale } from './header';
-import type { SymbolReader } from './symbols';
+import type { BlockData } from './block_data.js';
+import { BodyKind } from './block_data.js';
+import { ParticleChanges, readFactor } from './changes.js';
+import { badBlock } from './frame_error.js';
+import type { FrameData } from './frame_ring.js';
+import type { FrameScale } from './header.js';
+import type { SymbolReader } from './symbols.js';
 
 const kMostPlace = 2 ** 28;
 /** Out of 4096, that a block has changed: where the one before has not, and where it has. */
@@ -118,10 +118,13 @@ export class FrameBlocks {
   }
 }
 
+const kOfDeformable: readonly number[] = [0, 3]; // speed and acceleration
+
 function attributesOf(kind: BodyKind, { attributeQuanta }: FrameScale): boolean[] {
   return attributeQuanta.map(
     (quantum, q) =>
-      quantum > 0 && (kind === BodyKind.liquid || (kind === BodyKind.deformable && q === 0)),
+      quantum > 0 &&
+      (kind === BodyKind.liquid || (kind === BodyKind.deformable && kOfDeformable.includes(q))),
   );
 }
 

@@ -1,8 +1,8 @@
-import type { BlockData } from './block_data';
-import { BodyKind, kAttributes } from './block_data';
-import type { FrameData } from './frame_ring';
-import type { FrameHeader, FrameScale } from './header';
-import { kGrowth } from './room';
+import type { BlockData } from './block_data.js';
+import { BodyKind, kAttributes } from './block_data.js';
+import type { FrameData } from './frame_ring.js';
+import type { FrameHeader, FrameScale } from './header.js';
+import { kGrowth } from './room.js';
 
 /** Positions of a liquid or deformable body: x, y, z of each particle in grid steps. */
 export interface GridBlock {
@@ -11,7 +11,7 @@ export interface GridBlock {
   positions: Uint16Array<ArrayBuffer>;
   /** Of the particles, rising; undefined: 0, 1, 2, ... */
   numbers: Uint32Array<ArrayBuffer> | undefined;
-  /** Speed, density and pressure in their quanta; undefined where the block has none. */
+  /** Speed, density, pressure and acceleration in their quanta; undefined where the block has none. */
   attributes: (Int32Array<ArrayBuffer> | undefined)[];
 }
 
@@ -59,7 +59,7 @@ export function emptyFrame(storage = new ArrayBuffer(0)): Frame {
     realTimeFactor: 0,
     origin: [0, 0, 0],
     quantum: 1,
-    attributeQuanta: [0, 0, 0],
+    attributeQuanta: [0, 0, 0, 0],
   };
   return { header, dropped: 0, blocks: [], storage };
 }

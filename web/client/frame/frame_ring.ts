@@ -1,6 +1,6 @@
-import { BlockData } from './block_data';
-import { FrameError } from './frame_error';
-import type { FrameScale } from './header';
+import { BlockData } from './block_data.js';
+import { FrameError } from './frame_error.js';
+import type { FrameScale } from './header.js';
 
 const kMostKept = 16;
 
@@ -8,7 +8,7 @@ const kMostKept = 16;
 export class FrameData {
   epoch = 0;
   number = 0;
-  scale: FrameScale = { origin: [0, 0, 0], quantum: 1, attributeQuanta: [0, 0, 0] };
+  scale: FrameScale = { origin: [0, 0, 0], quantum: 1, attributeQuanta: [0, 0, 0, 0] };
   blockCount = 0;
   private readonly blocks: BlockData[] = [];
 

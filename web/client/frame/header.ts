@@ -1,12 +1,15 @@
-import { FrameError } from './frame_error';
+import { FrameError } from './frame_error.js';
 
 /** What the integers of frames stand for; that of a key frame serves those that build on it. */
 export interface FrameScale {
   /** A position is origin + quantum * integer, per axis [m]. */
   readonly origin: readonly [number, number, number];
   readonly quantum: number;
-  /** Steps of speed [m/s], density [kg/m^3] and pressure [Pa]; 0 where frames have none. */
-  readonly attributeQuanta: readonly [number, number, number];
+  /**
+   * Steps of speed [m/s], density [kg/m^3], pressure [Pa] and acceleration [m/s^2]; 0 where frames
+   * have none.
+   */
+  readonly attributeQuanta: readonly [number, number, number, number];
 }
 
 export interface FrameHeader extends FrameScale {
@@ -32,7 +35,8 @@ export interface FrameHeader extends FrameScale {
 
 const kMagic = 0x46544156; // "VATF", little-endian
 const kVersion = 2;
-const kKnownFlags = 31;
+const kKnownFlags = 31; // of all frames
+const kAccelerationFlag = 32; // of key frames: a fourth quantum
 
 /** As the header says, also of a frame that is refused; undefined where it has no header. */
 export function frameNumber(buffer: ArrayBuffer): number | undefined {
@@ -43,7 +47,7 @@ export function frameNumber(buffer: ArrayBuffer): number | undefined {
 /** The bytes of a header as far as all frames have it, and of a key frame's scale behind it. */
 export class HeaderBytes {
   static readonly kBytes = 52;
-  static readonly kKeyBytes = 108;
+  private static readonly kKeyBytes = 108;
   private readonly view: DataView;
 
   /** @throws FrameError where they are none. */
@@ -59,7 +63,8 @@ export class HeaderBytes {
   }
 
   get symbolsBegin(): number {
-    return this.isKey ? HeaderBytes.kKeyBytes : HeaderBytes.kBytes;
+    if (!this.isKey) return HeaderBytes.kBytes;
+    return HeaderBytes.kKeyBytes + (this.hasAcceleration ? 8 : 0);
   }
 
   get epoch(): number {
@@ -85,18 +90,19 @@ export class HeaderBytes {
 
   /** Of a key frame. @throws FrameError where it is not there or none. */
   readScale(): FrameScale {
-    this.need(HeaderBytes.kKeyBytes);
+    this.need(this.symbolsBegin);
     const at = (k: number) => this.view.getFloat64(HeaderBytes.kBytes + 8 * k, true);
     const scale: FrameScale = {
       origin: [at(0), at(1), at(2)],
       quantum: at(3),
-      attributeQuanta: [at(4), at(5), at(6)],
+      attributeQuanta: [at(4), at(5), at(6), this.hasAcceleration ? at(7) : 0],
     };
     const numbers = [...scale.origin, scale.quantum, ...scale.attributeQuanta];
     const isGood =
       numbers.every(Number.isFinite) &&
       scale.quantum > 0 &&
-      Math.min(...scale.attributeQuanta) >= 0;
+      Math.min(...scale.attributeQuanta) >= 0 &&
+      (!this.hasAcceleration || scale.attributeQuanta[3] > 0);
     if (!isGood) throw new FrameError('bad_header', 'the grid must be finite, its quanta above 0');
     return scale;
   }
@@ -119,6 +125,10 @@ export class HeaderBytes {
     Object.assign(into, scale);
   }
 
+  private get hasAcceleration(): boolean {
+    return (this.view.getUint8(6) & kAccelerationFlag) !== 0;
+  }
+
   private checkKind(): void {
     const { view } = this;
     if (view.getUint32(0, true) !== kMagic) {
@@ -136,7 +146,8 @@ export class HeaderBytes {
 
   private checkRules(): void {
     const { view } = this;
-    if ((view.getUint8(6) & ~kKnownFlags) !== 0 || this.stride === 0) {
+    const known = this.isKey ? kKnownFlags | kAccelerationFlag : kKnownFlags;
+    if ((view.getUint8(6) & ~known) !== 0 || this.stride === 0) {
       throw new FrameError('bad_header', 'unused flags must be 0, and the stride above 0');
     }
     const isFinite =

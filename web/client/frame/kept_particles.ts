@@ -1,6 +1,6 @@
-import type { BlockData } from './block_data';
-import type { CellOrder } from './cell_order';
-import { kGrowth } from './room';
+import type { BlockData } from './block_data.js';
+import type { CellOrder } from './cell_order.js';
+import { kGrowth } from './room.js';
 
 /** The place of what is not there. */
 export const kNone = -1;

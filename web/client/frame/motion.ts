@@ -1,7 +1,7 @@
-import { kNone } from './kept_particles';
-import type { KeptParticles, Matched } from './kept_particles';
-import { kInverses } from './neighbourhood';
-import { kGrowth } from './room';
+import { kNone } from './kept_particles.js';
+import type { KeptParticles, Matched } from './kept_particles.js';
+import { kInverses } from './neighbourhood.js';
+import { kGrowth } from './room.js';
 
 const kMostStep = 8191;
 const kMostCounted = 63;

@@ -1,9 +1,9 @@
-import type { CellOrder } from './cell_order';
-import { badBlock } from './frame_error';
-import { kCases, kClasses, kEscape, kRanges, kResiduals } from './residual_tables';
-import { kResidualBits, kSlotBits, kTableBits } from './residual_tables';
-import { endsEarly, kLeastState } from './symbols';
-import type { SymbolReader } from './symbols';
+import type { CellOrder } from './cell_order.js';
+import { badBlock } from './frame_error.js';
+import { kCases, kClasses, kEscape, kRanges, kResiduals } from './residual_tables.js';
+import { kResidualBits, kSlotBits, kTableBits } from './residual_tables.js';
+import { endsEarly, kLeastState } from './symbols.js';
+import type { SymbolReader } from './symbols.js';
 
 /** 65536 / n, rounded down. */
 export const kInverses = Int32Array.from({ length: 2048 }, (_, n) => (n === 0 ? 0 : 65536 / n));

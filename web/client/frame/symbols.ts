@@ -1,7 +1,7 @@
-import { badBlock, FrameError } from './frame_error';
-import { kCases, kClasses, kEscape, kRadius, kRanges, kResiduals } from './residual_tables';
-import { kResidualBits, kSlotBits, kTableBits } from './residual_tables';
-import { kGrowth } from './room';
+import { badBlock, FrameError } from './frame_error.js';
+import { kCases, kClasses, kEscape, kRadius, kRanges, kResiduals } from './residual_tables.js';
+import { kResidualBits, kSlotBits, kTableBits } from './residual_tables.js';
+import { kGrowth } from './room.js';
 
 export const kLeastState = 1 << 15;
 const kMostResidualBits = 30;

@@ -1,25 +1,34 @@
 import { Plane, Vector3 } from 'three';
-import type { Vector } from '../../client/index';
+import type { SessionDescription, Vector } from '../../client/index';
 import type { Request } from '../stream/stream';
 import type { HeldMarker } from '../view/held_marker';
 import type { Stage } from '../view/stage';
-import type { World } from '../view/world';
+import type { Picked, World } from '../view/world';
 import { Held } from './held';
 
 interface Grip {
   held: Held;
-  pointer: number;
+  /** Undefined: the keyboard's. */
+  pointer: number | undefined;
   body: number;
   particle: number;
   /** Through the particle when it was taken, parallel to the picture. */
   plane: Plane;
   target: Vector3;
+  /** Where and when it was pressed [px, ms]. */
+  pressed: { x: number; y: number; at: number };
 }
+
+/** A press that is shorter than this and stays where it is, is a click [ms, px]. */
+const kClickMs = 350;
+const kClickPixels = 5;
 
 /** Pulls bodies with the pointer: a press on a particle takes it, elsewhere it turns the view. */
 export class Grabber {
   private grip: Grip | undefined;
   private enabled = false;
+  /** The pointer is for something else. */
+  isPaused = false;
 
   constructor(
     private readonly stage: Stage,
@@ -27,6 +36,7 @@ export class Grabber {
     private readonly marker: HeldMarker,
     private readonly request: Request,
     private readonly refused: (error: unknown) => void,
+    private readonly clicked: (body: number, particle: number) => void,
   ) {
     const { canvas } = stage;
     // In the capture phase: this comes before the camera's controls and can keep a press from them.
@@ -43,6 +53,12 @@ export class Grabber {
     if (!enabled) this.release();
   }
 
+  /** Lets go where the session has let go: it began `anew`, or the body is no more. */
+  describe({ bodies }: SessionDescription, anew: boolean): void {
+    const isThere = bodies.some(({ body }) => body === this.grip?.body);
+    if (anew || !isThere) this.release();
+  }
+
   /** Lets go, as when the pointer is lifted. */
   release(): void {
     this.grip?.held.end();
@@ -54,26 +70,55 @@ export class Grabber {
     if (!this.grip) return;
     const { body, particle, target } = this.grip;
     const held = this.world.particle(body, particle);
-    if (!held) return this.release(); // its body has gone
+    if (!held) return; // not in the frame, or not drawn yet
     this.marker.show(held.position, target, held.radius);
   }
 
   private press(event: PointerEvent): void {
-    if (!this.enabled || this.grip || !event.isPrimary || event.button !== 0) return;
+    if (!this.enabled || this.isPaused || this.grip || !event.isPrimary || event.button !== 0)
+      return;
     const picked = this.world.pick(this.stage.rayThrough(event.clientX, event.clientY));
     if (!picked) return;
-    const { body, particle, position } = picked;
     this.stage.turnable = false;
     this.stage.canvas.setPointerCapture(event.pointerId);
+    const pressed = { x: event.clientX, y: event.clientY, at: event.timeStamp };
+    this.hold(picked, event.pointerId, pressed);
+  }
+
+  /** Takes a particle where it is, to be moved by `shift`. */
+  take(picked: Picked): void {
+    if (this.enabled && !this.grip) this.hold(picked, undefined, { x: 0, y: 0, at: -Infinity });
+  }
+
+  /** Whether something is held that `take` took. */
+  get isByHand(): boolean {
+    return this.grip !== undefined && this.grip.pointer === undefined;
+  }
+
+  /** Pulls what is held to elsewhere [m]. */
+  shift(by: Vector3): void {
+    if (this.grip) this.pull(this.grip.target.clone().add(by));
+  }
+
+  private hold(picked: Picked, pointer: number | undefined, pressed: Grip['pressed']): void {
+    const { body, particle, position } = picked;
     const start = { body, particle, target: toVector(position) };
     this.grip = {
       held: new Held(this.request, start, (error) => this.fail(error)),
-      pointer: event.pointerId,
+      pointer,
       body,
       particle,
       plane: new Plane().setFromNormalAndCoplanarPoint(this.stage.viewDirection(), position),
       target: position,
+      pressed,
     };
+    this.report();
+  }
+
+  private pull(target: Vector3): void {
+    if (!this.grip) return;
+    this.grip.target = target;
+    this.grip.held.move(toVector(target));
     this.report();
   }
 
@@ -82,18 +127,20 @@ export class Grabber {
     if (event.pointerId !== this.grip.pointer) return;
     const ray = this.stage.rayThrough(event.clientX, event.clientY);
     const target = ray.intersectPlane(this.grip.plane, new Vector3());
-    if (!target) return;
-    this.grip.target = target;
-    this.grip.held.move(toVector(target));
-    this.report();
+    if (target) this.pull(target);
   }
 
   private lift(event: PointerEvent): void {
-    if (this.grip?.pointer === event.pointerId) this.release();
+    const { grip } = this;
+    if (!grip || grip.pointer !== event.pointerId) return;
+    this.release();
+    const { x, y, at } = grip.pressed;
+    const isNear = Math.hypot(event.clientX - x, event.clientY - y) < kClickPixels;
+    if (isNear && event.timeStamp - at < kClickMs) this.clicked(grip.body, grip.particle);
   }
 
   private hover({ clientX, clientY, buttons, pointerType }: PointerEvent): void {
-    const isFree = this.enabled && buttons === 0 && pointerType === 'mouse';
+    const isFree = this.enabled && !this.isPaused && buttons === 0 && pointerType === 'mouse';
     const { canvas } = this.stage;
     const isOver = isFree && this.world.pick(this.stage.rayThrough(clientX, clientY)) !== undefined;
     canvas.dataset.pointer = isOver ? 'particle' : 'free';

@@ -1,32 +1,74 @@
 import type { ConnectionState, FrameHeader } from '../../client/index';
 import { element, onPress } from './elements';
-import { rateInWords } from './quality';
+import { showObstacle } from './obstacle';
+import { lossInWords } from './quality';
 
 const kConnected = 'Connected';
+
+/** A first picture that comes within this time needs no words before [ms]. */
+const kSoonMs = 1500;
 
 /** The connection's state in words, and a button with a count-down to the next attempt. */
 export class ConnectionLine {
   private readonly line = element('connection', HTMLElement);
   private readonly text = element('connection-text', HTMLElement);
   private readonly retry = element('connection-retry', HTMLButtonElement);
+  private readonly first = element('connection-first', HTMLButtonElement);
   private countdown: number | undefined;
+  private hasPicture = false;
+  private absence: number | undefined;
 
-  constructor(retryNow: () => void) {
+  /** `goToFirst`: to the server's first session; `isNamed`: whether the page's address has another. */
+  constructor(
+    retryNow: () => void,
+    goToFirst: () => void,
+    private readonly isNamed: () => boolean,
+  ) {
     onPress(this.retry, retryNow);
+    onPress(this.first, goToFirst);
   }
 
   show(state: ConnectionState): void {
     window.clearInterval(this.countdown);
-    this.line.dataset.state = state.name;
-    this.retry.hidden = state.name !== 'waiting';
+    // An open line is worth nothing before the session has answered.
+    this.line.dataset.state = state.name === 'open' ? 'connecting' : state.name;
+    this.retry.hidden = state.name !== 'waiting' && !isEnded(state);
+    this.first.hidden = state.name !== 'waiting' || !this.isNamed();
     this.text.textContent = words(state);
     if (state.name === 'waiting') this.countDown(state.retryMs);
+    else this.retry.textContent = 'Come back';
+    this.explainAbsence(state);
+  }
+
+  /** The session has answered. */
+  join(): void {
+    this.line.dataset.state = 'open';
+    this.text.textContent = kConnected;
   }
 
   /** Says where this viewer does not get all frames: the line, or what draws here, is too slow. */
-  showFrame({ stride }: FrameHeader): void {
-    const text = stride === 1 ? kConnected : `${kConnected}, but slow: ${rateInWords(stride)}`;
+  showFrame(header: FrameHeader): void {
+    this.hasPicture = true;
+    window.clearTimeout(this.absence);
+    showObstacle('server', undefined);
+    const loss = lossInWords(header);
+    const text = loss === undefined ? kConnected : `Slow: ${loss}`;
+    this.line.dataset.slow = String(loss !== undefined);
     if (this.text.textContent !== text) this.text.textContent = text;
+  }
+
+  /** Where there is no picture at all, not even an old one, the middle of the page says why. */
+  private explainAbsence(state: ConnectionState): void {
+    if (this.hasPicture) return;
+    window.clearTimeout(this.absence);
+    if (state.name === 'waiting') {
+      showObstacle('server', `${words(state)}. This page tries again by itself.`);
+    } else if (isEnded(state)) {
+      showObstacle('server', `${words(state)}.`);
+    } else {
+      const say = (): void => showObstacle('server', 'Waiting for the first picture …');
+      this.absence = window.setTimeout(say, kSoonMs);
+    }
   }
 
   /** On the button: a text that is read out must not change every second. */
@@ -41,12 +83,17 @@ export class ConnectionLine {
   }
 }
 
+/** For good, by the server. */
+function isEnded(state: ConnectionState): boolean {
+  return state.name === 'closed' && state.reason !== undefined;
+}
+
 function words(state: ConnectionState): string {
   switch (state.name) {
     case 'connecting':
       return 'Connecting …';
     case 'open':
-      return kConnected;
+      return 'Waiting for the session …';
     case 'waiting':
       return `Not connected: ${state.reason}`;
     case 'closed':

@@ -62,6 +62,11 @@ export class Counters {
     this.lastBytes = 0;
   }
 
+  /** How old the picture is [s], as far as that is known, and what comes. */
+  get figures(): { age: number | undefined; bytesPerSecond: number } {
+    return { age: this.age, bytesPerSecond: this.meter.bytesPerSecond(this.now()) };
+  }
+
   showStatus(status: SessionStatus): void {
     this.showTick(status.tick, status.time);
     // Whether it is slow is told by frames: where it changes, one comes.

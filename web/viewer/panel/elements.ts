@@ -12,3 +12,21 @@ export function onPress(button: HTMLButtonElement, action: () => void): void {
     action();
   });
 }
+
+/** A new element with these properties and this content. */
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  properties: Partial<HTMLElementTagNameMap[K]> = {},
+  ...content: (Node | string)[]
+): HTMLElementTagNameMap[K] {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...content);
+  return made;
+}
+
+/** A new button with this text; see `onPress`. */
+export function makeButton(text: string, action: () => void, label?: string): HTMLButtonElement {
+  const made = make('button', { type: 'button', ...(label && { ariaLabel: label }) }, text);
+  onPress(made, action);
+  return made;
+}

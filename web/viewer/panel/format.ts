@@ -34,3 +34,10 @@ export function formatLength(metres: number): string {
   if (millimetres >= 0.1) return `${Number(millimetres.toPrecision(2))} mm`;
   return `${Number((1000 * millimetres).toPrecision(2))} µm`;
 }
+
+export function formatMass(kilogrammes: number): string {
+  if (kilogrammes >= 1) return `${Number(kilogrammes.toPrecision(3))} kg`;
+  const grammes = 1000 * kilogrammes;
+  if (grammes >= 0.1) return `${Number(grammes.toPrecision(3))} g`;
+  return `${Number((1000 * grammes).toPrecision(3))} mg`;
+}

@@ -8,7 +8,7 @@ export class Hint {
   private readonly stage = element('stage', HTMLElement);
 
   constructor() {
-    for (const type of ['pointerdown', 'wheel'] as const) {
+    for (const type of ['pointerdown', 'wheel', 'keydown'] as const) {
       this.stage.addEventListener(type, () => this.fade(), { once: true, passive: true });
     }
   }

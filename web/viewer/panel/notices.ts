@@ -1,18 +1,31 @@
 import type { GuardEvent, SessionDescription } from '../../client/index';
-import { element, onPress } from './elements';
+import { element, makeButton, onPress } from './elements';
 import { formatSeconds } from './format';
 
 const kMostShown = 4;
 
 type Level = 'warning' | 'error';
 
+export interface Notice {
+  level: Level;
+  text: string;
+}
+
+/** What can be done about a message, by a button in it. */
+export interface Remedy {
+  label: string;
+  act(): void;
+}
+
 const kWarningMs = 15_000;
+/** Long enough to make up one's mind. */
+const kOfferMs = 60_000;
 
 /** Messages over the scene, the newest first, a few at most; errors stay until dismissed. */
 export class Notices {
   private readonly list = element('notices', HTMLOListElement);
 
-  add(level: Level, text: string): void {
+  add(level: Level, text: string, remedy?: Remedy): void {
     const newest = this.list.firstElementChild;
     if (newest?.firstChild?.textContent === text) return; // said already
     const item = document.createElement('li');
@@ -24,10 +37,20 @@ export class Notices {
     onPress(dismiss, () => item.remove());
     const words = document.createElement('span');
     words.textContent = text;
-    item.append(words, dismiss);
+    item.append(words);
+    if (remedy) {
+      const { label, act } = remedy;
+      item.append(
+        makeButton(label, () => {
+          item.remove();
+          act();
+        }),
+      );
+    }
+    item.append(dismiss);
     this.list.prepend(item);
     while (this.list.children.length > kMostShown) this.list.lastElementChild?.remove();
-    if (level === 'warning') window.setTimeout(() => item.remove(), kWarningMs);
+    if (level === 'warning') window.setTimeout(() => item.remove(), remedy ? kOfferMs : kWarningMs);
   }
 }
 

@@ -1,8 +1,32 @@
 import { element } from './elements';
 
-/** Says in the middle of the scene why nothing can be drawn there; `undefined`: it can. */
-export function showObstacle(text: string | undefined): void {
+/** What can keep the scene from being shown, the gravest first. */
+const kCauses = ['page', 'graphics', 'server'] as const;
+
+export type Cause = (typeof kCauses)[number];
+
+const told = new Map<Cause, string>();
+
+/** Says in the middle of the scene why nothing can be drawn there; `undefined`: this is no cause. */
+export function showObstacle(cause: Cause, text: string | undefined): void {
+  if (text === undefined) told.delete(cause);
+  else told.set(cause, text);
+  const words = kCauses.map((one) => told.get(one)).find((one) => one !== undefined);
   const obstacle = element('obstacle', HTMLElement);
-  obstacle.textContent = text ?? '';
-  obstacle.hidden = text === undefined;
+  if (obstacle.textContent !== (words ?? '')) obstacle.textContent = words ?? '';
+  obstacle.hidden = words === undefined;
+}
+
+/** Browsers take the graphics away from pages, for instance when the machine sleeps. */
+export function watchGraphics(canvas: HTMLCanvasElement, redraw: () => void): void {
+  canvas.addEventListener('webglcontextlost', () =>
+    showObstacle(
+      'graphics',
+      'The browser has stopped the drawing. It goes on when the browser allows it; if it does not, reload the page.',
+    ),
+  );
+  canvas.addEventListener('webglcontextrestored', () => {
+    showObstacle('graphics', undefined);
+    redraw();
+  });
 }

@@ -1,5 +1,6 @@
 import { element, onPress } from './elements';
 import { formatFactor } from './format';
+import type { Keys } from './keys';
 
 export interface PlaybackActions {
   play(): void;
@@ -20,20 +21,25 @@ export class Playback {
   private playing = false;
   private dragging = false;
 
-  constructor(private readonly actions: PlaybackActions) {
+  constructor(
+    private readonly actions: PlaybackActions,
+    keys: Keys,
+  ) {
     onPress(this.playButton, () => this.toggle());
     onPress(this.stepButton, () => actions.step());
     onPress(this.resetButton, () => actions.reset());
     this.slider.addEventListener('input', () => this.dragSpeed());
     this.slider.addEventListener('change', () => this.finishSpeed());
-    window.addEventListener('keydown', (event) => this.handleKey(event));
+    this.addKeys(keys);
   }
 
-  enable(enabled: boolean): void {
+  /** `canReset`: the session can go back to its start by that. */
+  enable(enabled: boolean, canReset: boolean): void {
     this.enabled = enabled;
-    for (const control of [this.playButton, this.stepButton, this.resetButton, this.slider]) {
+    for (const control of [this.playButton, this.stepButton, this.slider]) {
       control.disabled = !enabled;
     }
+    this.resetButton.disabled = !enabled || !canReset;
   }
 
   showPlaying(playing: boolean): void {
@@ -53,7 +59,8 @@ export class Playback {
     this.slider.ariaValueText = `${speed.toFixed(2)} times real time`; // its value is a logarithm
   }
 
-  private toggle(): void {
+  /** Plays what stands still, and the other way round. */
+  toggle(): void {
     if (this.playing) this.actions.pause();
     else this.actions.play();
   }
@@ -68,23 +75,40 @@ export class Playback {
     this.actions.setSpeed(sliderSpeed(this.slider.valueAsNumber));
   }
 
-  private handleKey(event: KeyboardEvent): void {
-    const { target, repeat } = event;
-    const key = event.key.toLowerCase(); // Caps Lock makes no difference
-    const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
-    if (!this.enabled || !isPlain || isControl(target, key)) return;
-    if (key === ' ' && !repeat) this.toggle();
-    else if (key === 's') this.actions.step();
-    else if (key === 'r' && !repeat) this.actions.reset();
-    else return;
-    event.preventDefault();
+  private addKeys(keys: Keys): void {
+    const isEnabled = (): boolean => this.enabled;
+    keys.add({
+      keys: [' '],
+      sign: 'space',
+      words: 'play, pause',
+      act: () => this.toggle(),
+      isEnabled,
+    });
+    const { step, reset } = this.actions;
+    keys.add({ keys: ['s'], sign: 'S', words: 'one tick', repeats: true, act: step, isEnabled });
+    keys.add({
+      keys: ['r'],
+      sign: 'R',
+      words: 'back to the start',
+      act: reset,
+      isEnabled: () => !this.resetButton.disabled,
+    });
+    keys.add({
+      keys: [',', '.'],
+      sign: ', .',
+      words: 'slower, faster',
+      repeats: true,
+      act: (key) => this.nudgeSpeed(key === '.' ? 1 : -1),
+      isEnabled,
+    });
   }
-}
 
-/** Whether the key means something to the control that has the focus. */
-function isControl(target: EventTarget | null, key: string): boolean {
-  if (target instanceof HTMLButtonElement) return key === ' ';
-  return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
+  /** Half a doubling slower or faster. */
+  private nudgeSpeed(direction: 1 | -1): void {
+    this.slider.valueAsNumber += direction / 2;
+    this.writeSpeed(sliderSpeed(this.slider.valueAsNumber));
+    this.finishSpeed();
+  }
 }
 
 /**

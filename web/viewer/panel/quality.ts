@@ -7,9 +7,23 @@ const kParts = [
   'half of the particles',
 ];
 
+const kSigns = ['⅛', '¼', '½'];
+
 /** Which of the session's frames a viewer gets. */
 export function rateInWords(stride: number): string {
   return stride === 1 ? 'every frame' : `every ${ordinal(stride)} frame`;
+}
+
+/** What a viewer does not get, because the line, or what draws here, is too slow for it. */
+export function lossInWords({
+  stride,
+  detail,
+}: Pick<FrameHeader, 'stride' | 'detail'>): string | undefined {
+  if (stride === 1 && kSigns[detail] === undefined) return undefined;
+  const parts = stride === 1 ? [] : [`1 picture in ${stride}`];
+  const part = kSigns[detail];
+  if (part !== undefined) parts.push(`${part} of the particles`);
+  return parts.join(', ');
 }
 
 /** What frames show of the session's state: how often, how exactly, how much. */

@@ -2,6 +2,7 @@ import type { BodyKindName, SceneEntry, SessionDescription } from '../../client/
 import { element } from './elements';
 import { formatCount } from './format';
 import { bodyColour } from '../view/palette';
+import type { Gallery } from './gallery';
 
 const kKindWords: Readonly<Record<BodyKindName, string>> = {
   liquid: 'liquid',
@@ -18,7 +19,10 @@ export class Scenes {
   private entries: SceneEntry[] = [];
   private current: SessionDescription | undefined;
 
-  constructor(load: (scene: string) => void) {
+  constructor(
+    private readonly gallery: Gallery,
+    load: (scene: string) => void,
+  ) {
     this.stranger.disabled = true;
     let byKeyboard = false;
     this.picker.addEventListener('keydown', () => (byKeyboard = true));
@@ -31,6 +35,7 @@ export class Scenes {
 
   enable(enabled: boolean): void {
     this.picker.disabled = !enabled;
+    this.gallery.enable(enabled);
   }
 
   /** Shows the scene that the session runs, also after a choice that was refused. */
@@ -40,12 +45,14 @@ export class Scenes {
 
   list(entries: SceneEntry[]): void {
     this.entries = entries;
+    this.gallery.list(entries);
     this.picker.replaceChildren(...entries.map(({ name, title }) => new Option(title, name)));
     this.refresh();
   }
 
   describe(description: SessionDescription): void {
     this.current = description;
+    this.gallery.mark(description.scene);
     const entry = this.entries.find(({ name }) => name === description.scene);
     const title = description.title || description.scene;
     this.showStranger(entry ? undefined : title);

@@ -1,9 +1,12 @@
 import { RequestError } from '../../client/index';
-import type { Frame, MethodName, Params, Result } from '../../client/index';
+import type { Attributes, Frame, MethodName, Params, Result } from '../../client/index';
 import type { FromWorker, ToWorker } from './wire';
 
 /** What the worker reports by itself; replies to requests come as promises instead. */
-export type Report = Exclude<FromWorker, { type: 'result' | 'refusal' | 'resume' }>;
+export type Report =
+  | Exclude<FromWorker, { type: 'result' | 'refusal' | 'resume' }>
+  /** The worker was not loaded, or has failed. */
+  | { type: 'broken' };
 
 export type Request = <M extends MethodName>(method: M, params: Params<M>) => Promise<Result<M>>;
 
@@ -21,12 +24,15 @@ export class Stream {
   });
   private readonly waiting = new Map<number, Waiting>();
   private lastKey = 0;
+  private session: string | undefined;
 
   constructor(
     /** The address of this page. */
     private readonly page: string,
     private readonly onReport: (report: Report) => void,
   ) {
+    this.session = chosenSession(page);
+    this.worker.onerror = () => onReport({ type: 'broken' });
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.handle(data);
   }
 
@@ -35,10 +41,16 @@ export class Stream {
     this.post({
       type: 'open',
       url: streamUrl(this.page),
-      session: chosenSession(this.page),
+      session: this.session,
       token: givenToken(this.page),
       resume: sessionStorage.getItem(kResumeKey) ?? undefined,
     });
+  }
+
+  /** Takes part in another session; undefined: in the server's first. */
+  go(session: string | undefined): void {
+    this.session = session;
+    this.post({ type: 'go', session });
   }
 
   readonly request: Request = (method, params) => {
@@ -61,6 +73,16 @@ export class Stream {
   /** Whether frames are wanted; they are from the start. */
   watch(wanted: boolean): void {
     this.post({ type: 'watch', wanted });
+  }
+
+  /** Asks for the newest frame once more, whole: it may have been coarse, or of fewer particles. */
+  refresh(): void {
+    this.post({ type: 'refresh' });
+  }
+
+  /** The values of particles that frames are to have, and how exactly; none from the start. */
+  askFor(attributes: Attributes): void {
+    this.post({ type: 'attributes', attributes });
   }
 
   private post(message: ToWorker, transfer: Transferable[] = []): void {

@@ -1,6 +1,6 @@
 /** Holds the connection and decodes frames, so that the page's thread only draws. */
 import { emptyFrame, RequestError, Session } from '../../client/index';
-import type { Frame, MethodName, Params } from '../../client/index';
+import type { Attributes, Frame, MethodName, Params } from '../../client/index';
 import { now } from './clock';
 import type { Entrance, FromWorker, Refusal, ToWorker } from './wire';
 
@@ -9,6 +9,7 @@ const kErrorInRadii = 1 / 32;
 
 let session: Session | undefined;
 let isWatched = true;
+let attributes: Attributes = {};
 const frame = emptyFrame();
 const spare: ArrayBuffer[] = [];
 
@@ -31,6 +32,7 @@ function open(entrance: Entrance): void {
     { ...entrance, socket: WebSocket, now, probe, errorInRadii: kErrorInRadii },
     {
       onState: (state) => post({ type: 'state', state }),
+      onJoined: (joined) => post({ type: 'joined', joined }),
       onDescription: (description) => post({ type: 'description', description }),
       onEvent: (event) => post({ type: 'event', event }),
       onFrame: (frame, bytes) => post({ type: 'frame', frame, bytes }, [frame.storage]),
@@ -41,12 +43,14 @@ function open(entrance: Entrance): void {
     },
   );
   session.watch(isWatched);
+  session.askFor(attributes);
   session.open();
 }
 
 /** The memory of a frame goes to the page and comes back: see ToWorker, `reuse`. */
 function frameFor(): Frame {
-  if (frame.storage.byteLength === 0) frame.storage = spare.pop() ?? frame.storage;
+  // One that was transferred is empty, and cannot be once more, though frames may need no memory.
+  if (frame.storage.byteLength === 0) frame.storage = spare.pop() ?? new ArrayBuffer(0);
   return frame;
 }
 
@@ -70,6 +74,9 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     case 'open':
       open(data);
       break;
+    case 'go':
+      session?.go(data.session);
+      break;
     case 'request':
       void request(data.key, data.method, data.params);
       break;
@@ -82,6 +89,13 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     case 'watch':
       isWatched = data.wanted;
       session?.watch(isWatched);
+      break;
+    case 'refresh':
+      session?.refresh();
+      break;
+    case 'attributes':
+      attributes = data.attributes;
+      session?.askFor(attributes);
       break;
   }
 };

@@ -1,8 +1,10 @@
 import type {
+  Attributes,
   ConnectionState,
   ErrorData,
   Event,
   Frame,
+  JoinedAs,
   MethodName,
   SessionDescription,
 } from '../../client/index';
@@ -18,14 +20,21 @@ export interface Entrance {
 /** Messages between the page and the worker that holds the connection. */
 export type ToWorker =
   | ({ type: 'open' } & Entrance)
+  /** To another session, by the same line; undefined: the server's first. */
+  | { type: 'go'; session: string | undefined }
   | { type: 'request'; key: number; method: MethodName; params: object }
   | { type: 'acknowledge'; number: number }
   /** Of a frame that is shown no more; it is transferred, like that of each frame. */
   | { type: 'reuse'; storage: ArrayBuffer }
-  | { type: 'watch'; wanted: boolean };
+  | { type: 'watch'; wanted: boolean }
+  /** The newest frame once more, whole. */
+  | { type: 'refresh' }
+  /** The values of particles that frames are to have, and how exactly. */
+  | { type: 'attributes'; attributes: Attributes };
 
 export type FromWorker =
   | { type: 'state'; state: ConnectionState }
+  | { type: 'joined'; joined: JoinedAs }
   | { type: 'description'; description: SessionDescription }
   | { type: 'event'; event: Event }
   | { type: 'frame'; frame: Frame; bytes: number }

@@ -1,61 +1,42 @@
-import {
-  Group,
-  InstancedBufferAttribute,
-  InstancedBufferGeometry,
-  Float32BufferAttribute,
-  Matrix4,
-  Mesh,
-  Quaternion,
-  Vector3,
-} from 'three';
-import type { Box3, Color, Ray, ShaderMaterial } from 'three';
+import { Group, Matrix4, Mesh, Vector3 } from 'three';
+import type { Box3, Ray, ShaderMaterial } from 'three';
 import { BodyKind } from '../../client/index';
 import type { BodyDescription, FrameHeader, GridBlock, PoseBlock } from '../../client/index';
 import { nearestSphere } from '../grab/pick';
 import type { Hit } from '../grab/pick';
-import { kLiquidLayer } from './liquid_pass';
+import { kNoValue } from './colour/maps';
+import { kQuantities, quantityOf } from './colour/quantity';
+import type { Range } from './colour/range';
+import { fluidDepthMaterial, fluidThicknessMaterial } from './fluid/fluid_particles';
+import { bodyUniforms, kColourSource } from './impostor';
+import type { BodyUniforms } from './impostor';
+import { cloudOf } from './footprint';
+import type { Footprint } from './footprint';
+import { kLayers } from './layers';
+import type { LiquidStyle } from './liquid_style';
 import { bodyColour } from './palette';
+import { ParticleColumns } from './particle_columns';
+import { RigidMotion } from './rigid_motion';
+import type { Choice } from './settings';
 import { shadowMaterial } from './shadow_material';
-import type { FloorUniforms } from './shadow_material';
+import type { SharedUniforms } from './shared_uniforms';
 import { sphereMaterial } from './sphere_material';
+import { Skin } from './surface/skin';
+import type { Workshop } from './surface/workshop';
 import { splatDepthMaterial, splatMaterial } from './splat_material';
 
 /** Draw order: shadows on the floor, solids; of liquids the depth before the splats. */
-const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2 };
+const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 
-/** Of a particle's radius: splats overlap, so that a liquid closes up to one surface. */
-const kSplatSize = 2;
+/** Skins; together with particles one sees through them, and they are around the spheres. */
+const kSkins = {
+  liquid: { wet: 1, opacity: 0.82, size: 1.5 },
+  deformable: { wet: 0.15, opacity: 1, size: 1.2 },
+  rigid: { wet: 0.35, opacity: 1, size: 1.2 },
+};
+const kVeil = { opacity: 0.4, size: 1.7 };
 
-const kGrowth = 1.5;
-
-const kGloss = { deformable: 0.1, rigid: 0.35 };
-
-/** For poses, which come with every frame. */
-const kPlace = new Vector3();
-const kTurn = new Quaternion();
-const kOne = new Vector3(1, 1, 1);
-
-/** 0, 1, 2, ... */
-function plainNumbers(count: number): InstancedBufferAttribute {
-  return new InstancedBufferAttribute(
-    new Uint32Array(count).map((_, i) => i),
-    1,
-  );
-}
-
-/** Two triangles for each instance; `center` is the instance's place, `number` its particle's. */
-function squares(
-  centers: InstancedBufferAttribute,
-  numbers: InstancedBufferAttribute,
-): InstancedBufferGeometry {
-  const geometry = new InstancedBufferGeometry();
-  const corners = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
-  geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.setAttribute('center', centers);
-  geometry.setAttribute('number', numbers);
-  return geometry;
-}
+const kGloss = { liquid: 0.6, deformable: 0.1, rigid: 0.35 };
 
 /**
  * One body's particles. The group's matrix takes the particles' own coordinates to the world: grid
@@ -64,66 +45,117 @@ function squares(
  */
 export class BodyView {
   readonly group = new Group();
-  private centers: InstancedBufferAttribute;
-  /** Of the particles, rising; undefined: 0, 1, 2, ... */
-  private numbers: Uint32Array | undefined;
-  /** The same for the graphics, which tint particles by them. */
-  private numberColumn: InstancedBufferAttribute;
-  private readonly geometry: InstancedBufferGeometry;
+  readonly columns: ParticleColumns;
+  readonly uniforms: BodyUniforms;
+  /** Of a rigid body. */
+  readonly motion: RigidMotion | undefined;
   private readonly materials: ShaderMaterial[] = [];
-  /** Takes positions that do not fill the graphics buffer; as long as that. */
-  private copies: Uint16Array | undefined;
+  /** Those of them that show a liquid, each in its style. */
+  private readonly styles: { mesh: Mesh; style: LiquidStyle }[] = [];
+  private colouring: Choice<'colour'> = 'body';
+  private readonly spheres: Mesh;
+  private readonly skin: Skin;
+  private values: Float32Array | undefined;
+  private hasSkin = false;
+  /** See SurfaceJob. */
+  private skinSize: number;
 
   constructor(
     readonly description: BodyDescription,
-    nthOfKind: number,
-    floor: FloorUniforms,
+    private readonly nthOfKind: number,
+    private readonly shared: SharedUniforms,
+    workshop: Workshop,
+    onChange: () => void,
   ) {
-    const local = description.local_positions;
-    this.centers = local
-      ? new InstancedBufferAttribute(new Float32Array(local), 3)
-      : new InstancedBufferAttribute(new Uint16Array(3 * description.particles), 3);
-    this.numberColumn = plainNumbers(this.centers.count);
-    this.geometry = squares(this.centers, this.numberColumn);
-    this.count = this.centers.count;
+    const { kind, radius, particles, local_positions: local } = description;
+    this.columns = new ParticleColumns(local ? local.length / 3 : particles, local);
+    this.motion = kind === 'rigid' ? new RigidMotion() : undefined;
+    this.uniforms = bodyUniforms(bodyColour(kind, nthOfKind), shared.look, !this.motion);
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
-    this.add(shadowMaterial(description.radius, floor), kOrder.shadow);
-    this.addParticles(bodyColour(description.kind, nthOfKind));
+    this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
+    const gloss = sphereMaterial(this.uniforms, radius, kGloss[kind]);
+    this.spheres = this.add(gloss, kOrder.solid);
+    this.skin = new Skin(workshop, this.uniforms, kSkins[kind], onChange);
+    this.skinSize = kSkins[kind].size;
+    this.skin.mesh.renderOrder = kOrder.skin;
+    this.group.add(this.skin.mesh);
+    if (kind === 'liquid') this.addLiquid();
   }
 
-  /** How many particles there are now: a liquid body may grow and shrink. */
   get count(): number {
-    return this.geometry.instanceCount;
+    return this.columns.count;
   }
 
-  private set count(count: number) {
-    this.geometry.instanceCount = count;
+  /** Whether it can show this body too, the n-th of its kind. */
+  isOf({ body, kind, radius }: BodyDescription, nthOfKind: number): boolean {
+    const { description } = this;
+    const isSame = body === description.body && kind === description.kind;
+    return isSame && radius === description.radius && nthOfKind === this.nthOfKind;
   }
 
-  /**
-   * Shows the block's positions as they are where their number stays: no copy is made, and they and
-   * their numbers must stay as they are until the next call.
-   */
-  showGrid(block: GridBlock, { origin, quantum }: FrameHeader): void {
-    const { positions } = block;
-    const wasNumbered = this.numbers !== undefined;
-    this.numbers = block.numbers;
-    this.count = positions.length / 3;
-    const room = this.centers.array.length;
-    if (positions.length === room) this.centers.array = positions;
-    else if (positions.length < room) this.copy(positions, room);
-    else this.grow(positions);
-    this.centers.needsUpdate = true;
-    if (wasNumbered || this.numbers) this.showNumbers();
+  /** What comes next does not follow from what is shown: no motion leads there. */
+  rest(): void {
+    this.columns.rest();
+    this.motion?.rest();
+  }
+
+  /** See ParticleColumns.show() for how long the block must stay as it is. */
+  showGrid(block: GridBlock, { origin, quantum, attributeQuanta }: FrameHeader): void {
+    this.columns.show(block, { origin, quantum });
+    const name = quantityOf(this.colouring);
+    const column = name && kQuantities[name].column;
+    const values = column === undefined ? undefined : block.attributes[column];
+    if (values && column !== undefined) {
+      this.columns.showValues(values);
+      this.uniforms.value_quantum.value = attributeQuanta[column]!;
+    }
+    const scale = this.uniforms.value_quantum.value;
+    const isSkinned = this.skin.mesh.visible;
+    this.values = isSkinned && values ? Float32Array.from(values, (v) => v * scale) : undefined;
+    this.showColour(values ? kColourSource.column : kColourSource.body);
     this.group.matrix.makeScale(quantum, quantum, quantum).setPosition(...origin);
     this.shown();
+    this.updateSkin();
   }
 
-  showPose({ position, orientation }: PoseBlock): void {
-    const [w, x, y, z] = orientation;
-    this.group.matrix.compose(kPlace.set(...position), kTurn.set(x, y, z, w), kOne);
+  /** `seconds`: since the pose before. */
+  showPose(block: PoseBlock, seconds: number): void {
+    if (!this.motion) return;
+    this.motion.add(block);
+    this.motion.velocities(seconds, this.uniforms.linear.value, this.uniforms.angular.value);
+    const isKnown = this.colouring === 'speed' && seconds > 0;
+    this.showColour(isKnown ? kColourSource.motion : kColourSource.body);
     this.shown();
+    this.updateSkin();
+  }
+
+  /** Places a rigid body between its last two poses; others are by their shaders. */
+  set phase(phase: number) {
+    if (!this.motion) return;
+    this.motion.matrixAt(phase, this.group.matrix);
+    this.group.matrixWorldNeedsUpdate = true;
+  }
+
+  /** What colours tell, from the next frame on. */
+  set colour(colouring: Choice<'colour'>) {
+    this.colouring = colouring;
+    this.showColour(kColourSource.body);
+  }
+
+  /** The least and the greatest value that colours tell; none: infinite and the other way round. */
+  valueRange(values: Int32Array | undefined): Range {
+    const { value_quantum: quantum, linear } = this.uniforms;
+    const range = { min: Infinity, max: -Infinity };
+    if (this.uniforms.colour_source.value === kColourSource.motion) {
+      range.min = range.max = linear.value.length();
+    } else if (values) {
+      for (const value of values) {
+        range.min = Math.min(range.min, value * quantum.value);
+        range.max = Math.max(range.max, value * quantum.value);
+      }
+    }
+    return range;
   }
 
   /** The particle that the ray meets first, by its number, and its distance in metres. */
@@ -132,50 +164,54 @@ export class BodyView {
     const scale = this.group.matrix.getMaxScaleOnAxis();
     const local = ray.clone().applyMatrix4(new Matrix4().copy(this.group.matrix).invert());
     local.direction.normalize();
-    const places = this.centers.array.subarray(0, 3 * this.count);
+    const places = this.columns.coordinates(this.uniforms.phase.value);
     const hit = nearestSphere(local, places, this.description.radius / scale);
     if (!hit) return undefined;
-    const particle = this.numbers?.[hit.particle] ?? hit.particle;
-    return { particle, distance: hit.distance * scale };
-  }
-
-  private copy(positions: Uint16Array, room: number): void {
-    this.copies ??= new Uint16Array(room);
-    this.copies.set(positions);
-    this.centers.array = this.copies;
-  }
-
-  /** Graphics buffers keep their length: a longer one takes the place of the old, with room. */
-  private grow(positions: Uint16Array): void {
-    this.copies = new Uint16Array(3 * Math.ceil(kGrowth * (positions.length / 3)));
-    this.copies.set(positions);
-    this.geometry.dispose(); // frees the old buffer
-    this.centers = new InstancedBufferAttribute(this.copies, 3);
-    this.geometry.setAttribute('center', this.centers);
-    this.numberColumn = plainNumbers(this.centers.count);
-    this.geometry.setAttribute('number', this.numberColumn);
-  }
-
-  /** They are sent to the graphics only where they have changed. */
-  private showNumbers(): void {
-    const { numbers, count } = this;
-    const shown = this.numberColumn.array as Uint32Array;
-    for (let i = 0; i < count; ++i) {
-      const number = numbers ? numbers[i]! : i;
-      if (shown[i] === number) continue;
-      shown[i] = number;
-      this.numberColumn.needsUpdate = true;
-    }
+    return { particle: this.columns.numberAt(hit.particle), distance: hit.distance * scale };
   }
 
   /** World position of the particle with this number; undefined where it is not shown. */
   positionOf(particle: number): Vector3 | undefined {
-    const place = this.numbers ? placeIn(this.numbers, particle) : particle;
-    return place !== undefined && place < this.count ? this.positionAt(place) : undefined;
+    const place = this.columns.placeOf(particle);
+    return place === undefined ? undefined : this.positionAt(place);
   }
 
   private positionAt(place: number): Vector3 {
-    return new Vector3().fromArray(this.centers.array, 3 * place).applyMatrix4(this.group.matrix);
+    const phase = this.uniforms.phase.value;
+    const at = (q: number): number => this.columns.coordinate(3 * place + q, phase);
+    return new Vector3(at(0), at(1), at(2)).applyMatrix4(this.group.matrix);
+  }
+
+  /** Whether none of its particles touches what has its middle there. */
+  isFree(middle: Vector3, footprint: Footprint): boolean {
+    if (!this.group.visible) return true;
+    const { radius } = this.description;
+    const box = footprint.box.clone().expandByScalar(radius);
+    for (let i = 0; i < this.count; ++i) {
+      const place = this.positionAt(i).sub(middle);
+      if (box.containsPoint(place) && footprint.touches(place, radius)) return false;
+    }
+    return true;
+  }
+
+  /** Its particles about their mean place. */
+  footprint(): Footprint {
+    const places = Array.from({ length: this.count }, (_, i) => this.positionAt(i));
+    const mean = places.reduce((sum, place) => sum.add(place), new Vector3());
+    mean.divideScalar(Math.max(places.length, 1));
+    for (const place of places) place.sub(mean);
+    return cloudOf(places, this.description.radius);
+  }
+
+  /** The particle next to the mean place of all. */
+  middle(): { particle: number; position: Vector3 } | undefined {
+    if (!this.group.visible || this.count === 0) return undefined;
+    const places = Array.from({ length: this.count }, (_, i) => this.positionAt(i));
+    const mean = places.reduce((sum, place) => sum.add(place), new Vector3());
+    mean.divideScalar(places.length);
+    const away = places.map((place) => place.distanceToSquared(mean));
+    const nearest = away.reduce((best, value, i) => (value < away[best]! ? i : best), 0);
+    return { particle: this.columns.numberAt(nearest), position: places[nearest]! };
   }
 
   /** Makes the box hold all particles. */
@@ -187,46 +223,83 @@ export class BodyView {
 
   dispose(): void {
     this.group.removeFromParent();
-    this.geometry.dispose();
+    this.columns.dispose();
+    this.skin.dispose();
     for (const material of this.materials) material.dispose();
   }
 
-  private addParticles(colour: Color): void {
-    const { kind, radius } = this.description;
-    if (kind === 'liquid') {
-      const look = { colour, radius: kSplatSize * radius };
-      this.add(splatDepthMaterial(look), kOrder.splatDepth, kLiquidLayer);
-      this.add(splatMaterial(look), kOrder.splat, kLiquidLayer);
-    } else {
-      this.add(sphereMaterial({ colour, radius, gloss: kGloss[kind] }), kOrder.solid);
-    }
+  /** How a liquid is drawn; of other bodies it changes nothing. */
+  set liquidStyle(chosen: LiquidStyle) {
+    for (const { mesh, style } of this.styles) mesh.visible = style === chosen;
+    this.updateSkin();
   }
 
-  private add(material: ShaderMaterial, order: number, layer = 0): void {
-    const mesh = new Mesh(this.geometry, material);
+  /** How a deformable or rigid body is drawn; of a liquid it changes nothing. */
+  set solidStyle(chosen: Choice<'solids'>) {
+    const { kind } = this.description;
+    if (kind === 'liquid') return;
+    this.spheres.visible = chosen !== 'skin';
+    this.skin.mesh.visible = chosen !== 'particles';
+    const veil = chosen === 'both' ? kVeil : kSkins[kind];
+    this.skin.opacity = veil.opacity;
+    this.skinSize = veil.size;
+    this.hasSkin = false;
+    this.updateSkin();
+  }
+
+  /** A rigid body's skin moves with it; others need a new one. */
+  private updateSkin(): void {
+    if (!this.skin.mesh.visible || this.count === 0 || !this.group.visible) return;
+    if (this.motion && this.hasSkin) return;
+    this.hasSkin = true;
+    const radius = this.description.radius / this.group.matrix.getMaxScaleOnAxis();
+    const places = this.columns.newestPlaces();
+    this.skin.follow({ places, radius, values: this.values, size: this.skinSize });
+  }
+
+  /** Particles without a value of what colours tell are grey. */
+  private showColour(source: number): void {
+    const { kind } = this.description;
+    this.uniforms.colour_source.value = source;
+    const isOfNumbers = quantityOf(this.colouring) !== undefined;
+    const nth = this.colouring === 'kind' ? 0 : this.nthOfKind;
+    this.uniforms.colour.value.copy(isOfNumbers ? kNoValue : bodyColour(kind, nth));
+  }
+
+  private addLiquid(): void {
+    const { uniforms, spheres } = this;
+    const { radius } = this.description;
+    const thickness = fluidThicknessMaterial(uniforms, radius, this.shared.behind);
+    const splatDepth = splatDepthMaterial(uniforms, radius);
+    this.styles.push(
+      { mesh: spheres, style: 'particles' },
+      { mesh: this.add(splatDepth, kOrder.splatDepth, 'splats'), style: 'splats' },
+      { mesh: this.add(splatMaterial(uniforms, radius), kOrder.splat, 'splats'), style: 'splats' },
+      { mesh: this.add(fluidDepthMaterial(uniforms, radius), 0, 'fluidDepth'), style: 'fluid' },
+      { mesh: this.add(thickness, 0, 'fluidThickness'), style: 'fluid' },
+      { mesh: this.skin.mesh, style: 'surface' },
+    );
+    this.liquidStyle = 'splats';
+  }
+
+  private add(
+    material: ShaderMaterial,
+    order: number,
+    layer: keyof typeof kLayers = 'scene',
+  ): Mesh {
+    const mesh = new Mesh(this.columns.geometry, material);
     mesh.frustumCulled = false; // the geometry's own bounds say nothing about its instances
     mesh.renderOrder = order;
-    mesh.layers.set(layer);
+    mesh.layers.set(kLayers[layer]);
     this.group.add(mesh);
     this.materials.push(material);
+    return mesh;
   }
 
   private shown(): void {
     this.group.matrixWorldNeedsUpdate = true;
     this.group.visible = true;
   }
-}
-
-/** Where a value is in rising ones. */
-function placeIn(values: Uint32Array, value: number): number | undefined {
-  let low = 0;
-  let high = values.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((values[middle] as number) < value) low = middle + 1;
-    else high = middle;
-  }
-  return values[low] === value ? low : undefined;
 }
 
 export function isGrid(block: { kind: number }): block is GridBlock {

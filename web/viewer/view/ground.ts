@@ -1,6 +1,6 @@
 import { Color, Mesh, PlaneGeometry, ShaderMaterial, Vector2 } from 'three';
 import type { Box3 } from 'three';
-import type { Theme } from './palette';
+import type { Theme } from './theme';
 
 const kVertexShader = /* glsl */ `
   out vec2 at;

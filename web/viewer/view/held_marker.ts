@@ -3,6 +3,7 @@ import type { Vector3 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import { kLayers } from './layers';
 
 const kColour = '#ffb300';
 
@@ -21,6 +22,7 @@ export class HeldMarker {
     this.line.frustumCulled = false;
     this.group.add(this.held, this.target, this.line);
     this.group.visible = false;
+    this.group.traverse(({ layers }) => layers.set(kLayers.marks));
   }
 
   show(held: Vector3, target: Vector3, radius: number): void {

@@ -1,25 +1,103 @@
+import { Color, Vector3 } from 'three';
+import type { IUniform } from 'three';
+import type { LookUniforms } from './shared_uniforms';
+
+/** Where a body's particles take their colours from. */
+export const kColourSource = {
+  body: 0,
+  /** The column `value`, in `value_quantum`. */
+  column: 1,
+  /** The speed of a rigid motion. */
+  motion: 2,
+};
+
+/** Of one body; all its materials share them. */
+export interface BodyUniforms extends LookUniforms {
+  colour: IUniform<Color>;
+  colour_source: IUniform<number>;
+  value_quantum: IUniform<number>;
+  /** Of a rigid body: velocity of its middle [m/s] and angular velocity [1/s], world axes. */
+  linear: IUniform<Vector3>;
+  angular: IUniform<Vector3>;
+}
+
+/** `moves`: by its particles, not as one; then it is the frames between which they are placed. */
+export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean): BodyUniforms {
+  return {
+    ...look,
+    ...(moves ? {} : { phase: { value: 1 } }),
+    colour: { value: colour.clone() },
+    colour_source: { value: kColourSource.body },
+    value_quantum: { value: 1 },
+    linear: { value: new Vector3() },
+    angular: { value: new Vector3() },
+  };
+}
+
+/** Where the instance is, in the frame of the model matrix, and whether that is cut away. */
+export const kPlaceOfParticle = /* glsl */ `
+  in vec3 center;
+  in vec3 before;
+  uniform float phase;
+  uniform vec4 clip_plane;
+
+  vec3 place_of_particle() {
+    return mix(before, center, phase);
+  }
+
+  bool is_clipped(vec3 world) {
+    return dot(clip_plane.xyz, world) > clip_plane.w;
+  }
+`;
+
 /**
  * A square around each particle, turned to the eye and just large enough for the sphere's outline
  * in perspective. Instances give the centre in the frame of the model matrix: grid steps for bodies
  * on the frame's grid, body axes for rigid bodies.
  */
 export const kImpostorVertexShader = /* glsl */ `
-  in vec3 center;
+  ${kPlaceOfParticle}
   in uint number;
+  in int value;
   uniform float radius;
+  uniform vec3 colour;
+  uniform int colour_source;
+  uniform float value_quantum;
+  uniform vec2 value_range;
+  uniform sampler2D value_map;
+  uniform vec3 linear;
+  uniform vec3 angular;
   flat out vec3 view_center;
-  flat out float tint;
+  flat out vec3 base;
   out vec3 view_point;
 
+  vec3 colour_at(vec3 arm) {
+    if (colour_source == ${kColourSource.body}) {
+      float tint = fract(float(number & 65535u) * 0.618034) - 0.5;
+      return colour * (1.0 + 0.16 * tint);
+    }
+    float shown = colour_source == ${kColourSource.column}
+      ? float(value) * value_quantum
+      : length(linear + cross(angular, arm));
+    float at = (shown - value_range.x) / (value_range.y - value_range.x);
+    return textureLod(value_map, vec2(clamp(at, 0.002, 0.998), 0.5), 0.0).rgb;
+  }
+
   void main() {
-    view_center = (modelViewMatrix * vec4(center, 1.0)).xyz;
+    vec3 place = place_of_particle();
+    vec3 world = (modelMatrix * vec4(place, 1.0)).xyz;
+    if (is_clipped(world)) {
+      gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of every picture
+      return;
+    }
+    view_center = (modelViewMatrix * vec4(place, 1.0)).xyz;
     float distance2 = dot(view_center, view_center);
     vec3 toward = -view_center * inversesqrt(distance2);
     vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), toward));
     vec3 up = cross(toward, right);
     float outline = radius * sqrt(distance2 / max(distance2 - radius * radius, 0.01 * distance2));
     view_point = view_center + outline * (position.x * right + position.y * up);
-    tint = fract(float(number & 65535u) * 0.618034) - 0.5;
+    base = colour_at(mat3(modelMatrix) * place);
     gl_Position = projectionMatrix * vec4(view_point, 1.0);
   }
 `;
@@ -27,10 +105,9 @@ export const kImpostorVertexShader = /* glsl */ `
 /** Where the eye's ray meets the sphere: `inside` is 1 in its middle and 0 at the outline. */
 export const kImpostorHit = /* glsl */ `
   flat in vec3 view_center;
-  flat in float tint;
+  flat in vec3 base;
   in vec3 view_point;
   uniform float radius;
-  uniform vec3 colour;
   uniform mat4 projectionMatrix;
 
   float depth_of(vec3 point) {

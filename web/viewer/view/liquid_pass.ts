@@ -1,29 +1,11 @@
-import {
-  BufferGeometry,
-  Color,
-  Float32BufferAttribute,
-  HalfFloatType,
-  Mesh,
-  ShaderMaterial,
-  Vector2,
-  WebGLRenderTarget,
-} from 'three';
-import type { PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import { Color, HalfFloatType, ShaderMaterial, Vector2, WebGLRenderTarget } from 'three';
+import type { BufferGeometry, Mesh, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import { kLayers } from './layers';
 import { kSun } from './light';
-
-/** The splats of liquid bodies are on this layer, which the canvas does not show. */
-export const kLiquidLayer = 1;
+import { kScreenVertexShader, screenMesh } from './screen';
 
 /** Splats are soft, so they need fewer pixels than the canvas has. */
 const kScale = 0.5;
-
-const kVertexShader = /* glsl */ `
-  out vec2 at;
-  void main() {
-    at = 0.5 + 0.5 * position.xy;
-    gl_Position = vec4(position.xy, 0.0, 1.0);
-  }
-`;
 
 const kFragmentShader = /* glsl */ `
   in vec2 at;
@@ -71,12 +53,9 @@ export class LiquidPass {
   private readonly target = new WebGLRenderTarget(1, 1, { count: 2, type: HalfFloatType });
 
   constructor() {
-    const triangle = new BufferGeometry();
-    const corners = [-1, -1, 0, 3, -1, 0, -1, 3, 0];
-    triangle.setAttribute('position', new Float32BufferAttribute(corners, 3));
     const [shape, tint] = this.target.textures;
     const material = new ShaderMaterial({
-      vertexShader: kVertexShader,
+      vertexShader: kScreenVertexShader,
       fragmentShader: kFragmentShader,
       uniforms: {
         shape: { value: shape },
@@ -85,8 +64,7 @@ export class LiquidPass {
       },
       transparent: true,
     });
-    this.surface = new Mesh(triangle, material);
-    this.surface.frustumCulled = false;
+    this.surface = screenMesh(material);
     this.surface.renderOrder = 3;
   }
 
@@ -97,9 +75,9 @@ export class LiquidPass {
     const colour = renderer.getClearColor(new Color());
     renderer.setClearColor(0, 0);
     renderer.setRenderTarget(this.target);
-    camera.layers.set(kLiquidLayer);
+    camera.layers.set(kLayers.splats);
     renderer.render(scene, camera);
-    camera.layers.set(0);
+    camera.layers.set(kLayers.scene);
     renderer.setRenderTarget(null);
     renderer.setClearColor(colour, 1);
   }

@@ -13,35 +13,3 @@ export function bodyColour(kind: BodyKindName, n: number): Color {
   const colours = kColours[kind];
   return new Color(colours[n % colours.length]);
 }
-
-/** Colours of the surroundings; the page's style sheet has the same stage colour. */
-export interface Theme {
-  stage: Color;
-  floor: Color;
-  shadow: Color;
-  grid: Color;
-  edge: Color;
-  wall: Color;
-}
-
-const kLight: Theme = {
-  stage: new Color('#e9edf1'),
-  floor: new Color('#fafbfc'),
-  shadow: new Color('#aab4bf'),
-  grid: new Color('#c3ccd5'),
-  edge: new Color('#4a5a6a'),
-  wall: new Color('#7f97ad'),
-};
-
-const kDark: Theme = {
-  stage: new Color('#14181d'),
-  floor: new Color('#2a323b'),
-  shadow: new Color('#11151a'),
-  grid: new Color('#303a45'),
-  edge: new Color('#a9b8c6'),
-  wall: new Color('#8fa9c2'),
-};
-
-export function theme(dark: boolean): Theme {
-  return dark ? kDark : kLight;
-}

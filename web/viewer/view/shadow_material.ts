@@ -1,4 +1,6 @@
 import { Color, CustomBlending, MinEquation, OneFactor, ShaderMaterial, Vector4 } from 'three';
+import { kPlaceOfParticle } from './impostor';
+import type { BodyUniforms } from './impostor';
 
 /** The floor that shadows fall on; one object serves all bodies. */
 export interface FloorUniforms {
@@ -22,7 +24,7 @@ export function floorUniforms(): FloorUniforms {
 }
 
 const kVertexShader = /* glsl */ `
-  in vec3 center;
+  ${kPlaceOfParticle}
   uniform float radius;
   uniform float floor_z;
   uniform float reach;
@@ -31,11 +33,13 @@ const kVertexShader = /* glsl */ `
   out vec2 at;
 
   void main() {
-    vec3 world = (modelMatrix * vec4(center, 1.0)).xyz;
+    vec3 world = (modelMatrix * vec4(place_of_particle(), 1.0)).xyz;
     strength = clamp(1.0 - (world.z - floor_z) / reach, 0.0, 1.0);
     spot = position.xy;
     at = world.xy + 2.2 * radius * position.xy;
-    gl_Position = projectionMatrix * viewMatrix * vec4(at, floor_z, 1.0);
+    gl_Position = is_clipped(world)
+      ? vec4(2.0, 2.0, 2.0, 1.0) // outside of every picture
+      : projectionMatrix * viewMatrix * vec4(at, floor_z, 1.0);
   }
 `;
 
@@ -59,11 +63,15 @@ const kFragmentShader = /* glsl */ `
  * A soft dark spot on the floor below each particle; the darkest wins, so spots do not add up.
  * Not marked transparent: it is drawn after the floor and before all spheres.
  */
-export function shadowMaterial(radius: number, floor: FloorUniforms): ShaderMaterial {
+export function shadowMaterial(
+  radius: number,
+  floor: FloorUniforms,
+  body: BodyUniforms,
+): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kVertexShader,
     fragmentShader: kFragmentShader,
-    uniforms: { radius: { value: radius }, ...floor },
+    uniforms: { ...body, ...floor, radius: { value: radius } },
     depthTest: false,
     depthWrite: false,
     blending: CustomBlending,

@@ -1,6 +1,6 @@
 import { ShaderMaterial } from 'three';
-import type { Color } from 'three';
 import { kImpostorHit, kImpostorVertexShader } from './impostor';
+import type { BodyUniforms } from './impostor';
 import { kSun } from './light';
 
 const kShade = /* glsl */ `
@@ -18,27 +18,18 @@ const kShade = /* glsl */ `
     float crevice = mix(0.45, 1.0, smoothstep(0.0, 0.75, facing));
     float shine = pow(max(dot(n, normalize(eye + ${kSun})), 0.0), mix(24.0, 90.0, gloss));
 
-    vec3 base = colour * (1.0 + 0.16 * tint);
     vec3 light = base * (sky + 0.62 * sun) * crevice + mix(0.10, 0.65, gloss) * shine;
     gl_FragColor = vec4(light, coverage);
     #include <colorspace_fragment>
   }
 `;
 
-export interface SphereLook {
-  colour: Color;
-  /** World radius of the drawn spheres [m]. */
-  radius: number;
-  /** 0 matt, 1 wet. */
-  gloss: number;
-}
-
-/** Shaded spheres. */
-export function sphereMaterial({ colour, radius, gloss }: SphereLook): ShaderMaterial {
+/** Shaded spheres of this radius [m]; gloss: 0 matt, 1 wet. */
+export function sphereMaterial(body: BodyUniforms, radius: number, gloss: number): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kImpostorVertexShader,
     fragmentShader: `uniform float gloss;\n${kImpostorHit}${kShade}`,
-    uniforms: { colour: { value: colour }, radius: { value: radius }, gloss: { value: gloss } },
+    uniforms: { ...body, radius: { value: radius }, gloss: { value: gloss } },
     alphaToCoverage: true,
   });
 }

@@ -1,6 +1,6 @@
 import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 'three';
-import type { Color } from 'three';
 import { kImpostorHit, kImpostorVertexShader } from './impostor';
+import type { BodyUniforms } from './impostor';
 
 /** Of the splat's radius: how far below the surface of the nearest splat others still count. */
 const kLayer = 0.6;
@@ -21,7 +21,7 @@ const kSplat = /* glsl */ `
     vec3 bulge = -miss / radius;
     float weight = inside * inside * inside;
     shape = weight * vec4(0.9 * bulge.xy, point.z, 1.0);
-    tints = weight * vec4(colour * (1.0 + 0.1 * tint), 1.0);
+    tints = weight * vec4(base, 1.0);
   }
 `;
 
@@ -30,31 +30,28 @@ const kOutputs = /* glsl */ `
   layout(location = 1) out vec4 tints;
 `;
 
-export interface SplatLook {
-  colour: Color;
-  /** World radius at which a splat ends [m]. */
-  radius: number;
-}
+/** Of a particle's radius: splats overlap, so that a liquid closes up to one surface. */
+const kSize = 2;
 
-function splatShader({ colour, radius }: SplatLook, body: string): ShaderMaterial {
+function splatShader(uniforms: BodyUniforms, radius: number, shade: string): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
-    fragmentShader: kOutputs + kImpostorHit + body,
-    uniforms: { colour: { value: colour }, radius: { value: radius } },
+    fragmentShader: kOutputs + kImpostorHit + shade,
+    uniforms: { ...uniforms, radius: { value: kSize * radius } },
   });
 }
 
 /** Writes depths only: just below the surface that the splats are to form. */
-export function splatDepthMaterial(look: SplatLook): ShaderMaterial {
-  const material = splatShader(look, kDepth);
+export function splatDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+  const material = splatShader(body, radius, kDepth);
   material.colorWrite = false;
   return material;
 }
 
 /** Adds up what makes the surface: LiquidPass divides by the weights. */
-export function splatMaterial(look: SplatLook): ShaderMaterial {
-  const material = splatShader(look, kSplat);
+export function splatMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+  const material = splatShader(body, radius, kSplat);
   material.depthWrite = false;
   material.blending = CustomBlending;
   material.blendEquation = AddEquation;

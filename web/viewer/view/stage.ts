@@ -2,8 +2,16 @@ import { Box3, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRende
 import type { Ray } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { fitBox } from './fit';
+import type { Pose } from './pose';
+import { FluidPass } from './fluid/fluid_pass';
+import type { FluidLook } from './fluid/fluid_pass';
+import { kLayers } from './layers';
 import { LiquidPass } from './liquid_pass';
-import type { Theme } from './palette';
+import type { LiquidStyle } from './liquid_style';
+import type { SharedUniforms } from './shared_uniforms';
+import { graphicsOf } from './graphics';
+import type { Graphics } from './graphics';
+import type { Theme } from './theme';
 
 /** From where the first camera looks at the middle of the scene; z is up. */
 const kFirstView = new Vector3(0.42, -1, 0.5).normalize();
@@ -15,19 +23,27 @@ export class Stage {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
-  private readonly liquid = new LiquidPass();
+  private readonly splats = new LiquidPass();
+  private readonly fluid: FluidPass;
+  private style: LiquidStyle = 'splats';
+  private fluidLook: FluidLook | undefined;
   private stale = true;
+  private drewLast = false;
+  /** Told of each picture, when [ms] and whether one was drawn in the animation frame before. */
+  onDrawn: (at: number, follows: boolean) => void = () => undefined;
   /** What the first view shows; undefined once the user has turned it. */
   private framed: Box3 | undefined = new Box3();
 
   /** `beforeDraw` runs once in each animation frame. */
   constructor(
     readonly canvas: HTMLCanvasElement,
+    shared: SharedUniforms,
     private readonly beforeDraw: () => void,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.scene.add(this.liquid.surface);
+    this.scene.add(this.splats.surface);
+    this.fluid = new FluidPass(shared.behind);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
@@ -50,7 +66,21 @@ export class Stage {
 
   paint(look: Theme): void {
     this.renderer.setClearColor(look.stage);
+    this.fluid.paint(look);
     this.invalidate();
+  }
+
+  /** How liquids are drawn, and what they are like; undefined: there are none. */
+  showLiquid(style: LiquidStyle, look: FluidLook | undefined): void {
+    this.style = style;
+    this.fluidLook = look;
+    this.splats.surface.visible = style === 'splats' && look !== undefined;
+    this.invalidate();
+  }
+
+  /** What this browser draws with. */
+  get graphics(): Graphics {
+    return graphicsOf(this.renderer);
   }
 
   /** Goes back to the first view, of what `follow` is given next. */
@@ -82,6 +112,19 @@ export class Stage {
     return this.camera.getWorldDirection(new Vector3());
   }
 
+  /** From where the camera looks, and at what. */
+  get pose(): Pose {
+    return { eye: this.camera.position.clone(), target: this.controls.target.clone() };
+  }
+
+  set pose({ eye, target }: Pose) {
+    this.framed = undefined;
+    this.camera.position.copy(eye);
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.invalidate();
+  }
+
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
     const { target, distance } = fitBox(this.framed, kFirstView, this.camera, kFirstMargin);
@@ -109,9 +152,23 @@ export class Stage {
   private draw(): void {
     this.beforeDraw();
     this.controls.update();
+    const drewLast = this.drewLast;
+    this.drewLast = this.stale;
     if (!this.stale) return;
     this.stale = false;
-    this.liquid.draw(this.renderer, this.scene, this.camera);
-    this.renderer.render(this.scene, this.camera);
+    this.onDrawn(performance.now(), drewLast);
+    this.drawNow();
+  }
+
+  private drawNow(): void {
+    const { renderer, scene, camera, fluidLook: look } = this;
+    if (look && this.style === 'fluid') {
+      this.fluid.draw(renderer, scene, camera, look);
+      return;
+    }
+    if (look && this.style === 'splats') this.splats.draw(renderer, scene, camera);
+    camera.layers.enable(kLayers.marks);
+    renderer.render(scene, camera);
+    camera.layers.set(kLayers.scene);
   }
 }

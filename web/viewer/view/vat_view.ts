@@ -1,21 +1,23 @@
-import { BackSide, BoxGeometry, EdgesGeometry, Group, Mesh, MeshBasicMaterial } from 'three';
+import { BackSide, Box3, BoxGeometry, EdgesGeometry, Group, Mesh, MeshBasicMaterial } from 'three';
 import { PlaneGeometry, Vector3 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import type { Box3 } from 'three';
 import type { Vector, VatDescription } from '../../client/index';
-import type { Theme } from './palette';
+import type { Theme } from './theme';
 
 /** The vat: edges, a floor, and far walls just tinted enough to be seen. */
 export class VatView {
   readonly group = new Group();
+  private readonly low: Vector3;
+  private readonly high: Vector3;
   private readonly edges: LineSegments2;
   private readonly floor: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly walls: Mesh<BoxGeometry, MeshBasicMaterial>;
 
   constructor({ min, max }: VatDescription, look: Theme) {
-    const low = new Vector3(...min);
+    const low = (this.low = new Vector3(...min));
+    this.high = new Vector3(...max);
     const size = new Vector3(...max).sub(low);
     const middle = size.clone().multiplyScalar(0.5).add(low);
 
@@ -52,10 +54,15 @@ export class VatView {
     this.group.position.set(...offset);
   }
 
+  /** Where it is now. */
+  get box(): Box3 {
+    const { position } = this.group;
+    return new Box3(this.low.clone().add(position), this.high.clone().add(position));
+  }
+
   /** Makes the box hold the vat where it is now. */
   expand(box: Box3): void {
-    this.group.updateMatrixWorld();
-    box.expandByObject(this.walls);
+    box.union(this.box);
   }
 
   dispose(): void {

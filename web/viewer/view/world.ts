@@ -1,12 +1,32 @@
 import { Box3, Group, Vector3 } from 'three';
 import type { Ray } from 'three';
 import { BodyKind } from '../../client/index';
-import type { BodyKindName, Frame, SessionDescription, Vector } from '../../client/index';
+import type {
+  BodyDescription,
+  BodyKindName,
+  Frame,
+  FrameHeader,
+  GridBlock,
+  PoseBlock,
+  SessionDescription,
+  Vector,
+} from '../../client/index';
 import { BodyView, isGrid } from './body_view';
+import { kQuantities, quantityOf } from './colour/quantity';
+import type { Range } from './colour/range';
+import type { FluidLook } from './fluid/fluid_pass';
+import type { Footprint } from './footprint';
 import { Ground } from './ground';
-import type { Theme } from './palette';
-import { floorUniforms } from './shadow_material';
+import type { Theme } from './theme';
+import { Marks } from './marks/marks';
+import type { LiquidStyle } from './liquid_style';
+import type { Choice } from './settings';
+import type { SharedUniforms } from './shared_uniforms';
+import { Workshop } from './surface/workshop';
 import { VatView } from './vat_view';
+
+/** Of the vat's least width: as deep, a liquid has its full colour. */
+const kClarity = 0.6;
 
 /** A particle under the pointer. */
 export interface Picked {
@@ -15,51 +35,120 @@ export interface Picked {
   position: Vector3;
 }
 
+/** Where a particle is now, its radius, and how many its body has. */
+export interface Shown {
+  position: Vector3;
+  radius: number;
+  particles: number;
+}
+
 /** Everything that a session shows: its bodies, its vat, and the ground below. */
 export class World {
   readonly group = new Group();
+  readonly marks = new Marks();
   private readonly ground: Ground;
-  private readonly floor = floorUniforms();
   private bodies = new Map<number, BodyView>();
   private vat: VatView | undefined;
   private description: SessionDescription | undefined;
   /** Where the vat has been or, without one, where the bodies were at first. */
   private seen = new Box3();
+  private style: LiquidStyle = 'splats';
+  private solids: Choice<'solids'> = 'particles';
+  private colouring: Choice<'colour'> = 'body';
+  private readonly workshop = new Workshop();
+  /** Told when something has changed between frames. */
+  onChange: () => void = () => undefined;
+  /** Of the last frame [s]. */
+  private time: number | undefined;
+  /** Told what values the bodies of a frame have, of what colours tell. */
+  onValues: (range: Range) => void = () => undefined;
 
-  constructor(private look: Theme) {
+  constructor(
+    private look: Theme,
+    private readonly shared: SharedUniforms,
+  ) {
     this.ground = new Ground(look);
-    this.group.add(this.ground.mesh);
+    this.group.add(this.ground.mesh, this.marks.group);
     this.paint(look);
   }
 
-  /** Replaces the bodies and the vat by those described. */
+  /** Shows what is described; what was there of the same scene stays in sight until it moves on. */
   describe(description: SessionDescription): void {
-    this.clear();
+    const { session, scene, vat } = description;
+    const before = this.description;
+    const isSame =
+      session === before?.session &&
+      scene === before.scene &&
+      JSON.stringify(vat) === JSON.stringify(before.vat);
+    if (!isSame) this.clear();
     this.description = description;
+    this.time = undefined;
+    const old = this.bodies;
+    this.bodies = new Map();
     const counts: Record<BodyKindName, number> = { liquid: 0, deformable: 0, rigid: 0 };
     for (const body of description.bodies) {
-      const view = new BodyView(body, counts[body.kind]++, this.floor);
-      this.bodies.set(body.body, view);
-      this.group.add(view.group);
+      this.bodies.set(body.body, this.viewOf(body, counts[body.kind]++, old.get(body.body)));
     }
-    if (description.vat) {
-      this.vat = new VatView(description.vat, this.look);
+    for (const [body, view] of old) if (this.bodies.get(body) !== view) view.dispose();
+    if (vat && !this.vat) {
+      this.vat = new VatView(vat, this.look);
       this.group.add(this.vat.group);
       this.moveVat([0, 0, 0]);
       this.ground.fit(this.seen);
     }
+    this.marks.describe([...this.bodies.values()], this.height);
+  }
+
+  /** The one that was there, where it is of the same body. */
+  private viewOf(body: BodyDescription, nth: number, old: BodyView | undefined): BodyView {
+    if (old?.isOf(body, nth)) {
+      old.rest();
+      return old;
+    }
+    const view = new BodyView(body, nth, this.shared, this.workshop, () => this.onChange());
+    view.liquidStyle = this.style;
+    view.colour = this.colouring;
+    view.solidStyle = this.solids;
+    this.group.add(view.group);
+    return view;
   }
 
   /** Returns false for a frame of another epoch, which this world cannot show. */
   show(frame: Frame): boolean {
     if (frame.header.epoch !== this.description?.epoch) return false;
+    const seconds = frame.header.time - (this.time ?? frame.header.time);
+    this.time = frame.header.time;
+    this.shared.look.interval.value = seconds;
     for (const block of frame.blocks) {
       if (block.kind === BodyKind.vat) this.moveVat(block.offset);
-      else if (isGrid(block)) this.bodies.get(block.body)?.showGrid(block, frame.header);
-      else this.bodies.get(block.body)?.showPose(block);
+      else this.showBlock(block, frame.header, seconds);
     }
     if (this.seen.isEmpty()) this.settle();
+    this.marks.follow(this.extent);
     return true;
+  }
+
+  /** Between the last two frames: 0 at the one before, 1 at the newest. */
+  set phase(phase: number) {
+    this.shared.look.phase.value = phase;
+    for (const view of this.bodies.values()) view.phase = phase;
+  }
+
+  /** What colours tell, from the next frame on. */
+  set colour(colour: Choice<'colour'>) {
+    this.colouring = colour;
+    for (const view of this.bodies.values()) view.colour = colour;
+  }
+
+  private showBlock(block: GridBlock | PoseBlock, header: FrameHeader, seconds: number): void {
+    const view = this.bodies.get(block.body);
+    if (!view) return;
+    if (isGrid(block)) view.showGrid(block, header);
+    else view.showPose(block, seconds);
+    const name = quantityOf(this.colouring);
+    if (!name) return;
+    const values = isGrid(block) ? block.attributes[kQuantities[name].column] : undefined;
+    this.onValues(view.valueRange(values));
   }
 
   /** What a camera should see; the slides of a vat are known only once they were seen. */
@@ -80,19 +169,78 @@ export class World {
     return nearest;
   }
 
-  /** Where a particle is now and its radius; undefined once it or its body is gone. */
-  particle(body: number, particle: number): { position: Vector3; radius: number } | undefined {
+  /** Undefined once it or its body is gone. */
+  particle(body: number, particle: number): Shown | undefined {
     const view = this.bodies.get(body);
     const position = view?.positionOf(particle);
-    return view && position && { position, radius: view.description.radius };
+    const of = view && { radius: view.description.radius, particles: view.count };
+    return of && position && { position, ...of };
+  }
+
+  /** Whether no particle touches what has its middle there, but those of the body left out. */
+  isFree(middle: Vector3, footprint: Footprint, except?: number): boolean {
+    return [...this.bodies].every(
+      ([body, view]) => body === except || view.isFree(middle, footprint),
+    );
+  }
+
+  /** The room that a body takes, about its middle. */
+  footprintOf(body: number): Footprint | undefined {
+    return this.bodies.get(body)?.footprint();
+  }
+
+  /** The particle of a body that is next to its middle. */
+  middleOf(body: number): { particle: number; position: Vector3 } | undefined {
+    return this.bodies.get(body)?.middle();
   }
 
   paint(look: Theme): void {
     this.look = look;
     this.ground.paint(look);
     this.vat?.paint(look);
-    this.floor.floor_colour.value.copy(look.floor);
-    this.floor.shadow_colour.value.copy(look.shadow);
+    this.marks.paint(look);
+    this.shared.floor.floor_colour.value.copy(look.floor);
+    this.shared.floor.shadow_colour.value.copy(look.shadow);
+  }
+
+  /** Where what is shown is now: in the vat where there is one. */
+  get extent(): Box3 {
+    return this.vat?.box ?? this.seen;
+  }
+
+  /** How high what happens can be [m]. */
+  get height(): number {
+    const { min, max } = this.extent;
+    return max.z > min.z ? max.z - min.z : 1;
+  }
+
+  /** How liquids are drawn. */
+  set liquidStyle(style: LiquidStyle) {
+    this.style = style;
+    for (const view of this.bodies.values()) view.liquidStyle = style;
+  }
+
+  /** How deformable and rigid bodies are drawn. */
+  set solidStyle(style: Choice<'solids'>) {
+    this.solids = style;
+    for (const view of this.bodies.values()) view.solidStyle = style;
+  }
+
+  /** How many particles liquids have. */
+  get liquidParticles(): number {
+    return [...this.bodies.values()]
+      .filter(({ description }) => description.kind === 'liquid')
+      .reduce((sum, { count }) => sum + count, 0);
+  }
+
+  /** Of the scene's liquids; undefined where there are none. */
+  get fluid(): FluidLook | undefined {
+    const { vat, bodies = [] } = this.description ?? {};
+    const radii = bodies.filter(({ kind }) => kind === 'liquid').map(({ radius }) => radius);
+    if (radii.length === 0) return undefined;
+    const radius = Math.max(...radii);
+    const size = vat ? Math.min(...vat.max.map((most, q) => most - vat.min[q]!)) : 20 * radius;
+    return { radius, clarity: kClarity * size, paint: 0 };
   }
 
   private moveVat(offset: Vector): void {
@@ -101,9 +249,9 @@ export class World {
     this.vat.moveTo(offset);
     this.vat.expand(this.seen);
     const [x, y, z] = offset;
-    this.floor.floor_z.value = vat.min[2] + z;
-    this.floor.reach.value = 0.6 * (vat.max[2] - vat.min[2]);
-    this.floor.floor_bounds.value.set(
+    this.shared.floor.floor_z.value = vat.min[2] + z;
+    this.shared.floor.reach.value = 0.6 * (vat.max[2] - vat.min[2]);
+    this.shared.floor.floor_bounds.value.set(
       vat.min[0] + x,
       vat.min[1] + y,
       vat.max[0] + x,

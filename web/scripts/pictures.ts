@@ -1,0 +1,141 @@
+/**
+ * Takes the pictures of web/README.md, pictures/NAME.webp: the built page as the built program serves
+ * it. VAT_PROGRAM names the program, CHROMIUM the browser; names of pictures as arguments take these
+ * alone.
+ */
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { Observer } from '../../tests/browser/observer';
+import { Server } from '../../tests/browser/server';
+import { Viewer } from '../../tests/browser/viewer';
+import type { Look } from '../../tests/browser/viewer';
+import { compress } from './webp';
+
+const kFolder = fileURLToPath(new URL('../pictures/', import.meta.url));
+const kMostBytes = 40_000;
+
+const kDesktop: Look = { viewport: { width: 960, height: 600 } };
+const kPhone: Look = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true };
+const dark = { colorScheme: 'dark' } as const;
+
+interface Picture {
+  name: string;
+  scene: string;
+  /** After so many ticks. */
+  ticks: number;
+  /** Settings of the view, as links carry them. */
+  view?: string;
+  look?: Look;
+  /** Before it is taken. */
+  act?(viewer: Viewer, observer: Observer): Promise<void>;
+}
+
+/** Opens a section of the panel, and scrolls to it. */
+async function unfold(viewer: Viewer, id: string): Promise<void> {
+  const { page } = viewer;
+  await page.locator('#sections > details').evaluateAll((all, open) => {
+    for (const section of all as HTMLDetailsElement[]) section.open = section.id === open;
+  }, id);
+  await page.locator(`#${id}`).evaluate((section) => section.scrollIntoView());
+}
+
+async function watchReplay(viewer: Viewer): Promise<void> {
+  await unfold(viewer, 'kept-details');
+  await viewer.page.click('#recording-watch');
+  await viewer.page.waitForSelector('#replay:not([hidden])');
+  await viewer.page.locator('#replay-position').evaluate((slider: HTMLInputElement) => {
+    slider.valueAsNumber = Number(slider.max) - 40;
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+    slider.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await viewer.page.waitForTimeout(2000);
+}
+
+async function drawCurves(viewer: Viewer, observer: Observer): Promise<void> {
+  await unfold(viewer, 'curves-details');
+  await observer.request('control.play', {});
+  await viewer.page.waitForTimeout(8000);
+}
+
+async function place(viewer: Viewer): Promise<void> {
+  await unfold(viewer, 'build-details');
+  await viewer.page.click('#add-place');
+  for (let n = 0; n < 8; ++n) await viewer.page.keyboard.press('ArrowLeft');
+}
+
+const kBath = { scene: 'sliding-vat-liquid', ticks: 150 };
+const kPictures: readonly Picture[] = [
+  { name: 'clear-liquid', ...kBath, view: 'liquid:fluid,solids:skin' },
+  { name: 'surface', ...kBath, view: 'liquid:surface,solids:both', look: { ...kDesktop, ...dark } },
+  { name: 'splats', ...kBath, view: 'liquid:splats' },
+  { name: 'particles', ...kBath, view: 'liquid:particles', look: { ...kDesktop, ...dark } },
+  {
+    name: 'speed',
+    scene: 'dam-break',
+    ticks: 30,
+    view: 'liquid:particles,colour:speed,arrows:true',
+  },
+  {
+    name: 'cut',
+    scene: 'buoyancy',
+    ticks: 60,
+    view: 'liquid:particles,colour:pressure,clip:y,clipAt:0.5,axes:true',
+    look: { ...kDesktop, ...dark },
+  },
+  { name: 'build', ...kBath, act: place },
+  { name: 'curves', ...kBath, look: { ...kDesktop, ...dark }, act: drawCurves },
+  { name: 'replay', ...kBath, act: watchReplay },
+  { name: 'phone', ...kBath, look: kPhone },
+  {
+    name: 'phone-dark',
+    ...kBath,
+    look: { ...kPhone, ...dark },
+    act: async (viewer) => {
+      await viewer.page.tap('#sheet');
+      await unfold(viewer, 'parameters-details');
+    },
+  },
+];
+
+async function take(picture: Picture, server: Server, observer: Observer): Promise<void> {
+  const { name, scene, ticks, view, look = kDesktop, act } = picture;
+  await observer.request('scene.load', { scene });
+  await observer.request('control.pause', {});
+  await observer.request('control.reset', {});
+  await observer.request('control.step', { ticks });
+  const viewer = await Viewer.open(`${server.url}#view=${view ?? ''}`, {
+    colorScheme: 'light',
+    ...look,
+  });
+  try {
+    await viewer.untilTick(ticks, ticks);
+    await act?.(viewer, observer);
+    await viewer.page.addStyleTag({ content: '#hint { display: none; }' });
+    await viewer.page.waitForTimeout(1500); // surfaces are made beside the page
+    const png = await viewer.page.screenshot();
+    const page = await viewer.blankPage();
+    const address = `data:image/png;base64,${png.toString('base64')}`;
+    const base64 = await page.evaluate(compress, [address, kMostBytes] as const);
+    writeFileSync(`${kFolder}${name}.webp`, Buffer.from(base64, 'base64'));
+  } finally {
+    await viewer.close();
+  }
+}
+
+mkdirSync(kFolder, { recursive: true });
+const data = mkdtempSync(join(tmpdir(), 'vat-pictures-')); // for a recording to show
+const server = new Server(['--data', data]);
+await server.start();
+const observer = await Observer.join(server.url);
+try {
+  const chosen = process.argv.slice(2).filter((word) => !word.includes('/') && word !== '--');
+  for (const picture of kPictures) {
+    if (chosen.length === 0 || chosen.includes(picture.name)) await take(picture, server, observer);
+  }
+} finally {
+  observer.leave();
+  await server.kill();
+  rmSync(data, { recursive: true });
+}

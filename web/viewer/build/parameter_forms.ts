@@ -1,0 +1,77 @@
+import type { MethodName, Params, Scene } from '../../client/index';
+import { element } from '../panel/elements';
+import { attempt } from '../stream/desk';
+import type { Desk } from '../stream/desk';
+import { InterfaceForm } from './interface_form';
+import { MaterialForm } from './material_form';
+import { NumericsForm } from './numerics_form';
+import type { SceneDocument } from './scene_document';
+
+/** A part of the section in which the scene's constants are changed. */
+export interface ParameterForm {
+  readonly element: HTMLElement;
+  enable(enabled: boolean): void;
+  /** `initial`: as it was loaded. */
+  show(scene: Scene, initial: Scene): void;
+}
+
+/** Changes something, and shows it; tells what is wrong with it, if anything. */
+export type Change<M extends MethodName> = (params: Params<M>) => Promise<string | undefined>;
+
+/** Materials, what happens where they meet, and time steps: with units, ranges and a way back. */
+export class ParameterForms {
+  private readonly section = element('parameters-details', HTMLDetailsElement);
+  private readonly forms: readonly ParameterForm[];
+  private initial: Scene | undefined;
+  private isEnabled = false;
+
+  constructor(
+    private readonly desk: Desk,
+    private readonly document: SceneDocument,
+  ) {
+    this.forms = [
+      new MaterialForm((params) => this.change('world.set_material', params)),
+      new InterfaceForm((params) => this.change('world.set_interface', params)),
+      new NumericsForm((params) => this.change('world.set_numerics', params)),
+    ];
+    element('forms-place', HTMLElement).append(...this.forms.map((form) => form.element));
+    this.section.addEventListener('toggle', () => void this.look());
+  }
+
+  enable(enabled: boolean): void {
+    this.isEnabled = enabled;
+    for (const form of this.forms) form.enable(enabled);
+  }
+
+  /** `isNew`: another scene or session, or the same from an earlier time on. */
+  describe(isNew: boolean): void {
+    if (isNew) this.initial = undefined;
+    void this.look();
+  }
+
+  /** Asks for the scene where somebody looks. */
+  private async look(): Promise<void> {
+    if (!this.section.open || !this.isEnabled) return;
+    const scene = await this.document.get();
+    if (!scene) return;
+    this.initial ??= await this.asLoaded(scene);
+    for (const form of this.forms) form.show(scene, this.initial);
+  }
+
+  private async asLoaded(present: Scene): Promise<Scene> {
+    return this.desk.request('scene.get', {}).then(
+      ({ scene }) => scene,
+      () => present, // a scene that no message holds: there is no way back, and nothing to say
+    );
+  }
+
+  private async change<M extends MethodName>(
+    method: M,
+    params: Params<M>,
+  ): Promise<string | undefined> {
+    const fault = await attempt(this.desk, method, params);
+    this.document.forget();
+    await this.look();
+    return fault;
+  }
+}

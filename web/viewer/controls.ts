@@ -1,0 +1,169 @@
+import type { Event, SceneReference, SessionDescription } from '../client/index';
+import { Builder } from './build/builder';
+import { ParameterForms } from './build/parameter_forms';
+import { Pour } from './build/pour';
+import type { SceneDocument } from './build/scene_document';
+import { VatPad } from './build/vat_pad';
+import { Kept } from './kept/kept';
+import { DeviceTilt } from './panel/device_tilt';
+import { Gallery } from './panel/gallery';
+import { Gravity } from './panel/gravity';
+import type { Keys } from './panel/keys';
+import { Playback } from './panel/playback';
+import { SceneFile } from './panel/scene_file';
+import { Scenes } from './panel/scenes';
+import { ReplayBar } from './replay/replay_bar';
+import { ask } from './stream/desk';
+import type { Desk } from './stream/desk';
+import type { View } from './view/view';
+
+/** What the controls need of the page around them. */
+export interface Surroundings {
+  readonly document: SceneDocument;
+  nameOfBody(body: number): string;
+  /** Whether the pointer places something, and is not to take bodies. */
+  placing(isPlacing: boolean): void;
+  /** To another session; undefined: the server's first. */
+  go(session: string | undefined): void;
+}
+
+/** All by which the session is worked: playback, scenes, what is kept, parameters. */
+export class Controls {
+  private readonly playback: Playback;
+  private readonly gallery = new Gallery((scene) => this.load(scene));
+  private readonly scenes = new Scenes(this.gallery, (scene) => this.load(scene));
+  private readonly sceneFile: SceneFile;
+  private readonly gravity: Gravity;
+  private readonly deviceTilt: DeviceTilt;
+  private readonly pour: Pour;
+  private readonly builder: Builder;
+  private readonly vatPad: VatPad;
+  private readonly parameters: ParameterForms;
+  private readonly kept: Kept;
+  private readonly replay: ReplayBar;
+  private isReplay = false;
+  /** Where the user was before the replay. */
+  private live: string | undefined;
+
+  constructor(
+    private readonly desk: Desk,
+    view: View,
+    keys: Keys,
+    private readonly surroundings: Surroundings,
+  ) {
+    const command = (method: 'control.play' | 'control.pause' | 'control.step' | 'control.reset') =>
+      void ask(desk, method, {});
+    const actions = {
+      play: () => command('control.play'),
+      pause: () => command('control.pause'),
+      step: () => command('control.step'),
+      reset: () => command('control.reset'),
+      setSpeed: (speed: number) => void ask(desk, 'control.set_speed', { speed }),
+    };
+    this.playback = new Playback(actions, keys);
+    this.sceneFile = new SceneFile({
+      load: (scene) => this.load(scene),
+      refuse: (words) => desk.fail(words),
+    });
+    this.gravity = new Gravity((gravity) => ask(desk, 'world.set_gravity', { gravity }));
+    this.deviceTilt = new DeviceTilt(
+      ({ right, away }) => {
+        const look = view.stage.viewDirection().setZ(0).normalize();
+        this.gravity.lean([
+          { degrees: right, along: [look.y, -look.x] },
+          { degrees: away, along: [look.x, look.y] },
+        ]);
+      },
+      (words) => desk.fail(words),
+    );
+    this.pour = new Pour(desk, surroundings.document, view.world, keys);
+    this.builder = new Builder(desk, surroundings.document, view, keys, (isPlacing) =>
+      surroundings.placing(isPlacing),
+    );
+    this.vatPad = new VatPad(desk);
+    this.parameters = new ParameterForms(desk, surroundings.document);
+    this.kept = new Kept(desk, {
+      load: (scene) => this.load(scene),
+      scenesChanged: () => void this.listScenes(),
+      go: (session) => surroundings.go(session),
+    });
+    this.replay = new ReplayBar(desk, view.stage, {
+      togglePlaying: () => this.playback.toggle(),
+      leave: () => surroundings.go(this.live),
+      nameOfBody: (body) => surroundings.nameOfBody(body),
+    });
+    keys.add({
+      keys: ['g'],
+      sign: 'G',
+      words: 'choose a scene',
+      act: () => this.gallery.open(),
+    });
+  }
+
+  /** The server was entered, for the first time or again. */
+  enter(): void {
+    void this.listScenes();
+    void ask(this.desk, 'server.info', {}).then((info) => info && this.kept.showServer(info));
+  }
+
+  /** `isNew`: another scene, or another session; `isEarlier`: a reset, or a state that was saved. */
+  describe(description: SessionDescription, isNew: boolean, isEarlier: boolean): void {
+    this.isReplay = description.replay !== undefined;
+    if (!this.isReplay) this.live = description.session;
+    this.scenes.describe(description);
+    this.gravity.describe(description.gravity, isNew);
+    this.pour.describe(description, isEarlier);
+    this.builder.describe(description, isNew || isEarlier);
+    this.vatPad.describe(description);
+    this.parameters.describe(isNew || isEarlier);
+    this.kept.describe(description);
+    this.replay.describe(description);
+    this.playback.showPlaying(description.playing);
+    this.playback.showSpeed(description.speed);
+  }
+
+  handle(event: Event): void {
+    if (event.event === 'session.status') {
+      this.playback.showPlaying(event.params.playing);
+      this.playback.showSpeed(event.params.speed);
+    }
+    this.replay.handle(event);
+    if (event.event === 'session.closed' && this.isReplay) this.surroundings.go(this.live);
+  }
+
+  /** In a replay, what was recorded cannot be changed. */
+  enable(isJoined: boolean): void {
+    const isLive = isJoined && !this.isReplay;
+    this.playback.enable(isJoined, isLive);
+    this.scenes.enable(isLive);
+    this.gravity.enable(isLive);
+    this.deviceTilt.enable(isLive);
+    this.pour.enable(isLive);
+    this.builder.enable(isLive);
+    this.vatPad.enable(isLive);
+    this.parameters.enable(isLive);
+    this.sceneFile.enable(isLive);
+    this.kept.enable(isJoined, this.isReplay);
+  }
+
+  /** A frame of this tick is shown. */
+  showTick(tick: number): void {
+    this.replay.showTick(tick);
+  }
+
+  /** Once in each animation frame. */
+  update(): void {
+    this.replay.update();
+  }
+
+  private load(scene: SceneReference): void {
+    void ask(this.desk, 'scene.load', { scene }).then((done) => done ?? this.scenes.refresh());
+  }
+
+  private async listScenes(): Promise<void> {
+    const answer = await ask(this.desk, 'scene.list', {});
+    if (!answer) return;
+    this.scenes.list(answer.scenes);
+    this.kept.showScenes(answer.scenes);
+  }
+}

@@ -1,0 +1,117 @@
+import { RequestError } from '../../client/index';
+import type { SessionDescription, SessionStats, SessionStatus } from '../../client/index';
+import { element, make } from '../panel/elements';
+import type { Desk } from '../stream/desk';
+import { watchTheme } from '../view/theme';
+import type { Chart } from './chart';
+import { History } from './history';
+import { diagnosticSeries, kCharts, kSeries } from './series';
+import type { SeriesName } from './series';
+import { StageBar } from './stage_bar';
+import { profileBetween } from './stage_words';
+import './curves.css';
+
+/** Between two questions for the session's figures, while somebody looks at them [ms]. */
+const kPeriodMs = 1000;
+
+/** What the page itself knows of the stream. */
+export interface StreamFigures {
+  /** [s] */
+  age: number | undefined;
+  bytesPerSecond: number;
+}
+
+/** The section of curves over time and of what a tick is spent on. */
+export class Curves {
+  private readonly section = element('curves-details', HTMLDetailsElement);
+  private readonly place = element('curves-place', HTMLElement);
+  private readonly history = new History<SeriesName>(kSeries);
+  private readonly stages = new StageBar();
+  private charts: Chart[] | undefined;
+  private isLoading = false;
+  private hasDiagnostics = true;
+  private isJoined = false;
+  private before: SessionStats | undefined;
+  private tickSeconds = 1;
+  private status: SessionStatus | undefined;
+
+  constructor(
+    private readonly desk: Desk,
+    private readonly figures: () => StreamFigures,
+  ) {
+    this.place.append(this.stages.element);
+    this.section.addEventListener('toggle', () => void this.look());
+    window.setInterval(() => void this.look(), kPeriodMs);
+    watchTheme(() => this.charts?.forEach((chart) => chart.repaint()));
+  }
+
+  enable(isJoined: boolean): void {
+    this.isJoined = isJoined;
+    if (!isJoined) this.before = undefined;
+  }
+
+  /** `isNew`: another scene, or another session. */
+  describe({ tick_seconds: tickSeconds }: SessionDescription, isNew: boolean): void {
+    this.tickSeconds = tickSeconds;
+    if (!isNew) return;
+    this.history.clear();
+    this.before = undefined;
+  }
+
+  showStatus(status: SessionStatus): void {
+    this.status = status;
+    if (!status.playing) return;
+    const { age, bytesPerSecond } = this.figures();
+    this.history.add(status.time, {
+      rate: status.real_time_factor,
+      bytes: bytesPerSecond,
+      ...(age !== undefined && { age }),
+    });
+  }
+
+  /** Asks and draws, where somebody looks. */
+  private async look(): Promise<void> {
+    if (!this.section.open || document.hidden) return;
+    await this.load();
+    this.charts?.forEach((chart) => chart.show(this.history));
+    if (!this.isJoined) return;
+    const stats = await this.ask();
+    if (!stats) return;
+    if (stats.diagnostics) this.history.add(stats.time, diagnosticSeries(stats.diagnostics));
+    const profile = profileBetween(this.before, stats);
+    this.before = stats;
+    if (profile) this.stages.show(profile, this.tickSeconds, this.status?.speed ?? 1);
+  }
+
+  /** Undefined where it fails: the connection's state tells why, and the next look is soon. */
+  private async ask(): Promise<SessionStats | undefined> {
+    try {
+      return await this.desk.request(
+        'session.stats',
+        this.hasDiagnostics ? { diagnostics: true } : {},
+      );
+    } catch (error) {
+      // A server that is older than this page knows no such parameter.
+      if (error instanceof RequestError && error.kind === 'invalid_params') {
+        this.hasDiagnostics = false;
+      }
+      return undefined;
+    }
+  }
+
+  /** The library that draws comes once it is needed. */
+  private async load(): Promise<void> {
+    if (this.charts || this.isLoading) return;
+    this.isLoading = true;
+    try {
+      const { Chart } = await import('./chart');
+      this.charts = kCharts.map((plan) => new Chart(plan));
+      this.place.append(...this.charts.map((chart) => chart.element));
+    } catch {
+      const words = 'The curves could not be fetched from the server; open this section again.';
+      this.place.append(make('p', { className: 'soft' }, words));
+    } finally {
+      this.isLoading = false;
+    }
+  }
+}

@@ -1,0 +1,96 @@
+import type { Diagnostics } from '../../client/index';
+import { formatQuantity } from '../view/colour/quantity';
+import { formatBytes, formatFactor, formatMilliseconds } from '../panel/format';
+
+/** What is drawn over time. */
+export type SeriesName =
+  | 'kinetic'
+  | 'gravitational'
+  | 'elastic'
+  | 'contact'
+  | 'momentum'
+  | 'density'
+  | 'densest'
+  | 'rate'
+  | 'age'
+  | 'bytes';
+
+export interface ChartPlan {
+  title: string;
+  /** What it means, for who has never seen it. */
+  explanation: string;
+  series: readonly { name: SeriesName; label: string; colour: string }[];
+  format(value: number): string;
+}
+
+export const kCharts: readonly ChartPlan[] = [
+  {
+    title: 'Energy',
+    explanation: 'Of all bodies, by kind; that of gravity is about the origin.',
+    series: [
+      { name: 'kinetic', label: 'motion', colour: '#3f87d9' },
+      { name: 'gravitational', label: 'gravity', colour: '#e08a3c' },
+      { name: 'elastic', label: 'springs', colour: '#3aa876' },
+      { name: 'contact', label: 'contacts', colour: '#d4577a' },
+    ],
+    format: (value) => `${formatQuantity(value)} J`,
+  },
+  {
+    title: 'Momentum',
+    explanation: 'How strong that of all bodies together is.',
+    series: [{ name: 'momentum', label: 'momentum', colour: '#a86cc9' }],
+    format: (value) => `${formatQuantity(value)} kg m/s`,
+  },
+  {
+    title: 'Liquid denser than at rest',
+    explanation: 'By how much, on average and where it is most: less is more accurate.',
+    series: [
+      { name: 'density', label: 'mean', colour: '#3f87d9' },
+      { name: 'densest', label: 'most', colour: '#d4577a' },
+    ],
+    format: (value) => `${formatQuantity(100 * value)} %`,
+  },
+  {
+    title: 'Simulated seconds per second',
+    explanation: 'As fast as set, unless the server cannot keep up.',
+    series: [{ name: 'rate', label: 'rate', colour: '#3f87d9' }],
+    format: formatFactor,
+  },
+  {
+    title: 'Age of the picture',
+    explanation: 'From the server’s publishing a state to its being drawn here.',
+    series: [{ name: 'age', label: 'age', colour: '#d4577a' }],
+    format: formatMilliseconds,
+  },
+  {
+    title: 'Received per second',
+    explanation: 'Bytes of frames.',
+    series: [{ name: 'bytes', label: 'bytes', colour: '#3aa876' }],
+    format: (value) => `${formatBytes(value)}/s`,
+  },
+];
+
+export const kSeries: readonly SeriesName[] = kCharts.flatMap(({ series }) =>
+  series.map(({ name }) => name),
+);
+
+/** The figures that the server measures for who asks, as series. */
+export function diagnosticSeries({
+  kinetic_energy: kinetic,
+  gravitational_energy: gravitational,
+  elastic_energy: elastic,
+  contact_energy: contact,
+  momentum,
+  mean_density_error: density,
+  max_density_error: densest,
+}: Diagnostics): Partial<Record<SeriesName, number>> {
+  return {
+    kinetic,
+    gravitational,
+    elastic,
+    contact,
+    momentum: Math.hypot(...momentum),
+    density,
+    densest,
+  };
+}

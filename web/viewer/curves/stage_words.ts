@@ -1,0 +1,111 @@
+import type { SessionStats } from '../../client/index';
+
+/** What stages of a step are about, in words, and which belong to it. */
+const kGroups: Readonly<Record<string, readonly string[]>> = {
+  'finding neighbours': ['find_pairs', 'list_neighbours', 'sort_liquid', 'sort_solids'],
+  'forces in liquids': [
+    'liquid_density',
+    'liquid_pressure',
+    'liquid_forces',
+    'viscous_images',
+    'find_surface',
+    'surface_normals',
+    'surface_tension',
+    'cohesion',
+    'adhesion',
+  ],
+  'keeping liquids dense': [
+    'recall_pressure',
+    'project_velocities',
+    'correct_density',
+    'cell_pressure',
+    'cell_forces',
+  ],
+  'liquids against bodies': ['solid_pressure', 'liquid_forces_on_solids'],
+  'contacts and walls': ['find_contacts', 'contacts', 'project_contacts', 'walls', 'hold_inside'],
+  'springs of deformable bodies': [
+    'springs',
+    'change_springs',
+    'limit_elongation',
+    'implicit_springs',
+    'implicit_dashpots',
+    'bound_damping',
+    'solve_damping',
+  ],
+  'moving particles': [
+    'external_forces',
+    'predict_velocities',
+    'kick',
+    'drift',
+    'pose_rigid_bodies',
+    'gather_rigid_forces',
+    'sleep',
+    'change_bodies',
+  ],
+  'watching that nothing breaks': ['guard', 'keep_state'],
+};
+
+const kOther = 'other work';
+
+/** Of the time of a tick. */
+export interface Part {
+  words: string;
+  /** [s] per tick. */
+  seconds: number;
+  /** Of all. */
+  share: number;
+}
+
+export interface TickProfile {
+  /** Wall time of a tick [s]. */
+  seconds: number;
+  /** Those with the most first. */
+  parts: Part[];
+}
+
+/** What ticks between two looks at a session's figures were spent on; undefined: there were none. */
+export function profileBetween(
+  before: SessionStats | undefined,
+  now: SessionStats,
+): TickProfile | undefined {
+  const isSame = before !== undefined && now.ticks >= before.ticks; // or begun anew
+  const ticks = now.ticks - (isSame ? before.ticks : 0);
+  if (ticks <= 0) return undefined;
+  const earlier = new Map(
+    isSame ? before.stages.map(({ stage, seconds }) => [stage, seconds]) : [],
+  );
+  const sums = new Map<string, number>();
+  for (const { stage, seconds } of now.stages) {
+    const words = wordsOf(stage);
+    const spent = Math.max(seconds - (earlier.get(stage) ?? 0), 0) / ticks;
+    sums.set(words, (sums.get(words) ?? 0) + spent);
+  }
+  const all = [...sums.values()].reduce((sum, seconds) => sum + seconds, 0);
+  const parts = [...sums]
+    .map(([words, seconds]) => ({ words, seconds, share: all > 0 ? seconds / all : 0 }))
+    .sort((a, b) => b.seconds - a.seconds);
+  const seconds = (now.seconds - (isSame ? before.seconds : 0)) / ticks;
+  return { seconds, parts };
+}
+
+function wordsOf(stage: string): string {
+  const found = Object.entries(kGroups).find(([, stages]) => stages.includes(stage));
+  return found?.[0] ?? kOther;
+}
+
+/** Whether the server is fast enough, and where the time goes; `tickSeconds`: simulated in a tick. */
+export function profileInWords(
+  { seconds, parts }: TickProfile,
+  tickSeconds: number,
+  speed: number,
+): string {
+  const allowed = tickSeconds / speed;
+  const milliseconds = (value: number): string => `${(1000 * value).toPrecision(2)} ms`;
+  const [first] = parts;
+  const most = first ? ` Most goes into ${first.words}: ${Math.round(100 * first.share)} %.` : '';
+  const enough = seconds <= allowed;
+  const verdict = enough
+    ? 'so it keeps up.'
+    : `so it runs ${(seconds / allowed).toPrecision(2)} times slower than set: fewer particles or a lower speed help.`;
+  return `A tick takes ${milliseconds(seconds)} of the ${milliseconds(allowed)} that it may take, ${verdict}${most}`;
+}

@@ -1,0 +1,61 @@
+import type { SceneEntry, ServerInfo, SessionDescription } from '../../client/index';
+import { element, make } from '../panel/elements';
+import type { Desk } from '../stream/desk';
+import { Recordings } from './recordings';
+import { SavedScenes } from './saved_scenes';
+import { SavedStates } from './saved_states';
+import './kept.css';
+
+export interface KeptActions {
+  load(scene: string): void;
+  /** Scenes were saved or deleted. */
+  scenesChanged(): void;
+  go(session: string): void;
+}
+
+/** The section of what is kept: moments, scenes and recordings. */
+export class Kept {
+  private readonly section = element('kept-details', HTMLDetailsElement);
+  private readonly note = make('p', { id: 'kept-note', className: 'soft', hidden: true });
+  private readonly states: SavedStates;
+  private readonly scenes: SavedScenes;
+  private readonly recordings: Recordings;
+  private session = '';
+  private isEnabled = false;
+
+  constructor(desk: Desk, actions: KeptActions) {
+    this.states = new SavedStates(desk);
+    this.scenes = new SavedScenes(desk, actions.load, actions.scenesChanged);
+    this.recordings = new Recordings(desk, () => this.session, actions.go);
+    element('kept-place', HTMLElement).append(this.note);
+    this.section.addEventListener('toggle', () => {
+      if (!this.section.open || !this.isEnabled) return;
+      void this.states.refresh();
+      actions.scenesChanged(); // others save too
+    });
+  }
+
+  enable(enabled: boolean, isReplay: boolean): void {
+    this.isEnabled = enabled;
+    this.states.list.enable(enabled && !isReplay);
+    this.scenes.list.enable(enabled && !isReplay);
+    this.recordings.enable(enabled, isReplay);
+  }
+
+  describe({ session }: SessionDescription): void {
+    const isNew = session !== this.session;
+    this.session = session;
+    if (isNew && this.section.open) void this.states.refresh();
+  }
+
+  showScenes(scenes: readonly SceneEntry[]): void {
+    this.scenes.show(scenes);
+  }
+
+  showServer({ storage }: ServerInfo): void {
+    this.note.hidden = storage !== 'memory';
+    this.recordings.showServer(storage !== 'memory');
+    this.note.textContent =
+      'This server keeps all this in memory: it is gone when the server ends. Download what you want to have.';
+  }
+}

@@ -1,0 +1,99 @@
+import { RequestError } from '../../client/index';
+import { element, make, makeButton } from '../panel/elements';
+import { ask } from '../stream/desk';
+import type { Desk } from '../stream/desk';
+import { faultOfRecording, sendRecording } from './recording_file';
+
+/** Recordings: this session's as a file or a replay, and those of files. */
+export class Recordings {
+  private readonly exporter = makeButton('Download', () => void this.export());
+  private readonly watcher = makeButton('Watch it again', () => void this.openOwn());
+  private readonly opener = makeButton('Open a recording', () => this.input.click());
+  private readonly input = make('input', {
+    type: 'file',
+    accept: '.vatrec',
+    id: 'recording-input',
+    hidden: true,
+  });
+  private readonly note = make('p', { id: 'recording-note', className: 'soft' });
+  private records = true;
+  private isLive = false;
+  private readonly progress = make('p', { id: 'recording-progress', className: 'soft' });
+
+  /** `go`: to the session that shows it. */
+  constructor(
+    private readonly desk: Desk,
+    private readonly session: () => string,
+    private readonly go: (session: string) => void,
+  ) {
+    this.exporter.id = 'recording-export';
+    this.watcher.id = 'recording-watch';
+    this.opener.id = 'recording-open';
+    this.progress.role = 'status';
+    this.input.addEventListener('change', () => {
+      void this.import(this.input.files?.[0]);
+      this.input.value = ''; // so that the same file can be picked again
+    });
+    const own = make('div', { className: 'row' }, this.exporter, this.watcher);
+    const other = make('div', { className: 'row' }, this.opener);
+    const title = make('h3', {}, 'Recordings');
+    element('kept-place', HTMLElement).append(
+      title,
+      this.note,
+      own,
+      other,
+      this.input,
+      this.progress,
+    );
+    this.enable(false, false);
+  }
+
+  /** What is shown can be recorded; `isReplay`: it is a recording already. */
+  enable(enabled: boolean, isReplay: boolean): void {
+    this.isLive = enabled && !isReplay;
+    this.opener.disabled = !enabled;
+    this.write();
+  }
+
+  /** Whether the server records what happens in its sessions. */
+  showServer(records: boolean): void {
+    this.records = records;
+    this.write();
+  }
+
+  private write(): void {
+    this.exporter.disabled = this.watcher.disabled = !this.isLive || !this.records;
+    this.note.textContent = this.records
+      ? 'All that happens here is recorded by itself.'
+      : 'This server records nothing: start it with --data and a folder to have recordings of what happens here.';
+  }
+
+  private async export(): Promise<void> {
+    const made = await ask(this.desk, 'recording.export', {});
+    if (!made) return;
+    make('a', { href: made.path, download: '' }).click();
+  }
+
+  private async openOwn(): Promise<void> {
+    const opened = await ask(this.desk, 'replay.open', { session: this.session() });
+    if (opened) this.go(opened.session);
+  }
+
+  private async import(file: File | undefined): Promise<void> {
+    if (!file) return;
+    const fault = faultOfRecording(file.name, file.size);
+    if (fault !== undefined) return this.desk.fail(fault);
+    try {
+      const recording = await sendRecording(file, this.desk.request, (share) => {
+        this.progress.textContent = `Sending “${file.name}”: ${Math.round(100 * share)} %`;
+      });
+      const { session } = await this.desk.request('replay.open', { recording });
+      this.go(session);
+    } catch (error) {
+      if (!(error instanceof RequestError)) throw error;
+      this.desk.refuse(error);
+    } finally {
+      this.progress.textContent = '';
+    }
+  }
+}

@@ -1,0 +1,40 @@
+import { formatSeconds } from '../panel/format';
+import { ask } from '../stream/desk';
+import type { Desk } from '../stream/desk';
+import { NamedList, whenInWords } from './named_list';
+
+/** The states of this session that were saved: back to one as often as one likes. */
+export class SavedStates {
+  readonly list = new NamedList(
+    'states',
+    'Moments of this session',
+    { use: 'Go back', none: 'None yet: save one, and go back to it whenever you like.' },
+    (name) => void this.save(name),
+  );
+
+  constructor(private readonly desk: Desk) {}
+
+  async refresh(): Promise<void> {
+    const answer = await ask(this.desk, 'session.saves', {});
+    if (!answer) return;
+    this.list.show(
+      answer.states.map(({ name, saved_by: by, saved, time }) => ({
+        name,
+        words: `at ${formatSeconds(time)} · ${by}, ${whenInWords(saved)}`,
+        use: () => void ask(this.desk, 'session.load', { name }),
+        remove: () => void this.remove(name),
+      })),
+    );
+  }
+
+  private async save(name: string): Promise<void> {
+    if (!(await ask(this.desk, 'session.save', { name }))) return;
+    this.list.clear();
+    await this.refresh();
+  }
+
+  private async remove(name: string): Promise<void> {
+    await ask(this.desk, 'session.delete_save', { name });
+    await this.refresh();
+  }
+}

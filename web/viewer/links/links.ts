@@ -1,0 +1,122 @@
+import type { Result } from '../../client/index';
+import { element, make } from '../panel/elements';
+import type { Desk } from '../stream/desk';
+import { formatQuantity } from '../view/colour/quantity';
+import type { ViewSettings } from '../view/settings';
+import type { View } from '../view/view';
+import { LinkLines } from './link_lines';
+
+/** Between two questions, while springs or contacts are shown [ms]. */
+const kPeriodMs = 200;
+
+/** More lines than this hide one another. */
+const kMost = 4000;
+
+/** Springs by their strain and contacts by their force: asked for while they are shown. */
+export class Links {
+  private readonly springs: LinkLines;
+  private readonly contacts: LinkLines;
+  private readonly words = make('p', { id: 'links-words', className: 'view-words', hidden: true });
+  private newest: Result<'state.connections'> | undefined;
+  private isJoined = false;
+  private isBusy = false;
+
+  constructor(
+    private readonly desk: Desk,
+    private readonly view: View,
+  ) {
+    this.springs = new LinkLines(view.stage.scene, 1.2);
+    this.contacts = new LinkLines(view.stage.scene, 2);
+    view.settings.subscribe(() => void this.ask());
+    window.setInterval(() => void this.ask(), kPeriodMs);
+  }
+
+  /** Takes its place among the view's options. */
+  mount(): void {
+    element('view-options', HTMLElement).append(this.words);
+  }
+
+  enable(isJoined: boolean): void {
+    this.isJoined = isJoined;
+    this.newest = undefined;
+  }
+
+  /** Other bodies may have the numbers of those that were there. */
+  describe(): void {
+    this.newest = undefined;
+  }
+
+  /** A frame is shown: what is linked has moved. */
+  follow(): void {
+    if (this.newest) this.draw();
+  }
+
+  private get settings(): Readonly<ViewSettings> {
+    return this.view.settings.settings;
+  }
+
+  private async ask(): Promise<void> {
+    const { springs, contacts } = this.settings;
+    if (!springs && !contacts) {
+      if (this.newest) this.newest = undefined;
+      return this.draw();
+    }
+    if (!this.isJoined || this.isBusy || document.hidden) return;
+    this.isBusy = true;
+    try {
+      this.newest = await this.desk.request('state.connections', { most: kMost });
+      this.draw();
+    } catch (error) {
+      // Once: the same would be refused again and again.
+      this.view.settings.change({ springs: false, contacts: false });
+      this.desk.refuse(error);
+    } finally {
+      this.isBusy = false;
+    }
+  }
+
+  private draw(): void {
+    const { newest, settings, view } = this;
+    const placeOf = (body: number, particle: number) =>
+      view.world.particle(body, particle)?.position;
+    const strains = settings.springs ? (newest?.springs.strains ?? []) : [];
+    const forces = settings.contacts ? (newest?.contacts.forces ?? []) : [];
+    const [strain, force] = [greatest(strains), greatest(forces)];
+    const shown = [
+      this.springs.show({ pairs: newest?.springs.pairs ?? [], values: strains }, placeOf, strain),
+      this.contacts.show({ pairs: newest?.contacts.pairs ?? [], values: forces }, placeOf, force),
+    ];
+    view.stage.canvas.dataset.links = shown.join(' ');
+    view.stage.invalidate();
+    this.explain(strain, force);
+  }
+
+  private explain(strain: number, force: number): void {
+    const { settings, newest } = this;
+    const springs = newest?.springs.total ?? 0;
+    const contacts = newest?.contacts.total ?? 0;
+    const parts = [
+      ...(settings.springs && newest
+        ? [
+            springs === 0
+              ? 'There are no springs here.'
+              : `Springs: red are stretched, blue are pressed, by up to ${formatQuantity(100 * strain)} %.`,
+          ]
+        : []),
+      ...(settings.contacts && newest
+        ? [
+            contacts === 0
+              ? 'Nothing touches now; liquids meet bodies by pressure, without contacts.'
+              : `Contacts: the redder, the harder they push, up to ${formatQuantity(force)} N.`,
+          ]
+        : []),
+    ];
+    this.words.hidden = parts.length === 0;
+    const text = parts.join(' ');
+    if (this.words.textContent !== text) this.words.textContent = text;
+  }
+}
+
+function greatest(values: readonly number[]): number {
+  return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+}

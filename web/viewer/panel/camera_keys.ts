@@ -1,0 +1,42 @@
+import { turned } from '../view/pose';
+import type { Pose } from '../view/pose';
+import type { Keys } from './keys';
+
+/** What a camera must have to be worked by keys. */
+export interface Camera {
+  readonly canvas: HTMLElement;
+  pose: Pose;
+}
+
+const kStep = Math.PI / 36;
+const kZoom = 1.1;
+
+const kTurns: Readonly<Record<string, readonly [right: number, up: number]>> = {
+  arrowleft: [-kStep, 0],
+  arrowright: [kStep, 0],
+  arrowup: [0, kStep],
+  arrowdown: [0, -kStep],
+};
+
+/** Turns and zooms the view by keys; arrows only where the picture has the focus. */
+export function addCameraKeys(keys: Keys, camera: Camera, home: () => void): void {
+  keys.add({
+    keys: Object.keys(kTurns),
+    sign: '← ↑ ↓ →',
+    words: 'turn the view, where the picture has the focus',
+    repeats: true,
+    on: camera.canvas,
+    act: (key) => {
+      const [right, up] = kTurns[key] ?? [0, 0];
+      camera.pose = turned(camera.pose, right, up, 1);
+    },
+  });
+  keys.add({
+    keys: ['+', '=', '-'],
+    sign: '+ −',
+    words: 'zoom in and out',
+    repeats: true,
+    act: (key) => (camera.pose = turned(camera.pose, 0, 0, key === '-' ? 1 / kZoom : kZoom)),
+  });
+  keys.add({ keys: ['f'], sign: 'F', words: 'see the whole scene', act: home });
+}

@@ -1,0 +1,55 @@
+import { mapStops } from '../view/colour/maps';
+import { formatQuantity, kQuantities } from '../view/colour/quantity';
+import type { ColourScale, Meaning } from '../view/colour/colour_scale';
+
+const kTicks = 5;
+
+/** Between two changes of its numbers, which are read, not watched [ms]. */
+const kPeriodMs = 250;
+
+/** Which colour means which number, beside the picture. */
+export class ColourLegend {
+  readonly element = document.createElement('figure');
+  private readonly title = document.createElement('figcaption');
+  private readonly bar = document.createElement('div');
+  private readonly ticks = document.createElement('ol');
+  /** To be written. */
+  private meaning: Meaning | undefined;
+  private writtenAt = -Infinity;
+
+  constructor(scale: ColourScale) {
+    this.element.id = 'colour-legend';
+    this.element.hidden = true;
+    this.bar.className = 'bar';
+    this.element.append(this.title, this.bar, this.ticks);
+    scale.subscribe((meaning) => this.show(meaning));
+  }
+
+  private show(meaning: Meaning | undefined): void {
+    this.element.hidden = meaning === undefined;
+    const isPending = this.meaning !== undefined;
+    this.meaning = meaning;
+    if (!meaning || isPending) return;
+    const wait = Math.max(this.writtenAt + kPeriodMs - performance.now(), 0);
+    window.setTimeout(() => this.write(), wait);
+  }
+
+  private write(): void {
+    const { meaning } = this;
+    this.meaning = undefined;
+    if (!meaning) return;
+    const { quantity, map, range } = meaning;
+    const { title, unit } = kQuantities[quantity];
+    this.writtenAt = performance.now();
+    this.title.textContent = `${title} [${unit}]`;
+    this.bar.style.background = `linear-gradient(to top, ${mapStops(map).join(', ')})`;
+    const items = Array.from({ length: kTicks }, (_, i) => {
+      const item = document.createElement('li');
+      item.textContent = formatQuantity(range.max - (i / (kTicks - 1)) * (range.max - range.min));
+      return item;
+    });
+    this.ticks.replaceChildren(...items);
+    this.element.dataset.min = String(range.min);
+    this.element.dataset.max = String(range.max);
+  }
+}

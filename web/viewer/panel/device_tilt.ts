@@ -1,0 +1,89 @@
+import { element, onPress } from './elements';
+
+/** How far a device leans, as browsers tell it [degrees]: to the right, and its top away from us. */
+export interface Lean {
+  right: number;
+  away: number;
+}
+
+/** Browsers that ask the user first have this. */
+interface Asking {
+  requestPermission?: () => Promise<'granted' | 'denied'>;
+}
+
+/** Without a word for so long, the device does not tell how it is held [ms]. */
+const kSilenceMs = 2000;
+
+/** As the picture is turned on the device: sensors know nothing of that. */
+export function leanOf(beta: number, gamma: number, screenAngle: number): Lean {
+  switch (screenAngle) {
+    case 90:
+      return { right: beta, away: gamma };
+    case 270:
+      return { right: -beta, away: -gamma };
+    case 180:
+      return { right: -gamma, away: beta };
+    default:
+      return { right: gamma, away: -beta };
+  }
+}
+
+/** Tilts gravity by how the device is held, from where it is held as this is switched on. */
+export class DeviceTilt {
+  private readonly button = element('gravity-device', HTMLButtonElement);
+  private start: Lean | undefined;
+  private isOn = false;
+  private silence: number | undefined;
+  private readonly listener = (event: DeviceOrientationEvent): void => this.take(event);
+
+  constructor(
+    private readonly tilt: (lean: Lean) => void,
+    private readonly fail: (words: string) => void,
+  ) {
+    this.button.hidden = !matchMedia('(pointer: coarse)').matches;
+    onPress(this.button, () => (this.isOn ? this.stop() : void this.begin()));
+  }
+
+  enable(enabled: boolean): void {
+    this.button.disabled = !enabled;
+    if (!enabled) this.stop();
+  }
+
+  private async begin(): Promise<void> {
+    if (!('DeviceOrientationEvent' in window)) {
+      return this.fail(
+        'Browsers tell how a device is held to secure pages only: open it by https.',
+      );
+    }
+    const { requestPermission } = DeviceOrientationEvent as Asking;
+    const answer = (await requestPermission?.().catch(() => 'denied')) ?? 'granted';
+    if (answer !== 'granted') {
+      return this.fail(
+        'The browser does not tell the page how the device is held: allow it there.',
+      );
+    }
+    this.isOn = true;
+    this.start = undefined;
+    this.button.ariaPressed = 'true';
+    window.addEventListener('deviceorientation', this.listener);
+    this.silence = window.setTimeout(() => {
+      this.stop();
+      this.fail('This device does not tell how it is held.');
+    }, kSilenceMs);
+  }
+
+  private stop(): void {
+    this.isOn = false;
+    this.button.ariaPressed = 'false';
+    window.clearTimeout(this.silence);
+    window.removeEventListener('deviceorientation', this.listener);
+  }
+
+  private take({ beta, gamma }: DeviceOrientationEvent): void {
+    if (beta === null || gamma === null) return; // a device without the sensor
+    window.clearTimeout(this.silence);
+    const lean = leanOf(beta, gamma, window.screen.orientation.angle);
+    this.start ??= lean;
+    this.tilt({ right: lean.right - this.start.right, away: lean.away - this.start.away });
+  }
+}

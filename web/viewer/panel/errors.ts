@@ -1,0 +1,79 @@
+import type { RequestError } from '../../client/index';
+
+/** Faults of a list that are told. */
+const kMostFaults = 3;
+
+/**
+ * What to do, by the error's kind. The server's own hints are for who writes a client, and of kinds
+ * without one here the message says all.
+ */
+const kAdvice: Readonly<Record<string, string>> = {
+  disconnected: 'Try again once the page is connected.',
+  internal_error:
+    'The fault is the server’s; nothing was changed. Try something else, or tell who runs it.',
+  limit_reached: 'Ask for less, or remove something first, and try again.',
+  no_such_body: 'It may have been removed meanwhile.',
+  no_such_scene: 'Choose another one.',
+  no_such_session: 'It may have ended.',
+  not_authenticated: 'Open the link that you were given, or ask for a new one.',
+  not_recovered:
+    'One that is recovering comes soon; who runs the server can tell of one that is lost.',
+  storage_failed:
+    'Nothing was changed: free space on the server’s disk, or ask who runs it, and try again.',
+  timed_out: 'It is busy, or the line is slow: try again.',
+};
+
+/** What the server refused, in words, and what to do. */
+export function describeError(error: RequestError): string {
+  const { kind, data } = error;
+  const list = (data?.errors ?? [])
+    .slice(0, kMostFaults)
+    .map((fault) => `${fault.path}: ${fault.message}`);
+  const first = capital(whatHappened(error));
+  const parts = list.length > 1 ? [first, ...list] : [first];
+  const advice = adviceFor(error) ?? kAdvice[kind];
+  return sentence(parts.join('; ')) + (advice === undefined ? '' : ` ${advice}`);
+}
+
+/** The role that it takes is that of another: who watches may ask for control. */
+export function needsControl({ kind, data }: RequestError): boolean {
+  return kind === 'not_allowed' && data?.role === 'viewer' && data.least_role === 'controller';
+}
+
+/** Messages name methods, which who uses the page does not know. */
+function whatHappened(error: RequestError): string {
+  const { kind, message, data } = error;
+  if (kind === 'method_not_found') {
+    return `This server is older than this page and cannot do that: ${message}`;
+  }
+  if (kind === 'timed_out') return 'The server has not answered';
+  if (needsControl(error)) return 'You watch here, and only who controls may do that';
+  if (kind === 'not_allowed' && data?.least_role !== undefined) {
+    return `Only the ${data.least_role} may do that here`;
+  }
+  return message;
+}
+
+function adviceFor({ kind, data }: RequestError): string | undefined {
+  if (kind === 'busy' && data?.holder !== undefined) {
+    return `Wait until ${data.holder.name} lets go, or take another body.`;
+  }
+  if (kind === 'rate_limited' && data?.retry_after !== undefined) {
+    return `That was too much at once: try again in ${Math.max(1, Math.ceil(data.retry_after))} s.`;
+  }
+  return undefined;
+}
+
+/** The same beside the field that is at fault, where its place in the message says nothing more. */
+export function describeFault(error: RequestError): string {
+  const faults = (error.data?.errors ?? []).slice(0, kMostFaults).map(({ message }) => message);
+  return faults.length > 0 ? sentence(capital(faults.join('; '))) : describeError(error);
+}
+
+function sentence(text: string): string {
+  return text.replace(/([^.!?])$/, '$1.');
+}
+
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

@@ -1,0 +1,68 @@
+import type { SceneEntry } from '../../client/index';
+import { element, onPress } from './elements';
+
+/** Where the pictures of scenes are, which scripts/gallery.ts took. */
+const kPictures = import.meta.glob<string>('../scenes/*.webp', {
+  eager: true,
+  query: '?url',
+  import: 'default',
+});
+
+/** The scenes with their pictures, to choose from. */
+export class Gallery {
+  private readonly dialog = element('gallery', HTMLDialogElement);
+  private readonly items = element('gallery-list', HTMLElement);
+  private readonly opener = element('gallery-open', HTMLButtonElement);
+  private current = '';
+
+  constructor(private readonly load: (scene: string) => void) {
+    onPress(this.opener, () => this.open());
+  }
+
+  open(): void {
+    if (this.opener.disabled) return;
+    this.dialog.showModal();
+    this.items.querySelector<HTMLElement>('[aria-current="true"]')?.focus();
+  }
+
+  enable(enabled: boolean): void {
+    this.opener.disabled = !enabled;
+    if (!enabled) this.dialog.close();
+  }
+
+  list(entries: SceneEntry[]): void {
+    this.items.replaceChildren(...entries.map((entry) => this.card(entry)));
+    this.mark(this.current);
+  }
+
+  /** The scene that is shown now. */
+  mark(scene: string): void {
+    this.current = scene;
+    for (const button of this.items.querySelectorAll('button')) {
+      button.ariaCurrent = String(button.dataset.scene === scene);
+    }
+  }
+
+  private card({ name, title, description }: SceneEntry): HTMLElement {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.dataset.scene = name;
+    button.title = description;
+    const picture = document.createElement('img');
+    picture.loading = 'lazy';
+    picture.alt = '';
+    const source = kPictures[`../scenes/${name}.webp`];
+    if (source !== undefined) picture.src = source;
+    else picture.hidden = true;
+    const words = document.createElement('span');
+    words.textContent = title;
+    button.append(picture, words);
+    button.addEventListener('click', () => {
+      this.dialog.close();
+      this.load(name);
+    });
+    const item = document.createElement('li');
+    item.append(button);
+    return item;
+  }
+}

@@ -1,0 +1,123 @@
+import type { Vector } from '../../client/index';
+import { Newest } from '../stream/newest';
+import { element, onPress } from './elements';
+
+/** How strong gravity is [m/s²] and how far it leans from straight down [degrees]. */
+export interface Tilt {
+  strength: number;
+  x: number;
+  y: number;
+}
+
+const kMostTilt = 60;
+const kRadians = Math.PI / 180;
+
+/** Gravity of this strength along (tan x, tan y, -1). */
+export function gravityOf({ strength, x, y }: Tilt): Vector {
+  const [sx, sy] = [Math.tan(x * kRadians), Math.tan(y * kRadians)];
+  const scale = strength / Math.hypot(sx, sy, 1);
+  return [sx * scale, sy * scale, -scale].map((value) => value + 0) as Vector;
+}
+
+/** The inverse of gravityOf, as far as gravity goes down. */
+export function tiltOf([x, y, z]: Vector): Tilt {
+  const strength = Math.hypot(x, y, z);
+  const lean = (side: number): number =>
+    strength === 0
+      ? 0
+      : Math.min(Math.max(Math.atan2(side, Math.abs(z)) / kRadians, -kMostTilt), kMostTilt);
+  return { strength, x: lean(x), y: lean(y) };
+}
+
+/** Gravity by a slider and a small ball that is dragged, or two sliders. */
+export class Gravity {
+  private readonly strength = element('gravity', HTMLInputElement);
+  private readonly text = element('gravity-text', HTMLOutputElement);
+  private readonly pad = element('tilt', HTMLElement);
+  private readonly ball = element('tilt-ball', HTMLElement);
+  private readonly sliders = {
+    x: element('tilt-x', HTMLInputElement),
+    y: element('tilt-y', HTMLInputElement),
+  };
+  private readonly resetButton = element('gravity-reset', HTMLButtonElement);
+  private tilt: Tilt = { strength: 9.81, x: 0, y: 0 };
+  private initial: Vector = [0, 0, -9.81];
+  private isEnabled = false;
+  private isDragging = false;
+  private readonly newest: Newest<Vector>;
+
+  /** `send` resolves once the server has answered; meanwhile only the newest is kept. */
+  constructor(send: (gravity: Vector) => Promise<unknown>) {
+    this.newest = new Newest(send);
+    for (const slider of [this.strength, this.sliders.x, this.sliders.y]) {
+      slider.addEventListener('input', () => this.readSliders());
+    }
+    onPress(this.resetButton, () => this.change(tiltOf(this.initial)));
+    this.pad.addEventListener('pointerdown', (event) => this.drag(event, true));
+    this.pad.addEventListener('pointermove', (event) => this.drag(event, false));
+    for (const type of ['pointerup', 'pointercancel'] as const) {
+      this.pad.addEventListener(type, () => (this.isDragging = false));
+    }
+  }
+
+  enable(enabled: boolean): void {
+    this.isEnabled = enabled;
+    const { strength, sliders, resetButton } = this;
+    for (const control of [strength, sliders.x, sliders.y, resetButton]) {
+      control.disabled = !enabled;
+    }
+  }
+
+  /** What the session has; `isNew` where a scene was loaded. */
+  describe(gravity: Vector, isNew: boolean): void {
+    if (isNew) this.initial = gravity;
+    if (this.isDragging || this.newest.isBusy) return; // the newest is on its way
+    this.tilt = tiltOf(gravity);
+    this.show();
+  }
+
+  /** Leans it by so much along the two ways on the ground, each a unit vector. */
+  lean(parts: readonly { degrees: number; along: readonly [number, number] }[]): void {
+    const sum = (axis: 0 | 1): number =>
+      parts.reduce((total, { degrees, along }) => total + degrees * along[axis], 0);
+    const within = (value: number): number =>
+      Math.round(Math.min(Math.max(value, -kMostTilt), kMostTilt));
+    this.change({ ...this.tilt, x: within(sum(0)), y: within(sum(1)) });
+  }
+
+  private readSliders(): void {
+    const { x, y } = this.sliders;
+    this.change({
+      strength: this.strength.valueAsNumber,
+      x: x.valueAsNumber,
+      y: y.valueAsNumber,
+    });
+  }
+
+  private drag(event: PointerEvent, begins: boolean): void {
+    if (!this.isEnabled || (!begins && !this.isDragging)) return;
+    if (begins) this.pad.setPointerCapture(event.pointerId);
+    this.isDragging = true;
+    const { left, top, width, height } = this.pad.getBoundingClientRect();
+    const across = (2 * (event.clientX - left)) / width - 1;
+    const up = 1 - (2 * (event.clientY - top)) / height;
+    const scale = kMostTilt / Math.max(Math.hypot(across, up), 1);
+    this.change({ ...this.tilt, x: Math.round(across * scale), y: Math.round(up * scale) });
+  }
+
+  private change(tilt: Tilt): void {
+    this.tilt = tilt;
+    this.show();
+    this.newest.put(gravityOf(tilt));
+  }
+
+  private show(): void {
+    const { strength, x, y } = this.tilt;
+    this.strength.valueAsNumber = strength;
+    this.sliders.x.valueAsNumber = x;
+    this.sliders.y.valueAsNumber = y;
+    this.text.value = `${strength.toFixed(2)} m/s²`;
+    const half = 37; // the pad's radius without the ball's [px]
+    this.ball.style.translate = `${(half * x) / kMostTilt}px ${(-half * y) / kMostTilt}px`;
+  }
+}

@@ -1,0 +1,105 @@
+import type { SessionDescription } from '../../client/index';
+import { element } from './elements';
+import { formatCount } from './format';
+
+/** Where a particle is now, and when that is in simulated time. */
+export interface Sample {
+  position: { x: number; y: number; z: number };
+  radius: number;
+  /** How many its body has now. */
+  particles: number;
+  time: number;
+}
+
+/** Between two changes of the numbers [ms]. */
+const kPeriodMs = 250;
+
+/** The numbers of one particle, which was clicked, and of its body. */
+export class Inspector {
+  private readonly card = element('inspector', HTMLElement);
+  private chosen: { body: number; particle: number } | undefined;
+  private before: Sample | undefined;
+  private speed: number | undefined;
+  private writtenAt = -Infinity;
+  private known: [string, string][] | undefined;
+
+  /** `matter`: the rows of what the scene tells about a body, by its name and number of particles. */
+  constructor(
+    private readonly sample: (body: number, particle: number) => Sample | undefined,
+    private readonly matter: (name: string, particles: number) => Promise<[string, string][]>,
+  ) {}
+
+  inspect(body: number, particle: number): void {
+    this.chosen = { body, particle };
+    this.known = undefined;
+    this.before = this.speed = undefined;
+    this.writtenAt = -Infinity;
+  }
+
+  close(): void {
+    this.chosen = undefined;
+    this.card.hidden = true;
+  }
+
+  /** Writes what is so now. */
+  update(description: SessionDescription | undefined): void {
+    const { chosen } = this;
+    const now = performance.now();
+    if (!chosen || now - this.writtenAt < kPeriodMs) return;
+    this.writtenAt = now;
+    const sample = this.sample(chosen.body, chosen.particle);
+    const body = description?.bodies.find((candidate) => candidate.body === chosen.body);
+    if (!sample || !body) return this.close(); // it is gone
+    this.measure(sample);
+    if (!this.known) void this.learn(body.name, sample.particles);
+    const { x, y, z } = sample.position;
+    this.write(`${body.name} · particle ${chosen.particle}`, [
+      ['Kind', body.kind],
+      ['Material', body.material],
+      ...(this.known ?? []),
+      ['Particles', formatCount(sample.particles)],
+      ['Place', `${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)} m`],
+      ['Speed', this.speed === undefined ? '–' : `${this.speed.toFixed(2)} m/s`],
+      ['Radius', `${(1000 * sample.radius).toFixed(1)} mm`],
+    ]);
+  }
+
+  private async learn(name: string, particles: number): Promise<void> {
+    this.known = [];
+    const { chosen } = this;
+    const rows = await this.matter(name, particles);
+    if (chosen === this.chosen) this.known = rows;
+  }
+
+  /** The mean speed since the last look; the way back through a reset is none. */
+  private measure(sample: Sample): void {
+    const { before } = this;
+    this.before = sample;
+    if (!before || sample.time <= before.time) {
+      if (before && sample.time < before.time) this.speed = undefined;
+      return;
+    }
+    const [a, b] = [before.position, sample.position];
+    this.speed = Math.hypot(b.x - a.x, b.y - a.y, b.z - a.z) / (sample.time - before.time);
+  }
+
+  private write(title: string, rows: [string, string][]): void {
+    const header = document.createElement('header');
+    const close = document.createElement('button');
+    close.type = 'button';
+    close.className = 'icon';
+    close.ariaLabel = 'Close';
+    close.textContent = '×';
+    close.addEventListener('click', () => this.close());
+    const kept = this.card.querySelector('button');
+    header.append(title, kept ?? close);
+    const list = document.createElement('dl');
+    for (const [name, value] of rows) {
+      const [term, number] = [document.createElement('dt'), document.createElement('dd')];
+      [term.textContent, number.textContent] = [name, value];
+      list.append(term, number);
+    }
+    this.card.replaceChildren(header, list);
+    this.card.hidden = false;
+  }
+}

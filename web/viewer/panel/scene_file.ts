@@ -1,0 +1,76 @@
+import type { Scene } from '../../client/index';
+import { element, onPress } from './elements';
+
+/** What a server takes in one message [bytes]. */
+const kMostBytes = 4 * 1024 * 1024;
+
+/** A scene as a file's text has it, or in words why it is none; the server looks at the rest. */
+export function readScene(text: string, file: string): { scene: Scene } | { fault: string } {
+  let value: unknown;
+  try {
+    value = JSON.parse(text);
+  } catch {
+    return { fault: `“${file}” is not JSON: a scene file is one JSON object.` };
+  }
+  const isScene =
+    typeof value === 'object' &&
+    value !== null &&
+    (value as { format?: unknown }).format === 'vat.scene/1';
+  if (!isScene) return { fault: `“${file}” is not a scene: its format must be "vat.scene/1".` };
+  const scene = value as Scene;
+  return { scene: { ...scene, name: scene.name ?? file.replace(/\.json$/i, '').slice(0, 48) } };
+}
+
+export interface SceneFileActions {
+  load(scene: Scene): void;
+  refuse(words: string): void;
+}
+
+/** Loads a scene from a file that is dropped on the page or picked. */
+export class SceneFile {
+  private readonly button = element('scene-file', HTMLButtonElement);
+  private readonly input = element('scene-file-input', HTMLInputElement);
+  private readonly dropHint = element('drop-hint', HTMLElement);
+
+  constructor(private readonly actions: SceneFileActions) {
+    onPress(this.button, () => this.input.click());
+    this.input.addEventListener('change', () => {
+      void this.take(this.input.files?.[0]);
+      this.input.value = ''; // so that the same file can be picked again
+    });
+    window.addEventListener('dragover', (event) => this.hover(event));
+    window.addEventListener('dragleave', (event) => {
+      if (!event.relatedTarget) this.dropHint.hidden = true;
+    });
+    window.addEventListener('drop', (event) => this.drop(event));
+  }
+
+  enable(enabled: boolean): void {
+    this.button.disabled = !enabled;
+  }
+
+  private hover(event: DragEvent): void {
+    if (!event.dataTransfer?.types.includes('Files')) return;
+    event.preventDefault(); // or the browser would leave the page for the file
+    this.dropHint.hidden = this.button.disabled;
+  }
+
+  private drop(event: DragEvent): void {
+    this.dropHint.hidden = true;
+    const file = event.dataTransfer?.files[0];
+    if (!file) return;
+    event.preventDefault();
+    if (!this.button.disabled) void this.take(file);
+  }
+
+  private async take(file: File | undefined): Promise<void> {
+    if (!file) return;
+    if (file.size > kMostBytes) {
+      this.actions.refuse(`“${file.name}” is too large: a scene has at most 4 MiB.`);
+      return;
+    }
+    const read = readScene(await file.text(), file.name);
+    if ('fault' in read) this.actions.refuse(read.fault);
+    else this.actions.load(read.scene);
+  }
+}

@@ -1,0 +1,168 @@
+import { kChoices } from '../view/settings';
+import type { Choice, ChoiceName, NumberName, SwitchName, ViewSettings } from '../view/settings';
+import type { View } from '../view/view';
+import { ColourLegend } from './colour_legend';
+import { element } from './elements';
+import { formatMilliseconds } from './format';
+import './view_options.css';
+
+type Words = { readonly [N in ChoiceName]: Readonly<Record<Choice<N>, string>> };
+
+const kWords: Words = {
+  liquid: {
+    auto: 'best for this machine',
+    fluid: 'clear liquid',
+    surface: 'surface',
+    splats: 'soft splats',
+    particles: 'particles',
+  },
+  solids: { particles: 'particles', skin: 'smooth skin', both: 'both' },
+  colour: {
+    body: 'by body',
+    kind: 'by kind',
+    speed: 'by speed',
+    density: 'by density',
+    pressure: 'by pressure',
+    force: 'by force per mass',
+  },
+  map: { viridis: 'viridis', cividis: 'cividis', turbo: 'turbo', 'blue-red': 'blue to red' },
+  clip: { off: 'nothing', x: 'along x', y: 'along y', z: 'along z' },
+  smooth: { auto: 'best for this machine', on: 'between frames', off: 'frame by frame' },
+};
+
+/** Between two looks at the delay, which changes all the time [ms]. */
+const kDelayPeriodMs = 500;
+
+/** The panel's section that says what is shown and how; the view's settings are what it changes. */
+export class ViewOptions {
+  private readonly section = document.createElement('section');
+  private readonly notice = words();
+  private readonly delay = words();
+
+  constructor(private readonly view: View) {
+    this.section.id = 'view-options';
+    this.section.ariaLabel = 'View';
+    this.notice.id = 'view-notice';
+    const isOfNumbers = ({ colour }: ViewSettings): boolean =>
+      colour !== 'body' && colour !== 'kind';
+    const isClipped = ({ clip }: ViewSettings): boolean => clip !== 'off';
+    this.section.append(
+      this.choice('liquid', 'Liquid'),
+      this.choice('solids', 'Other bodies'),
+      this.choice('colour', 'Colour'),
+      this.only(isOfNumbers, this.choice('map', 'Colour map')),
+      this.only(isOfNumbers, this.range()),
+      this.choice('clip', 'Cut away'),
+      this.only(isClipped, this.slider('clipAt', 'Cut at')),
+      this.only(isClipped, this.toggle('clipOther', 'The other side')),
+      this.toggle('arrows', 'Velocity arrows'),
+      this.toggle('axes', 'Axes of rigid bodies'),
+      this.toggle('cells', 'Cells'),
+      this.toggle('springs', 'Springs by strain'),
+      this.toggle('contacts', 'Contacts by force'),
+      this.choice('smooth', 'Motion'),
+      this.delay,
+      this.notice,
+    );
+  }
+
+  /** Takes its place in the page: the one kept for it, or the panel's end. */
+  mount(): void {
+    const place = document.getElementById('view-place') ?? element('panel', HTMLElement);
+    place.append(this.section);
+    element('stage', HTMLElement).append(new ColourLegend(this.view.scale).element);
+    this.view.onWords((text) => write(this.notice, text.join(' ') || undefined));
+    window.setInterval(() => this.showDelay(), kDelayPeriodMs);
+  }
+
+  private showDelay(): void {
+    const { delaySeconds } = this.view;
+    const text = `Shown ${formatMilliseconds(delaySeconds)} later, so that it moves evenly.`;
+    write(this.delay, delaySeconds > 0 ? text : undefined);
+  }
+
+  private choice<N extends ChoiceName>(name: N, label: string): HTMLElement {
+    const picker = document.createElement('select');
+    picker.id = `view-${name}`;
+    const texts: Readonly<Record<string, string>> = kWords[name];
+    for (const value of kChoices[name]) picker.add(new Option(texts[value], value));
+    this.bind(picker, () => ({ [name]: picker.value as Choice<N> }));
+    this.view.settings.subscribe((now) => (picker.value = now[name]));
+    return row(label, picker);
+  }
+
+  private toggle(name: SwitchName, label: string): HTMLElement {
+    const box = document.createElement('input');
+    box.type = 'checkbox';
+    box.id = `view-${name}`;
+    this.bind(box, () => ({ [name]: box.checked }));
+    this.view.settings.subscribe((now) => (box.checked = now[name]));
+    return row(label, box);
+  }
+
+  private slider(name: NumberName, label: string): HTMLElement {
+    const slider = document.createElement('input');
+    slider.type = 'range';
+    slider.id = `view-${name}`;
+    [slider.min, slider.max, slider.step] = ['0', '1', '0.01'];
+    this.bind(slider, () => ({ [name]: slider.valueAsNumber }), 'input');
+    this.view.settings.subscribe((now) => (slider.value = String(now[name] ?? 0.5)));
+    return row(label, slider);
+  }
+
+  /** The values at the ends of the map: both given, or as they come. */
+  private range(): HTMLElement {
+    const group = document.createElement('span');
+    group.className = 'view-range';
+    const fields = (['from', 'to'] as const).map((name) => {
+      const field = document.createElement('input');
+      field.type = 'number';
+      field.step = 'any';
+      field.id = `view-${name}`;
+      field.placeholder = 'auto';
+      field.ariaLabel = `Colours ${name}`;
+      this.bind(field, () => ({
+        [name]: Number.isFinite(field.valueAsNumber) ? field.valueAsNumber : undefined,
+      }));
+      this.view.settings.subscribe((now) => (field.value = String(now[name] ?? '')));
+      return field;
+    });
+    group.append(fields[0]!, '–', fields[1]!);
+    const whole = row('Range', group);
+    whole.title = 'Values at the ends of the colours; empty: the least and greatest that there are';
+    return whole;
+  }
+
+  private bind(
+    control: HTMLElement,
+    read: () => Partial<ViewSettings>,
+    event: 'change' | 'input' = 'change',
+  ): void {
+    control.addEventListener(event, () => this.view.settings.change(read()));
+  }
+
+  private only(isShown: (settings: ViewSettings) => boolean, part: HTMLElement): HTMLElement {
+    this.view.settings.subscribe((now) => (part.hidden = !isShown(now)));
+    return part;
+  }
+}
+
+function row(label: string, control: HTMLElement): HTMLElement {
+  const isGroup = control.tagName === 'SPAN';
+  const whole = document.createElement(isGroup ? 'div' : 'label');
+  whole.className = 'view-row';
+  whole.append(label, control);
+  return whole;
+}
+
+function words(): HTMLElement {
+  const text = document.createElement('p');
+  text.className = 'view-words';
+  text.hidden = true;
+  return text;
+}
+
+function write(to: HTMLElement, text: string | undefined): void {
+  to.textContent = text ?? '';
+  to.hidden = text === undefined;
+}

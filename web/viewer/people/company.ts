@@ -1,0 +1,85 @@
+import type { Event, MethodName, Params, RoleName } from '../../client/index';
+import { ask } from '../stream/desk';
+import type { Desk } from '../stream/desk';
+import type { View } from '../view/view';
+import { Cursors } from './cursors';
+import { People } from './people';
+import { PeopleList } from './people_list';
+import { Share } from './share';
+
+/** All that a page has for there being others: who is here, where they point, how they come. */
+export class Company {
+  readonly people = new People();
+  readonly cursors: Cursors;
+  readonly share: Share;
+  private readonly list: PeopleList;
+
+  constructor(
+    view: View,
+    private readonly desk: Desk,
+    nameOfBody: (body: number) => string,
+  ) {
+    this.list = new PeopleList(this.people, {
+      rename: (name) => this.call('participant.rename', { name }),
+      ask: () => this.askForControl(),
+      handOver: (participant) => this.giveControl(participant),
+      setRole: (participant, role) => this.call('participant.set_role', { participant, role }),
+      kick: (participant) => this.call('participant.kick', { participant }),
+      lock: (locked) => this.call('session.configure', { locked }),
+      nameOfBody,
+    });
+    const { canvas } = view.stage;
+    this.cursors = new Cursors(this.people, view.stage, view.world, (position) => {
+      // A pointer that is not told is no loss: the next one is on its way.
+      if (canvas.dataset.joined !== 'true') return;
+      void desk.request('presence.point', position ? { position } : {}).catch(() => undefined);
+    });
+    const outlook = {
+      get pose() {
+        return view.stage.pose;
+      },
+      get view() {
+        return view.settings.text;
+      },
+    };
+    this.share = new Share(this.people, outlook, desk);
+  }
+
+  handle({ event, params }: Event): void {
+    if (event === 'session.configured') this.people.configure(params);
+    if (event !== 'presence.changed') return;
+    const before = this.people.self?.role;
+    this.people.change(params);
+    const words = changeInWords(before, this.people.self?.role);
+    if (words !== undefined) this.desk.say(words);
+  }
+
+  askForControl(): void {
+    this.call('control.request', {}, 'Those in control are asked.');
+  }
+
+  /** Owners keep what they may do; others watch from then on. */
+  giveControl(participant: number): void {
+    this.call('control.hand_over', { participant });
+  }
+
+  enable(enabled: boolean): void {
+    this.list.enable(enabled);
+    this.share.enable(enabled);
+  }
+
+  private call<M extends MethodName>(method: M, params: Params<M>, done?: string): void {
+    void ask(this.desk, method, params).then((answer) => answer && done && this.desk.say(done));
+  }
+}
+
+/** What it means to us that our role is another one. */
+function changeInWords(
+  before: RoleName | undefined,
+  after: RoleName | undefined,
+): string | undefined {
+  if (before === undefined || after === undefined || before === after) return undefined;
+  if (after === 'viewer') return 'You watch now: ask for control under People.';
+  if (before === 'viewer') return 'You control this session now.';
+  return after === 'owner' ? 'This session is yours now.' : undefined;
+}

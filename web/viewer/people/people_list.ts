@@ -1,0 +1,137 @@
+import type { Participant, RoleName } from '../../client/index';
+import { element, onPress } from '../panel/elements';
+import { personColour } from './people';
+import type { People } from './people';
+
+export interface PeopleActions {
+  rename(name: string): void;
+  ask(): void;
+  handOver(participant: number): void;
+  setRole(participant: number, role: 'viewer' | 'controller' | 'owner'): void;
+  kick(participant: number): void;
+  lock(locked: boolean): void;
+  /** In words, for the list of what people hold. */
+  nameOfBody(body: number): string;
+}
+
+const kRoles: Readonly<Record<RoleName, string>> = {
+  viewer: 'watches',
+  controller: 'controls',
+  owner: 'owner',
+  admin: 'admin',
+};
+
+/** Who is here, what they may do and hold; and what can be done about it. */
+export class PeopleList {
+  private readonly list = element('people', HTMLElement);
+  private readonly count = element('people-count', HTMLElement);
+  private readonly name = element('rename-name', HTMLInputElement);
+  private readonly asker = element('control-request', HTMLButtonElement);
+  private readonly lockRow = element('lock-row', HTMLElement);
+  private readonly lockBox = element('lock', HTMLInputElement);
+  private written = '';
+
+  constructor(
+    private readonly people: People,
+    private readonly actions: PeopleActions,
+  ) {
+    people.subscribe(() => this.show());
+    onPress(this.asker, () => actions.ask());
+    this.lockBox.addEventListener('change', () => actions.lock(this.lockBox.checked));
+    element('rename', HTMLFormElement).addEventListener('submit', (event) => {
+      event.preventDefault();
+      const name = this.name.value.trim();
+      if (name !== '') actions.rename(name);
+    });
+  }
+
+  enable(enabled: boolean): void {
+    this.name.disabled = !enabled;
+  }
+
+  private show(): void {
+    const { people } = this;
+    const here = people.all.filter(({ away }) => !away).length;
+    this.count.textContent = String(here);
+    if (people.self && document.activeElement !== this.name) this.name.value = people.self.name;
+    this.asker.hidden = people.isInControl;
+    this.lockRow.hidden = !people.isOwner;
+    this.lockBox.checked = people.settings?.locked ?? false;
+    this.write();
+  }
+
+  /** Anew only where something is different: pointers move all the time. */
+  private write(): void {
+    const { all, self } = this.people;
+    const shown = all.map(({ participant, name, role, away, grabs }) =>
+      JSON.stringify([participant, name, role, away, grabs, self?.participant, self?.role]),
+    );
+    if (shown.join() === this.written) return;
+    this.written = shown.join();
+    this.list.replaceChildren(...all.map((person) => this.item(person)));
+  }
+
+  private item(person: Participant): HTMLElement {
+    const item = document.createElement('li');
+    item.dataset.participant = String(person.participant);
+    item.dataset.away = String(person.away);
+    const dot = document.createElement('i');
+    dot.style.background = personColour(person.participant);
+    const isSelf = person.participant === this.people.self?.participant;
+    item.append(
+      dot,
+      span('who', isSelf ? `${person.name} (you)` : person.name),
+      span('role', person.away ? 'away' : kRoles[person.role]),
+    );
+    if (person.grabs.length > 0) {
+      const names = person.grabs.map((body) => this.actions.nameOfBody(body));
+      item.append(span('does', `holds ${names.join(', ')}`));
+    }
+    const acts = isSelf ? [] : this.actsOn(person);
+    if (acts.length > 0) {
+      const row = document.createElement('span');
+      row.className = 'acts';
+      row.append(...acts);
+      item.append(row);
+    }
+    return item;
+  }
+
+  private actsOn({ participant, role, name }: Participant): HTMLElement[] {
+    const { people, actions } = this;
+    if (people.isOwner && role !== 'admin') {
+      const picker = document.createElement('select');
+      picker.ariaLabel = `What ${name} may do`;
+      picker.add(new Option('watches', 'viewer'));
+      picker.add(new Option('controls', 'controller'));
+      picker.add(new Option('owns the session', 'owner'));
+      picker.value = role;
+      picker.addEventListener('change', () =>
+        actions.setRole(participant, picker.value as 'viewer' | 'controller' | 'owner'),
+      );
+      return [picker, button('Remove', `Remove ${name}`, () => actions.kick(participant))];
+    }
+    if (people.isInControl && role === 'viewer') {
+      return [
+        button('Give control', `Give control to ${name}`, () => actions.handOver(participant)),
+      ];
+    }
+    return [];
+  }
+}
+
+function span(className: string, text: string): HTMLElement {
+  const whole = document.createElement('span');
+  whole.className = className;
+  whole.textContent = text;
+  return whole;
+}
+
+function button(text: string, label: string, act: () => void): HTMLButtonElement {
+  const whole = document.createElement('button');
+  whole.type = 'button';
+  whole.textContent = text;
+  whole.ariaLabel = label;
+  onPress(whole, act);
+  return whole;
+}

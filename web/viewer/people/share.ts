@@ -1,0 +1,111 @@
+import { ask } from '../stream/desk';
+import type { Desk } from '../stream/desk';
+import { element, onPress } from '../panel/elements';
+import { poseToText } from '../view/pose';
+import type { Pose } from '../view/pose';
+import type { People } from './people';
+
+/** What a link may carry beside the session. */
+export interface Outlook {
+  readonly pose: Pose;
+  /** Settings of the view; empty where all are as usual. */
+  readonly view: string;
+}
+
+/** The address by which another comes here. */
+export function shareLink(
+  page: string,
+  session: string,
+  { invite, pose, view }: { invite?: string; pose?: Pose; view?: string },
+): string {
+  const url = new URL(page);
+  url.search = new URLSearchParams({ session }).toString();
+  const parts = new URLSearchParams();
+  if (invite) parts.set('invite', invite);
+  if (pose) parts.set('camera', poseToText(pose));
+  if (view) parts.set('view', view);
+  url.hash = parts.toString();
+  return url.href;
+}
+
+/** Whether an address is one at which no other machine finds this server. */
+export function isOfThisComputer(host: string): boolean {
+  return host === 'localhost' || host === '[::1]' || host.startsWith('127.');
+}
+
+/** The dialog that makes a link to this session. */
+export class Share {
+  private readonly dialog = element('share', HTMLDialogElement);
+  private readonly opener = element('share-open', HTMLButtonElement);
+  private readonly text = element('share-text', HTMLElement);
+  private readonly note = element('share-local', HTMLElement);
+  private readonly roleRow = element('share-role-row', HTMLElement);
+  private readonly role = element('share-role', HTMLSelectElement);
+  private readonly camera = element('share-camera', HTMLInputElement);
+  private readonly view = element('share-view', HTMLInputElement);
+  private readonly link = element('share-link', HTMLInputElement);
+  private readonly copied = element('share-copied', HTMLElement);
+  private invite: string | undefined;
+
+  constructor(
+    private readonly people: People,
+    private readonly outlook: Outlook,
+    private readonly desk: Desk,
+  ) {
+    onPress(this.opener, () => this.open());
+    onPress(element('share-copy', HTMLButtonElement), () => void this.copy());
+    for (const box of [this.camera, this.view]) box.addEventListener('change', () => this.write());
+    this.role.addEventListener('change', () => void this.inviteAnew());
+  }
+
+  open(): void {
+    if (this.opener.disabled) return;
+    this.invite = undefined;
+    this.roleRow.hidden = !this.people.isOwner;
+    this.text.textContent = this.inWords();
+    this.note.hidden = !isOfThisComputer(location.hostname);
+    this.write();
+    this.dialog.showModal();
+    if (this.people.isOwner) void this.inviteAnew();
+  }
+
+  enable(enabled: boolean): void {
+    this.opener.disabled = !enabled;
+  }
+
+  private inWords(): string {
+    const { isOwner, settings } = this.people;
+    const mayChange = !isOwner && settings?.default_role === 'controller';
+    return `Who opens this link sees the same session, live${mayChange ? ', and may change it too' : ''}.`;
+  }
+
+  /** Owners invite; the link of others gives what the session gives to all. */
+  private async inviteAnew(): Promise<void> {
+    const role = this.role.value as 'viewer' | 'controller';
+    const answer = await ask(this.desk, 'session.invite', { role });
+    if (!answer) return;
+    this.invite = answer.token;
+    this.write();
+  }
+
+  private write(): void {
+    const { pose, view } = this.outlook;
+    this.copied.textContent = '';
+    this.link.value = shareLink(location.href, this.people.session, {
+      ...(this.invite !== undefined && { invite: this.invite }),
+      ...(this.camera.checked && { pose }),
+      ...(this.view.checked && { view }),
+    });
+  }
+
+  private async copy(): Promise<void> {
+    this.link.select();
+    try {
+      await navigator.clipboard.writeText(this.link.value);
+      this.copied.textContent = 'Copied.';
+    } catch {
+      // Browsers allow it to secure pages only.
+      this.copied.textContent = 'This browser does not let the page copy: press Ctrl+C.';
+    }
+  }
+}

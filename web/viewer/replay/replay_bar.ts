@@ -1,0 +1,120 @@
+import type { Event, SessionDescription, SessionStatus } from '../../client/index';
+import { element, make, makeButton } from '../panel/elements';
+import { formatSeconds } from '../panel/format';
+import { ask } from '../stream/desk';
+import type { Desk } from '../stream/desk';
+import { Newest } from '../stream/newest';
+import type { Stage } from '../view/stage';
+import { RecordedCompany } from './recorded_people';
+import { Timeline } from './timeline';
+import './replay.css';
+
+export interface ReplayActions {
+  togglePlaying(): void;
+  /** To the session that runs. */
+  leave(): void;
+  nameOfBody(body: number): string;
+}
+
+interface Divergence {
+  position: number;
+  reason: string;
+}
+
+/** Over the picture of a session that shows a recording: where it is, who took part, the way back. */
+export class ReplayBar {
+  private readonly bar = element('replay', HTMLElement);
+  private readonly title = make('b');
+  private readonly play: HTMLButtonElement;
+  private readonly words = make('p', { id: 'replay-words' });
+  private readonly timeline: Timeline;
+  private readonly company: RecordedCompany;
+  private replay: SessionDescription['replay'];
+  private tickSeconds = 0;
+  private status: SessionStatus | undefined;
+
+  constructor(
+    private readonly desk: Desk,
+    stage: Stage,
+    actions: ReplayActions,
+  ) {
+    const seeks = new Newest((position: number) => ask(desk, 'replay.seek', { position }));
+    this.timeline = new Timeline((position) => seeks.put(position));
+    this.company = new RecordedCompany(stage, (body) => actions.nameOfBody(body));
+    this.play = makeButton('Play', () => actions.togglePlaying());
+    this.play.id = 'replay-play';
+    const back = makeButton('Back to live', () => actions.leave());
+    back.id = 'replay-leave';
+    this.words.role = 'status';
+    const head = make('header', {}, this.title, back);
+    const row = make('div', { className: 'row' }, this.play, this.timeline.element);
+    this.bar.append(head, row, this.words, this.company.list);
+  }
+
+  /** Shown for a replay alone. */
+  describe({ replay, tick_seconds: tickSeconds, name }: SessionDescription): void {
+    const isNew = replay && (!this.replay || this.bar.hidden);
+    this.replay = replay;
+    this.tickSeconds = tickSeconds;
+    this.bar.hidden = !replay;
+    if (!replay) {
+      this.company.show([]);
+      return;
+    }
+    this.title.textContent = `Recording of “${name}”`;
+    this.timeline.describe({ ...replay, tickSeconds });
+    this.timeline.show(replay.position);
+    this.showDivergence(undefined);
+    if (isNew) this.words.textContent = '';
+    void this.refresh();
+  }
+
+  handle({ event, params }: Event): void {
+    if (event === 'session.status') this.showStatus(params);
+    else if (!this.replay) return;
+    else if (event === 'replay.people') this.company.show(params.people);
+    else if (event === 'replay.diverged') this.showDivergence(params);
+    else if (event === 'replay.ended') this.words.textContent = 'This is the end of the recording.';
+  }
+
+  /** A frame of this tick is shown. */
+  showTick(tick: number): void {
+    const { replay, status } = this;
+    if (!replay || status?.position === undefined || tick < status.tick) return;
+    this.timeline.show(Math.min(status.position + tick - status.tick, replay.end));
+  }
+
+  /** Puts the names of people where the camera sees their places now. */
+  update(): void {
+    if (this.replay) this.company.update();
+  }
+
+  private showStatus(status: SessionStatus): void {
+    this.status = status;
+    if (!this.replay || status.position === undefined) return;
+    this.timeline.show(status.position);
+    this.play.textContent = status.playing ? 'Pause' : 'Play';
+    if (status.position < this.replay.end && this.words.dataset.diverged !== 'true') {
+      this.words.textContent = '';
+    }
+  }
+
+  /** What no event has told: of a replay that was there before we came, or has gone elsewhere. */
+  private async refresh(): Promise<void> {
+    const info = await ask(this.desk, 'replay.info', {});
+    if (!info || !this.replay) return;
+    this.title.textContent = `Recording of “${info.name}”`;
+    this.company.show(info.people);
+    this.showDivergence(info.diverged ?? undefined);
+  }
+
+  private showDivergence(divergence: Divergence | undefined): void {
+    const { replay, words, tickSeconds } = this;
+    if (!replay) return;
+    words.dataset.diverged = String(divergence !== undefined);
+    this.timeline.showDivergence(divergence?.position);
+    if (!divergence) return;
+    const at = formatSeconds((divergence.position - replay.begin) * tickSeconds);
+    words.textContent = `At ${at} what is computed here is not what was recorded: ${divergence.reason}. It has paused there; play goes on from what was computed, and the time line leads to any other place.`;
+  }
+}

@@ -1,0 +1,7 @@
+/** The address of this page with another session in it; undefined: the server's first. */
+export function addressOf(page: string, session: string | undefined): string {
+  const url = new URL(page);
+  if (session === undefined) url.searchParams.delete('session');
+  else url.searchParams.set('session', session);
+  return url.href;
+}

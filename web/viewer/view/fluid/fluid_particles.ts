@@ -1,0 +1,60 @@
+import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 'three';
+import { kImpostorHit, kImpostorVertexShader } from '../impostor';
+import type { BodyUniforms } from '../impostor';
+import type { BehindUniforms } from './fluid_pass';
+
+const kDepth = /* glsl */ `
+    if (inside <= 0.0) discard;
+    vec3 point = (along - radius * sqrt(inside)) * ray;
+    gl_FragDepth = depth_of(point);
+    depth = -point.z;
+  }
+`;
+
+/** Of the particle's own radius: they overlap, so that a liquid closes up to one surface. */
+const kSize = 1.4;
+
+/** Spheres of that size over the cubes, two radii wide, that the particles stand for. */
+const kShare = 8 / ((4 / 3) * Math.PI * kSize ** 3);
+
+/** What of the sphere lies before the scene behind; its colour counts by that. */
+const kThickness = /* glsl */ `
+    if (inside <= 0.0) discard;
+    float half_way = radius * sqrt(inside);
+    float window_depth = textureLod(behind_depth, gl_FragCoord.xy * texel, 0.0).r;
+    float eye_depth = projectionMatrix[3][2] / (2.0 * window_depth - 1.0 + projectionMatrix[2][2]);
+    float before = eye_depth / -ray.z;
+    float through = clamp(before - (along - half_way), 0.0, 2.0 * half_way);
+    sum = vec4(base, 1.0) * share * through;
+  }
+`;
+
+/** Writes the distance along the view of the nearest point of each sphere [m]. */
+export function fluidDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: kImpostorVertexShader,
+    fragmentShader: `out float depth;\n${kImpostorHit}${kDepth}`,
+    uniforms: { ...body, radius: { value: kSize * radius } },
+  });
+}
+
+/** Adds up how much liquid there is along each ray [m] and of which colour. */
+export function fluidThicknessMaterial(
+  body: BodyUniforms,
+  radius: number,
+  behind: BehindUniforms,
+): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: kImpostorVertexShader,
+    fragmentShader: `out vec4 sum;\nuniform sampler2D behind_depth;\nuniform vec2 texel;\nuniform float share;\n${kImpostorHit}${kThickness}`,
+    uniforms: { ...body, ...behind, radius: { value: kSize * radius }, share: { value: kShare } },
+    depthTest: false,
+    depthWrite: false,
+    blending: CustomBlending,
+    blendEquation: AddEquation,
+    blendSrc: OneFactor,
+    blendDst: OneFactor,
+  });
+}

@@ -1,0 +1,172 @@
+import {
+  DepthTexture,
+  FloatType,
+  HalfFloatType,
+  NearestFilter,
+  RedFormat,
+  Scene,
+  UnsignedIntType,
+  Vector2,
+  WebGLRenderTarget,
+} from 'three';
+import type { Color, IUniform, PerspectiveCamera, WebGLRenderer } from 'three';
+import { screenMesh } from '../screen';
+import { kLayers } from '../layers';
+import type { Theme } from '../theme';
+import { fluidCompositeMaterial } from './fluid_composite';
+import { smoothingMaterial } from './smoothing';
+
+/** More rows than this are not worth their time: the surface is smooth. */
+const kMostRows = 1000;
+
+/** Of the radius of a particle: how far apart places are that a smoothing averages over. */
+const kSmoothing = [2, 1.3];
+
+/** What fluid materials of bodies need to know of the scene that they are drawn before. */
+export interface BehindUniforms {
+  behind_depth: IUniform<DepthTexture | null>;
+  /** 1 / size of the thickness texture. */
+  texel: IUniform<Vector2>;
+}
+
+export function behindUniforms(): BehindUniforms {
+  return { behind_depth: { value: null }, texel: { value: new Vector2() } };
+}
+
+/** What a fluid is like where it is drawn. */
+export interface FluidLook {
+  /** Radius of its particles [m]. */
+  radius: number;
+  /** Depth at which it has its full colour [m]. */
+  clarity: number;
+  /** 0: as clear as water; 1: paint, for colours that mean numbers. */
+  paint: number;
+}
+
+/**
+ * Liquids as one surface: depth of the nearest particle in each pixel, smoothed; thickness and
+ * colour summed up along the ray; then refraction, absorption and reflection over the scene behind.
+ * After S. Green, "Screen space fluid rendering for games" (GDC 2010), with the filter of N. Truong
+ * and C. Yuksel, "A narrow-range filter for screen-space fluid rendering" (2018).
+ */
+export class FluidPass {
+  private readonly behind = new WebGLRenderTarget(1, 1, {
+    type: HalfFloatType,
+    samples: 4,
+    depthTexture: new DepthTexture(1, 1, UnsignedIntType),
+  });
+  private readonly depths = [depthTarget(true), depthTarget(false)] as const;
+  private readonly thickness = new WebGLRenderTarget(1, 1, {
+    type: HalfFloatType,
+    depthBuffer: false,
+  });
+  private readonly smoothing = smoothingMaterial();
+  private readonly smoother = screenMesh(this.smoothing);
+  private readonly composite = fluidCompositeMaterial();
+  private readonly result = screenMesh(this.composite);
+  private readonly screen = new Scene();
+  private readonly size = new Vector2();
+
+  constructor(private readonly uniforms: BehindUniforms) {
+    this.screen.add(this.smoother, this.result);
+    uniforms.behind_depth.value = this.behind.depthTexture;
+    const { uniforms: to } = this.composite;
+    to.behind!.value = this.behind.texture;
+    to.behind_depth!.value = this.behind.depthTexture;
+    to.depth!.value = this.depths[0].texture;
+    to.thickness!.value = this.thickness.texture;
+  }
+
+  paint(look: Theme): void {
+    (this.composite.uniforms.sky_low!.value as Color).copy(look.skyLow);
+    (this.composite.uniforms.sky_high!.value as Color).copy(look.skyHigh);
+  }
+
+  /** Draws the whole scene with its liquids to the canvas. */
+  draw(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, look: FluidLook): void {
+    this.resize(renderer);
+    renderer.setRenderTarget(this.behind);
+    this.drawLayer(renderer, scene, camera, kLayers.scene);
+    const clearColour = renderer.getClearColor(this.clearColour);
+    renderer.setClearColor(0, 0);
+    renderer.setRenderTarget(this.depths[0]);
+    this.drawLayer(renderer, scene, camera, kLayers.fluidDepth);
+    renderer.setRenderTarget(this.thickness);
+    this.drawLayer(renderer, scene, camera, kLayers.fluidThickness);
+    this.smooth(renderer, camera, look.radius);
+    renderer.setClearColor(clearColour, 1);
+    this.compose(renderer, camera, look);
+    this.drawMarks(renderer, scene, camera);
+  }
+
+  private readonly clearColour = this.composite.uniforms.sky_low!.value.clone() as Color;
+
+  private resize(renderer: WebGLRenderer): void {
+    const { x, y } = renderer.getDrawingBufferSize(this.size);
+    this.behind.setSize(x, y);
+    const scale = Math.min(1, kMostRows / y);
+    const [width, height] = [Math.ceil(scale * x), Math.ceil(scale * y)];
+    for (const target of this.depths) target.setSize(width, height);
+    const [thickWidth, thickHeight] = [Math.ceil(width / 2), Math.ceil(height / 2)];
+    this.thickness.setSize(thickWidth, thickHeight);
+    this.uniforms.texel.value.set(1 / thickWidth, 1 / thickHeight);
+  }
+
+  private drawLayer(
+    renderer: WebGLRenderer,
+    scene: Scene,
+    camera: PerspectiveCamera,
+    layer: number,
+  ): void {
+    camera.layers.set(layer);
+    renderer.render(scene, camera);
+    camera.layers.set(kLayers.scene);
+  }
+
+  private smooth(renderer: WebGLRenderer, camera: PerspectiveCamera, radius: number): void {
+    const [first, second] = this.depths;
+    const { uniforms } = this.smoothing;
+    this.smoother.visible = true;
+    this.result.visible = false;
+    uniforms.radius!.value = radius;
+    uniforms.rows_per_slope!.value = 0.5 * first.height * camera.projectionMatrix.elements[5]!;
+    for (const size of kSmoothing) {
+      uniforms.sigma!.value = size * radius;
+      for (const isAcross of [true, false]) {
+        uniforms.depth!.value = (isAcross ? first : second).texture;
+        (uniforms.direction!.value as Vector2).set(isAcross ? 1 : 0, isAcross ? 0 : 1);
+        renderer.setRenderTarget(isAcross ? second : first);
+        renderer.render(this.screen, camera);
+      }
+    }
+  }
+
+  private compose(renderer: WebGLRenderer, camera: PerspectiveCamera, look: FluidLook): void {
+    const { uniforms } = this.composite;
+    uniforms.projectionMatrixInverse!.value = camera.projectionMatrixInverse;
+    uniforms.clarity!.value = look.clarity;
+    uniforms.paint!.value = look.paint;
+    uniforms.radius!.value = look.radius;
+    this.smoother.visible = false;
+    this.result.visible = true;
+    renderer.setRenderTarget(null);
+    renderer.render(this.screen, camera);
+  }
+
+  /** Over what the canvas shows, whose depths are known. */
+  private drawMarks(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void {
+    renderer.autoClear = false;
+    this.drawLayer(renderer, scene, camera, kLayers.marks);
+    renderer.autoClear = true;
+  }
+}
+
+function depthTarget(depthBuffer: boolean): WebGLRenderTarget {
+  return new WebGLRenderTarget(1, 1, {
+    type: FloatType,
+    format: RedFormat,
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthBuffer,
+  });
+}

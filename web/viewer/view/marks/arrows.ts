@@ -1,0 +1,99 @@
+import { Color, DoubleSide, Mesh, ShaderMaterial } from 'three';
+import type { BufferGeometry, IUniform } from 'three';
+import { kPlaceOfParticle } from '../impostor';
+import type { BodyUniforms } from '../impostor';
+import { kLayers } from '../layers';
+import type { ParticleColumns } from '../particle_columns';
+
+/** Across and along, of a shaft from 0 to 1 and of a head from 2 (its base) to 3 (its tip). */
+const kCorners = [
+  [-1, 0, 1, 0, 1, 1, -1, 1],
+  [-1, 2, 1, 2, 0, 3],
+].flatMap((part) => part.flatMap((value, i) => (i % 2 === 0 ? [value] : [value, 0])));
+const kTriangles = [0, 1, 2, 0, 2, 3, 4, 5, 6];
+
+const kVertexShader = /* glsl */ `
+  ${kPlaceOfParticle}
+  in uint number;
+  uniform float interval;
+  uniform float seconds;
+  uniform float radius;
+  uniform uint every;
+  uniform bool is_rigid;
+  uniform vec3 linear;
+  uniform vec3 angular;
+
+  void main() {
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of every picture
+    // Scattered, for rows of them would hide one another.
+    if (((number * 2654435761u) >> 8) % every != 0u || interval <= 0.0) return;
+    vec3 place = place_of_particle();
+    vec3 world = (modelMatrix * vec4(place, 1.0)).xyz;
+    if (is_clipped(world)) return;
+    vec3 velocity = is_rigid
+      ? linear + cross(angular, mat3(modelMatrix) * place)
+      : mat3(modelMatrix) * (center - before) / interval;
+    vec3 base = (viewMatrix * vec4(world, 1.0)).xyz;
+    vec3 way = mat3(viewMatrix) * (seconds * velocity);
+    float size = length(way);
+    if (size < 0.25 * radius) return;
+    vec3 across = normalize(cross(way, base));
+    float head = min(0.45 * size, 1.3 * radius);
+    float shaft = size - 0.9 * head;
+    float along = position.y < 1.5 ? shaft * position.y : size - head * (3.0 - position.y);
+    float width = position.y < 1.5 ? 0.16 : 0.62;
+    vec3 corner = base + along * way / size + width * head * position.x * across;
+    gl_Position = projectionMatrix * vec4(corner, 1.0);
+  }
+`;
+
+const kFragmentShader = /* glsl */ `
+  uniform vec3 ink;
+  void main() {
+    gl_FragColor = vec4(ink, 0.9);
+    #include <colorspace_fragment>
+  }
+`;
+
+/** Of all arrows. */
+export interface ArrowUniforms extends Record<string, IUniform> {
+  ink: IUniform<Color>;
+  /** They point to where a particle would be after this time [s]. */
+  seconds: IUniform<number>;
+  /** One of so many particles has one. */
+  every: IUniform<number>;
+}
+
+export function arrowUniforms(): ArrowUniforms {
+  return { ink: { value: new Color() }, seconds: { value: 0 }, every: { value: 1 } };
+}
+
+/** An arrow along the velocity of each particle, over all else. */
+export function arrowMesh(
+  columns: ParticleColumns,
+  body: BodyUniforms,
+  radius: number,
+  isRigid: boolean,
+  arrows: ArrowUniforms,
+): Mesh<BufferGeometry, ShaderMaterial> {
+  const material = new ShaderMaterial({
+    vertexShader: kVertexShader,
+    fragmentShader: kFragmentShader,
+    uniforms: {
+      ...body,
+      ...arrows,
+      radius: { value: radius },
+      is_rigid: { value: isRigid },
+    },
+    side: DoubleSide,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
+  });
+  const mesh = new Mesh(columns.shapedAs(kCorners, kTriangles), material);
+  mesh.frustumCulled = false;
+  mesh.visible = false;
+  mesh.renderOrder = 8;
+  mesh.layers.set(kLayers.marks);
+  return mesh;
+}

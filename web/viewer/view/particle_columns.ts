@@ -1,0 +1,248 @@
+import { Float32BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from 'three';
+import type { FrameHeader, GridBlock } from '../../client/index';
+
+const kGrowth = 1.5;
+
+const kSquare = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
+
+/** Where the grid of a frame lies. */
+type Grid = Pick<FrameHeader, 'origin' | 'quantum'>;
+
+/**
+ * What the graphics know of a body's particles, by columns: where they are by the newest frame
+ * (`center`) and by the one before (`before`), their numbers, and a value of each.
+ */
+export class ParticleColumns {
+  /** A square for each particle. */
+  readonly geometry: InstancedBufferGeometry;
+  private readonly geometries: InstancedBufferGeometry[] = [];
+  private places: [Places, Places];
+  private newest = 0;
+  private numbers: Uint32Array | undefined;
+  private numberColumn: InstancedBufferAttribute;
+  private valueColumn: InstancedBufferAttribute;
+  private grid: Grid | undefined;
+
+  constructor(particles: number, local?: readonly number[]) {
+    if (local) {
+      const fixed = new Places(new Float32Array(local));
+      this.places = [fixed, fixed];
+    } else {
+      this.places = [newPlaces(particles), newPlaces(particles)];
+    }
+    this.numberColumn = plainNumbers(particles);
+    this.valueColumn = new InstancedBufferAttribute(new Int32Array(particles), 1);
+    this.geometry = this.shapedAs(kSquare, [0, 1, 2, 0, 2, 3]);
+    this.count = particles;
+  }
+
+  /** A shape for each particle, of these corners and triangles. */
+  shapedAs(corners: number[], triangles: number[]): InstancedBufferGeometry {
+    const geometry = new InstancedBufferGeometry();
+    geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
+    geometry.setIndex(triangles);
+    geometry.instanceCount = this.geometries[0]?.instanceCount ?? 0;
+    this.geometries.push(geometry);
+    this.attach();
+    return geometry;
+  }
+
+  dispose(): void {
+    for (const geometry of this.geometries) geometry.dispose();
+  }
+
+  /** How many particles there are now: a liquid body may grow and shrink. */
+  get count(): number {
+    return this.geometry.instanceCount;
+  }
+
+  private set count(count: number) {
+    for (const geometry of this.geometries) geometry.instanceCount = count;
+  }
+
+  /**
+   * Shows the block's positions as they are where their number stays: no copy is made, and they and
+   * their numbers must stay as they are until the call after the next.
+   */
+  show(block: GridBlock, grid: Grid): void {
+    const count = block.positions.length / 3;
+    if (count > this.room) this.grow(count);
+    const old = this.places[this.newest]!;
+    const follows = this.follows(block.numbers, count, grid);
+    const before = follows || !this.grid ? undefined : this.carriedOver(block, old.array, grid);
+    this.newest = 1 - this.newest;
+    this.places[this.newest]!.set(block.positions);
+    if (!follows) old.set(before ?? block.positions);
+    const wasNumbered = this.numbers !== undefined;
+    this.numbers = block.numbers;
+    this.count = count;
+    if (wasNumbered || this.numbers) this.showNumbers();
+    this.grid = { origin: [...grid.origin], quantum: grid.quantum };
+    this.attach();
+  }
+
+  /** What is shown next does not follow from this. */
+  rest(): void {
+    this.grid = undefined;
+  }
+
+  /** The values of the particles of the last block. */
+  showValues(values: Int32Array): void {
+    (this.valueColumn.array as Int32Array).set(values);
+    this.valueColumn.needsUpdate = true;
+  }
+
+  /** Where the particle with this number is in the columns; undefined where it is not shown. */
+  placeOf(particle: number): number | undefined {
+    const place = this.numbers ? placeIn(this.numbers, particle) : particle;
+    return place !== undefined && place < this.count ? place : undefined;
+  }
+
+  /** The number of the particle at this place. */
+  numberAt(place: number): number {
+    return this.numbers?.[place] ?? place;
+  }
+
+  /** Coordinates of all particles, in the columns' own units, at a phase from 0 to 1. */
+  coordinates(phase: number): ArrayLike<number> {
+    const newest = this.places[this.newest]!.array.subarray(0, 3 * this.count);
+    const before = this.places[1 - this.newest]!.array;
+    if (phase === 1 || before === newest) return newest;
+    const mixed = new Float32Array(newest.length);
+    for (let i = 0; i < mixed.length; ++i) {
+      mixed[i] = before[i]! + phase * (newest[i]! - before[i]!);
+    }
+    return mixed;
+  }
+
+  /** Coordinates by the newest frame, copied. */
+  newestPlaces(): Uint16Array | Float32Array {
+    return this.places[this.newest]!.array.slice(0, 3 * this.count);
+  }
+
+  /** Coordinate `i` of coordinates(). */
+  coordinate(i: number, phase: number): number {
+    const newest = this.places[this.newest]!.array[i]!;
+    const before = this.places[1 - this.newest]!.array[i]!;
+    return before + phase * (newest - before);
+  }
+
+  private get room(): number {
+    return this.numberColumn.count;
+  }
+
+  /** Whether the particles are those of the frame before, on the same grid. */
+  private follows(numbers: Uint32Array | undefined, count: number, grid: Grid): boolean {
+    if (!this.grid || count !== this.count || !isSameGrid(this.grid, grid)) return false;
+    if (!numbers || !this.numbers) return numbers === this.numbers;
+    return numbers.every((number, i) => number === this.numbers![i]);
+  }
+
+  /** Where the block's particles were before, on its grid; those that were not: where they are. */
+  private carriedOver(block: GridBlock, old: Column, grid: Grid): Uint16Array {
+    const carried = block.positions.slice();
+    const from = this.grid!;
+    const scale = from.quantum / grid.quantum;
+    const shift = from.origin.map((origin, q) => (origin - grid.origin[q]!) / grid.quantum);
+    let place = 0; // goes up with the numbers, which rise in both
+    for (let i = 0; 3 * i < carried.length; ++i) {
+      const number = block.numbers ? block.numbers[i]! : i;
+      while (place < this.count && this.numberAt(place) < number) ++place;
+      if (place >= this.count || this.numberAt(place) !== number) continue;
+      for (let q = 0; q < 3; ++q) {
+        const moved = scale * old[3 * place + q]! + shift[q]!;
+        carried[3 * i + q] = Math.min(Math.max(Math.round(moved), 0), 65535);
+      }
+    }
+    return carried;
+  }
+
+  /** Graphics buffers keep their length: longer ones take the place of the old, with room. */
+  private grow(count: number): void {
+    const room = Math.ceil(kGrowth * count);
+    this.dispose(); // frees the old buffers
+    const old = this.places[this.newest]!.array;
+    this.places = [newPlaces(room), newPlaces(room)];
+    this.places[this.newest]!.set(old as Uint16Array);
+    this.numberColumn = plainNumbers(room);
+    this.valueColumn = new InstancedBufferAttribute(new Int32Array(room), 1);
+  }
+
+  private attach(): void {
+    for (const geometry of this.geometries) {
+      geometry.setAttribute('center', this.places[this.newest]!.attribute);
+      geometry.setAttribute('before', this.places[1 - this.newest]!.attribute);
+      geometry.setAttribute('number', this.numberColumn);
+      geometry.setAttribute('value', this.valueColumn);
+    }
+  }
+
+  /** They are sent to the graphics only where they have changed. */
+  private showNumbers(): void {
+    const { numbers, count } = this;
+    const shown = this.numberColumn.array as Uint32Array;
+    for (let i = 0; i < count; ++i) {
+      const number = numbers ? numbers[i]! : i;
+      if (shown[i] === number) continue;
+      shown[i] = number;
+      this.numberColumn.needsUpdate = true;
+    }
+  }
+}
+
+type Column = Uint16Array | Float32Array;
+
+/** One column of coordinates, in the graphics as long as it was made. */
+class Places {
+  readonly attribute: InstancedBufferAttribute;
+  private readonly room: number;
+  /** Takes positions that do not fill the graphics buffer. */
+  private copies: Uint16Array | undefined;
+
+  constructor(array: Column) {
+    this.room = array.length;
+    this.attribute = new InstancedBufferAttribute(array, 3);
+  }
+
+  get array(): Column {
+    return this.attribute.array as Column;
+  }
+
+  set(positions: Uint16Array): void {
+    if (positions.length === this.room) this.attribute.array = positions;
+    else {
+      this.copies ??= new Uint16Array(this.room);
+      this.copies.set(positions);
+      this.attribute.array = this.copies;
+    }
+    this.attribute.needsUpdate = true;
+  }
+}
+
+function newPlaces(particles: number): Places {
+  return new Places(new Uint16Array(3 * particles));
+}
+
+/** 0, 1, 2, ... */
+function plainNumbers(count: number): InstancedBufferAttribute {
+  return new InstancedBufferAttribute(
+    new Uint32Array(count).map((_, i) => i),
+    1,
+  );
+}
+
+function isSameGrid(a: Grid, b: Grid): boolean {
+  return a.quantum === b.quantum && a.origin.every((origin, q) => origin === b.origin[q]);
+}
+
+/** Where a value is in rising ones. */
+function placeIn(values: Uint32Array, value: number): number | undefined {
+  let low = 0;
+  let high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((values[middle] as number) < value) low = middle + 1;
+    else high = middle;
+  }
+  return values[low] === value ? low : undefined;
+}

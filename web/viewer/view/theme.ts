@@ -1,0 +1,49 @@
+import { Color } from 'three';
+import './theme.css';
+
+/** Colours of the surroundings. */
+export interface Theme {
+  stage: Color;
+  floor: Color;
+  shadow: Color;
+  grid: Color;
+  edge: Color;
+  wall: Color;
+  /** Arrows. */
+  mark: Color;
+  /** Mirrored by liquids: near the ground and overhead. */
+  skyLow: Color;
+  skyHigh: Color;
+}
+
+const kProperties: Readonly<Record<keyof Theme, string>> = {
+  stage: '--view-stage',
+  floor: '--view-floor',
+  shadow: '--view-shadow',
+  grid: '--view-grid',
+  edge: '--view-edge',
+  wall: '--view-wall',
+  mark: '--view-mark',
+  skyLow: '--view-sky-low',
+  skyHigh: '--view-sky-high',
+};
+
+/** The theme that the page's style gives, be it light or dark. */
+export function readTheme(): Theme {
+  const probe = document.createElement('i');
+  document.body.append(probe);
+  const read = (property: string): Color => {
+    probe.style.color = `var(${property})`;
+    return new Color(getComputedStyle(probe).color);
+  };
+  const names = Object.keys(kProperties) as (keyof Theme)[];
+  const theme = Object.fromEntries(names.map((name) => [name, read(kProperties[name])]));
+  probe.remove();
+  return theme as Record<keyof Theme, Color>;
+}
+
+/** Tells when the page's style may have become another: the system's or the page's own switch. */
+export function watchTheme(onChange: () => void): void {
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', onChange);
+  new MutationObserver(onChange).observe(document.documentElement, { attributes: true });
+}

@@ -1,0 +1,150 @@
+import type { Attributes, Frame, SessionDescription } from '../../client/index';
+import { ColourScale } from './colour/colour_scale';
+import { attributeOf, quantityError, quantityOf } from './colour/quantity';
+import { setClipPlane } from './clip';
+import { decideStyle } from './liquid_style';
+import type { LiquidStyle } from './liquid_style';
+import { Pace } from './pace';
+import type { ViewSettings } from './settings';
+import { linkedSettings, SettingsStore } from './settings_store';
+import { sharedUniforms } from './shared_uniforms';
+import { Stage } from './stage';
+import { readTheme, watchTheme } from './theme';
+import { World } from './world';
+
+/** Where frames come from, as far as it is told what they should hold. */
+export interface FrameSource {
+  askFor(attributes: Attributes): void;
+}
+
+/** What tells how frames follow one another; see Playout. */
+export interface Motion {
+  smooth: boolean;
+  phaseAt(now: number): number;
+  readonly delaySeconds: number;
+}
+
+/** The drawn world as the user wants it: the settings of the view, carried out. */
+export class View {
+  readonly settings = new SettingsStore(localStorage, linkedSettings(location.href));
+  readonly stage: Stage;
+  readonly world: World;
+  readonly scale: ColourScale;
+  private readonly shared = sharedUniforms();
+  private readonly pace = new Pace();
+  private readonly listeners: ((words: string[]) => void)[] = [];
+  private isSlow = false;
+  private style: LiquidStyle = 'splats';
+  private phase = 1;
+  private surfaces = 0;
+
+  /** `beforeDraw` runs once in each animation frame. */
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly source: FrameSource,
+    private readonly motion: Motion,
+    beforeDraw: () => void,
+  ) {
+    this.stage = new Stage(canvas, this.shared, beforeDraw);
+    this.stage.onDrawn = (at, follows) => this.watchPace(at, follows);
+    this.world = new World(readTheme(), this.shared);
+    this.scale = new ColourScale(this.shared.look);
+    this.world.onChange = () => this.showSurface();
+    this.world.onValues = (range) => this.scale.add(range);
+    this.stage.scene.add(this.world.group);
+    this.paint();
+    watchTheme(() => this.paint());
+    this.settings.subscribe(() => this.apply());
+  }
+
+  describe(description: SessionDescription): void {
+    this.world.describe(description);
+    this.scale.forget();
+    this.pace.restart();
+    this.apply();
+  }
+
+  /** Whether the frame is of the world described. */
+  show(frame: Frame): boolean {
+    if (!this.world.show(frame)) return false;
+    this.scale.settle();
+    this.clip(this.settings.settings);
+    this.stage.invalidate();
+    return true;
+  }
+
+  /** Moves the picture to what is to be seen at `now` [s]. */
+  move(now: number): void {
+    const phase = this.motion.phaseAt(now);
+    if (phase !== this.phase || phase < 1) this.stage.invalidate();
+    this.phase = this.world.phase = phase;
+  }
+
+  /** How much later than it could be the picture is, for the motion to be smooth [s]. */
+  get delaySeconds(): number {
+    return this.motion.delaySeconds;
+  }
+
+  /** Tells, now and later, what explains the picture, and why it is not as it could be. */
+  onWords(listener: (words: string[]) => void): void {
+    this.listeners.push(listener);
+    this.apply();
+  }
+
+  private paint(): void {
+    const look = readTheme();
+    this.world.paint(look);
+    this.stage.paint(look);
+  }
+
+  private apply(): void {
+    const { settings } = this.settings;
+    const { graphics } = this.stage;
+    const particles = this.world.liquidParticles;
+    const { style, words } = decideStyle(settings.liquid, graphics, this.isSlow, particles);
+    this.style = style;
+    this.world.liquidStyle = style;
+    this.world.solidStyle = settings.solids;
+    this.world.colour = settings.colour;
+    this.scale.apply(settings);
+    this.world.marks.apply(settings);
+    const paint = quantityOf(settings.colour) ? 1 : 0;
+    const fluid = this.world.fluid;
+    this.stage.showLiquid(style, fluid && { ...fluid, paint });
+    this.motion.smooth =
+      settings.smooth === 'on' || (settings.smooth === 'auto' && !graphics.isSoftware);
+    this.askFor(settings);
+    this.clip(settings);
+    this.stage.canvas.dataset.liquid = style;
+    const all = [...(words ? [words] : []), ...this.world.marks.words];
+    for (const tell of this.listeners) tell(all);
+  }
+
+  /** A surface around particles is there, of those that are made beside the page. */
+  private showSurface(): void {
+    this.surfaces += 1;
+    this.stage.canvas.dataset.surfaces = String(this.surfaces);
+    this.stage.invalidate();
+  }
+
+  /** Frames have the numbers that colours tell, and no others. */
+  private askFor({ colour }: ViewSettings): void {
+    const name = quantityOf(colour);
+    const error = name && quantityError(name, this.world.height);
+    this.source.askFor(name ? { [attributeOf(name)]: error } : {});
+  }
+
+  private clip(settings: ViewSettings): void {
+    setClipPlane(this.shared.look.clip_plane.value, settings, this.world.extent);
+    this.stage.invalidate();
+  }
+
+  /** Weak graphics get the simpler liquid by themselves, until they are asked for the other. */
+  private watchPace(at: number, follows: boolean): void {
+    if (this.isSlow || this.style !== 'fluid' || !this.world.fluid) return;
+    this.pace.add(at, follows);
+    if (!this.pace.isSlow) return;
+    this.isSlow = true;
+    this.apply();
+  }
+}
