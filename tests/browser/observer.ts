@@ -1,4 +1,3 @@
-import WebSocket from 'ws';
 import { Session } from '../../web/client/index';
 import type {
   BodyState,
@@ -10,6 +9,7 @@ import type {
   SessionStatus,
   SocketConstructor,
 } from '../../web/client/index';
+import { RecordedSocket } from './transcript';
 
 /** A second client in the session, which sees what the page's commands do. */
 export class Observer {
@@ -23,7 +23,7 @@ export class Observer {
     this.session = new Session(
       {
         url: url.href,
-        socket: WebSocket as unknown as SocketConstructor,
+        socket: RecordedSocket as unknown as SocketConstructor,
         now: () => Date.now() / 1000,
       },
       {

@@ -19,18 +19,27 @@ export class Server {
   private process: ChildProcess | undefined;
   private port = 0;
 
+  /** With these flags of `vat serve`. */
+  constructor(private readonly flags: readonly string[] = []) {}
+
   get url(): string {
     return `http://127.0.0.1:${this.port}/`;
   }
 
   /** Resolves once it listens: on any free port at first, later on the same again. */
   async start(): Promise<void> {
-    const child = spawn(program(), ['serve', '--port', String(this.port)], {
+    const child = spawn(program(), ['serve', '--port', String(this.port), ...this.flags], {
       stdio: ['ignore', 'pipe', 'inherit'],
       env: { ...process.env, VAT_ADMIN_TOKEN: kAdminToken },
     });
     this.process = child;
     this.port = await announcedPort(child);
+  }
+
+  /** Resolves once it has ended by itself. */
+  async ended(): Promise<void> {
+    const child = this.process;
+    if (child && child.exitCode === null && child.signalCode === null) await once(child, 'exit');
   }
 
   /** Ends it as a crash would: nobody is told. */

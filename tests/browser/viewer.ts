@@ -6,6 +6,7 @@ import type {
   Request,
 } from 'playwright-core';
 import { kDeadlineMs, launchChromium } from './chromium';
+import { recordPage } from './transcript';
 
 /** A step of one colour channel below this may come from rounding. */
 const kSeenStep = 12;
@@ -14,7 +15,12 @@ const kSeenStep = 12;
 export type Look = Pick<
   BrowserContextOptions,
   'viewport' | 'colorScheme' | 'hasTouch' | 'isMobile' | 'deviceScaleFactor'
->;
+> & {
+  /** Runs in the page before its own scripts. */
+  prepare?: () => void;
+  /** What the page hears is not all the server's own, and no transcript of it. */
+  isUnrecorded?: boolean;
+};
 
 /** The page in a browser with a profile of its own, as a user sees and works it. */
 export class Viewer {
@@ -39,12 +45,14 @@ export class Viewer {
     });
   }
 
-  static async open(url: string, look: Look = {}): Promise<Viewer> {
+  static async open(url: string, { prepare, isUnrecorded, ...look }: Look = {}): Promise<Viewer> {
     const browser = await launchChromium();
     const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
     page.setDefaultTimeout(kDeadlineMs);
     await page.addInitScript(addBrake);
+    if (prepare) await page.addInitScript(prepare);
     const viewer = new Viewer(browser, page, url);
+    if (!isUnrecorded) recordPage(page);
     await page.goto(url);
     return viewer;
   }
@@ -90,15 +98,24 @@ export class Viewer {
     return Number(await this.said('tick'));
   }
 
-  /** A picture of the canvas, as a data address. */
+  /** A picture of the canvas, as a data address; without the hint, which fades after a while. */
   async picture(): Promise<string> {
+    await this.page.evaluate(() => {
+      const hint = document.getElementById('hint');
+      if (hint) hint.style.display = 'none';
+    });
     const png = await this.page.locator('#view').screenshot({ timeout: kDeadlineMs });
     return `data:image/png;base64,${png.toString('base64')}`;
   }
 
+  /** A page of no server, outside of the viewer's content policy. */
+  async blankPage(): Promise<Page> {
+    return this.browser.newPage();
+  }
+
   /** How many pixels of two pictures can be told apart. */
   async difference(first: string, second: string): Promise<number> {
-    const page = await this.browser.newPage(); // outside of the viewer's content policy
+    const page = await this.blankPage();
     try {
       return await page.evaluate(countDifferences, [first, second, kSeenStep] as const);
     } finally {
@@ -131,7 +148,8 @@ export class Viewer {
   private noteRequest(request: Request): void {
     const { protocol, origin } = new URL(request.url());
     const isLocal = protocol === 'blob:' || protocol === 'data:';
-    if (!isLocal && `${origin}/` !== this.url) this.problems.push(`asked for ${request.url()}`);
+    if (!isLocal && origin !== new URL(this.url).origin)
+      this.problems.push(`asked for ${request.url()}`);
   }
 }
 

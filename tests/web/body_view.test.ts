@@ -4,7 +4,8 @@ import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../web/client/index';
 import type { FrameHeader, GridBlock } from '../../web/client/index';
 import { BodyView } from '../../web/viewer/view/body_view';
-import { floorUniforms } from '../../web/viewer/view/shadow_material';
+import { Workshop } from '../../web/viewer/view/surface/workshop';
+import { sharedUniforms } from '../../web/viewer/view/shared_uniforms';
 
 const header = { origin: [0, 0, 0], quantum: 1 } as unknown as FrameHeader;
 
@@ -24,7 +25,7 @@ function liquid(particles: number): BodyView {
     particles,
     radius: 1,
   };
-  return new BodyView(description, 0, floorUniforms());
+  return new BodyView(description, 0, sharedUniforms(), new Workshop(), () => undefined);
 }
 
 /** The particle at 10 i, seen from above. */

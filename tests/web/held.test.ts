@@ -1,6 +1,6 @@
-import { beforeEach, describe, expect, it } from 'vitest';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Vector } from '../../web/client/index';
-import { Held } from '../../web/viewer/grab/held';
+import { Held, kRenewal } from '../../web/viewer/grab/held';
 import type { Request } from '../../web/viewer/stream/stream';
 
 interface Asked {
@@ -33,7 +33,12 @@ function hold(): Held {
 }
 
 beforeEach(() => {
+  vi.useFakeTimers();
   [asked, failures] = [[], []];
+});
+
+afterEach(() => {
+  vi.useRealTimers();
 });
 
 describe('Held', () => {
@@ -72,6 +77,37 @@ describe('Held', () => {
     await asked[0]?.resolve({ grab: 7 });
     await asked[1]?.resolve({});
     expect(asked.map(({ method }) => method)).toEqual(['grab.start', 'grab.move', 'grab.end']);
+  });
+
+  it('tells from time to time that it still holds, until it ends', async () => {
+    const held = hold();
+    vi.advanceTimersByTime(kRenewal);
+    expect(asked).toHaveLength(1);
+    await asked[0]?.resolve({ grab: 7 });
+    const again = { method: 'grab.move', params: { grab: 7, target: kStart.target } };
+    expect(asked[1]).toMatchObject(again);
+    await asked[1]?.resolve({});
+    vi.advanceTimersByTime(kRenewal);
+    expect(asked[2]).toMatchObject(again);
+    await asked[2]?.resolve({});
+    held.move([4, 5, 6]);
+    await asked[3]?.resolve({});
+    vi.advanceTimersByTime(kRenewal);
+    expect(asked[4]?.params).toEqual({ grab: 7, target: [4, 5, 6] });
+    await asked[4]?.resolve({});
+    held.end();
+    await asked[5]?.resolve({});
+    vi.advanceTimersByTime(10 * kRenewal);
+    expect(asked).toHaveLength(6);
+    expect(vi.getTimerCount()).toBe(0);
+  });
+
+  it('tells nothing more once the server has refused', async () => {
+    hold();
+    await asked[0]?.reject(new Error('no such body'));
+    vi.advanceTimersByTime(10 * kRenewal);
+    expect(asked).toHaveLength(1);
+    expect(vi.getTimerCount()).toBe(0);
   });
 
   it('is over once the server refuses', async () => {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { GuardEvent, SessionDescription } from '../../web/client/index';
 import * as format from '../../web/viewer/panel/format';
-import { qualityInWords } from '../../web/viewer/panel/quality';
+import { lossInWords, qualityInWords } from '../../web/viewer/panel/quality';
 import { FrameMeter } from '../../web/viewer/panel/frame_meter';
 import { describeGuard } from '../../web/viewer/panel/notices';
 import { sliderSpeed } from '../../web/viewer/panel/playback';
@@ -48,6 +48,15 @@ it.each([
   [{ stride: 21, quantum: 1, detail: 3, region: false }, 'every 21st frame, to 500 mm'],
 ])('what frames show, in words: %o', (header, words) => {
   expect(qualityInWords(header)).toBe(words);
+});
+
+it.each([
+  [{ stride: 1, detail: 3 }, undefined],
+  [{ stride: 4, detail: 3 }, '1 picture in 4'],
+  [{ stride: 1, detail: 2 }, '½ of the particles'],
+  [{ stride: 4, detail: 0 }, '1 picture in 4, ⅛ of the particles'],
+])('what frames lack, in words: %o', (header, words) => {
+  expect(lossInWords(header)).toBe(words);
 });
 
 describe('FrameMeter', () => {

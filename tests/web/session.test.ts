@@ -323,3 +323,50 @@ describe('while it is in', () => {
     expect(states.at(-1)).toBe('waiting');
   });
 });
+
+describe('going to another session', () => {
+  it('joins it by the same line, as somebody new, and comes back to it after a break', async () => {
+    session = newSession(undefined, undefined, undefined, { resume: 'a'.repeat(22) });
+    session.open();
+    const socket = await enter();
+    session.go('r1');
+    expect(socket.sent.at(-1)).toMatchObject({
+      method: 'session.join',
+      params: { session: 'r1' },
+    });
+    expect(socket.sent.at(-1)).not.toHaveProperty('params.resume');
+    await socket.answer('session.join', {
+      result: { description: { ...kDescription, session: 'r1' }, resume: 'b'.repeat(22) },
+    });
+    expect(descriptions.map(({ session: name }) => name)).toEqual(['s1', 'r1']);
+    expect(socket.methods.slice(-2)).toEqual(['session.join', 'frames.subscribe']);
+    await socket.answer('frames.subscribe', { result: { tick: 0 } });
+    socket.break();
+    vi.advanceTimersByTime(100);
+    const second = FakeSocket.newest;
+    second.accept();
+    await second.answer('server.info', { result: { time: 1050 } });
+    await second.answer('session.join', { result: { description: kDescription } });
+    expect(second.sent.find(({ method }) => method === 'session.join')?.params).toEqual({
+      session: 'r1',
+      resume: 'b'.repeat(22),
+    });
+  });
+
+  it('passes over the answer of one that it has gone on from', async () => {
+    session = newSession();
+    session.open();
+    const socket = await enter();
+    session.go('r1');
+    session.go('r2');
+    const joined = (name: string) => ({
+      result: { description: { ...kDescription, session: name } },
+    });
+    const requests = socket.sent.filter(({ params }) => params?.session !== undefined);
+    for (const [n, name] of ['r1', 'r2'].entries()) {
+      socket.receiveJson({ id: requests[n]?.id, ...joined(name) });
+      await socket.answer('server.info', { result: { time: 1050 } }); // lets it be read
+    }
+    expect(descriptions.map(({ session: name }) => name)).toEqual(['s1', 'r2']);
+  });
+});

@@ -1,0 +1,94 @@
+import { afterAll, beforeAll, expect, it } from 'vitest';
+import { Observer } from './observer';
+import { Server } from './server';
+import { Viewer } from './viewer';
+
+/** Curves over time, and what a tick is spent on. */
+const server = new Server();
+let viewer: Viewer;
+let observer: Observer;
+
+beforeAll(async () => {
+  await server.start();
+  observer = await Observer.join(server.url);
+  viewer = await Viewer.open(server.url);
+  await viewer.untilTick(1);
+});
+afterAll(async () => {
+  observer.leave();
+  await viewer.close();
+  await server.kill();
+});
+
+/** How many pixels of a chart's line there are: those in a strong colour. */
+async function inked(chart: number): Promise<number> {
+  return viewer.page
+    .locator('#curves-place .chart canvas')
+    .nth(chart)
+    .evaluate((canvas: HTMLCanvasElement) => {
+      const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        const strongest = Math.max(data[i]!, data[i + 1]!, data[i + 2]!);
+        const weakest = Math.min(data[i]!, data[i + 1]!, data[i + 2]!);
+        if (data[i + 3]! > 128 && strongest - weakest > 70) ++count;
+      }
+      return count;
+    });
+}
+
+it('fetches what draws curves only once somebody looks at them', async () => {
+  const fetched = (): Promise<number> =>
+    viewer.page.evaluate(
+      () =>
+        performance.getEntriesByType('resource').filter(({ name }) => name.includes('chart'))
+          .length,
+    );
+  expect(await fetched()).toBe(0);
+  await viewer.page.click('#curves-details > summary');
+  await viewer.page.waitForSelector('.chart canvas');
+  expect(await fetched()).toBeGreaterThan(0);
+});
+
+it('draws a line for each, which goes on as the session does', async () => {
+  await viewer.page.waitForFunction(() =>
+    [...document.querySelectorAll<HTMLElement>('.chart')].every(
+      ({ dataset }) => Number(dataset.samples) >= 4,
+    ),
+  );
+  const charts = await viewer.page.locator('.chart').count();
+  for (let n = 0; n < charts; ++n) {
+    await expect.poll(() => inked(n), { timeout: 120_000 }).toBeGreaterThan(60);
+  }
+});
+
+it('draws energies, momentum and density that the server measures', async () => {
+  const { diagnostics } = await observer.request('session.stats', { diagnostics: true });
+  expect(diagnostics!.kinetic_energy).toBeGreaterThan(0);
+  const titles = await viewer.page.locator('.curve figcaption b').allTextContents();
+  expect(titles).toEqual(
+    expect.arrayContaining(['Energy', 'Momentum', 'Liquid denser than at rest']),
+  );
+  const text = await viewer.page.getAttribute('.chart', 'aria-label');
+  expect(text).toMatch(/motion [\d.e]+ J/);
+});
+
+it('tells what a tick is spent on', async () => {
+  await viewer.page.waitForSelector('#stage-bar > i');
+  const words = (await viewer.page.textContent('#stage-words')) ?? '';
+  expect(words).toMatch(/A tick takes [\d.]+ ms of the 20 ms that it may take, so it/);
+  const shares = await viewer.page.locator('#stage-list span').allTextContents();
+  const sum = shares.reduce((total, text) => total + parseInt(text, 10), 0);
+  expect(Math.abs(sum - 100)).toBeLessThanOrEqual(shares.length / 2 + 1); // each is rounded
+  expect(viewer.problems).toEqual([]);
+});
+
+it('begins anew with another scene', async () => {
+  await observer.request('control.pause', {});
+  await observer.request('scene.load', { scene: 'dam-break' });
+  await viewer.page.waitForFunction(() =>
+    [...document.querySelectorAll<HTMLElement>('.chart')].every(
+      ({ dataset }) => dataset.samples === '0',
+    ),
+  );
+});

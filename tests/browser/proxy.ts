@@ -1,0 +1,101 @@
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { once } from 'node:events';
+import WebSocket, { WebSocketServer } from 'ws';
+
+/** What a server, or the line to it, does otherwise. */
+export interface Ways {
+  /** Methods that it does not know, as one that is older. */
+  unknown?: readonly string[];
+}
+
+interface Message {
+  id?: number;
+  method?: string;
+  result?: { methods?: string[] };
+}
+
+/** Stands between a page and its server: hands out the page, and passes on messages, or does not. */
+export class Proxy {
+  private isFrozen = false;
+  private readonly pages = new Set<WebSocket>();
+  private readonly http = createServer((request, response) => {
+    void fetch(new URL(request.url ?? '/', this.server)).then(async (answer) => {
+      const headers = ['content-type', 'content-security-policy'].map(
+        (name) => [name, answer.headers.get(name) ?? ''] as const,
+      );
+      response.writeHead(answer.status, Object.fromEntries(headers));
+      response.end(Buffer.from(await answer.arrayBuffer()));
+    });
+  });
+  private readonly sockets = new WebSocketServer({ server: this.http });
+
+  constructor(
+    private readonly server: string,
+    private readonly ways: Ways = {},
+  ) {
+    this.sockets.on('connection', (page) => this.join(page));
+  }
+
+  async start(): Promise<string> {
+    this.http.listen(0, '127.0.0.1');
+    await once(this.http, 'listening');
+    return `http://127.0.0.1:${(this.http.address() as AddressInfo).port}/`;
+  }
+
+  stop(): void {
+    for (const page of this.pages) page.terminate();
+    this.sockets.close();
+    this.http.close();
+  }
+
+  /** Lines stay open, and nothing comes through any more; new ones are as dead. */
+  freeze(frozen: boolean): void {
+    this.isFrozen = frozen;
+  }
+
+  private join(page: WebSocket): void {
+    this.pages.add(page);
+    const url = new URL('/ws', this.server);
+    url.protocol = 'ws:';
+    const line = new WebSocket(url, 'vat.v1');
+    const waiting: string[] = [];
+    line.on('open', () => waiting.splice(0).forEach((text) => line.send(text)));
+    page.on('message', (data) => {
+      const text = String(data as Buffer);
+      const refusal = this.refusalOf(text);
+      if (this.isFrozen) return;
+      if (refusal !== undefined) page.send(refusal);
+      else if (line.readyState === WebSocket.OPEN) line.send(text);
+      else waiting.push(text);
+    });
+    line.on('message', (data, isBinary) => {
+      if (!this.isFrozen) page.send(isBinary ? data : this.lessened(String(data as Buffer)));
+    });
+    page.on('close', () => {
+      this.pages.delete(page);
+      line.close();
+    });
+    line.on('close', () => page.close());
+    line.on('error', () => page.close());
+  }
+
+  /** What the server would answer if it did not know the method. */
+  private refusalOf(text: string): string | undefined {
+    const { id, method } = JSON.parse(text) as Message;
+    if (method === undefined || !this.ways.unknown?.includes(method)) return undefined;
+    const hint = 'Look the name up in the methods of server.info.';
+    const data = { kind: 'method_not_found', hint };
+    const error = { code: -32601, message: `unknown method "${method}"`, data };
+    return JSON.stringify({ jsonrpc: '2.0', id, error });
+  }
+
+  /** `server.info` does not name what is unknown either. */
+  private lessened(text: string): string {
+    const message = JSON.parse(text) as Message;
+    const { unknown } = this.ways;
+    if (!message.result?.methods || !unknown) return text;
+    const methods = message.result.methods.filter((method) => !unknown.includes(method));
+    return JSON.stringify({ ...message, result: { ...message.result, methods } });
+  }
+}
