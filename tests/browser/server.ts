@@ -11,6 +11,12 @@ function program(): string {
   return path;
 }
 
+/** Without what is said to the tests, which is no setting of a server. */
+function foreignEnvironment(): NodeJS.ProcessEnv {
+  const all = Object.entries(process.env);
+  return Object.fromEntries(all.filter(([name]) => !name.startsWith('VAT_')));
+}
+
 /** Of the servers of the tests. */
 export const kAdminToken = 'the admin token of the browser tests';
 
@@ -30,7 +36,7 @@ export class Server {
   async start(): Promise<void> {
     const child = spawn(program(), ['serve', '--port', String(this.port), ...this.flags], {
       stdio: ['ignore', 'pipe', 'inherit'],
-      env: { ...process.env, VAT_ADMIN_TOKEN: kAdminToken },
+      env: { ...foreignEnvironment(), VAT_ADMIN_TOKEN: kAdminToken, VAT_LOG_LEVEL: 'warn' },
     });
     this.process = child;
     this.port = await announcedPort(child);
