@@ -65,12 +65,10 @@ void print_place(const SessionCore& core, std::uint64_t hash) {
             << describe_hash(hash) << '\n';
 }
 
-int play(const Options& options, const std::shared_ptr<const Recording>& shared,
-         const Catalogue& catalogue) {
-  const Recording& recording = *shared;
+int play(const Options& options, const Recording& recording, const Catalogue& catalogue) {
   const LonelyEnvironment environment(catalogue, recording.instructions);
   if (options.seeks > 0) {
-    time_seeks(shared, environment.get(), options.seeks);
+    time_seeks(recording, environment.get(), options.seeks);
     return kExitOk;
   }
   ReplayPlayer player(recording, environment.get());
@@ -99,13 +97,12 @@ int play(const Options& options, const std::shared_ptr<const Recording>& shared,
 
 int replay(const Options& options) {
   spdlog::set_level(spdlog::level::err);
-  Result<Recording> read = read_file(options.file);
-  if (!read) return fail(options.file, read.errors());
-  const auto recording = std::make_shared<const Recording>(std::move(read).value());
+  const Result<Recording> recording = read_file(options.file);
+  if (!recording) return fail(options.file, recording.errors());
   const Result<Catalogue> catalogue = Catalogue::open(options.scenes_folder);
   if (!catalogue) return fail(options.scenes_folder, catalogue.errors());
   try {
-    return play(options, recording, catalogue.value());
+    return play(options, recording.value(), catalogue.value());
   } catch (const Diverged& difference) {
     std::cerr << options.file << ": differs: " << difference.what() << '\n';
   } catch (const StorageError& error) {

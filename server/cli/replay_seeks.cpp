@@ -4,10 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <iostream>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "server/replay/replay_player.h"
@@ -70,31 +70,31 @@ void play_once(const Recording& recording, const SessionEnvironment& environment
 
 }  // namespace
 
-void time_seeks(std::shared_ptr<const Recording> recording, const SessionEnvironment& environment,
+void time_seeks(const Recording& recording, const SessionEnvironment& environment,
                 std::size_t count) {
   std::size_t bytes = 0;
   std::uint64_t widest = 0;
-  std::uint64_t last = recording->begin;
-  for (const RecordedMoment& moment : recording->moments) {
+  std::uint64_t last = recording.begin;
+  for (const RecordedMoment& moment : recording.moments) {
     bytes += moment.state.size() + moment.fields.size();
     widest = std::max(widest, moment.position - last);
     last = moment.position;
   }
-  widest = std::max(widest, recording->end - last);
-  std::cout << recording->moments.size() << " moments recorded, "
+  widest = std::max(widest, recording.end - last);
+  std::cout << recording.moments.size() << " moments recorded, "
             << static_cast<double>(bytes) / kMebibyte << " MiB, at most " << widest
-            << " ticks apart; " << recording->hashes.size() << " hashes" << std::endl;
+            << " ticks apart; " << recording.hashes.size() << " hashes" << std::endl;
   const ReplayPlayer::Keeping keeping;
   const auto none = std::make_shared<KeptMoments>(Seconds(1e9), keeping.most_bytes);
-  time_some(*recording, environment, none, count);
+  time_some(recording, environment, none, count);
 
   const auto moments = std::make_shared<KeptMoments>(keeping.work, keeping.most_bytes);
   const auto begin = Clock::now();
-  play_once(*recording, environment, moments);
+  play_once(recording, environment, moments);
   std::cout << moments->count() << " moments filled in, "
             << static_cast<double>(moments->bytes()) / kMebibyte << " MiB, in "
             << Seconds(Clock::now() - begin).count() << " s\n";
-  time_some(*recording, environment, moments, count);
+  time_some(recording, environment, moments, count);
 }
 
 }  // namespace vat

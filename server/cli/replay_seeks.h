@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
 #include "server/replay/recording.h"
 #include "server/session/session_environment.h"
@@ -10,7 +9,7 @@ namespace vat {
 
 /// Goes to so many random positions of a recording, and again once moments have been filled in as
 /// a server does it; prints how long that took, and what is kept.
-void time_seeks(std::shared_ptr<const Recording> recording, const SessionEnvironment& environment,
+void time_seeks(const Recording& recording, const SessionEnvironment& environment,
                 std::size_t count);
 
 }  // namespace vat

@@ -50,6 +50,12 @@ websocketpp::lib::error_code share_port(tcp::acceptor& acceptor) {
                            std::to_string(port) + ": " + reason);
 }
 
+/// The library finds out the byte order at its first conversion, and keeps it unguarded. What
+/// endpoints on other threads do comes after this one.
+void find_byte_order() {
+  [[maybe_unused]] static const std::uint64_t kFound = websocketpp::lib::net::_htonll(0);
+}
+
 /// Listens for a moment, alone on the port; what is wrong with that, if anything.
 boost::system::error_code try_to_listen(boost::asio::io_context& io,
                                         const tcp::endpoint& endpoint) {
@@ -97,6 +103,7 @@ std::string why_not_listen(boost::asio::io_context& io, const tcp::endpoint& end
 
 WsEndpoint::WsEndpoint(WsShared& shared)
     : shared_(shared), lane_(std::make_shared<WsLane>(io_)), ping_timer_(io_), stop_timer_(io_) {
+  find_byte_order();
   configure();
   set_handlers();
 }

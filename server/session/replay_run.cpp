@@ -171,8 +171,7 @@ Json ReplayRun::describe(const SessionCore& core) const {
   std::vector<std::uint64_t> checkpoints = moments_->positions();
   for (const RecordedMoment& moment : recording_->moments) checkpoints.push_back(moment.position);
   std::ranges::sort(checkpoints);
-  const auto twice = std::ranges::unique(checkpoints);
-  checkpoints.erase(twice.begin(), twice.end());
+  checkpoints.erase(std::unique(checkpoints.begin(), checkpoints.end()), checkpoints.end());
   return {{"name", recording_->name},
           {"begin", recording_->begin},
           {"end", recording_->end},

@@ -79,7 +79,11 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
 }
 
 SessionDirectory::~SessionDirectory() {
-  stop();
+  try {
+    stop();
+  } catch (const std::exception& error) {  // the members still end their threads
+    spdlog::error("the sessions did not stop in order: {}", error.what());
+  }
 }
 
 bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
