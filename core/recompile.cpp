@@ -48,7 +48,7 @@ Controls rebind(Controls controls, const Model& before, const Model& model) {
 void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
                                  const std::vector<std::optional<std::vector<Index>>>& kept,
                                  const std::vector<BodyId>& described_anew) {
-  std::vector<char> as_described(ids.size(), false);
+  std::vector<bool> as_described(ids.size());
   for (std::size_t b = 0; b < ids.size(); ++b) {
     const ModelBody* known = find(ids[b]);
     if (samples[b] != nullptr || known == nullptr || known->sample == nullptr) continue;

@@ -21,7 +21,7 @@ struct AxisMotion {
 class Approach {
  public:
   Approach(Real way, Real start) {
-    constexpr Real a = kMaxHandAcceleration;
+    const Real a = kMaxHandAcceleration;
     // Where it would end up if it slowed down from now on.
     const Real stopping = start * std::abs(start) / (2 * a);
     direction_ = way < stopping ? -1 : 1;
@@ -37,7 +37,7 @@ class Approach {
   Real time() const { return faster_ + even_ + slower_; }
 
   AxisMotion at(Real t) const {
-    constexpr Real a = kMaxHandAcceleration;
+    const Real a = kMaxHandAcceleration;
     AxisMotion motion;
     if (t < faster_) {
       motion = {(start_ + a * t / 2) * t, start_ + a * t, a};

@@ -382,9 +382,9 @@ Errors find_moved_vat_errors(const Scene& scene, const Vec3& offset) {
   RangeCheck check(errors);
   const Real side = (scene.vat->max - scene.vat->min).maxCoeff();
   check.vector(offset, -side, side, path);
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool repeats = scene.periodic && scene.periodic->axes[static_cast<std::size_t>(axis)];
-    if (!repeats || offset[axis] == 0) continue;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool repeats = scene.periodic && scene.periodic->axes[axis];
+    if (!repeats || offset[static_cast<Eigen::Index>(axis)] == 0) continue;
     check.add("not_allowed", path,
               std::string("must be 0 along the periodic axis ") + kAxisNames[axis]);
   }
