@@ -313,8 +313,8 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
     if (model.liquid_count > 0) sort_liquid(context);
     f.work.contacts.update(context, approach);
   }
-  find_contact_steps(f, state.now, time, longest, approach, bounds, steps.contacts, steps.particle,
-                     steps.rigid);
+  find_contact_steps(f, state.now, time, {longest, approach}, bounds, steps.contacts,
+                     steps.particle, steps.rigid);
 }
 
 Real without_viscosity_solve(const Model& model, Real step) {

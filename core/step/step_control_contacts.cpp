@@ -244,16 +244,16 @@ void ContactOutlook::add(const ContactOutlook& other) {
   threshold = std::min(threshold, other.threshold);
 }
 
-void find_contact_steps(const ForceModel& f, const Configuration& at, Real time, Real longest,
-                        Real reach, const StepBounds& bounds, ContactScratch& scratch,
+void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
+                        const Foresight& ahead, const StepBounds& bounds, ContactScratch& scratch,
                         std::vector<Real>& particle_steps, std::vector<Real>& rigid_steps) {
   const Model& model = f.model;
   if (model.contact_reach <= 0 && model.walls.empty()) return;
   const Search search{f,
                       at,
-                      longest,
-                      model.scene.forces.gravity ? model.scene.gravity.norm() * longest : 0,
-                      reach,
+                      ahead.longest,
+                      model.scene.forces.gravity ? model.scene.gravity.norm() * ahead.longest : 0,
+                      ahead.reach,
                       model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
                       model.scene.vat ? greatest_vat_speed(*model.scene.vat, time) : 0};
   // Coupled liquid meets walls without springs.

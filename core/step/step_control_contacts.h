@@ -43,11 +43,17 @@ struct StepBounds {
                                  ///< stable in a liquid [s]; infinite without either
 };
 
+/// How far ahead contacts are looked for.
+struct Foresight {
+  Real longest = 0;  ///< step [s]
+  Real reach = 0;    ///< how far any two particles may approach each other within that [m]
+};
+
 /// Lowers the steps by free particle and by rigid body to those that their contacts, together with
 /// the other forces on the free particles, allow. Positions and cells must be those of the present
-/// state. `reach` [m] is how far any two particles may approach each other within `longest` [s].
+/// state.
 void find_contact_steps(const ForceModel& force_model, const Configuration& at, Real time,
-                        Real longest, Real reach, const StepBounds& bounds, ContactScratch& scratch,
+                        const Foresight& ahead, const StepBounds& bounds, ContactScratch& scratch,
                         std::vector<Real>& particle_step, std::vector<Real>& rigid_step);
 
 /// The stable step of the scene's integrator, with a margin; infinite where it has none.
