@@ -52,26 +52,25 @@ void write_key_blocks(const GridFrame& frame, SymbolWriter& writer, BlockScratch
 }
 
 /// How far poses go on as they went, by the times of the references.
-std::int32_t turn_of(const GridFrame& frame, const FrameReferences& references) {
-  if (references.second == nullptr) return 0;
-  const double now = frame.header.time - references.first->header.time;
-  const double before = references.first->header.time - references.second->header.time;
+std::int32_t turn_of(const GridFrame& frame, const GridFrame& first, const GridFrame* second) {
+  if (second == nullptr) return 0;
+  const double now = frame.header.time - first.header.time;
+  const double before = first.header.time - second->header.time;
   if (!(before > 0)) return 0;
   return static_cast<std::int32_t>(
       std::clamp(std::round(256 * now / before), 0.0, kFactorOffset - 1.0));
 }
 
-void write_delta_blocks(const GridFrame& frame, const FrameReferences& references,
+void write_delta_blocks(const GridFrame& frame, const GridFrame& first, const GridFrame* second,
                         SymbolWriter& writer, BlockScratch& scratch) {
-  const std::int32_t turn = code_factor(writer, turn_of(frame, references));
+  const std::int32_t turn = code_factor(writer, turn_of(frame, first, second));
   bool before = false;
   for (std::size_t b = 0; b < frame.blocks.size(); ++b) {
-    const GridBlock& first = references.first->blocks[b];
-    const GridBlock* second =
-        references.second != nullptr ? &references.second->blocks[b] : nullptr;
-    before = writer.flag(!(frame.blocks[b] == first), kChangeChances[before ? 1 : 0]);
+    const GridBlock& last = first.blocks[b];
+    before = writer.flag(!(frame.blocks[b] == last), kChangeChances[before ? 1 : 0]);
     if (!before) continue;
-    code_delta_block(writer, frame.scale, first, second, turn, frame.blocks[b], scratch);
+    code_delta_block(writer, frame.scale, last, second != nullptr ? &second->blocks[b] : nullptr,
+                     turn, frame.blocks[b], scratch);
   }
 }
 
@@ -111,7 +110,7 @@ std::span<const std::uint8_t> FrameEncoder::encode(const GridFrame& frame,
   if (first == nullptr) {
     write_key_blocks(frame, own.writer, own.scratch);
   } else {
-    write_delta_blocks(frame, references, own.writer, own.scratch);
+    write_delta_blocks(frame, *first, second, own.writer, own.scratch);
   }
   own.writer.finish(own.bytes);
   return own.bytes;
