@@ -20,7 +20,7 @@ void expect(const boost::system::error_code& error, const std::string& file, con
 
 std::shared_ptr<ssl::context> make_tls_context(const std::string& certificate_file,
                                                const std::string& key_file) {
-  const auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
+  auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
   SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
   // A client could make the server compute keys without end.
   SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION);
