@@ -21,8 +21,11 @@ class WebSocketClient final : public Client {
       : runner_(trust), stream_(runner_.template make<websocket::stream<Layer>>()) {}
   ~WebSocketClient() override {
     error_code ignored;  // the peer may have gone
-    beast::get_lowest_layer(stream_).socket().close(ignored);
-    runner_.run_out();  // ends the operations in flight, which refer to this
+    try {
+      beast::get_lowest_layer(stream_).socket().close(ignored);
+      runner_.run_out();  // ends the operations in flight, which refer to this
+    } catch (...) {       // nobody is left to tell
+    }
   }
 
   /// The HTTP status.

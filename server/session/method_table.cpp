@@ -27,12 +27,9 @@ SessionCommand make_command(std::string_view method, Json params) {
   VAT_CHECK(found != nullptr);
   Errors errors;
   ObjectReader reader(params, "", errors);
-  SessionCommand command;
-  command.rules = &found->rules;
-  command.action = std::get<Method::ForSession>(found->read)(reader, errors);
+  SessionAction action = std::get<Method::ForSession>(found->read)(reader, errors);
   VAT_CHECK(errors.empty());
-  command.params = std::move(params);
-  return command;
+  return {&found->rules, std::move(params), std::move(action)};
 }
 
 const Method* find_method(std::string_view name) {

@@ -18,8 +18,8 @@ constexpr double kMostAttributeError = 1e12;
 
 FrameRegion read_region(const Json& value, const std::string& path, Errors& errors) {
   ObjectReader reader(value, path, errors);
-  const FrameRegion region{reader.vector("min", -kMaxLength, kMaxLength),
-                           reader.vector("max", -kMaxLength, kMaxLength)};
+  FrameRegion region{reader.vector("min", -kMaxLength, kMaxLength),
+                     reader.vector("max", -kMaxLength, kMaxLength)};
   reader.refuse_unknown();
   if ((region.max.array() < region.min.array()).any()) {
     add_error(errors, "out_of_range", path + "/max", "must not be below min, on any axis");

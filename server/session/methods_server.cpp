@@ -13,8 +13,27 @@ double seconds(std::chrono::milliseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
-Json describe_limits(const ServerLimits& limits) {
+/// Those of recordings, and of what is saved.
+Json describe_limits_of_kept(const ServerLimits& limits) {
   return {
+      {"recording_bytes", limits.max_recording_bytes},
+      {"recording_ticks", kMaxRecordedTicks},
+      {"recording_entries", kMaxRecordedEntries},
+      {"download_bytes", limits.max_download_bytes},
+      {"imports", Imports::kMostFiles},
+      {"import_bytes", Imports::kMostBytes},
+      {"states_per_session", limits.max_states_per_session},
+      {"state_bytes_per_session", limits.max_state_bytes_per_session},
+      {"state_bytes_in_all", limits.max_state_bytes_in_all},
+      {"scenes_per_address", limits.max_scenes_per_address},
+      {"scene_bytes_per_address", limits.max_scene_bytes_per_address},
+      {"scenes_in_all", limits.max_scenes_in_all},
+      {"scene_bytes_in_all", limits.max_scene_bytes_in_all},
+  };
+}
+
+Json describe_limits(const ServerLimits& limits) {
+  Json all{
       {"connections", limits.max_connections},
       {"connections_per_address", limits.max_connections_per_address},
       {"sessions", limits.max_sessions},
@@ -59,20 +78,9 @@ Json describe_limits(const ServerLimits& limits) {
       {"expire_after_seconds", seconds(limits.expire_after)},
       {"replay_expire_after_seconds", seconds(limits.replay_expire_after)},
       {"control_queue_bytes", limits.max_control_queue_bytes},
-      {"recording_bytes", limits.max_recording_bytes},
-      {"recording_ticks", kMaxRecordedTicks},
-      {"recording_entries", kMaxRecordedEntries},
-      {"download_bytes", limits.max_download_bytes},
-      {"imports", Imports::kMostFiles},
-      {"import_bytes", Imports::kMostBytes},
-      {"states_per_session", limits.max_states_per_session},
-      {"state_bytes_per_session", limits.max_state_bytes_per_session},
-      {"state_bytes_in_all", limits.max_state_bytes_in_all},
-      {"scenes_per_address", limits.max_scenes_per_address},
-      {"scene_bytes_per_address", limits.max_scene_bytes_per_address},
-      {"scenes_in_all", limits.max_scenes_in_all},
-      {"scene_bytes_in_all", limits.max_scene_bytes_in_all},
   };
+  all.update(describe_limits_of_kept(limits));
+  return all;
 }
 
 std::optional<RpcResult> info(const SessionDirectory& directory) {

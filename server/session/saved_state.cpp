@@ -12,6 +12,7 @@ namespace vat {
 namespace {
 
 /// A state that is restored, as its entry tells it.
+// NOLINTNEXTLINE(bugprone-exception-escape): the library says that moves of JSON do not throw
 struct Restore {
   Json scene;
   std::uint64_t tick = 0;
