@@ -307,6 +307,7 @@ void Session::carry_out_pointers() {
   if (pointers_.empty()) return;
   std::vector<PointerCommands::Newest> waiting = pointers_.take();
   std::vector<SessionCore::Given> given;
+  given.reserve(waiting.size());
   for (const auto& newest : waiting) given.push_back({newest.participant, newest.command});
   const std::vector<ActionResult> results = core_.carry_out(given);
   for (std::size_t i = 0; i < waiting.size(); ++i) {
