@@ -51,7 +51,7 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Writes down where it is; what is kept is then for `task`, on the storage's thread. Where it is
   /// kept nowhere, or not any more, `caller` is told.
   using KeptTask = std::function<void(Storage&, std::uint64_t session)>;
-  void keep_and(KeptTask task, std::shared_ptr<Caller> caller);
+  void keep_and(KeptTask task, const std::shared_ptr<Caller>& caller);
   /// Ends all work soon, at most once: commands that are not carried out yet are answered by
   /// no_such_session, and then the caller, if there is one, with the tick that was the last. Where
   /// it is kept, it may come back from where it was.

@@ -90,6 +90,7 @@ using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekT
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
 
 /// A call of a session's method with valid parameters.
+// NOLINTNEXTLINE(bugprone-exception-escape): the library says that moves of JSON do not throw
 struct SessionCommand {
   const MethodRules* rules = nullptr;
   Json params;  ///< an object

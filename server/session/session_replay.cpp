@@ -48,7 +48,7 @@ void Session::end_seek() {
   if (!steps_.empty()) schedule_step();
 }
 
-void Session::keep_and(KeptTask task, std::shared_ptr<Caller> caller) {
+void Session::keep_and(KeptTask task, const std::shared_ptr<Caller>& caller) {
   boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task), caller] {
     SessionLog* const log = self->closed_ ? nullptr : self->core_.log();
     if (log == nullptr) {
