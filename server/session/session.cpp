@@ -357,8 +357,9 @@ void Session::end_all_steps() {
 
 void Session::tick_turn() {
   const auto now = SteadyClock::now();
-  // A wait that was overtaken by a command.
-  if (!core_.playing() || seek_ || now < clock_.due()) return;
+  // A wait that was over when the clock was stopped or set: it could not be called off any more.
+  const bool stands_still = period_ == SteadyClock::duration::zero() || !core_.playing();
+  if (stands_still || seek_ || now < clock_.due()) return;
   if (!has_place()) return;
   core_.environment().metrics.add_lateness(now - clock_.due());
   run_tick(now, true);
