@@ -11,11 +11,13 @@
 #include "protocol/json_reader.h"
 #include "server/script/client.h"
 #include "tests/server/message_record.h"
+#include "tests/support/patience.h"
 
 namespace vat::test {
 
-/// A client that waits, ten seconds at most, for what it is asked for; throws std::runtime_error
-/// where that does not come, and where a session has not come back as it was.
+/// A client that waits, ten seconds at most and longer under a sanitizer, for what it is asked for;
+/// throws std::runtime_error where that does not come, and where a session has not come back as it
+/// was.
 class WaitingClient {
  public:
   explicit WaitingClient(std::uint16_t port) {
@@ -63,7 +65,7 @@ class WaitingClient {
 
  private:
   static script::Deadline deadline() {
-    return std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    return std::chrono::steady_clock::now() + std::chrono::seconds(10 * kSlowdown);
   }
   /// Of the first messages alone: a load sends the same again and again.
   script::Transcript* next_record() {

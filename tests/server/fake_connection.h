@@ -17,6 +17,7 @@
 #include "protocol/json_reader.h"
 #include "server/net/transport.h"
 #include "server/script/transcript.h"
+#include "tests/support/patience.h"
 
 namespace vat::test {
 
@@ -25,7 +26,7 @@ namespace vat::test {
 class FakeConnection final : public Connection {
  public:
   /// How long a test waits for what must come, before it fails.
-  static constexpr std::chrono::seconds kPatience{30};
+  static constexpr std::chrono::seconds kPatience{30 * kSlowdown};
 
   explicit FakeConnection(ConnectionId id, std::string address = "127.0.0.1")
       : id_(id), address_(std::move(address)) {}

@@ -12,6 +12,7 @@
 #include "core/simulation.h"
 #include "server/storage/database.h"
 #include "tests/server/session_fixture.h"
+#include "tests/support/patience.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test {
@@ -339,7 +340,8 @@ TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
   EXPECT_EQ(error.at("code"), 1011);
   EXPECT_EQ(error.at("data").at("state"), "recovering");
   const int joining = visitor.send("session.join", {{"session", "s1"}});
-  for (int i = 0; i < 3000 && !server.is_ready(); ++i) std::this_thread::sleep_for(20ms);
+  for (int i = 0; i < 3000 * kSlowdown && !server.is_ready(); ++i)
+    std::this_thread::sleep_for(20ms);
   EXPECT_TRUE(server.is_ready());
   EXPECT_TRUE(visitor.wait_reply(joining).contains("result"));
 }

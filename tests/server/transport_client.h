@@ -11,9 +11,12 @@
 #include <string>
 #include <string_view>
 
+#include "tests/support/patience.h"
+
 namespace vat::test {
 
-inline constexpr std::chrono::seconds kPatience{10};  ///< then a test fails rather than hangs
+/// Then a test fails rather than hangs.
+inline constexpr std::chrono::seconds kPatience{10 * kSlowdown};
 
 /// Bytes as they are, to and from 127.0.0.1. A call that cannot end within kPatience throws
 /// std::runtime_error, as does a write to a peer that has gone.
