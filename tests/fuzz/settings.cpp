@@ -9,12 +9,12 @@
 // would be printed, a file that sets the same.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
-  static const test::TemporaryFolder folder;
-  static const std::string file = folder.file("vat.json");
+  static const test::TemporaryFolder kFolder;
+  static const std::string kFile = kFolder.file("vat.json");
   const auto apply = [](std::string_view text, ServeSettings& target) {
-    std::ofstream(file, std::ios::binary) << text;
+    std::ofstream(kFile, std::ios::binary) << text;
     SettingSources sources;
-    return apply_file(serve_settings(target), file, sources);
+    return apply_file(serve_settings(target), kFile, sources);
   };
   const auto printed = [](ServeSettings& target) {
     return describe(serve_settings(target), {}).at("settings");
