@@ -4,6 +4,7 @@
 
 #include <map>
 #include <random>
+#include <utility>
 
 #include "server/limits.h"
 #include "tests/server/fake_connection.h"
@@ -39,7 +40,7 @@ class FrameDeliveryTest : public testing::Test {
     viewer.outbox = std::make_shared<ClientOutbox>(viewer.connection);
     const std::uint64_t membership = viewer.outbox->join();
     viewer.outbox->start_epoch(membership, kEpoch);
-    delivery.add(viewer.outbox, viewer.outbox->subscribe(membership, wakes, now), wish);
+    delivery.add(viewer.outbox, viewer.outbox->subscribe(membership, wakes, now), std::move(wish));
     return viewer;
   }
   /// One in which something has moved since all others.

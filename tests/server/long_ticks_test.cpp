@@ -40,10 +40,10 @@ TEST(LongTicks, WhoFindsNoPlaceGetsTheFirstThatIsFree) {
 
 TEST(LongTicks, APlaceThatNobodyTakesGoesToTheNext) {
   LongTicks ticks(1);
-  LongTicks::Place place = ticks.take([](LongTicks::Place) {});
+  LongTicks::Place place = ticks.take([](const LongTicks::Place&) {});
   bool came = false;
-  ticks.take([](LongTicks::Place) {});  // has gone meanwhile
-  ticks.take([&](LongTicks::Place) { came = true; });
+  ticks.take([](const LongTicks::Place&) {});  // has gone meanwhile
+  ticks.take([&](const LongTicks::Place&) { came = true; });
   place.reset();
   EXPECT_TRUE(came);
 }
@@ -68,7 +68,7 @@ TEST(LongTicks, NeverMoreAtOnceThanThereArePlaces) {
     for (int t = 0; t < 8; ++t) {
       threads.emplace_back([&] {
         for (int i = 0; i < 1000; ++i) {
-          const LongTicks::Place place = ticks.take([&](LongTicks::Place) { work(); });
+          const LongTicks::Place place = ticks.take([&](const LongTicks::Place&) { work(); });
           if (place != nullptr) work();
         }
       });
