@@ -17,7 +17,7 @@ constexpr const char* kToken = "0123456789abcdef";  // of the least length
 class ServeAccessTest : public testing::Test {
  protected:
   ServeAccessTest() { unsetenv(kVariable); }
-  ~ServeAccessTest() override { unsetenv(kVariable); }
+  void TearDown() override { unsetenv(kVariable); }
 
   ServeAccess made() {
     const Result<ServeAccess> access = serve_access(settings);

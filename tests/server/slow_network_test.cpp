@@ -50,7 +50,7 @@ class SlowNetwork : public testing::Test {
     }
     port_ = transport_->start();
   }
-  ~SlowNetwork() override {
+  void TearDown() override {
     server_.stop();
     transport_->stop();
   }
