@@ -259,4 +259,10 @@ Status Simulation::grab_end(std::uint64_t id) {
   return {};
 }
 
+std::optional<Vec3> Simulation::grab_target(std::uint64_t id) const {
+  const auto grab = std::ranges::find(impl_->controls.grabs, id, &Grab::id);
+  if (grab == impl_->controls.grabs.end()) return {};
+  return grab->target;
+}
+
 }  // namespace vat

@@ -295,6 +295,8 @@ class Simulation {
   Status grab_move(std::uint64_t grab, const Vec3& target);
   /// Lets go. Fails if there is no such grab, as when its body was removed.
   Status grab_end(std::uint64_t grab);
+  /// Where the grab pulls to [m]; nothing where there is no such grab.
+  std::optional<Vec3> grab_target(std::uint64_t grab) const;
 
  private:
   Simulation();

@@ -30,11 +30,6 @@ Index index_of(const Simulation& simulation, BodyId id, Index number) {
   return static_cast<Index>(found - body->numbers.begin());
 }
 
-/// Pointers are not recorded, but where those who hold something draw it.
-void point_where_recorded(Participant& participant, const Vec3& target) {
-  if (participant.is_ghost()) participant.pointer = Pointer{target, {}};
-}
-
 ActionResult start(SessionCore& core, Participant& participant, BodyId body, Index number,
                    const Vec3& target) {
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
@@ -51,7 +46,6 @@ ActionResult start(SessionCore& core, Participant& participant, BodyId body, Ind
   core.use_grab();
   participant.grabs.emplace(grab, body);
   participant.grab_uses[grab] = SteadyClock::now();
-  point_where_recorded(participant, target);
   return Json{{"grab", grab}};
 }
 
@@ -83,7 +77,6 @@ SessionAction read_move(ObjectReader& params, Errors&) {
     const Status moved = core.run().simulation().grab_move(grab, target);
     if (!moved) return refused(moved.errors());
     participant.grab_uses[grab] = SteadyClock::now();
-    point_where_recorded(participant, target);
     return Json::object();
   };
 }

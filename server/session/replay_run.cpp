@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "protocol/printable.h"
@@ -21,6 +22,14 @@ constexpr auto kPeopleInterval = std::chrono::milliseconds(100);
 constexpr KeptMoments::Seconds kWork{
     0.04};  // between two moments, of a seek of a fifth of a second
 constexpr std::size_t kMostBytes = std::size_t{128} << 20;  // of moments beside the recording's own
+
+/// Pointers are not recorded, but where those who hold something draw it.
+Json describe_hand(const SessionCore& core, const Participant& person) {
+  if (person.grabs.empty()) return nullptr;
+  const std::optional<Vec3> target =
+      core.run().simulation().grab_target(person.grabs.rbegin()->first);
+  return target ? Json{{"position", to_json(*target)}} : Json();
+}
 
 }  // namespace
 
@@ -151,7 +160,7 @@ Json ReplayRun::describe_people(const SessionCore& core) const {
     told.erase("away");
     told["person"] = number;
     told["name"] = name != names_.end() ? name->second : "participant " + std::to_string(number);
-    if (person.grabs.empty()) told["pointer"] = nullptr;
+    told["pointer"] = describe_hand(core, person);
     people.push_back(std::move(told));
   }
   return people;

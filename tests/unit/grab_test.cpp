@@ -98,6 +98,19 @@ TEST(Grab, MovesAndLetsGo) {
   EXPECT_EQ(velocity_of(simulation, 0), velocity);
 }
 
+TEST(Grab, TellsWhereItPullsAlsoOnceItCameBack) {
+  Simulation simulation = make_block_of(BodyKind::rigid, 1);
+  EXPECT_EQ(simulation.grab_target(kHand), std::nullopt);
+  ASSERT_TRUE(simulation.grab_start(kHand, simulation.bodies()[0].id, 0, {0.1, 0, 0}).ok());
+  const Snapshot before = simulation.snapshot();
+  ASSERT_TRUE(simulation.grab_move(kHand, {0, 0.2, 0}).ok());
+  EXPECT_EQ(simulation.grab_target(kHand), Vec3(0, 0.2, 0));
+  simulation.restore(before);
+  EXPECT_EQ(simulation.grab_target(kHand), Vec3(0.1, 0, 0));
+  ASSERT_TRUE(simulation.grab_end(kHand).ok());
+  EXPECT_EQ(simulation.grab_target(kHand), std::nullopt);
+}
+
 TEST(Grab, StartedAgainMovesToTheNewBody) {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
   scene.bodies = {make_block("one", BodyKind::rigid, "a", 1, {0, 0, 0}, Vec3::Zero()),
