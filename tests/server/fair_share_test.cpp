@@ -120,8 +120,11 @@ INSTANTIATE_TEST_SUITE_P(Counts, HeavySessions, testing::Values(1, kThreads));
 // and goes, but who waits for long ticks does so in every round. A round in which the heavy ones
 // did not get the cores that they have work for says nothing: other programs had them.
 TEST_P(HeavySessions, LeaveTheLightOnesTheirRate) {
-  const double wanted = static_cast<double>(
-      std::min<std::size_t>(GetParam(), std::max(1U, std::thread::hardware_concurrency())));
+  // The light ones and the clients have work for more than half a core.
+  const double wanted = static_cast<double>(GetParam()) + 0.5;
+  if (std::thread::hardware_concurrency() < wanted) {
+    GTEST_SKIP() << "the system shares out the cores, of which heavy sessions take all";
+  }
   std::vector<std::unique_ptr<TestClient>> heavy;
   for (std::size_t i = 0; i < GetParam(); ++i) {
     heavy.push_back(join_new(heavy_scene()));
@@ -137,7 +140,7 @@ TEST_P(HeavySessions, LeaveTheLightOnesTheirRate) {
   for (int round = 0; round < kRounds || (round < kMostRounds && !keep_theirs()); ++round) {
     for (const auto& one : heavy) one->result("control.play");
     const Rate now = watch();
-    if (now.cores > 0.75 * wanted) beside = best(beside, now);
+    if (now.cores > 0.8 * wanted) beside = best(beside, now);
     for (const auto& one : heavy) {
       one->mark();
       const double factor = one->wait_event("session.status").at("real_time_factor");
