@@ -1,5 +1,6 @@
 import type { Vector } from '../../client/index';
 import { Newest } from '../stream/newest';
+import { BallPad } from './ball_pad';
 import { element, onPress } from './elements';
 
 /** How strong gravity is [m/s²] and how far it leans from straight down [degrees]. */
@@ -33,8 +34,12 @@ export function tiltOf([x, y, z]: Vector): Tilt {
 export class Gravity {
   private readonly strength = element('gravity', HTMLInputElement);
   private readonly text = element('gravity-text', HTMLOutputElement);
-  private readonly pad = element('tilt', HTMLElement);
-  private readonly ball = element('tilt-ball', HTMLElement);
+  private readonly pad = new BallPad(
+    'tilt',
+    () => this.isEnabled,
+    ([x, y]) =>
+      this.change({ ...this.tilt, x: Math.round(kMostTilt * x), y: Math.round(kMostTilt * y) }),
+  );
   private readonly sliders = {
     x: element('tilt-x', HTMLInputElement),
     y: element('tilt-y', HTMLInputElement),
@@ -43,7 +48,6 @@ export class Gravity {
   private tilt: Tilt = { strength: 9.81, x: 0, y: 0 };
   private initial: Vector = [0, 0, -9.81];
   private isEnabled = false;
-  private isDragging = false;
   private readonly newest: Newest<Vector>;
 
   /** `send` resolves once the server has answered; meanwhile only the newest is kept. */
@@ -53,11 +57,6 @@ export class Gravity {
       slider.addEventListener('input', () => this.readSliders());
     }
     onPress(this.resetButton, () => this.change(tiltOf(this.initial)));
-    this.pad.addEventListener('pointerdown', (event) => this.drag(event, true));
-    this.pad.addEventListener('pointermove', (event) => this.drag(event, false));
-    for (const type of ['pointerup', 'pointercancel'] as const) {
-      this.pad.addEventListener(type, () => (this.isDragging = false));
-    }
   }
 
   enable(enabled: boolean): void {
@@ -71,7 +70,7 @@ export class Gravity {
   /** What the session has; `isNew` where a scene was loaded. */
   describe(gravity: Vector, isNew: boolean): void {
     if (isNew) this.initial = gravity;
-    if (this.isDragging || this.newest.isBusy) return; // the newest is on its way
+    if (this.pad.isDragging || this.newest.isBusy) return; // the newest is on its way
     this.tilt = tiltOf(gravity);
     this.show();
   }
@@ -94,17 +93,6 @@ export class Gravity {
     });
   }
 
-  private drag(event: PointerEvent, begins: boolean): void {
-    if (!this.isEnabled || (!begins && !this.isDragging)) return;
-    if (begins) this.pad.setPointerCapture(event.pointerId);
-    this.isDragging = true;
-    const { left, top, width, height } = this.pad.getBoundingClientRect();
-    const across = (2 * (event.clientX - left)) / width - 1;
-    const up = 1 - (2 * (event.clientY - top)) / height;
-    const scale = kMostTilt / Math.max(Math.hypot(across, up), 1);
-    this.change({ ...this.tilt, x: Math.round(across * scale), y: Math.round(up * scale) });
-  }
-
   private change(tilt: Tilt): void {
     this.tilt = tilt;
     this.show();
@@ -117,7 +105,6 @@ export class Gravity {
     this.sliders.x.valueAsNumber = x;
     this.sliders.y.valueAsNumber = y;
     this.text.value = `${strength.toFixed(2)} m/s²`;
-    const half = 37; // the pad's radius without the ball's [px]
-    this.ball.style.translate = `${(half * x) / kMostTilt}px ${(-half * y) / kMostTilt}px`;
+    this.pad.show([x / kMostTilt, y / kMostTilt]);
   }
 }
