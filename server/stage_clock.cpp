@@ -20,7 +20,7 @@ void StageClock::clear() {
 }
 
 void StageClock::charge_running() {
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = now_();
   if (running_ != kNone) stages_[running_].time += now - since_;
   since_ = now;
 }

@@ -23,6 +23,9 @@ class StageClock final : public StageObserver {
     double seconds() const { return std::chrono::duration<double>(time).count(); }
   };
 
+  /// `now` reads the time.
+  explicit StageClock(Clock::time_point (*now)() = Clock::now) : now_(now) {}
+
   void stage_begins(std::string_view stage) override;
   void stages_end() override;
 
@@ -36,6 +39,7 @@ class StageClock final : public StageObserver {
   void charge_running();
   std::size_t find(std::string_view name);
 
+  Clock::time_point (*const now_)();
   std::vector<Stage> stages_;    // some twenty
   std::size_t running_ = kNone;  // index into stages_
   Clock::time_point since_;      // when it began

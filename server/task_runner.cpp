@@ -153,7 +153,7 @@ std::size_t ThreadPoolRunner::begin_alone(std::size_t block_count, const Block& 
   for (std::size_t b = 0; b < block_count; ++b) {
     block(b);
     if (nobody_helps) continue;
-    if (is_worth_waking(Clock::now() - begin, b + 1, block_count - b - 1)) return b + 1;
+    if (should_wake(Clock::now() - begin, b + 1, block_count - b - 1)) return b + 1;
   }
   return block_count;
 }
@@ -173,7 +173,7 @@ void ThreadPoolRunner::work_as_caller(Job& job) {
   bool may_wake = sleepers_ > 0;
   const Clock::time_point begin = may_wake ? Clock::now() : Clock::time_point();
   for (std::size_t done = 1; job.do_block(); ++done) {
-    if (may_wake && is_worth_waking(Clock::now() - begin, done, job.blocks_left())) {
+    if (may_wake && should_wake(Clock::now() - begin, done, job.blocks_left())) {
       calls_.notify_one();  // who comes calls the next
       may_wake = false;
     }
@@ -181,9 +181,13 @@ void ThreadPoolRunner::work_as_caller(Job& job) {
 }
 
 bool ThreadPoolRunner::is_worth_waking(Clock::duration elapsed, std::size_t done,
-                                       std::size_t left) const {
-  return elapsed * static_cast<Clock::rep>(left) >= kWorthWaking * static_cast<Clock::rep>(done) &&
-         busy_ < helper_limit();
+                                       std::size_t left) {
+  return elapsed * static_cast<Clock::rep>(left) >= kWorthWaking * static_cast<Clock::rep>(done);
+}
+
+bool ThreadPoolRunner::should_wake(Clock::duration elapsed, std::size_t done,
+                                   std::size_t left) const {
+  return is_worth_waking(elapsed, done, left) && busy_ < helper_limit();
 }
 
 std::size_t ThreadPoolRunner::helper_limit() const {

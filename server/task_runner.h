@@ -39,6 +39,11 @@ class ThreadPoolRunner final : public TaskRunner {
   void run(std::size_t block_count, const std::function<void(std::size_t)>& block) override;
   std::size_t thread_count() const override { return thread_count_; }
 
+  using Clock = std::chrono::steady_clock;
+  /// Whether a sleeping helper is worth waking after `done` blocks of a run took `elapsed` and
+  /// `left` blocks have not begun.
+  static bool is_worth_waking(Clock::duration elapsed, std::size_t done, std::size_t left);
+
   /// While it lives, a thread of another pool has work of its own. Helpers beyond thread_count()
   /// less the guests stop at the end of their blocks, so that no more threads than that run for
   /// long: work of its own first, help second.
@@ -55,13 +60,12 @@ class ThreadPoolRunner final : public TaskRunner {
 
  private:
   using Block = std::function<void(std::size_t)>;
-  using Clock = std::chrono::steady_clock;
   struct Job;
 
   std::size_t begin_alone(std::size_t block_count, const Block& block) const;
   Job* take_job();
   void work_as_caller(Job& job);
-  bool is_worth_waking(Clock::duration elapsed, std::size_t done, std::size_t left) const;
+  bool should_wake(Clock::duration elapsed, std::size_t done, std::size_t left) const;
   void help(std::size_t number);
   bool help_any(std::size_t number, bool has_slept);
   bool help_with(Job& job, bool has_slept);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "server/storage/token_store.h"
-#include "server/wall_clock.h"
 
 namespace vat {
 namespace {
@@ -23,13 +22,14 @@ const char* to_string(AccessMode mode) {
   return mode == AccessMode::open ? "open" : "token";
 }
 
-void AccessTokens::keep_in(TokenStore& store, Clock::time_point now) {
-  const double wall = wall_clock();
+void AccessTokens::keep_in(TokenStore& store) {
+  const auto now = clock_.now();
+  const double wall = clock_.wall_time();
   store.remove_old(wall);
   const std::lock_guard lock(mutex_);
   store_ = &store;
   for (StoredToken& token : store.all()) {
-    const auto left = std::chrono::duration_cast<Clock::duration>(Seconds(token.ends - wall));
+    const auto left = std::chrono::duration_cast<SteadyClock::duration>(Seconds(token.ends - wall));
     Grant grant{read_role(token.role), std::move(token.session), true};
     entries_.insert_or_assign(token.hash, Entry{std::move(grant), token.uses, now + left});
     ++issued_;
@@ -37,17 +37,17 @@ void AccessTokens::keep_in(TokenStore& store, Clock::time_point now) {
 }
 
 std::optional<std::string> AccessTokens::issue(Grant grant, std::optional<std::size_t> uses,
-                                               Clock::time_point end, Clock::time_point now) {
+                                               std::chrono::seconds time) {
   std::string token = make_token();
   const TokenHash hash = hash_of_token(token);
   const std::lock_guard lock(mutex_);
-  if (issued_ >= max_issued_) remove_old(now);
+  if (issued_ >= max_issued_) remove_old();
   if (issued_ >= max_issued_) return {};
   if (store_ != nullptr) {
-    const double ends = wall_clock() + Seconds(end - now).count();
+    const double ends = clock_.wall_time() + Seconds(time).count();
     store_->add({hash, to_string(grant.role), grant.session, uses, ends});
   }
-  entries_.insert_or_assign(hash, Entry{std::move(grant), uses, end});
+  entries_.insert_or_assign(hash, Entry{std::move(grant), uses, clock_.now() + time});
   ++issued_;
   return token;
 }
@@ -75,12 +75,12 @@ void AccessTokens::remove_session(const std::string& session, bool comes_back) {
   });
 }
 
-std::optional<Grant> AccessTokens::use(const TokenHash& token, Clock::time_point now) {
+std::optional<Grant> AccessTokens::use(const TokenHash& token) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(token);
   if (found == entries_.end()) return {};
   Entry& entry = found->second;
-  if (entry.end && *entry.end <= now) return {};
+  if (entry.end && *entry.end <= clock_.now()) return {};
   Grant grant = entry.grant;
   if (entry.uses) count_use(token, entry);
   return grant;
@@ -97,8 +97,9 @@ void AccessTokens::count_use(const TokenHash& token, Entry& entry) {
   --issued_;
 }
 
-void AccessTokens::remove_old(Clock::time_point now) {
-  if (store_ != nullptr) store_->remove_old(wall_clock());
+void AccessTokens::remove_old() {
+  if (store_ != nullptr) store_->remove_old(clock_.wall_time());
+  const auto now = clock_.now();
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_old = entry.second.end && *entry.second.end <= now;
     if (is_old) --issued_;

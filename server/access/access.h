@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "server/access/token.h"
+#include "server/clock.h"
 #include "server/session/role.h"
 
 namespace vat {
@@ -40,36 +41,37 @@ struct Grant {
 /// The tokens that are good now, but for the admin's. Safe to use from any thread.
 class AccessTokens {
  public:
-  using Clock = std::chrono::steady_clock;
   /// At most so many that were issued are kept.
-  explicit AccessTokens(std::size_t max_issued) : max_issued_(max_issued) {}
+  AccessTokens(std::size_t max_issued, const Clock& clock)
+      : max_issued_(max_issued), clock_(clock) {}
 
   /// From now on those that are issued are kept; those that are in the store are good again. Throws
   /// StorageError, as all do that change what is kept; nothing has changed then.
-  void keep_in(TokenStore& store, Clock::time_point now);
+  void keep_in(TokenStore& store);
 
-  /// A new token, good `uses` times (absent: any number) until `end`. Nothing if there are too
-  /// many.
+  /// A new token, valid for `uses` uses (absent: any number) and for `time`. Absent if there are
+  /// too many tokens.
   std::optional<std::string> issue(Grant grant, std::optional<std::size_t> uses,
-                                   Clock::time_point end, Clock::time_point now);
+                                   std::chrono::seconds time);
   /// A token that somebody else looks after, good until it is removed.
   void add(const TokenHash& token, Grant grant);
   void remove(const TokenHash& token);
   /// Of a session that comes back, those that were issued are kept all the same.
   void remove_session(const std::string& session, bool comes_back);
   /// What the token gives, and counts the use; nothing if it is not good.
-  std::optional<Grant> use(const TokenHash& token, Clock::time_point now);
+  std::optional<Grant> use(const TokenHash& token);
 
  private:
   struct Entry {
     Grant grant;
     std::optional<std::size_t> uses;
-    std::optional<Clock::time_point> end;  // absent: it was not issued here
+    std::optional<SteadyClock::time_point> end;  // absent: it was not issued here
   };
-  void remove_old(Clock::time_point now);
+  void remove_old();
   void count_use(const TokenHash& token, Entry& entry);
 
   const std::size_t max_issued_;
+  const Clock& clock_;
   std::mutex mutex_;
   // Found by their hashes: what the time of a search could tell is of the hash, not of the token.
   std::map<TokenHash, Entry> entries_;

@@ -2,7 +2,7 @@
 
 namespace vat {
 
-MessageMeter::MessageMeter(const ServerLimits& limits, Clock::time_point now)
+MessageMeter::MessageMeter(const ServerLimits& limits, SteadyClock::time_point now)
     : bytes_{"message_bytes_per_second", limits.max_message_bytes_per_second,
              TokenBucket(limits.max_message_bytes_per_second,
                          limits.max_message_bytes_per_second * limits.burst_seconds, now)},
@@ -18,15 +18,18 @@ MessageMeter::MessageMeter(const ServerLimits& limits, Clock::time_point now)
       refusals_(limits.max_refusals_per_second,
                 limits.max_refusals_per_second * limits.burst_seconds, now) {}
 
-std::optional<RateExcess> MessageMeter::count_bytes(std::size_t bytes, Clock::time_point now) {
+std::optional<RateExcess> MessageMeter::count_bytes(std::size_t bytes,
+                                                    SteadyClock::time_point now) {
   return take(bytes_, static_cast<double>(bytes), now);
 }
 
-std::optional<RateExcess> MessageMeter::count(MessageClass message_class, Clock::time_point now) {
+std::optional<RateExcess> MessageMeter::count(MessageClass message_class,
+                                              SteadyClock::time_point now) {
   return take(classes_[static_cast<std::size_t>(message_class)], 1, now);
 }
 
-std::optional<RateExcess> MessageMeter::take(Limit& limit, double amount, Clock::time_point now) {
+std::optional<RateExcess> MessageMeter::take(Limit& limit, double amount,
+                                             SteadyClock::time_point now) {
   const auto wait = limit.bucket.take(amount, now);
   if (!wait) return {};
   return RateExcess{limit.name, limit.rate, *wait, refusals_.take(1, now).has_value()};

@@ -24,14 +24,12 @@ struct RateExcess {
 /// time.
 class MessageMeter {
  public:
-  using Clock = TokenBucket::Clock;
-
-  MessageMeter(const ServerLimits& limits, Clock::time_point now);
+  MessageMeter(const ServerLimits& limits, SteadyClock::time_point now);
 
   /// Before the message is read.
-  std::optional<RateExcess> count_bytes(std::size_t bytes, Clock::time_point now);
+  std::optional<RateExcess> count_bytes(std::size_t bytes, SteadyClock::time_point now);
   /// Once it is known what it counts as.
-  std::optional<RateExcess> count(MessageClass message_class, Clock::time_point now);
+  std::optional<RateExcess> count(MessageClass message_class, SteadyClock::time_point now);
 
  private:
   struct Limit {
@@ -39,7 +37,7 @@ class MessageMeter {
     double rate;
     TokenBucket bucket;
   };
-  std::optional<RateExcess> take(Limit& limit, double amount, Clock::time_point now);
+  std::optional<RateExcess> take(Limit& limit, double amount, SteadyClock::time_point now);
 
   Limit bytes_;
   std::array<Limit, kMessageClasses> classes_;

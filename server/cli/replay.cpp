@@ -35,8 +35,8 @@ class LonelyEnvironment {
  public:
   explicit LonelyEnvironment(const Catalogue& catalogue, InstructionSet instructions)
       : runner_(std::max(1U, std::thread::hardware_concurrency())),
-        environment_{catalogue, limits_,    instructions,   runner_,
-                     metrics_,  resources_, frame_threads_, tokens_} {
+        environment_{catalogue,  limits_,        instructions, runner_, metrics_,
+                     resources_, frame_threads_, tokens_,      clock_} {
     limits_.max_particles = kMaxParticles;
     limits_.max_springs = kMaxSprings;
     limits_.max_particle_steps_per_tick = kMaxParticles * kMaxStepsPerTick;
@@ -49,7 +49,8 @@ class LonelyEnvironment {
   ServerMetrics metrics_;
   ResourceBudget resources_{kUnlimitedResources};
   boost::asio::thread_pool frame_threads_{1};
-  AccessTokens tokens_{1};
+  SystemClock clock_;
+  AccessTokens tokens_{1, clock_};
   const SessionEnvironment environment_;
 };
 

@@ -28,6 +28,7 @@
 #include "server/cli/open_files.h"
 #include "server/cli/scene_argument.h"
 #include "server/cli/serve_access.h"
+#include "server/clock.h"
 #include "server/heap.h"
 #include "server/http/downloads.h"
 #include "server/http/http_site.h"
@@ -178,7 +179,8 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   }
   settings.storage = options.storage;
   settings.end = [&](auto drain_time) { return stop_signal.request(drain_time); };
-  SessionServer sessions(catalogue, settings);
+  SystemClock clock;
+  SessionServer sessions(catalogue, settings, clock);
   if (sessions.recover() == 0) {
     const Result<SessionId> session = sessions.create_session(scene.name, scene);
     if (!session) return fail(options.scene, session.errors());
@@ -189,7 +191,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
       with_downloads(make_http_site(std::move(viewer), {[&] { return sessions.metrics(); },
                                                         [&] { return phase_of(phase, sessions); },
                                                         version_json(settings)}),
-                     sessions.downloads()));
+                     sessions.downloads(), clock));
   raise_file_limit(settings.limits.max_connections);
   const std::uint16_t port = transport->start();
   const std::string url = viewer_url(options, port);

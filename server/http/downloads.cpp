@@ -6,7 +6,7 @@
 
 namespace vat {
 
-std::optional<std::string> Downloads::add(File file, Clock::time_point now) {
+std::optional<std::string> Downloads::add(File file, SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
   const std::size_t size = file.content.size();
@@ -17,7 +17,7 @@ std::optional<std::string> Downloads::add(File file, Clock::time_point now) {
   return path;
 }
 
-std::optional<Downloads::File> Downloads::take(std::string_view path, Clock::time_point now) {
+std::optional<Downloads::File> Downloads::take(std::string_view path, SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
   const auto found = files_.find(path);
@@ -28,13 +28,13 @@ std::optional<Downloads::File> Downloads::take(std::string_view path, Clock::tim
   return file;
 }
 
-std::size_t Downloads::forget_old(Clock::time_point now) {
+std::size_t Downloads::forget_old(SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
   return bytes_;
 }
 
-void Downloads::forget_old_locked(Clock::time_point now) {
+void Downloads::forget_old_locked(SteadyClock::time_point now) {
   std::erase_if(files_, [&](const auto& entry) {
     if (entry.second.end > now) return false;
     bytes_ -= entry.second.file.content.size();
@@ -42,10 +42,11 @@ void Downloads::forget_old_locked(Clock::time_point now) {
   });
 }
 
-HttpHandler with_downloads(HttpHandler site, Downloads& downloads) {
-  return [site = std::move(site), &downloads](std::string_view method, std::string_view target) {
+HttpHandler with_downloads(HttpHandler site, Downloads& downloads, const Clock& clock) {
+  return [site = std::move(site), &downloads, &clock](std::string_view method,
+                                                      std::string_view target) {
     if (method != "GET" || !target.starts_with(Downloads::kFolder)) return site(method, target);
-    std::optional<Downloads::File> file = downloads.take(target, Downloads::Clock::now());
+    std::optional<Downloads::File> file = downloads.take(target, clock.now());
     if (!file) return site(method, target);
     return HttpResponse{200,
                         "application/octet-stream",

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/clock.h"
 #include "server/limits.h"
 #include "server/net/transport.h"
 
@@ -17,7 +18,6 @@ namespace vat {
 /// once. Safe to use from any thread.
 class Downloads {
  public:
-  using Clock = std::chrono::steady_clock;
   static constexpr std::string_view kFolder = "/downloads/";
   static constexpr std::chrono::seconds kPatience{60};
 
@@ -31,17 +31,17 @@ class Downloads {
       : max_bytes_(max_bytes) {}
 
   /// A path that nobody can guess; nothing where too much waits already.
-  std::optional<std::string> add(File file, Clock::time_point now);
-  std::optional<File> take(std::string_view path, Clock::time_point now);
+  std::optional<std::string> add(File file, SteadyClock::time_point now);
+  std::optional<File> take(std::string_view path, SteadyClock::time_point now);
   /// Those that have waited long enough go; what the others take.
-  std::size_t forget_old(Clock::time_point now);
+  std::size_t forget_old(SteadyClock::time_point now);
 
  private:
   struct Waiting {
     File file;
-    Clock::time_point end;
+    SteadyClock::time_point end;
   };
-  void forget_old_locked(Clock::time_point now);
+  void forget_old_locked(SteadyClock::time_point now);
 
   const std::size_t max_bytes_;
   std::mutex mutex_;
@@ -50,6 +50,6 @@ class Downloads {
 };
 
 /// Answers GET for those files, and all else as `site` does.
-HttpHandler with_downloads(HttpHandler site, Downloads& downloads);
+HttpHandler with_downloads(HttpHandler site, Downloads& downloads, const Clock& clock);
 
 }  // namespace vat

@@ -14,7 +14,7 @@ RpcError bad_part(std::string path, std::string message) {
 }  // namespace
 
 std::variant<Imports::Progress, RpcError> Imports::add(ConnectionId client, Part part,
-                                                       Clock::time_point now) {
+                                                       SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
   if (part.size > kMaxRecordingBytes) return limit_reached("recording_bytes", kMaxRecordingBytes);
@@ -51,7 +51,7 @@ std::optional<std::vector<std::uint8_t>> Imports::take_bytes(const std::string& 
 }
 
 void Imports::put(const std::string& name, std::shared_ptr<const Recording> recording,
-                  Clock::time_point now) {
+                  SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   const auto found = files_.find(name);
   if (found == files_.end()) return;
@@ -64,20 +64,21 @@ void Imports::forget(const std::string& name) {
   files_.erase(name);
 }
 
-std::shared_ptr<const Recording> Imports::find(const std::string& name, Clock::time_point now) {
+std::shared_ptr<const Recording> Imports::find(const std::string& name,
+                                               SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
   const auto found = files_.find(name);
   return found == files_.end() ? nullptr : found->second.recording;
 }
 
-std::size_t Imports::forget_old(Clock::time_point now) {
+std::size_t Imports::forget_old(SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
   return held();
 }
 
-void Imports::forget_old_locked(Clock::time_point now) {
+void Imports::forget_old_locked(SteadyClock::time_point now) {
   std::erase_if(files_, [&](const auto& entry) { return entry.second.end < now; });
 }
 

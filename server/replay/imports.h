@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "server/clock.h"
 #include "server/net/transport.h"
 #include "server/replay/recording.h"
 #include "server/session/rpc_message.h"
@@ -22,7 +23,6 @@ namespace vat {
 /// gone on with, or not opened, is forgotten after a while. Safe to use from any thread.
 class Imports {
  public:
-  using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kMostBytes = std::size_t{512} << 20;  ///< of all that is held
   static constexpr std::size_t kMostFiles = 16;
   static constexpr std::chrono::seconds kPatience{600};
@@ -41,16 +41,16 @@ class Imports {
     std::size_t received = 0;
     bool is_whole = false;
   };
-  std::variant<Progress, RpcError> add(ConnectionId client, Part part, Clock::time_point now);
+  std::variant<Progress, RpcError> add(ConnectionId client, Part part, SteadyClock::time_point now);
   /// The bytes of a file that is whole; it is still held.
   std::optional<std::vector<std::uint8_t>> take_bytes(const std::string& name);
   /// What they were.
   void put(const std::string& name, std::shared_ptr<const Recording> recording,
-           Clock::time_point now);
+           SteadyClock::time_point now);
   void forget(const std::string& name);
-  std::shared_ptr<const Recording> find(const std::string& name, Clock::time_point now);
+  std::shared_ptr<const Recording> find(const std::string& name, SteadyClock::time_point now);
   /// Those that have waited long enough go; what the others take.
-  std::size_t forget_old(Clock::time_point now);
+  std::size_t forget_old(SteadyClock::time_point now);
 
  private:
   struct File {
@@ -59,9 +59,9 @@ class Imports {
     std::vector<std::uint8_t> bytes;
     std::shared_ptr<const Recording> recording;
     std::size_t held = 0;  ///< bytes that count
-    Clock::time_point end;
+    SteadyClock::time_point end;
   };
-  void forget_old_locked(Clock::time_point now);
+  void forget_old_locked(SteadyClock::time_point now);
   std::size_t held() const;
 
   const std::size_t most_bytes_;

@@ -64,8 +64,8 @@ void MomentFiller::run(const SessionEnvironment& shared) {
   ServerMetrics metrics;  // these are not the ticks of a session
   ResourceBudget resources(kUnlimitedResources);
   const SessionEnvironment environment{
-      shared.catalogue, shared.limits, shared.instructions,  runner,
-      metrics,          resources,     shared.frame_threads, shared.tokens};
+      shared.catalogue, shared.limits,        shared.instructions, runner,      metrics,
+      resources,        shared.frame_threads, shared.tokens,       shared.clock};
   ReplayPlayer player(*recording_, environment);
   player.share(moments_);
   SessionCore core("filling", {recording_->name}, player.begin(), environment);

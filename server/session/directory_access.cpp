@@ -18,7 +18,7 @@ std::optional<Grant> SessionDirectory::find_grant(std::string_view token) {
   const TokenHash hash = hash_of_token(token);
   const auto& admin = settings_.access.admin;
   if (admin && are_same(*admin, hash)) return Grant{Role::admin, {}, true};
-  return tokens_.use(hash, SteadyClock::now());
+  return tokens_.use(hash);
 }
 
 std::optional<RpcResult> SessionDirectory::enter(Caller& caller, std::string_view token) {
@@ -36,11 +36,12 @@ std::optional<RpcResult> SessionDirectory::enter(Caller& caller, std::string_vie
   }
   const bool is_last = ++client.wrong_tokens >= settings_.access.max_wrong_tokens;
   spdlog::warn("a wrong token, number {} of its connection", client.wrong_tokens);
-  later_->at(SteadyClock::now() + settings_.access.refusal_delay,
-             [is_last, refused = std::make_shared<Caller>(std::move(caller))] {
-               refused->answer(not_authenticated("the token is not good, or not any more"));
-               if (is_last) refused->client()->close(kNotAuthenticated, "too many wrong tokens");
-             });
+  deferred_->add(clock_.now() + settings_.access.refusal_delay,
+                 [is_last, refused = std::make_shared<Caller>(std::move(caller))] {
+                   refused->answer(not_authenticated("the token is not good, or not any more"));
+                   if (is_last)
+                     refused->client()->close(kNotAuthenticated, "too many wrong tokens");
+                 });
   return {};
 }
 
@@ -68,9 +69,8 @@ RpcResult SessionDirectory::issue_ticket(const Caller& caller, Role role,
       if (auto error = refuse_role(caller, rules, found->first)) return *std::move(error);
     }
   }
-  const auto now = SteadyClock::now();
   const auto time = settings_.access.ticket_time;
-  const auto token = tokens_.issue(std::move(grant), 1, now + time, now);
+  const auto token = tokens_.issue(std::move(grant), 1, time);
   if (!token) return limit_reached("tokens", settings_.limits.max_tokens);
   return Json{{"token", *token}, {"role", to_string(role)}, {"seconds", time.count()}};
 }

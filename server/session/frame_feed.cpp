@@ -24,8 +24,9 @@ bool give_way() {
 }  // namespace
 
 FrameFeed::FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
-                     boost::asio::thread_pool& pool)
+                     boost::asio::thread_pool& pool, const Clock& clock)
     : session_(std::move(session)),
+      clock_(clock),
       strand_(boost::asio::make_strand(pool.get_executor())),
       delivery_(vat, metrics) {}
 
@@ -63,6 +64,10 @@ void FrameFeed::publish(PublishedState& state) {
 
 void FrameFeed::wake(ConnectionId client) {
   put([&] { mail_.woken.push_back(client); });
+}
+
+void FrameFeed::post(std::function<void()> task) {
+  boost::asio::post(strand_, std::move(task));
 }
 
 template <class Put>
@@ -104,9 +109,9 @@ void FrameFeed::carry_out_mail() {
     }
   }
   if (mail_at_work_.has_state) {
-    delivery_.publish(mail_at_work_.state, SteadyClock::now());
+    delivery_.publish(mail_at_work_.state, clock_.now());
   } else {
-    delivery_.retry(mail_at_work_.woken, SteadyClock::now());
+    delivery_.retry(mail_at_work_.woken, clock_.now());
   }
 }
 

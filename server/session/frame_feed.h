@@ -2,6 +2,7 @@
 
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,7 +21,7 @@ namespace vat {
 class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<FrameFeed> {
  public:
   FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
-            boost::asio::thread_pool& pool);
+            boost::asio::thread_pool& pool, const Clock& clock);
 
   /// What is done here takes effect before a state that is published later. True where a state that
   /// waited was dropped, since it may lack what the new one wants: one should be published soon.
@@ -34,6 +35,8 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   /// tick allocates nothing for what it publishes.
   void publish(PublishedState& state);
   void wake(ConnectionId client) override;
+  /// Runs `task` after all that was put here before.
+  void post(std::function<void()> task);
 
  private:
   struct Added {
@@ -57,6 +60,7 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   void carry_out_mail();
 
   const std::string session_;
+  const Clock& clock_;
   boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
 
   std::mutex mutex_;

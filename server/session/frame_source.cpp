@@ -86,7 +86,7 @@ std::shared_ptr<const GridFrame> FrameSource::frame(const FrameCut& cut) {
 
 SharedFrame FrameSource::encode(const GridFrame& frame, const HeldFrames& held,
                                 std::uint8_t stride) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = CostClock::now();
   FrameReferences references;
   if (held[0] != nullptr && can_refer(frame, *held[0])) {
     references.first = held[0].get();
@@ -94,7 +94,7 @@ SharedFrame FrameSource::encode(const GridFrame& frame, const HeldFrames& held,
   }
   const auto bytes = encoder_.encode(frame, references, stride);
   auto shared = std::make_shared<const std::string>(bytes.begin(), bytes.end());
-  metrics_.add_encoded_frame(std::chrono::steady_clock::now() - begin, references.first == nullptr);
+  metrics_.add_encoded_frame(CostClock::now() - begin, references.first == nullptr);
   return shared;
 }
 

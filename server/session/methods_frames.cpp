@@ -53,7 +53,7 @@ SessionAction read_subscribe(ObjectReader& params, Errors& errors) {
         read_attributes(*attributes, params.path_of("attributes"), errors);
   }
   return [subscription](SessionCore& core, Participant& participant) -> ActionResult {
-    core.subscribe(participant, subscription, SteadyClock::now());
+    core.subscribe(participant, subscription, core.environment().clock.now());
     return Json::object();
   };
 }
@@ -70,7 +70,7 @@ ServerAction read_ack(ObjectReader& params, Errors&) {
   const auto number = static_cast<std::uint32_t>(
       params.count("number", 1, std::numeric_limits<std::uint32_t>::max()));
   return [number](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
-    if (!caller.client()->acknowledge(number, SteadyClock::now())) {
+    if (!caller.client()->acknowledge(number, directory.clock().now())) {
       return invalid_params({Error{"out_of_range", "/number", "must be of a frame that was sent"}});
     }
     Json reply = Json::object();

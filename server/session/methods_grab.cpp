@@ -45,7 +45,7 @@ ActionResult start(SessionCore& core, Participant& participant, BodyId body, Ind
   }
   core.use_grab();
   participant.grabs.emplace(grab, body);
-  participant.grab_uses[grab] = SteadyClock::now();
+  participant.grab_uses[grab] = core.environment().clock.now();
   return Json{{"grab", grab}};
 }
 
@@ -76,7 +76,7 @@ SessionAction read_move(ObjectReader& params, Errors&) {
     if (auto error = refuse_grab(core, participant, grab)) return *std::move(error);
     const Status moved = core.run().simulation().grab_move(grab, target);
     if (!moved) return refused(moved.errors());
-    participant.grab_uses[grab] = SteadyClock::now();
+    participant.grab_uses[grab] = core.environment().clock.now();
     return Json::object();
   };
 }

@@ -61,9 +61,8 @@ SessionAction read_invite(ObjectReader& params, Errors&) {
   const std::uint64_t seconds = params.count("expires", 1, kMaxExpirySeconds, kUsualExpirySeconds);
   return [=](SessionCore& core, Participant&) -> ActionResult {
     const SessionEnvironment& environment = core.environment();
-    const auto now = SteadyClock::now();
-    const auto token = environment.tokens.issue({role, core.id(), true}, uses,
-                                                now + std::chrono::seconds(seconds), now);
+    const auto token =
+        environment.tokens.issue({role, core.id(), true}, uses, std::chrono::seconds(seconds));
     if (!token) return limit_reached("tokens", environment.limits.max_tokens);
     return Json{{"token", *token}, {"role", to_string(role)}, {"expires", seconds}};
   };

@@ -9,7 +9,6 @@
 #include "server/session/saved_state.h"
 #include "server/session/scene_loading.h"
 #include "server/storage/saved_scenes.h"
-#include "server/wall_clock.h"
 
 namespace vat {
 namespace {
@@ -103,7 +102,12 @@ ActionResult save_scene(const SessionCore& core, const Participant& participant,
   scene.name = wanted.name;
   SavedScene saved;
   const std::string key = make_token();
-  saved.entry = {wanted.name, scene.title, scene.description, participant.name, wall_clock(), 0};
+  saved.entry = {wanted.name,
+                 scene.title,
+                 scene.description,
+                 participant.name,
+                 environment.clock.wall_time(),
+                 0};
   saved.address = before ? before->address : participant.outbox->address();
   saved.key = before ? before->key : hash_of_token(key);
   saved.scene = write_scene(scene).dump();

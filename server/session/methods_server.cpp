@@ -4,7 +4,6 @@
 
 #include "core/limits.h"
 #include "server/session/method_table.h"
-#include "server/wall_clock.h"
 
 namespace vat {
 namespace {
@@ -93,7 +92,7 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
       {"instruction_set", to_string(directory.settings().instructions)},
       {"access", to_string(directory.settings().access.mode)},
       {"storage", directory.settings().data_folder.empty() ? "memory" : "folder"},
-      {"time", wall_clock()},
+      {"time", directory.clock().wall_time()},
       {"limits", describe_limits(directory.settings().limits)},
       {"methods", std::move(methods)},
   };

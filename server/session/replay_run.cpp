@@ -120,13 +120,13 @@ void ReplayRun::begin_seek(SessionCore& core, std::uint64_t position) {
   if (!in_the_past(core, [&] { player_.begin_seek(core, target_); })) target_ = 0;
 }
 
-bool ReplayRun::seek_on(SessionCore& core, SteadyClock::time_point until) {
+bool ReplayRun::seek_on(SessionCore& core, CostClock::time_point until) {
   bool same = true;
   const auto is_there = [&] { return !same || core.run().position() >= target_; };
   if (target_ == core.run().position()) {
     same = in_the_past(core, [&] { player_.play_to(core, target_, cancelled_); });
   }
-  while (!is_there() && SteadyClock::now() < until) {
+  while (!is_there() && CostClock::now() < until) {
     same = in_the_past(core, [&] { player_.play_to(core, core.run().position() + 1, cancelled_); });
   }
   return is_there();

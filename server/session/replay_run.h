@@ -32,7 +32,7 @@ class ReplayRun {
   /// Goes to a position in parts, which nobody but who asks for the status sees anything of; true
   /// where it is there, or cannot go on.
   void begin_seek(SessionCore& core, std::uint64_t position);
-  bool seek_on(SessionCore& core, SteadyClock::time_point until);
+  bool seek_on(SessionCore& core, CostClock::time_point until);
   void end_seek(SessionCore& core);
   /// The position of a tick within the present run, which a reset or another scene ends.
   std::optional<std::uint64_t> find_tick(const SessionCore& core, std::uint64_t tick) const;

@@ -6,7 +6,6 @@
 #include "server/session/base64.h"
 #include "server/session/scene_loading.h"
 #include "server/storage/compression.h"
-#include "server/wall_clock.h"
 
 namespace vat {
 namespace {
@@ -79,14 +78,14 @@ MomentToSave moment_to_save(SessionCore& core) {
 }
 
 SavedState make_saved_state(const MomentToSave& moment, const std::string& name,
-                            const std::string& saved_by) {
+                            const std::string& saved_by, double wall_time) {
   const std::vector<std::uint8_t> bytes = moment.present.to_bytes();
   const Result<Simulation> simulation = Simulation::load(bytes);
   if (!simulation) fail(simulation.errors().front().message);
   SavedState state;
   state.entry.name = name;
   state.entry.saved_by = saved_by;
-  state.entry.time = wall_clock();
+  state.entry.time = wall_time;
   state.entry.tick = moment.tick;
   state.entry.simulation_time = simulation.value().time();
   state.entry.hash = moment.present.state_hash();

@@ -26,7 +26,7 @@ struct MomentToSave {
 MomentToSave moment_to_save(SessionCore& core);
 /// What is kept of it; takes its time.
 SavedState make_saved_state(const MomentToSave& moment, const std::string& name,
-                            const std::string& saved_by);
+                            const std::string& saved_by, double wall_time);
 
 /// The params of a kRestoreEntry.
 Json params_of_restore(const SavedState& state);

@@ -29,12 +29,13 @@ Session::Session(std::string id, SessionSettings settings, Simulation simulation
                  ResourceShare share, const SessionEnvironment& environment,
                  boost::asio::thread_pool& pool, LongTicks& long_ticks)
     : id_(id),
+      clock_(environment.clock),
       strand_(boost::asio::make_strand(pool.get_executor())),
       core_(std::move(id), std::move(settings), std::move(simulation), std::move(share),
             environment),
-      tick_timer_(strand_),
-      status_timer_(strand_),
-      presence_timer_(strand_),
+      tick_timer_(environment.clock.make_timer(strand_)),
+      status_timer_(environment.clock.make_timer(strand_)),
+      presence_timer_(environment.clock.make_timer(strand_)),
       long_ticks_(long_ticks) {
   update_summary();
 }
@@ -49,7 +50,7 @@ void Session::recover(SessionRecovery& recovery, Storage& storage,
       storage, number,
       SessionLog::Place{storage.sessions().last_sequence(number), core_.run().position(),
                         core_.has_diverged()}));
-  core_.come_back(SteadyClock::now());
+  core_.come_back(clock_.now());
   update_summary();
 }
 
@@ -88,6 +89,12 @@ SessionSummary Session::summary() const {
   return summary_;
 }
 
+void Session::post_behind(std::function<void()> task) {
+  boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task)]() mutable {
+    self->core_.post_behind_frames(std::move(task));
+  });
+}
+
 void Session::put(Item item) {
   std::unique_lock lock(mutex_);
   if (inbox_closed_) {
@@ -113,7 +120,7 @@ void Session::run_turn(void (Session::*turn)()) {
     spdlog::error("session {}: paused by a fault of the server: {}", id_, error.what());
     core_.set_playing(false);
     period_ = {};
-    tick_timer_.cancel();
+    tick_timer_->cancel();
   }
   place_.reset();
 }
@@ -145,9 +152,9 @@ void Session::end_turn() {
   if (core_.take_interruption()) end_all_steps();
   if (!tick_is_coming()) carry_out_pointers();
   if (!seek_) core_.announce();
-  if (replay_ && !seek_) replay_->tell_people(core_, SteadyClock::now());
+  if (replay_ && !seek_) replay_->tell_people(core_, clock_.now());
   follow_presence();
-  note_emptiness(SteadyClock::now());
+  note_emptiness(clock_.now());
   follow_clock();
   update_summary();
   keep_moment();
@@ -163,9 +170,9 @@ void Session::update_summary() {
 
 void Session::inbox_turn() {
   core_.presence().touch();
-  const auto end = SteadyClock::now() + kTurnTime;
+  const auto end = CostClock::now() + kTurnTime;
   std::optional<Item> item;
-  for (std::size_t i = 0; i < kCommandsPerTurn && SteadyClock::now() < end; ++i) {
+  for (std::size_t i = 0; i < kCommandsPerTurn && CostClock::now() < end; ++i) {
     if (!take_item(item)) return;
     try {
       carry_out(*std::move(item));
@@ -208,7 +215,7 @@ void Session::carry_out(Item item) {
 
 void Session::carry_out_join(Caller caller, const Join& join) {
   carry_out_pointers();  // the connection may have been another participant's
-  auto joined = core_.join(caller.client(), join.membership, join.entrant, SteadyClock::now());
+  auto joined = core_.join(caller.client(), join.membership, join.entrant, clock_.now());
   if (auto* error = std::get_if<RpcError>(&joined)) {
     join.undo();
     caller.answer(std::move(*error));
@@ -242,7 +249,7 @@ void Session::carry_out_leave(Caller caller) {
 void Session::carry_out_disconnect(const Caller& caller) {
   carry_out_pointers();
   end_steps_of(caller.client()->id());
-  core_.disconnect(caller.client()->id(), SteadyClock::now());
+  core_.disconnect(caller.client()->id(), clock_.now());
 }
 
 void Session::end_steps_of(ConnectionId client) {
@@ -272,9 +279,9 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
       command.rules->is_logged || command.rules->message_class == MessageClass::control;
   if (is_in_order || pointers_.has_of(participant->number)) carry_out_pointers();
   const SessionCore::Given given{participant->number, command};
-  const auto begin = SteadyClock::now();
+  const auto begin = CostClock::now();
   ActionResult result = std::move(core_.carry_out({&given, 1}).front());
-  if (core_.log() != nullptr) core_.log()->add_work(SteadyClock::now() - begin);
+  if (core_.log() != nullptr) core_.log()->add_work(CostClock::now() - begin);
   if (core_.take_interruption()) end_all_steps();
   update_summary();
   answer(std::move(caller), std::move(result));
@@ -327,7 +334,7 @@ void Session::schedule_step() {
 void Session::step_turn() {
   step_scheduled_ = false;
   if (steps_.empty() || seek_ || !has_place()) return;  // a seek's end goes on with them
-  run_tick(SteadyClock::now(), false);
+  run_tick(clock_.now(), false);
   if (core_.take_interruption()) {
     end_all_steps();
   } else if (--steps_.front().ticks_left == 0) {
@@ -356,23 +363,23 @@ void Session::end_all_steps() {
 }
 
 void Session::tick_turn() {
-  const auto now = SteadyClock::now();
+  const auto now = clock_.now();
   // A wait that was over when the clock was stopped or set: it could not be called off any more.
   const bool stands_still = period_ == SteadyClock::duration::zero() || !core_.playing();
-  if (stands_still || seek_ || now < clock_.due()) return;
+  if (stands_still || seek_ || now < ticks_.due()) return;
   if (!has_place()) return;
-  core_.environment().metrics.add_lateness(now - clock_.due());
+  core_.environment().metrics.add_lateness(now - ticks_.due());
   run_tick(now, true);
-  clock_.tick_done(SteadyClock::now());
+  ticks_.tick_done(clock_.now());
   wait_for_tick();
 }
 
 void Session::run_tick(SteadyClock::time_point now, bool timed) {
   carry_out_pointers();
-  const auto due = timed ? clock_.due() : now;
-  const auto begin = SteadyClock::now();
+  const auto due = timed ? ticks_.due() : now;
+  const auto begin = CostClock::now();
   const bool done = replay_ ? replay_->tick(core_, now, timed) : core_.tick(now, timed);
-  const auto stepped = SteadyClock::now();
+  const auto stepped = CostClock::now();
   is_long_ = stepped - begin > kLongTick;
   if (SessionLog* const log = core_.log()) {
     log->add_work(stepped - begin);
@@ -385,7 +392,7 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
   update_summary();  // before the frames: who acknowledges one is told no earlier tick
   core_.publish_tick();
   spdlog::debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id_,
-                core_.run().tick(), seconds(stepped - begin), seconds(SteadyClock::now() - stepped),
+                core_.run().tick(), seconds(stepped - begin), seconds(CostClock::now() - stepped),
                 seconds(now - due));
 }
 
@@ -407,57 +414,52 @@ void Session::follow_clock() {
   if (wanted == period_) return;
   period_ = wanted;
   if (period_ == SteadyClock::duration::zero()) {
-    tick_timer_.cancel();
+    tick_timer_->cancel();
     return;
   }
-  clock_.start(SteadyClock::now(), period_);
+  ticks_.start(clock_.now(), period_);
   wait_for_tick();
 }
 
 void Session::wait_for_tick() {
-  tick_timer_.expires_at(clock_.due());
-  tick_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
-    if (!failure) self->run_turn(&Session::tick_turn);
-  });
+  tick_timer_->start(ticks_.due(),
+                     [self = shared_from_this()] { self->run_turn(&Session::tick_turn); });
 }
 
 void Session::status_turn() {
   wait_for_status();  // first, so that a fault does not end the statuses
   core_.presence().touch();
   carry_out_pointers();  // they are uses of what they move
-  core_.end_idle_grabs(SteadyClock::now());
-  core_.end_absences(SteadyClock::now());
+  core_.end_idle_grabs(clock_.now());
+  core_.end_absences(clock_.now());
   core_.announce_status();
-  core_.close_silent(SteadyClock::now());
+  core_.close_silent(clock_.now());
 }
 
 void Session::wait_for_status() {
-  status_timer_.expires_after(kStatusInterval);
-  status_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
-    if (!failure) self->run_turn(&Session::status_turn);
-  });
+  status_timer_->start(clock_.now() + kStatusInterval,
+                       [self = shared_from_this()] { self->run_turn(&Session::status_turn); });
 }
 
 void Session::follow_presence() {
   if (!core_.presence().is_touched() || presence_waits_) return;
-  const auto now = SteadyClock::now();
+  const auto now = clock_.now();
   if (now >= core_.presence().due()) {
     core_.tell_presence(now);
     return;
   }
   presence_waits_ = true;
-  presence_timer_.expires_at(core_.presence().due());
-  presence_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
+  presence_timer_->start(core_.presence().due(), [self = shared_from_this()] {
     self->presence_waits_ = false;
-    if (!failure) self->run_turn(&Session::presence_turn);
+    self->run_turn(&Session::presence_turn);
   });
 }
 
 void Session::close_turn() {
   closed_ = true;
-  tick_timer_.cancel();
-  status_timer_.cancel();
-  presence_timer_.cancel();
+  tick_timer_->cancel();
+  status_timer_->cancel();
+  presence_timer_->cancel();
   std::deque<Item> items;
   std::optional<Caller> closer;
   End end = End::may_come_back;

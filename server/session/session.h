@@ -1,6 +1,5 @@
 #pragma once
 
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <deque>
@@ -69,6 +68,9 @@ class Session : public std::enable_shared_from_this<Session> {
 
   /// As of the last answer or turn.
   SessionSummary summary() const;
+
+  /// Runs `task` on a frame thread, after the turns posted before and the frames they published.
+  void post_behind(std::function<void()> task);
 
  private:
   struct Join {
@@ -150,6 +152,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void close_turn();
 
   const std::string id_;
+  Clock& clock_;
   boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
 
   mutable std::mutex mutex_;  // guards what follows, as far as the summary
@@ -162,13 +165,13 @@ class Session : public std::enable_shared_from_this<Session> {
 
   // Used on the strand only.
   SessionCore core_;
-  TickClock clock_;
+  TickClock ticks_;
   std::optional<SteadyClock::time_point> empty_since_;
   bool hibernating_ = false;
   SteadyClock::duration period_{};  // of the clock; zero: it stands still
-  boost::asio::steady_timer tick_timer_;
-  boost::asio::steady_timer status_timer_;
-  boost::asio::steady_timer presence_timer_;
+  const std::unique_ptr<Timer> tick_timer_;
+  const std::unique_ptr<Timer> status_timer_;
+  const std::unique_ptr<Timer> presence_timer_;
   bool presence_waits_ = false;
   PointerCommands pointers_;
   std::deque<StepJob> steps_;

@@ -10,7 +10,6 @@
 #include "server/session/default_error.h"
 #include "server/session/describe.h"
 #include "server/session/replay_run.h"
-#include "server/wall_clock.h"
 
 namespace vat {
 SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
@@ -27,7 +26,7 @@ SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation si
       environment_(&environment),
       run_(std::move(simulation), std::move(share), environment.metrics),
       frames_(std::make_shared<FrameFeed>(id_, run_.simulation().scene().vat, environment.metrics,
-                                          environment.frame_threads)) {
+                                          environment.frame_threads, environment.clock)) {
   frames_->set_default_error(default_max_error(run_.simulation()));
 }
 
@@ -196,7 +195,7 @@ void SessionCore::fill_state() {
   header.slow = playing_ && rate_.slower_than(speed_);
   header.epoch = run_.epoch();
   header.tick = run_.tick();
-  header.published = wall_clock();
+  header.published = environment_->clock.wall_time();
   header.real_time_factor = static_cast<float>(rate_.rate());
 }
 

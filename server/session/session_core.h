@@ -114,6 +114,8 @@ class SessionCore {
   const std::string& id() const { return id_; }
   const SessionEnvironment& environment() const { return *environment_; }
   void set_environment(const SessionEnvironment& environment) { environment_ = &environment; }
+  /// Runs `task` on a frame thread, after the frames of all states published before.
+  void post_behind_frames(std::function<void()> task) { frames_->post(std::move(task)); }
   SessionRun& run() { return run_; }
   const SessionRun& run() const { return run_; }
   Participants& participants() { return participants_; }

@@ -111,7 +111,7 @@ std::optional<RpcError> SessionCore::log(std::span<LogEntry> entries) {
   if (divergence_) {
     // Somebody goes on from here: the log does not lead here, so that a checkpoint has to.
     sequence_ = log_->last();
-    log_->keep(moment(), SteadyClock::now(), true);
+    log_->keep(moment(), environment_->clock.now(), true);
   }
   try {
     log_->append(entries);

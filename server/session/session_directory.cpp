@@ -6,6 +6,7 @@
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <exception>
+#include <future>
 #include <limits>
 #include <thread>
 
@@ -31,9 +32,9 @@ ServerLimits without_scene_limits(ServerLimits limits) {
   return limits;
 }
 
-std::unique_ptr<Storage> open_storage(const ServerSettings& settings) {
+std::unique_ptr<Storage> open_storage(const ServerSettings& settings, Clock& clock) {
   if (settings.data_folder.empty()) return nullptr;
-  return std::make_unique<Storage>(settings.data_folder, settings.storage);
+  return std::make_unique<Storage>(settings.data_folder, settings.storage, clock);
 }
 
 }  // namespace
@@ -43,15 +44,17 @@ SessionId to_id(std::uint64_t number) {
   return "s" + std::to_string(number);
 }
 
-SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings settings)
+SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings settings,
+                                   Clock& clock)
     : catalogue_(catalogue),
       settings_(std::move(settings)),
       runner_(thread_count(settings_.threads)),
-      tokens_(settings_.limits.max_tokens),
+      clock_(clock),
+      tokens_(settings_.limits.max_tokens, clock),
       resources_({settings_.limits.max_particles_in_all, settings_.limits.max_springs_in_all}),
       long_ticks_(runner_.thread_count()),
       frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
-      storage_(open_storage(settings_)),
+      storage_(open_storage(settings_, clock)),
       saved_in_memory_(storage_ ? nullptr : std::make_unique<SavedInMemory>()),
       environment_{catalogue_,
                    settings_.limits,
@@ -61,19 +64,20 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
                    resources_,
                    frame_threads_,
                    tokens_,
+                   clock_,
                    &downloads_,
                    storage_ ? &storage_->states() : &saved_in_memory_->states,
                    storage_ ? &storage_->scenes() : &saved_in_memory_->scenes},
       no_limits_(without_scene_limits(settings_.limits)),
       past_resources_(kUnlimitedResources),
-      past_environment_{catalogue_,     no_limits_, settings_.instructions,
-                        runner_,        metrics_,   past_resources_,
-                        frame_threads_, tokens_,    &downloads_},
+      past_environment_{catalogue_, no_limits_,      settings_.instructions, runner_,
+                        metrics_,   past_resources_, frame_threads_,         tokens_,
+                        clock_,     &downloads_},
       pool_(2 * runner_.thread_count()),
-      later_(std::make_shared<Later>(pool_)),
+      deferred_(std::make_shared<DeferredTasks>(pool_, clock)),
       creations_(boost::asio::make_strand(pool_)),
-      expiry_timer_(pool_) {
-  if (storage_) tokens_.keep_in(storage_->tokens(), SteadyClock::now());
+      expiry_timer_(clock.make_timer(pool_.get_executor())) {
+  if (storage_) tokens_.keep_in(storage_->tokens());
   const std::lock_guard lock(mutex_);
   wait_for_expiry();
 }
@@ -93,12 +97,12 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   Client& client = clients_[id];
   client.outbox = std::make_shared<ClientOutbox>(std::move(connection),
                                                  settings_.limits.max_control_queue_bytes);
-  client.outbox->set_meter(std::make_unique<MessageMeter>(settings_.limits, SteadyClock::now()));
+  client.outbox->set_meter(std::make_unique<MessageMeter>(settings_.limits, clock_.now()));
   if (settings_.access.mode == AccessMode::open) {
     client.access.role = Role::controller;
   } else {
-    later_->at(SteadyClock::now() + settings_.access.enter_time,
-               [this, id] { close_unless_entered(id); });
+    deferred_->add(clock_.now() + settings_.access.enter_time,
+                   [this, id] { close_unless_entered(id); });
   }
   return true;
 }
@@ -111,6 +115,7 @@ void SessionDirectory::disconnect(ConnectionId id) {
   gone.outbox->leave();
   if (gone.session != 0) sessions_.at(gone.session)->disconnect(Caller(gone.outbox, {}));
   clients_.erase(client);
+  if (clients_.empty()) drained_.notify_all();
 }
 
 SessionDirectory::Sender SessionDirectory::find_client(ConnectionId id) const {
@@ -314,9 +319,17 @@ std::string SessionDirectory::metrics() const {
 void SessionDirectory::drain(std::chrono::milliseconds time) {
   const std::chrono::duration<double> seconds = time;
   const std::string event = write_event("server.draining", {{"seconds", seconds.count()}});
-  const std::lock_guard lock(mutex_);
+  const std::unique_ptr<Timer> timer = clock_.make_timer(boost::asio::make_strand(pool_));
+  std::unique_lock lock(mutex_);
   draining_ = true;
   for (auto& [connection, client] : clients_) client.outbox->send(event);
+  timer->start(clock_.now() + time, [this] {
+    const std::lock_guard timer_lock(mutex_);
+    drain_time_is_over_ = true;
+    drained_.notify_all();
+  });
+  drained_.wait(lock, [this] { return drain_time_is_over_ || clients_.empty(); });
+  timer->cancel();
 }
 
 RpcResult SessionDirectory::request_drain(std::optional<std::chrono::milliseconds> time) {
@@ -325,21 +338,35 @@ RpcResult SessionDirectory::request_drain(std::optional<std::chrono::millisecond
   return Json{{"seconds", given.count()}};
 }
 
-std::size_t SessionDirectory::connection_count() const {
-  const std::lock_guard lock(mutex_);
-  return clients_.size();
+void SessionDirectory::flush() {
+  if (stopped_) return;
+  const auto wait_for = [](const auto& post) {
+    std::promise<void> done;
+    post([&done] { done.set_value(); });
+    done.get_future().wait();
+  };
+  wait_for([this](auto done) { boost::asio::post(creations_, done); });
+  std::vector<std::shared_ptr<Session>> sessions;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [number, session] : sessions_) sessions.push_back(session);
+  }
+  for (const auto& session : sessions) {
+    wait_for([&session](auto done) { session->post_behind(done); });
+  }
+  if (storage_) storage_->flush();
 }
 
 void SessionDirectory::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    expiry_timer_.cancel();
+    expiry_timer_->cancel();
     while (!sessions_.empty()) {
       close_session(sessions_.begin(), Session::End::may_come_back, "the server stops", {});
     }
   }
-  later_->stop();
+  deferred_->stop();
   if (recovery_threads_) recovery_threads_->join();
   pool_.join();
   frame_threads_.join();
@@ -348,16 +375,14 @@ void SessionDirectory::stop() {
 
 void SessionDirectory::wait_for_expiry() {
   const auto soonest = patience_with(kFirstReplay);
-  expiry_timer_.expires_after(std::clamp(soonest / 4, kShortestExpiryCheck, kLongestExpiryCheck));
-  expiry_timer_.async_wait([this](const boost::system::error_code& failure) {
-    if (!failure) end_expired();
-  });
+  const auto interval = std::clamp(soonest / 4, kShortestExpiryCheck, kLongestExpiryCheck);
+  expiry_timer_->start(clock_.now() + interval, [this] { end_expired(); });
 }
 
 void SessionDirectory::end_expired() {
   const std::lock_guard lock(mutex_);
   if (stopped_) return;
-  const auto now = SteadyClock::now();
+  const auto now = clock_.now();
   downloads_.forget_old(now);
   imports_.forget_old(now);
   end_expired_sessions(now);

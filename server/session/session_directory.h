@@ -1,10 +1,10 @@
 #pragma once
 
 #include <atomic>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -20,7 +20,7 @@
 #include "server/http/downloads.h"
 #include "server/net/address_counts.h"
 #include "server/replay/imports.h"
-#include "server/session/later.h"
+#include "server/session/deferred_tasks.h"
 #include "server/session/session.h"
 #include "server/session/session_server.h"
 
@@ -47,11 +47,12 @@ struct SavedInMemory {
 /// The sessions, the clients and who is in which; owns the threads. Safe to use from any thread.
 class SessionDirectory {
  public:
-  SessionDirectory(const Catalogue& catalogue, ServerSettings settings);
+  SessionDirectory(const Catalogue& catalogue, ServerSettings settings, Clock& clock);
   ~SessionDirectory();
 
   const Catalogue& catalogue() const { return catalogue_; }
   const ServerSettings& settings() const { return settings_; }
+  const Clock& clock() const { return clock_; }
 
   /// False if there are too many already.
   bool connect(std::shared_ptr<Connection> connection);
@@ -113,18 +114,20 @@ class SessionDirectory {
   /// What Prometheus is told.
   std::string metrics() const;
 
-  /// From now on there are no new connections, sessions and joins; clients are told how long they
-  /// may stay at most.
+  /// Refuses new connections, sessions and joins from now on. Tells clients that the server ends in
+  /// `time`. Returns when the time is over or the last client has gone.
   void drain(std::chrono::milliseconds time);
   /// As an admin wishes: the server ends once clients have had so much time (absent: as much as it
   /// gives them by itself). How much that is.
   RpcResult request_drain(std::optional<std::chrono::milliseconds> time);
-  std::size_t connection_count() const;
 
   SavedScenes& saved_scenes() const { return *environment_.scenes; }
 
   /// Files that were made for clients.
   Downloads& downloads() { return downloads_; }
+
+  /// See SessionServer.
+  void flush();
 
   void stop();
 
@@ -210,6 +213,7 @@ class SessionDirectory {
   // What outlives the sessions. The runner's threads help with their steps as far as the
   // pool's have nothing to do.
   ThreadPoolRunner runner_;
+  Clock& clock_;
   ServerMetrics metrics_;
   AccessTokens tokens_;
   ResourceBudget resources_;
@@ -225,7 +229,7 @@ class SessionDirectory {
   ResourceBudget past_resources_;
   const SessionEnvironment past_environment_;
   boost::asio::thread_pool pool_;
-  const std::shared_ptr<Later> later_;
+  const std::shared_ptr<DeferredTasks> deferred_;
   // Creations come one after the other: they take one thread from the sessions at most.
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations_;
 
@@ -234,11 +238,13 @@ class SessionDirectory {
   Sessions sessions_;
   AddressCounts sessions_by_address_;
   std::map<Sessions::key_type, AddressCounts::Place> places_;  // of the sessions' creators
-  boost::asio::steady_timer expiry_timer_;
+  const std::unique_ptr<Timer> expiry_timer_;
   std::map<Sessions::key_type, Absent> absent_;
   Sessions::key_type last_session_ = 0;  // of those in memory alone
   Sessions::key_type last_replay_ = kFirstReplay;
   bool draining_ = false;
+  bool drain_time_is_over_ = false;
+  std::condition_variable drained_;
   std::atomic<bool> stopped_ = false;
   std::unique_ptr<boost::asio::thread_pool> recovery_threads_;
 };

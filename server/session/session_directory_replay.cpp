@@ -36,7 +36,7 @@ std::optional<RpcError> find_excess(const Recording& recording) {
 
 std::optional<RpcResult> SessionDirectory::import_recording(Caller& caller,
                                                             const Imports::Part& part) {
-  auto added = imports_.add(caller.client()->id(), part, SteadyClock::now());
+  auto added = imports_.add(caller.client()->id(), part, clock_.now());
   if (auto* error = std::get_if<RpcError>(&added)) return std::move(*error);
   const auto& progress = std::get<Imports::Progress>(added);
   if (!progress.is_whole) {
@@ -71,7 +71,7 @@ RpcResult SessionDirectory::take_recording(const std::string& name, std::size_t 
   } catch (const StorageError& error) {
     return refuse_recording({Error{"bad_value", "", error.what()}});
   }
-  imports_.put(name, recording, SteadyClock::now());
+  imports_.put(name, recording, clock_.now());
   return Json{{"recording", name},
               {"received", size},
               {"whole", true},
@@ -94,7 +94,7 @@ std::optional<RpcError> SessionDirectory::open_replay(Caller& caller, const Repl
                          sessions_by_address_.take(caller.client()->address(), most)};
   if (creator.place == nullptr) return limit_reached("sessions_per_address", most);
   if (source.recording) {
-    const auto recording = imports_.find(*source.recording, SteadyClock::now());
+    const auto recording = imports_.find(*source.recording, clock_.now());
     if (recording == nullptr) {
       return invalid_params({Error{"bad_value", "/recording", "none has this name any more"}});
     }

@@ -77,7 +77,7 @@ void SessionDirectory::recover_session(const StoredSession& stored) {
 }
 
 std::shared_ptr<Session> SessionDirectory::make_recovered(const StoredSession& stored) {
-  const auto begin = SteadyClock::now();
+  const auto begin = CostClock::now();
   SessionRecovery recovery(*storage_, stored, past_environment_, stopped_);
   Simulation simulation = recovery.begin();
   ResourceShare share = past_resources_.take_anyway(resources_of(simulation));
@@ -85,7 +85,7 @@ std::shared_ptr<Session> SessionDirectory::make_recovered(const StoredSession& s
       to_id(stored.number), read_settings(stored.name, stored.settings), std::move(simulation),
       std::move(share), past_environment_, pool_, long_ticks_);
   session->recover(recovery, *storage_, environment_);
-  const std::chrono::duration<double> time = SteadyClock::now() - begin;
+  const std::chrono::duration<double> time = CostClock::now() - begin;
   spdlog::info("session {} is back at tick {}, in {:.2f} s", to_id(stored.number),
                session->summary().tick, time.count());
   return session;

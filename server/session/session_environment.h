@@ -6,6 +6,7 @@
 #include "protocol/scene_json.h"
 #include "server/access/access.h"
 #include "server/admission/resource_budget.h"
+#include "server/clock.h"
 #include "server/limits.h"
 #include "server/server_metrics.h"
 #include "server/task_runner.h"
@@ -26,6 +27,7 @@ struct SessionEnvironment {
   ResourceBudget& resources;
   boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send all sessions' frames
   AccessTokens& tokens;
+  Clock& clock;
   Downloads* downloads = nullptr;  ///< null: nobody fetches files
   // Null: nothing can be saved.
   SavedStates* states = nullptr;

@@ -69,7 +69,7 @@ void carry_out_again(SessionCore& core, const LogEntry& entry) {
 void run_to(SessionCore& core, std::uint64_t position, const std::atomic<bool>& cancelled) {
   while (core.run().position() < position) {
     if (cancelled) throw Cancelled();
-    if (core.tick(SteadyClock::now(), false)) continue;
+    if (core.tick(core.environment().clock.now(), false)) continue;
     throw Diverged("the tick after " + std::to_string(core.run().tick()) + " fails");
   }
 }

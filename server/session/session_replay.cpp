@@ -30,7 +30,7 @@ void Session::begin_seek(Caller caller, std::uint64_t position) {
 void Session::seek_turn() {
   seek_scheduled_ = false;
   if (!seek_) return;
-  if (replay_->seek_on(core_, SteadyClock::now() + kTurnTime)) return end_seek();
+  if (replay_->seek_on(core_, CostClock::now() + kTurnTime)) return end_seek();
   seek_scheduled_ = true;
   schedule(&Session::seek_turn);
 }
@@ -56,7 +56,7 @@ void Session::keep_and(KeptTask task, const std::shared_ptr<Caller>& caller) {
     } else if (self->core_.has_diverged()) {
       caller->answer(not_allowed("the session is not what its log leads to"));
     } else {
-      log->keep_and(self->core_.moment(), SteadyClock::now(), task);
+      log->keep_and(self->core_.moment(), self->core_.environment().clock.now(), task);
     }
   });
 }

@@ -16,7 +16,8 @@ namespace {
 
 RpcResult save_moment(const SessionEnvironment& environment, const std::string& id,
                       const MomentToSave& moment, const SaveState& save) {
-  const SavedState state = make_saved_state(moment, save.name, save.saved_by);
+  const SavedState state =
+      make_saved_state(moment, save.name, save.saved_by, environment.clock.wall_time());
   const ServerLimits& limits = environment.limits;
   const auto excess =
       environment.states->write(id, state,
@@ -33,7 +34,7 @@ RpcResult save_moment(const SessionEnvironment& environment, const std::string& 
 
 void Session::keep_moment() {
   SessionLog* log = core_.log();
-  const auto now = SteadyClock::now();
+  const auto now = core_.environment().clock.now();
   if (log != nullptr && log->is_due(core_.run().position(), core_.participants().changes(), now)) {
     log->keep(core_.moment(), now);
   }
@@ -45,7 +46,7 @@ void Session::end_log(End end) {
   if (end == End::closed) {
     log->close();
   } else if (!core_.has_diverged()) {
-    log->keep(core_.moment(), SteadyClock::now(), true);
+    log->keep(core_.moment(), core_.environment().clock.now(), true);
   }
 }
 

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
-#include <thread>
 #include <utility>
 
 #include "server/session/method_table.h"
@@ -31,8 +30,8 @@ Errors to_errors(const RpcError& error) {
 
 class SessionServer::Impl {
  public:
-  Impl(const Catalogue& catalogue, ServerSettings settings)
-      : directory_(catalogue, std::move(settings)) {}
+  Impl(const Catalogue& catalogue, ServerSettings settings, Clock& clock)
+      : directory_(catalogue, std::move(settings), clock) {}
 
   SessionDirectory& directory() { return directory_; }
 
@@ -41,7 +40,7 @@ class SessionServer::Impl {
     const std::shared_ptr<ClientOutbox>& client = sender.outbox;
     std::optional<Json> id;
     try {
-      const auto now = SteadyClock::now();
+      const auto now = directory_.clock().now();
       if (auto excess = client->meter()->count_bytes(message.size(), now)) {
         return refuse(*client, id, *excess);
       }
@@ -69,7 +68,7 @@ class SessionServer::Impl {
 
   /// False where the message came too soon and is not answered.
   bool count_binary(ClientOutbox& client, std::size_t bytes) {
-    const auto now = SteadyClock::now();
+    const auto now = directory_.clock().now();
     auto excess = client.meter()->count_bytes(bytes, now);
     if (!excess) excess = client.meter()->count(MessageClass::query, now);
     if (excess) refuse(client, {}, *excess);
@@ -151,8 +150,8 @@ class SessionServer::Impl {
   SessionDirectory directory_;
 };
 
-SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings)
-    : impl_(std::make_unique<Impl>(catalogue, std::move(settings))) {}
+SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings, Clock& clock)
+    : impl_(std::make_unique<Impl>(catalogue, std::move(settings), clock)) {}
 
 SessionServer::~SessionServer() = default;
 
@@ -175,12 +174,11 @@ std::string SessionServer::metrics() const {
 }
 
 void SessionServer::drain(std::chrono::milliseconds time) {
-  constexpr auto kLook = std::chrono::milliseconds(20);
   impl_->directory().drain(time);
-  const auto end = std::chrono::steady_clock::now() + time;
-  while (impl_->directory().connection_count() > 0 && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(kLook);
-  }
+}
+
+void SessionServer::flush() {
+  impl_->directory().flush();
 }
 
 Downloads& SessionServer::downloads() {

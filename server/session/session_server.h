@@ -18,6 +18,7 @@
 
 namespace vat {
 
+class Clock;
 class Downloads;
 
 /// Names a session for the life of the server; never used twice.
@@ -41,10 +42,11 @@ struct ServerSettings {
 /// The transport's thread reads messages and answers what needs no session; commands go to the
 /// session's inbox. All sessions share one pool of threads, each on a strand of its own, so that a
 /// session is never run by two threads at once. Every function may be called from any thread.
-class SessionServer final : public ConnectionHandler {
+class SessionServer : public ConnectionHandler {
  public:
-  /// `catalogue` must outlive this. Throws StorageError where the data folder cannot be used.
-  SessionServer(const Catalogue& catalogue, ServerSettings settings);
+  /// `catalogue` and `clock` must outlive this. Throws StorageError if the data folder cannot be
+  /// used.
+  SessionServer(const Catalogue& catalogue, ServerSettings settings, Clock& clock);
   ~SessionServer() override;
   SessionServer(const SessionServer&) = delete;
   SessionServer& operator=(const SessionServer&) = delete;
@@ -60,12 +62,16 @@ class SessionServer final : public ConnectionHandler {
   /// What the server has counted and has now, in Prometheus' text format.
   std::string metrics() const;
 
-  /// No new connections, sessions and joins from now on. Clients are told that they may stay for
-  /// `time` at most; returns when that is over, or the last one has gone.
+  /// Refuses new connections, sessions and joins from now on. Tells clients that the server ends in
+  /// `time`. Returns when the time is over or the last client has gone.
   void drain(std::chrono::milliseconds time);
 
   /// Files that were made for clients, who fetch them by HTTP.
   Downloads& downloads();
+
+  /// Waits for the work posted before the call: creations of sessions, their turns, the frames of
+  /// these turns, and writes to the data folder.
+  void flush();
 
   // Of the transport; see TransportSettings.
   void count_refusal(std::string_view limit);

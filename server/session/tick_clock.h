@@ -1,12 +1,10 @@
 #pragma once
 
-#include <chrono>
-#include <cstdint>
 #include <deque>
 
-namespace vat {
+#include "server/clock.h"
 
-using SteadyClock = std::chrono::steady_clock;
+namespace vat {
 
 /// When the ticks of a playing session are due. A late tick is made up for by at most one period;
 /// beyond that the schedule moves on, and the session runs in slow motion in place of a spiral.

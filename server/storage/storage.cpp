@@ -13,9 +13,6 @@ namespace vat {
 namespace {
 
 constexpr auto kMoveInterval = std::chrono::seconds(1);
-// What the timer is set to at the end: a wait that is over, but not yet told so, cannot be
-// cancelled.
-constexpr auto kNoMoreMoves = std::chrono::steady_clock::time_point::min();
 // While commands keep coming the moved part of a log is not used again; beyond this they wait once,
 // for some milliseconds, so that it is.
 constexpr std::size_t kMostLogBytes = std::size_t{64} << 20;
@@ -37,21 +34,26 @@ std::vector<std::string> ids_of(const std::vector<StoredSession>& sessions) {
 
 }  // namespace
 
-Storage::Storage(const std::string& folder, const StorageLimits& limits)
+Storage::Storage(const std::string& folder, const StorageLimits& limits, Clock& clock)
     : folder_(folder),
       limits_(limits),
+      clock_(clock),
       sessions_(folder_.file("vat.db")),
       checkpoints_(folder_.file("checkpoints.db"), limits.checkpoint_bytes),
       states_(folder_.file("states.db")),
       scenes_(sessions_.main()),
-      tokens_(sessions_.main()) {
+      tokens_(sessions_.main()),
+      move_timer_(clock.make_timer(thread_.get_executor())) {
   states_.keep_only(ids_of(sessions_.sessions()));
   remove_closed();
   boost::asio::post(thread_, [this] { wait_to_move(); });
 }
 
 Storage::~Storage() {
-  boost::asio::post(thread_, [this] { move_timer_.expires_at(kNoMoreMoves); });
+  boost::asio::post(thread_, [this] {
+    stopping_ = true;  // a task that is already queued cannot be cancelled
+    move_timer_->cancel();
+  });
   thread_.join();
 }
 
@@ -95,9 +97,8 @@ void Storage::remove_closed() {
 }
 
 void Storage::wait_to_move() {
-  move_timer_.expires_after(kMoveInterval);
-  move_timer_.async_wait([this](const boost::system::error_code& failure) {
-    if (failure || move_timer_.expiry() == kNoMoreMoves) return;
+  move_timer_->start(clock_.now() + kMoveInterval, [this] {
+    if (stopping_) return;
     run([this] { move_logs(); });
     wait_to_move();
   });

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <atomic>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "server/clock.h"
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/saved_scenes.h"
@@ -25,7 +26,7 @@ namespace vat {
 class Storage {
  public:
   /// Opens the folder, or makes it. Throws StorageError.
-  Storage(const std::string& folder, const StorageLimits& limits);
+  Storage(const std::string& folder, const StorageLimits& limits, Clock& clock);
   /// Ends what was posted first.
   ~Storage();
   Storage(const Storage&) = delete;
@@ -59,6 +60,7 @@ class Storage {
 
   const DataFolder folder_;
   const StorageLimits limits_;
+  const Clock& clock_;
   SessionStore sessions_;
   CheckpointStore checkpoints_;
   SavedStates states_;
@@ -68,7 +70,9 @@ class Storage {
   std::atomic<std::uint64_t> checkpoints_written_ = 0;
   std::atomic<std::uint64_t> checkpoint_nanoseconds_ = 0;
   boost::asio::thread_pool thread_{1};
-  boost::asio::steady_timer move_timer_{thread_};
+  // Used on the thread only.
+  const std::unique_ptr<Timer> move_timer_;
+  bool stopping_ = false;
 };
 
 }  // namespace vat

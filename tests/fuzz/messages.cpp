@@ -185,7 +185,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spdlog::set_level(spdlog::level::off);
   std::string_view text = fuzz::to_text(data, size);
   NewestToken token;
-  SessionServer server(catalogue, small_settings(text.starts_with("token\n")));
+  SystemClock clock;
+  SessionServer server(catalogue, small_settings(text.starts_with("token\n")), clock);
   VAT_CHECK(server.create_session("first", scene).ok());
   {
     Clients clients(server, token);

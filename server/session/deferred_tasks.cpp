@@ -1,41 +1,40 @@
-#include "server/session/later.h"
+#include "server/session/deferred_tasks.h"
 
 #include <spdlog/spdlog.h>
 
+#include <boost/asio/strand.hpp>
 #include <exception>
 #include <utility>
 #include <vector>
 
 namespace vat {
 
-Later::Later(boost::asio::thread_pool& pool) : timer_(boost::asio::make_strand(pool)) {}
+DeferredTasks::DeferredTasks(boost::asio::thread_pool& pool, Clock& clock)
+    : clock_(clock), timer_(clock.make_timer(boost::asio::make_strand(pool))) {}
 
-void Later::at(Clock::time_point time, std::function<void()> task) {
+void DeferredTasks::add(SteadyClock::time_point time, std::function<void()> task) {
   const std::lock_guard lock(mutex_);
   if (stopped_) return;
   const auto added = tasks_.emplace(time, std::move(task));
   if (added == tasks_.begin()) wait();
 }
 
-void Later::stop() {
+void DeferredTasks::stop() {
   const std::lock_guard lock(mutex_);
   stopped_ = true;
   tasks_.clear();
-  timer_.cancel();
+  timer_->cancel();
 }
 
-void Later::wait() {
-  timer_.expires_at(tasks_.begin()->first);
-  timer_.async_wait([self = shared_from_this()](const boost::system::error_code& failure) {
-    if (!failure) self->do_what_is_due();
-  });
+void DeferredTasks::wait() {
+  timer_->start(tasks_.begin()->first, [self = shared_from_this()] { self->run_due_tasks(); });
 }
 
-void Later::do_what_is_due() {
+void DeferredTasks::run_due_tasks() {
   std::vector<std::function<void()>> due;
   {
     const std::lock_guard lock(mutex_);
-    const auto end = tasks_.upper_bound(Clock::now());
+    const auto end = tasks_.upper_bound(clock_.now());
     for (auto task = tasks_.begin(); task != end; ++task) due.push_back(std::move(task->second));
     tasks_.erase(tasks_.begin(), end);
     if (!tasks_.empty()) wait();
@@ -44,7 +43,7 @@ void Later::do_what_is_due() {
     try {
       task();
     } catch (const std::exception& error) {
-      spdlog::error("a delayed task failed: {}", error.what());
+      spdlog::error("a deferred task failed: {}", error.what());
     }
   }
 }
