@@ -129,7 +129,7 @@ TEST(BenchAccuracy, RowsAreTheSameButForTheSeconds) {
 }
 
 TEST(BenchAccuracy, CommandWritesTablesAndPlots) {
-  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
+  ASSERT_TRUE(find_gnuplot());
   const test::TemporaryFolder folder;
   const test::ProgramResult result = test::run_bench(
       {"accuracy", "--quick", "--case", "RIG-5", "--output", folder.path().string()});

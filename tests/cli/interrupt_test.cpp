@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <thread>
 
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
@@ -19,17 +18,13 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Waits until the file holds more than `size` bytes; false after a minute.
+/// Waits until the file holds more than `size` bytes.
 bool wait_for_size(const std::string& path, std::uintmax_t size) {
-  using Clock = std::chrono::steady_clock;
-  const auto deadline = Clock::now() + std::chrono::minutes(1);
-  while (Clock::now() < deadline) {
+  return wait_until([&] {
     std::error_code missing;
     const std::uintmax_t found = std::filesystem::file_size(path, missing);
-    if (!missing && found > size) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
+    return !missing && found > size;
+  });
 }
 
 std::vector<std::string> endless_run(std::vector<std::string> options) {

@@ -5,11 +5,11 @@
 #include <chrono>
 #include <cstdlib>
 #include <future>
-#include <thread>
 
 #include "server/script/server_process.h"
 #include "tests/recovery/client.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
@@ -30,13 +30,12 @@ class Drain : public testing::Test {
 TEST_F(Drain, ClientsAreToldAndNobodyNewComesAndItEndsWhenTheLastHasGone) {
   std::string hash;
   {
-    script::ServerProcess server = start("8");
+    script::ServerProcess server = start("3000");
     WaitingClient client(server.port());
     client.result("session.join");
     client.result("control.step", {{"ticks", 5}});
-    const auto begin = steady_clock::now();
     auto status = std::async(std::launch::async, [&] { return server.stop(); });
-    EXPECT_EQ(client.wait("server.draining").at("params").at("seconds"), 8);
+    EXPECT_EQ(client.wait("server.draining").at("params").at("seconds"), 3000);
     const Json refused = client.call("session.create", {{"name", "n"}, {"scene", "rigid-stack"}});
     EXPECT_EQ(refused.at("error").at("data").at("kind"), "not_allowed");
     WaitingClient late(server.port());
@@ -44,8 +43,7 @@ TEST_F(Drain, ClientsAreToldAndNobodyNewComesAndItEndsWhenTheLastHasGone) {
     client.result("control.step", {{"ticks", 3}});  // who is there goes on
     hash = client.result("session.hash").at("hash");
     client.close();
-    EXPECT_EQ(status.get(), 0);
-    EXPECT_LT(steady_clock::now() - begin, 6s);
+    EXPECT_EQ(status.get(), 0);  // long before the time is over
   }
   script::ServerProcess server = start("0");
   WaitingClient client(server.port());
@@ -78,9 +76,7 @@ TEST_F(Drain, AnAdminEndsTheServerAsWell) {
   EXPECT_EQ(client.wait("server.draining").at("params").at("seconds"), 1);
   EXPECT_EQ(client.wait(0).at("closed"), 1001);
   EXPECT_GE(steady_clock::now() - begin, 1s);
-  while (server.is_running() && steady_clock::now() - begin < 20s)
-    std::this_thread::sleep_for(10ms);
-  ASSERT_FALSE(server.is_running());
+  ASSERT_TRUE(wait_until([&] { return !server.is_running(); }));
   EXPECT_EQ(server.stop(), 0);
 }
 

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -14,6 +13,7 @@
 #include "tests/recovery/past.h"
 #include "tests/support/pool_scene.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
@@ -37,7 +37,7 @@ class Kill : public testing::Test {
          data, "--checkpoint-seconds", "0.005", "--log-level", "warn", "--threads", "2"}};
   }
 
-  /// A server under load, killed after a while.
+  /// A server under load, killed after a random number of answers.
   void live(int life, Told& told) {
     script::ServerProcess server = start();
     const auto listed = list_sessions(server.port());
@@ -60,8 +60,8 @@ class Kill : public testing::Test {
         });
       }
     }
-    std::this_thread::sleep_for(
-        std::chrono::milliseconds(std::uniform_int_distribution(20, 1500)(chance)));
+    const auto answers = std::uniform_int_distribution<std::size_t>(0, 400)(chance);
+    EXPECT_TRUE(wait_until([&] { return told.answer_count() >= answers; }));
     server.kill();
     for (std::thread& client : clients) client.join();
   }

@@ -1,18 +1,15 @@
 #include "tests/recovery/load.h"
 
-#include <chrono>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include "protocol/json_reader.h"
 #include "tests/recovery/client.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// The server has gone.
 class Gone : public std::runtime_error {
@@ -147,6 +144,10 @@ std::vector<Seen> Told::seen() const {
   const std::lock_guard lock(mutex_);
   return seen_;
 }
+std::size_t Told::answer_count() const {
+  const std::lock_guard lock(mutex_);
+  return seen_.size() + answered_.size();
+}
 std::vector<Answered> Told::answered() const {
   const std::lock_guard lock(mutex_);
   return answered_;
@@ -172,18 +173,19 @@ std::string create_session(std::uint16_t port, const std::string& name, const st
 
 std::vector<std::pair<std::string, std::string>> list_sessions(std::uint16_t port) {
   Caller caller(port);
-  const auto end = std::chrono::steady_clock::now() + 30s;
-  for (;;) {
-    std::vector<std::pair<std::string, std::string>> running;
+  std::vector<std::pair<std::string, std::string>> running;
+  const auto are_all_running = [&] {
+    running.clear();
     const Json sessions = caller.result("session.list").at("sessions");
     for (const Json& session : sessions) {
       if (session.at("state") == "running") {
         running.emplace_back(session.at("session"), session.at("name"));
       }
     }
-    if (running.size() == sessions.size() || std::chrono::steady_clock::now() > end) return running;
-    std::this_thread::sleep_for(5ms);
-  }
+    return running.size() == sessions.size();
+  };
+  wait_until(are_all_running);
+  return running;
 }
 
 }  // namespace vat::test

@@ -30,6 +30,7 @@ class Told {
   void add_fault(const std::string& fault);
   std::vector<Seen> seen() const;
   std::vector<Answered> answered() const;
+  std::size_t answer_count() const;  ///< of both kinds
   std::vector<std::string> faults() const;
 
  private:

@@ -4,13 +4,13 @@
 
 #include <chrono>
 #include <iostream>
-#include <thread>
 
 #include "server/script/http_fetch.h"
 #include "server/script/server_process.h"
 #include "tests/recovery/client.h"
 #include "tests/support/pool_scene.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
@@ -42,13 +42,14 @@ TEST(Readiness, IsToldOnceAllSessionsAreBack) {
   }
   script::ServerProcess server = start();
   int waited = 0;
-  for (const auto end = steady_clock::now() + 120s; steady_clock::now() < end; ++waited) {
-    const Json readiness = fetch_readiness(server.port());
-    if (readiness.at("status") == 200) break;
-    EXPECT_EQ(readiness.at("status"), 503);
-    std::this_thread::sleep_for(10ms);
-  }
-  ASSERT_EQ(fetch_readiness(server.port()).at("status"), 200);
+  const auto is_ready = [&] {
+    const Json status = fetch_readiness(server.port()).at("status");
+    if (status == 200) return true;
+    ++waited;
+    EXPECT_EQ(status, 503);
+    return false;
+  };
+  ASSERT_TRUE(wait_until(is_ready, 120s));
   std::cout << "ready after it was asked " << waited << " times\n";
   WaitingClient client(server.port());
   const Json listed = client.result("session.list").at("sessions");

@@ -12,7 +12,12 @@ namespace vat::test {
 /// has no owner.
 class AccessTest : public testing::Test {
  protected:
-  explicit AccessTest(AccessSettings access = {})
+  static AccessSettings without_delay() {
+    AccessSettings access;
+    access.refusal_delay = std::chrono::milliseconds(0);
+    return access;
+  }
+  explicit AccessTest(AccessSettings access = without_delay())
       : catalogue(make_catalogue()), server(catalogue, settings(access)) {
     if (!server.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
@@ -58,7 +63,7 @@ class AccessTest : public testing::Test {
   }
 
   const Catalogue catalogue;
-  SessionServer server;
+  TestServer server;
   std::unique_ptr<TestClient> admin;
   std::string own;
   Json joined;

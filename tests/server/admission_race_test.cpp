@@ -38,11 +38,11 @@ class AdmissionRace : public testing::Test {
   }
 
   /// A server with one session, `s1`.
-  SessionServer& serve() {
+  TestServer& serve() {
     ServerSettings settings;
     settings.limits = limits;
     settings.threads = 4;
-    server = std::make_unique<SessionServer>(catalogue, settings);
+    server = std::make_unique<TestServer>(catalogue, settings);
     EXPECT_TRUE(server->create_session("first", to_scene(mixed_scene_text())).ok());
     return *server;
   }
@@ -79,7 +79,7 @@ class AdmissionRace : public testing::Test {
 
   ServerLimits limits;
   const Catalogue catalogue = make_catalogue();
-  std::unique_ptr<SessionServer> server;
+  std::unique_ptr<TestServer> server;
   std::vector<std::unique_ptr<TestClient>> clients;
 };
 

@@ -15,10 +15,9 @@ namespace vat::test {
 namespace {
 
 using std::chrono::milliseconds;
-using Clock = TokenBucket::Clock;
 
 TEST(TokenBucket, AllowsABurstAndThenItsRate) {
-  const Clock::time_point start;
+  const SteadyClock::time_point start;
   TokenBucket bucket(10, 5, start);
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(bucket.take(1, start)) << i;
   EXPECT_DOUBLE_EQ(bucket.take(1, start).value().count(), 0.1);
@@ -28,7 +27,7 @@ TEST(TokenBucket, AllowsABurstAndThenItsRate) {
 }
 
 TEST(TokenBucket, HoldsNoMoreThanABurst) {
-  const Clock::time_point start;
+  const SteadyClock::time_point start;
   TokenBucket bucket(10, 5, start);
   const auto later = start + std::chrono::hours(1);
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(bucket.take(1, later));
@@ -37,7 +36,7 @@ TEST(TokenBucket, HoldsNoMoreThanABurst) {
 
 // A message longer than a burst passes once in a while, at the rate on average.
 TEST(TokenBucket, WhatIsMoreThanABurstIsOwed) {
-  const Clock::time_point start;
+  const SteadyClock::time_point start;
   TokenBucket bucket(10, 5, start);
   EXPECT_FALSE(bucket.take(25, start));
   EXPECT_DOUBLE_EQ(bucket.take(25, start).value().count(), 2.5);
@@ -58,7 +57,7 @@ ServerLimits few_messages() {
 }
 
 TEST(MessageMeter, EachClassHasItsOwnLimit) {
-  const Clock::time_point now;
+  const SteadyClock::time_point now;
   struct Expected {
     MessageClass message_class;
     const char* limit;
@@ -85,14 +84,14 @@ TEST(MessageMeter, EachClassHasItsOwnLimit) {
 }
 
 TEST(MessageMeter, BytesAreCountedBeforeAMessageIsRead) {
-  const Clock::time_point now;
+  const SteadyClock::time_point now;
   MessageMeter meter(few_messages(), now);
   EXPECT_FALSE(meter.count_bytes(2000, now));
   EXPECT_EQ(meter.count_bytes(1, now)->limit, "message_bytes_per_second");
 }
 
 TEST(MessageMeter, RefusedMessagesBeyondTheirLimitAreAFlood) {
-  const Clock::time_point now;
+  const SteadyClock::time_point now;
   MessageMeter meter(few_messages(), now);
   EXPECT_FALSE(meter.count_bytes(2000, now));
   for (int i = 0; i < 6; ++i) EXPECT_FALSE(meter.count_bytes(1, now)->is_flood) << i;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/manual_clock.h"
+
 namespace vat::test {
 namespace {
 
@@ -11,7 +13,7 @@ using namespace std::chrono_literals;
 
 TEST(Downloads, AreFetchedOnceAndInTime) {
   Downloads downloads;
-  const Downloads::Clock::time_point now{};
+  const SteadyClock::time_point now{};
   const std::string first = downloads.add({"a", "one"}, now).value();
   const std::string second = downloads.add({"b", "two"}, now).value();
   EXPECT_NE(first, second);
@@ -23,7 +25,7 @@ TEST(Downloads, AreFetchedOnceAndInTime) {
 
 TEST(Downloads, AreForgottenInTime) {
   Downloads downloads;
-  const Downloads::Clock::time_point now{};
+  const SteadyClock::time_point now{};
   downloads.add({"a", "one"}, now);
   downloads.add({"b", "three"}, now + 1s);
   EXPECT_EQ(downloads.forget_old(now + Downloads::kPatience - 1ms), 8U);
@@ -31,19 +33,23 @@ TEST(Downloads, AreForgottenInTime) {
 }
 
 TEST(Downloads, AreServedByTheSite) {
+  ManualClock clock;
   Downloads downloads;
   const HttpHandler site = with_downloads(
       [](std::string_view, std::string_view) {
         return HttpResponse{404, "", "", {}};
       },
-      downloads);
-  const std::string path = downloads.add({"a.vatrec", "one"}, Downloads::Clock::now()).value();
+      downloads, clock);
+  const std::string path = downloads.add({"a.vatrec", "one"}, clock.now()).value();
   EXPECT_EQ(site("POST", path).status, 404);
   EXPECT_EQ(site("HEAD", path).status, 404);
   const HttpResponse response = site("GET", path);
   EXPECT_EQ(response.status, 200);
   EXPECT_EQ(response.body, "one");
   EXPECT_EQ(site("GET", path).status, 404);
+  const std::string late = downloads.add({"a.vatrec", "one"}, clock.now()).value();
+  clock.advance(Downloads::kPatience);
+  EXPECT_EQ(site("GET", late).status, 404);
 }
 
 }  // namespace

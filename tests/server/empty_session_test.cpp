@@ -1,6 +1,4 @@
-// Sessions that nobody is in stand still after a while, and end after a longer one.
-
-#include <thread>
+// Sessions without clients hibernate after a while, and end after a longer one.
 
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -8,26 +6,26 @@
 namespace vat::test {
 namespace {
 
-using std::chrono::milliseconds;
+using namespace std::chrono_literals;
 
-ServerLimits soon_still() {
-  ServerLimits limits;
-  limits.resume_time = milliseconds(100);
-  limits.hibernate_after = milliseconds(300);
-  return limits;
-}
-
-ServerLimits soon_gone() {
-  ServerLimits limits = soon_still();
-  limits.expire_after = milliseconds(1500);
-  return limits;
-}
+constexpr auto kResumeTime = 2s;
+constexpr auto kHibernateAfter = 10s;
+constexpr auto kExpireAfter = 60s;
+constexpr auto kStatusInterval = 500ms;  // sessions look after themselves so often
+constexpr auto kExpiryCheck = 15s;       // and the server after them
 
 class EmptySession : public SessionTest {
  protected:
-  explicit EmptySession(const ServerLimits& limits = soon_still()) : SessionTest(limits) {}
+  explicit EmptySession(const ServerLimits& limits = short_times()) : SessionTest(limits) {}
+  static ServerLimits short_times() {
+    ServerLimits limits = unhurried();
+    limits.resume_time = kResumeTime;
+    limits.hibernate_after = kHibernateAfter;
+    limits.expire_after = 0s;
+    return limits;
+  }
 
-  /// As session.list tells it; null where it has ended.
+  /// As session.list tells it; null if it has ended.
   Json listed(const std::string& session) {
     const Json sessions = client->result("session.list").at("sessions");
     for (const Json& entry : sessions) {
@@ -35,36 +33,41 @@ class EmptySession : public SessionTest {
     }
     return nullptr;
   }
+  std::uint64_t tick_of(const std::string& session) { return listed(session).at("tick"); }
   std::string create() {
     return client->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
   }
-  bool is_one_still() {
-    return server.metrics().find("vat_sessions{state=\"hibernating\"} 1\n") != std::string::npos;
-  }
-  /// The tick at which the session stands, once it does.
-  std::uint64_t standing_tick(const std::string& session) {
-    while (!is_one_still()) std::this_thread::sleep_for(milliseconds(20));
-    const std::uint64_t tick = listed(session).at("tick");
-    std::this_thread::sleep_for(milliseconds(200));
-    EXPECT_EQ(listed(session).at("tick"), tick) << "ten periods later";
-    return tick;
+  /// Number of sessions in this state.
+  std::string count(const std::string& state) {
+    const std::string metrics = server.metrics();
+    const std::string name = "vat_sessions{state=\"" + state + "\"} ";
+    const std::size_t begin = metrics.find(name) + name.size();
+    return metrics.substr(begin, metrics.find('\n', begin) - begin);
   }
 };
 
-TEST_F(EmptySession, StandsStillAndGoesOnWhereItStood) {
+TEST_F(EmptySession, HibernatesInTimeAndContinuesWhenSomebodyJoins) {
   const std::string session = create();
-  const std::uint64_t stood = standing_tick(session);
-  EXPECT_GT(stood, 0U) << "it has played for a while";
+  server.clock().advance(kHibernateAfter - kStatusInterval);
+  EXPECT_EQ(count("playing"), "1");
+  server.clock().advance(2 * kStatusInterval);
+  EXPECT_EQ(count("hibernating"), "1");
+  const std::uint64_t tick = tick_of(session);
+  EXPECT_NEAR(static_cast<double>(tick), 10 / 0.02, 0.5 / 0.02) << "it has played for ten seconds";
+  server.clock().advance(10s);
+  EXPECT_EQ(tick_of(session), tick);
   const auto visitor = join(session);
   EXPECT_TRUE(listed(session).at("playing"));
-  visitor->wait_event("session.status", [&](const Json& s) { return s.at("tick") > stood + 5; });
-  EXPECT_FALSE(is_one_still());
+  server.clock().advance(1s);
+  EXPECT_EQ(tick_of(session), tick + 50);
+  EXPECT_EQ(count("hibernating"), "0");
 }
 
 // Its steps are those of a session that was never empty.
-TEST_F(EmptySession, ThatHasStoodStillHasTheSameBits) {
+TEST_F(EmptySession, ThatHasHibernatedHasTheSameBits) {
   const std::string session = create();
-  standing_tick(session);
+  server.clock().advance(2 * kHibernateAfter);
+  ASSERT_EQ(count("hibernating"), "1");
   const auto visitor = join(session);
   visitor->result("control.pause");
   visitor->result("control.step", {{"ticks", 7}});
@@ -77,72 +80,97 @@ TEST_F(EmptySession, ThatHasStoodStillHasTheSameBits) {
 TEST_F(EmptySession, WithSomebodyInItPlaysOn) {
   const std::string session = create();
   const auto visitor = join(session);
-  std::this_thread::sleep_for(milliseconds(700));
-  const std::uint64_t before = listed(session).at("tick");
-  while (listed(session).at("tick") == before) std::this_thread::sleep_for(milliseconds(20));
+  server.clock().advance(2 * kHibernateAfter);
+  const std::uint64_t before = tick_of(session);
+  server.clock().advance(1s);
+  EXPECT_EQ(tick_of(session), before + 50);
+}
+
+// Its participant may come back.
+TEST_F(EmptySession, IsNotEmptyWhileSomebodyIsAway) {
+  const std::string session = create();
+  join(session)->disconnect();
+  server.clock().advance(kHibernateAfter + kStatusInterval);
+  EXPECT_EQ(count("playing"), "1");
+  server.clock().advance(kResumeTime);
+  EXPECT_EQ(count("hibernating"), "1");
 }
 
 class ExpiringSession : public EmptySession {
  protected:
-  ExpiringSession() : EmptySession(soon_gone()) {}
+  ExpiringSession() : EmptySession(expiring()) {}
+  static ServerLimits expiring() {
+    ServerLimits limits = short_times();
+    limits.expire_after = kExpireAfter;
+    return limits;
+  }
 };
 
-TEST_F(ExpiringSession, EndsAfterAWhileButNotTheFirst) {
-  const auto begin = std::chrono::steady_clock::now();
+TEST_F(ExpiringSession, EndsInTimeButNotTheFirst) {
   const std::string session = create();
   client->result("session.leave");
-  while (!listed(session).is_null()) std::this_thread::sleep_for(milliseconds(20));
-  EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(1500));
-  std::this_thread::sleep_for(milliseconds(1000));
+  server.clock().advance(kExpireAfter - kStatusInterval);
+  EXPECT_FALSE(listed(session).is_null());
+  server.clock().advance(kExpiryCheck + kStatusInterval);
+  EXPECT_TRUE(listed(session).is_null());
+  server.clock().advance(kExpireAfter);
   EXPECT_FALSE(listed("s1").is_null());
 }
 
 TEST_F(ExpiringSession, WithSomebodyInItDoesNotEnd) {
   const std::string session = create();
   const auto visitor = join(session);
-  std::this_thread::sleep_for(milliseconds(2500));
+  visitor->result("control.pause");
+  server.clock().advance(2 * kExpireAfter);
   EXPECT_FALSE(listed(session).is_null());
   visitor->disconnect();
-  while (!listed(session).is_null()) std::this_thread::sleep_for(milliseconds(20));
+  server.clock().advance(kExpireAfter);
+  EXPECT_FALSE(listed(session).is_null()) << "its participant was away at first";
+  server.clock().advance(kResumeTime + kExpiryCheck);
+  EXPECT_TRUE(listed(session).is_null());
 }
 
-class NeverIdle : public SessionTest {
+class NeverIdle : public EmptySession {
  protected:
+  NeverIdle() : EmptySession(never()) {}
   static ServerLimits never() {
-    ServerLimits limits;
-    limits.hibernate_after = limits.expire_after = milliseconds(0);
+    ServerLimits limits = unhurried();
+    limits.hibernate_after = limits.expire_after = 0ms;
     return limits;
   }
-  NeverIdle() : SessionTest(never()) {}
 };
 
 TEST_F(NeverIdle, PlaysOnWithNobodyInIt) {
-  const std::string session =
-      client->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
-  std::this_thread::sleep_for(milliseconds(700));
-  EXPECT_NE(server.metrics().find("vat_sessions{state=\"playing\"} 1\n"), std::string::npos);
+  create();
+  server.clock().advance(30s);
+  EXPECT_EQ(count("playing"), "1");
 }
 
-TEST(EmptyReplay, EndsAfterAWhileThoughSessionsDoNot) {
+TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
   const TemporaryFolder folder;
   const Catalogue catalogue = make_catalogue();
   ServerSettings settings;
   settings.data_folder = folder.file("data");
-  settings.limits.resume_time = milliseconds(100);
-  settings.limits.expire_after = milliseconds(0);
-  settings.limits.replay_expire_after = milliseconds(1500);
-  SessionServer server(catalogue, settings);
+  settings.limits.burst_seconds = 1e9;
+  settings.limits.resume_time = kResumeTime;
+  settings.limits.hibernate_after = 1s;
+  settings.limits.expire_after = 0ms;
+  settings.limits.replay_expire_after = kExpireAfter;
+  TestServer server(catalogue, settings);
   ASSERT_TRUE(server.create_session("first", to_scene(mixed_scene_text())).ok());
   TestClient client(server, 1);
   client.result("session.create", {{"name", "n"}, {"scene", "mixed"}});
   client.result("session.join", {{"session", "s1"}});
+  client.result("control.pause");
   const auto sessions = [&] { return client.result("session.list").at("sessions").size(); };
   const Json replay = client.result("replay.open", {{"session", "s1"}}).at("session");
   client.result("session.join", {{"session", replay}});
-  std::this_thread::sleep_for(milliseconds(3000));
+  server.clock().advance(2 * kExpireAfter);
   EXPECT_EQ(sessions(), 3U) << "somebody is in the replay";
   client.result("session.join", {{"session", "s1"}});
-  while (sessions() == 3) std::this_thread::sleep_for(milliseconds(20));
+  server.clock().advance(kExpireAfter - 1s);
+  EXPECT_EQ(sessions(), 3U);
+  server.clock().advance(1s + kExpiryCheck);
   EXPECT_EQ(client.error("session.join", {{"session", replay}}).at("code"), 1002);
   EXPECT_EQ(sessions(), 2U);
 }

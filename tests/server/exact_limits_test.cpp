@@ -99,9 +99,9 @@ TEST(SceneLimits, HoldAtTheirValueAndNotBeyond) {
                    particles * simulation.steps_per_tick()}}) {
     ServerSettings settings;
     settings.limits.*value = needed;
-    EXPECT_TRUE(SessionServer(catalogue, settings).create_session("n", scene).ok()) << name;
+    EXPECT_TRUE(TestServer(catalogue, settings).create_session("n", scene).ok()) << name;
     settings.limits.*value = needed - 1;
-    const auto refused = SessionServer(catalogue, settings).create_session("n", scene);
+    const auto refused = TestServer(catalogue, settings).create_session("n", scene);
     ASSERT_FALSE(refused.ok()) << name;
     EXPECT_EQ(refused.errors().front().message,
               "at most " + std::to_string(needed - 1) + ' ' + name);
@@ -143,7 +143,7 @@ TEST_F(NameAndTickLimits, HoldAtTheirValueAndNotBeyond) {
 
 TEST(Downloads, AreBounded) {
   Downloads downloads(10);
-  const Downloads::Clock::time_point now{};
+  const SteadyClock::time_point now{};
   const auto first = downloads.add({"a", "123456"}, now);
   EXPECT_TRUE(first.has_value());
   EXPECT_FALSE(downloads.add({"b", "12345"}, now).has_value());

@@ -79,12 +79,29 @@ class FakeConnection final : public Connection {
     const std::lock_guard lock(mutex_);
     return frames_;
   }
+  std::size_t frame_count() const {
+    const std::lock_guard lock(mutex_);
+    return frames_.size();
+  }
+  GridFrame frame(std::size_t index) const {
+    const std::lock_guard lock(mutex_);
+    return frames_.at(index);
+  }
   std::size_t queued() const { return queued_bytes(); }
   std::optional<std::uint16_t> close_code() const {
     const std::lock_guard lock(mutex_);
     return close_code_;
   }
 
+  /// The first text from index `from` on that fits; absent if none has come.
+  std::optional<Json> find_text(const std::function<bool(const Json&)>& fits,
+                                std::size_t from = 0) const {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = from; i < texts_.size(); ++i) {
+      if (fits(texts_[i])) return texts_[i];
+    }
+    return {};
+  }
   /// The first text from position `from` on that fits, once it is there.
   Json wait_text(const std::function<bool(const Json&)>& fits, std::size_t from = 0) {
     std::unique_lock lock(mutex_);

@@ -7,6 +7,7 @@
 #include <future>
 
 #include "tests/server/fake_connection.h"
+#include "tests/support/manual_clock.h"
 
 namespace vat::test {
 namespace {
@@ -40,7 +41,8 @@ class Block {
 TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   boost::asio::thread_pool pool(1);
   ServerMetrics metrics;
-  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool);
+  const ManualClock clock;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
   const auto connection = std::make_shared<FakeConnection>(1);
   const auto outbox = std::make_shared<ClientOutbox>(connection);
   const std::uint64_t membership = outbox->join();
@@ -51,7 +53,7 @@ TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   Block block(pool);
   PublishedState state = make_state(7, false);
   feed->publish(state);
-  EXPECT_TRUE(feed->add(outbox, outbox->subscribe(membership, feed, SteadyClock::now()), wish))
+  EXPECT_TRUE(feed->add(outbox, outbox->subscribe(membership, feed, clock.now()), wish))
       << "a further state should be published";
   block.release();
   std::promise<void> done;
@@ -72,7 +74,8 @@ TEST(FrameFeed, FourStatesGoRound) {
   constexpr std::size_t kParticles = 1000;
   boost::asio::thread_pool pool(1);
   ServerMetrics metrics;
-  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool);
+  const ManualClock clock;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
   PublishedState state;
   for (std::uint64_t tick = 1; tick <= 100; ++tick) {
     if (tick > 4) {

@@ -18,8 +18,9 @@ inline ServerLimits unhurried_limits() {
 /// is paused at tick 0.
 class Host {
  public:
-  Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits)
-      : server(catalogue, settings(folder, limits)) {
+  Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits,
+       ManualClock& clock)
+      : server(catalogue, settings(folder, limits), clock) {
     if (server.recover() == 0 && !server.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
     }
@@ -37,12 +38,13 @@ class Host {
     settings.limits = limits;
     settings.threads = 2;
     settings.data_folder = folder;
+    settings.access.refusal_delay = std::chrono::milliseconds(0);
     settings.access.admin = hash_of_token(kAdminToken);
     return settings;
   }
 
  public:
-  SessionServer server;
+  TestServer server;
   std::optional<TestClient> client;
 };
 

@@ -9,7 +9,7 @@
 namespace vat::test {
 namespace {
 
-const Imports::Clock::time_point kStart{};
+const SteadyClock::time_point kStart{};
 
 Imports::Part first_part(std::size_t bytes) {
   return {{}, 100, 0, std::vector<std::uint8_t>(bytes)};

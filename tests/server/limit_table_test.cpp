@@ -113,11 +113,12 @@ const std::vector<Limit>& limit_table() {
         "TransportHostileTest.APeerThatAnswersPingsStays"}},
       {"hibernate_after_seconds",
        "hibernate_after",
-       {"EmptySession.StandsStillAndGoesOnWhereItStood", "NeverIdle.PlaysOnWithNobodyInIt"}},
-      {"expire_after_seconds", "expire_after", {"ExpiringSession.EndsAfterAWhileButNotTheFirst"}},
+       {"EmptySession.HibernatesInTimeAndContinuesWhenSomebodyJoins",
+        "NeverIdle.PlaysOnWithNobodyInIt"}},
+      {"expire_after_seconds", "expire_after", {"ExpiringSession.EndsInTimeButNotTheFirst"}},
       {"replay_expire_after_seconds",
        "replay_expire_after",
-       {"EmptyReplay.EndsAfterAWhileThoughSessionsDoNot"}},
+       {"EmptyReplay.EndsInTimeThoughSessionsDoNot"}},
       {"control_queue_bytes",
        "max_control_queue_bytes",
        {"Outbox.TheQueuesBoundIsKeptToTheByte",
@@ -155,7 +156,7 @@ Json limits_told(const ServeSettings& settings) {
   const Catalogue catalogue = make_catalogue();
   ServerSettings of_server;
   of_server.limits = settings.limits;
-  SessionServer server(catalogue, of_server);
+  TestServer server(catalogue, of_server);
   TestClient client(server, 1);
   return client.result("server.info").at("limits");
 }

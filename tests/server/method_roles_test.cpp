@@ -61,6 +61,7 @@ class MethodRoles : public testing::Test {
     ServerSettings settings;
     settings.threads = 2;
     settings.access.mode = AccessMode::token;
+    settings.access.refusal_delay = std::chrono::milliseconds(0);
     settings.access.admin = hash_of_token(kAdminToken);
     return settings;
   }
@@ -108,7 +109,7 @@ class MethodRoles : public testing::Test {
   };
 
   const Catalogue catalogue;
-  SessionServer server;
+  TestServer server;
 
  private:
   ConnectionId last_ = 0;

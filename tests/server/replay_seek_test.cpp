@@ -6,7 +6,6 @@
 #include <atomic>
 #include <chrono>
 #include <set>
-#include <thread>
 
 #include "server/replay/moment_filler.h"
 #include "server/replay/recorder.h"
@@ -15,6 +14,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
@@ -39,7 +39,7 @@ class KeptSession {
  public:
   /// With commands before these ticks.
   explicit KeptSession(std::size_t checkpoint_bytes, const std::set<std::uint64_t>& commands = {})
-      : storage_(folder_.file("data"), limits_with(checkpoint_bytes)) {
+      : storage_(folder_.file("data"), limits_with(checkpoint_bytes), environment_.clock) {
     const Scene scene = to_scene(mixed_scene_text());
     StoredSession session;
     session.name = "n";
@@ -53,7 +53,7 @@ class KeptSession {
       if (commands.contains(tick)) command(core);
       run_tick(core);
     }
-    core.log()->keep(core.moment(), SteadyClock::now());
+    core.log()->keep(core.moment(), environment_.clock.now());
     storage_.flush();
   }
   Recording record() { return record_session(storage_, number_, kMaxRecordingBytes).value(); }
@@ -68,20 +68,20 @@ class KeptSession {
     core.apply(entry, [](SessionCore&, Participant&) -> ActionResult { return Json::object(); });
   }
   void run_tick(SessionCore& core) {
-    ASSERT_TRUE(core.tick(SteadyClock::now(), false));
+    ASSERT_TRUE(core.tick(environment_.clock.now(), false));
     SessionLog& log = *core.log();
     log.add_hash(core.run().position(), core.run().simulation().state_hash());
     log.add_work(CheckpointPace::Seconds(kTickWork));
-    if (log.is_due(core.run().position(), 0, SteadyClock::now())) {
-      log.keep(core.moment(), SteadyClock::now());
+    if (log.is_due(core.run().position(), 0, environment_.clock.now())) {
+      log.keep(core.moment(), environment_.clock.now());
       storage_.flush();
     }
   }
 
   const TemporaryFolder folder_;
+  const LoneEnvironment environment_;
   Storage storage_;
   std::uint64_t number_ = 0;
-  const LoneEnvironment environment_;
 };
 
 /// The most ticks that a seek runs, to every position, each from the end.
@@ -183,15 +183,14 @@ TEST(MomentFilling, BeginsWithTheWidestGap) {
   const auto kept = std::make_shared<KeptMoments>(std::chrono::seconds(0), kMuch);
   const MomentFiller filler(std::make_shared<const Recording>(recording), session.environment(),
                             kept);
-  for (;;) {
-    const bool is_done = filler.is_done();
+  const auto begins_with_the_widest = [&] {
     const std::vector<std::uint64_t> there = kept->positions();
     const auto wide = std::ranges::count_if(there, [](auto at) { return at > kNarrow; });
     const bool has_narrow = static_cast<std::size_t>(wide) < there.size();
-    ASSERT_TRUE(!has_narrow || static_cast<std::uint64_t>(wide) == kTicks - kNarrow) << wide;
-    if (is_done) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+    return !has_narrow || static_cast<std::uint64_t>(wide) == kTicks - kNarrow;
+  };
+  ASSERT_TRUE(wait_until([&] { return filler.is_done() || !begins_with_the_widest(); }));
+  EXPECT_TRUE(begins_with_the_widest());
   EXPECT_EQ(kept->count(), kTicks - 1);  // and there is the recording's own
 }
 

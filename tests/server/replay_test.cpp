@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <optional>
-#include <thread>
 
 #include "server/http/downloads.h"
 #include "server/replay/replay_player.h"
@@ -95,9 +94,9 @@ class ReplayTest : public testing::Test {
   Recording record() {
     const Json exported = client_->result("recording.export");
     const std::string path = exported.at("path");
-    auto file = server_.downloads().take(path, Downloads::Clock::now());
+    auto file = server_.downloads().take(path, server_.clock().now());
     EXPECT_TRUE(file.has_value());
-    EXPECT_FALSE(server_.downloads().take(path, Downloads::Clock::now()).has_value());
+    EXPECT_FALSE(server_.downloads().take(path, server_.clock().now()).has_value());
     EXPECT_EQ(exported.at("bytes"), file->content.size());
     EXPECT_EQ(file->name, "s1.vatrec");
     const std::string& bytes = file->content;
@@ -134,7 +133,7 @@ class ReplayTest : public testing::Test {
  protected:
   const TemporaryFolder folder_;
   const Catalogue catalogue_;
-  SessionServer server_;
+  TestServer server_;
   std::optional<TestClient> client_;
   LoneEnvironment elsewhere_{catalogue_, 2};
   const SessionEnvironment& environment_ = elsewhere_.shared;
@@ -456,27 +455,17 @@ TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {
   EXPECT_LE(bytes, kDownloadBytes);
   ASSERT_FALSE(waiting.empty());
   const std::string path = waiting.front().at("path");
-  EXPECT_TRUE(server_.downloads().take(path, Downloads::Clock::now()).has_value());
+  EXPECT_TRUE(server_.downloads().take(path, server_.clock().now()).has_value());
   client_->result("recording.export");
 }
 
-ServerLimits looked_at_often() {
-  ServerLimits limits;
-  limits.expire_after = 100ms;
-  return limits;
-}
-
-class OldDownloads : public ReplayTest {
- protected:
-  OldDownloads() : ReplayTest(looked_at_often()) {}
-};
-
-TEST_F(OldDownloads, GoThoughNobodyAsksForAnother) {
-  const auto now = Downloads::Clock::now();
+TEST_F(ReplayTest, OldDownloadsGoThoughNobodyAsksForAnother) {
   Downloads& downloads = server_.downloads();
-  ASSERT_TRUE(downloads.add({"old", "content"}, now - Downloads::kPatience + 500ms));
-  const auto held = [&] { return downloads.forget_old({}); };  // long before: nothing goes by this
-  while (held() > 0 && Downloads::Clock::now() < now + 20s) std::this_thread::sleep_for(10ms);
+  ASSERT_TRUE(downloads.add({"old", "content"}, server_.clock().now()));
+  const auto held = [&] { return downloads.forget_old({}); };  // at that time nothing has expired
+  server_.clock().advance(Downloads::kPatience - 1s);
+  EXPECT_GT(held(), 0U);
+  server_.clock().advance(1min);
   EXPECT_EQ(held(), 0U);
 }
 

@@ -41,7 +41,7 @@ class SavedStateEntries : public testing::Test {
     body.name = "second";
     body.position = {0.3, 0.7, 0.8};
     EXPECT_TRUE(simulation.add_body(body).ok());
-    return make_saved_state({simulation.snapshot(), as_loaded, 3, {}}, "n", "Ann");
+    return make_saved_state({simulation.snapshot(), as_loaded, 3, {}}, "n", "Ann", 0);
   }
 
   const Simulation scene_;

@@ -45,8 +45,8 @@ class SessionCoreTest : public testing::Test {
     return environment.shared.metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
   }
 
-  const SteadyClock::time_point now = SteadyClock::now();
   const LoneEnvironment environment;
+  const SteadyClock::time_point now = environment.clock.now();
   SessionCore core{
       "s1", {"one"}, Simulation::create(to_scene(mixed_scene_text())).value(), environment.shared};
 

@@ -75,7 +75,22 @@ Scene to_scene(const std::string& text) {
   return read_scene_text(text, no_meshes).value();
 }
 
-TestClient::TestClient(SessionServer& server, ConnectionId id, std::string address)
+TestServer::TestServer(const Catalogue& catalogue, ServerSettings settings)
+    : SessionServer(catalogue, std::move(settings), own_clock), clock_(&own_clock) {}
+
+TestServer::TestServer(const Catalogue& catalogue, ServerSettings settings, ManualClock& clock)
+    : SessionServer(catalogue, std::move(settings), clock), clock_(&clock) {}
+
+void TestServer::advance_until(const std::function<bool()>& condition) {
+  constexpr auto kMostTime = std::chrono::hours(1);
+  const auto end = clock_->now() + kMostTime;
+  for (flush(); !condition(); flush()) {
+    if (clock_->now() > end) throw std::runtime_error("an expected event did not come");
+    clock_->advance_to_next();
+  }
+}
+
+TestClient::TestClient(TestServer& server, ConnectionId id, std::string address)
     : connection(std::make_shared<FakeConnection>(id, std::move(address))), server_(server) {
   connection->record(message_record());
   server_.opened(connection);
@@ -130,16 +145,25 @@ Json TestClient::wait_event(std::string_view event, const std::function<bool(con
   const auto fits_text = [&](const Json& text) {
     return text.value("method", "") == event && (!fits || fits(text.at("params")));
   };
-  return connection->wait_text(fits_text, mark_).at("params");
+  std::optional<Json> found;
+  server_.advance_until([&] {
+    found = connection->find_text(fits_text, mark_);
+    return found.has_value();
+  });
+  return found->at("params");
 }
 
 GridFrame TestClient::wait_frame(const std::function<bool(const GridFrame&)>& fits) {
   for (;; ++seen_frames_) {
-    connection->wait_frames(seen_frames_ + 1);
-    const GridFrame frame = connection->frames()[seen_frames_];
+    server_.advance_until([&] { return connection->frame_count() > seen_frames_; });
+    const GridFrame frame = connection->frame(seen_frames_);
     notify("frames.ack", {{"number", frame.header.number}});
     if (fits(frame)) return frame;
   }
+}
+
+void TestClient::wait_closed() {
+  server_.advance_until([&] { return connection->close_code().has_value(); });
 }
 
 std::vector<Json> TestClient::events(std::string_view event) const {

@@ -11,6 +11,7 @@
 
 #include "server/session/session_server.h"
 #include "tests/server/fake_connection.h"
+#include "tests/support/manual_clock.h"
 
 namespace vat::test {
 
@@ -25,10 +26,30 @@ Scene to_scene(const std::string& text);
 
 inline constexpr std::string_view kAdminToken = "the admin token of the tests";
 
-/// One client of a SessionServer, which must outlive it.
+/// Base class, so that the clock outlives the server.
+struct OwnClock {
+  ManualClock own_clock;
+};
+
+/// A SessionServer on a clock that the test controls.
+class TestServer : private OwnClock, public SessionServer {
+ public:
+  TestServer(const Catalogue& catalogue, ServerSettings settings);
+  /// On a clock that outlives the server.
+  TestServer(const Catalogue& catalogue, ServerSettings settings, ManualClock& clock);
+
+  ManualClock& clock() { return *clock_; }
+  /// Advances the clock to the next timers until `condition` is true.
+  void advance_until(const std::function<bool()>& condition);
+
+ private:
+  ManualClock* clock_;
+};
+
+/// One client of a TestServer, which must outlive it.
 class TestClient {
  public:
-  TestClient(SessionServer& server, ConnectionId id, std::string address = "127.0.0.1");
+  TestClient(TestServer& server, ConnectionId id, std::string address = "127.0.0.1");
   ~TestClient() { disconnect(); }
   TestClient(const TestClient&) = delete;
   TestClient& operator=(const TestClient&) = delete;
@@ -50,10 +71,13 @@ class TestClient {
   Json result(std::string_view method, const Json& params = nullptr);
   Json error(std::string_view method, const Json& params = nullptr);
 
-  /// The params of the first event since mark() that fits.
+  /// The params of the first event since mark() that fits. Advances the clock until it comes.
   Json wait_event(std::string_view event, const std::function<bool(const Json&)>& fits = {});
-  /// The first frame that fits; acknowledges all frames until then.
+  /// The first frame that fits. Advances the clock until it comes; acknowledges all frames until
+  /// then.
   GridFrame wait_frame(const std::function<bool(const GridFrame&)>& fits);
+  /// Advances the clock until the server closes the connection.
+  void wait_closed();
   /// The params of all events since mark().
   std::vector<Json> events(std::string_view event) const;
   /// Events before this are not looked at again.
@@ -62,7 +86,7 @@ class TestClient {
   const std::shared_ptr<FakeConnection> connection;
 
  private:
-  SessionServer& server_;
+  TestServer& server_;
   int last_id_ = 0;
   std::size_t mark_ = 0;
   std::size_t seen_frames_ = 0;
@@ -91,7 +115,7 @@ class SessionTest : public testing::Test {
   std::uint64_t tick() { return client->result("session.hash").at("tick"); }
 
   const Catalogue catalogue;
-  SessionServer server;
+  TestServer server;
   std::unique_ptr<TestClient> client;
 
  private:

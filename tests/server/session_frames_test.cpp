@@ -225,7 +225,7 @@ TEST_F(SessionFrames, AClientThatReadsNothingIsClosedAndTheOthersGoOn) {
   for (int i = 0; i < 400 && !dead->connection->close_code(); ++i) {
     client->result("scene.load", {{"scene", scene}});  // a description for all
   }
-  dead->connection->wait_closed();
+  dead->wait_closed();
   EXPECT_EQ(dead->connection->close_code(), 4008);
   EXPECT_LE(dead->connection->queued(), std::size_t{2} << 20) << "control queue and three frames";
   dead->disconnect();
@@ -286,7 +286,10 @@ TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
   client->wait_frame([](const GridFrame&) { return true; });
   const auto silent = join();
   silent->result("frames.subscribe");
-  silent->connection->wait_closed();
+  server.flush();
+  server.clock().advance(std::chrono::milliseconds(500));
+  EXPECT_FALSE(silent->connection->close_code().has_value());
+  server.clock().advance(std::chrono::milliseconds(1000));
   EXPECT_EQ(silent->connection->close_code(), 4008);
   EXPECT_FALSE(client->connection->close_code().has_value());
 }

@@ -89,7 +89,7 @@ TEST_F(SessionLifecycle, EveryHashNamesTheInstructionSetOfTheServer) {
   ServerSettings settings;
   settings.threads = 1;
   settings.instructions = InstructionSet::baseline;
-  SessionServer plain(catalogue, settings);
+  TestServer plain(catalogue, settings);
   ASSERT_TRUE(plain.create_session("plain", to_scene(mixed_scene_text())));
   TestClient guest(plain, 1);
   EXPECT_EQ(guest.result("server.info").at("instruction_set"), "baseline");

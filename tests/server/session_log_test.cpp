@@ -88,7 +88,7 @@ class BoundedLog : public testing::Test {
               .loaded = loaded,
               .participants = write_participants({}),
               .snapshot = simulation.snapshot()},
-             SteadyClock::now(), true);
+             clock.now(), true);
     storage.flush();
   }
   std::vector<std::uint64_t> sequences() {
@@ -98,7 +98,8 @@ class BoundedLog : public testing::Test {
   }
 
   const TemporaryFolder folder;
-  Storage storage{folder.file("data"), few_bytes()};
+  ManualClock clock;
+  Storage storage{folder.file("data"), few_bytes(), clock};
   const Simulation simulation;
   std::uint64_t number = 0;
 };

@@ -115,7 +115,7 @@ TEST_F(SessionParticipants, CanBeTakenOverFromAConnectionThatIsStillOpen) {
   const auto next = connect();
   EXPECT_EQ(next->result("session.join", resume_params(joined)).at("participant"),
             joined.at("participant"));
-  old->connection->wait_closed();
+  old->wait_closed();
   EXPECT_EQ(old->connection->close_code(), kReplaced);
 
   const std::size_t texts = old->connection->texts().size();

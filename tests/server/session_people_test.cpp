@@ -99,7 +99,7 @@ TEST_F(SessionPeople, AnOwnerKeepsWhatItHandsOver) {
 TEST_F(SessionPeople, WhoIsKickedIsGoneAndItsTokenWithIt) {
   const std::uint64_t grab = grab_ball(*controller_);
   owner_->result("participant.kick", {{"participant", controller_number_}, {"reason", "enough"}});
-  controller_->connection->wait_closed();
+  controller_->wait_closed();
   EXPECT_EQ(controller_->connection->close_code(), kKicked);
   EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), -32602);
 

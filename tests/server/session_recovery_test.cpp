@@ -7,13 +7,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "core/simulation.h"
 #include "server/storage/database.h"
 #include "tests/server/session_fixture.h"
-#include "tests/support/patience.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
@@ -24,9 +23,9 @@ namespace fs = std::filesystem;
 /// A server on a data folder, with one client in its session s1.
 class Life {
  public:
-  Life(const Catalogue& catalogue, const std::string& folder, ServerLimits limits = {},
-       StorageLimits storage = {})
-      : server_(catalogue, settings(folder, limits, storage)), recovered(server_.recover()) {
+  Life(const Catalogue& catalogue, const std::string& folder, ManualClock& clock,
+       ServerLimits limits = {}, StorageLimits storage = {})
+      : server_(catalogue, settings(folder, limits, storage), clock), recovered(server_.recover()) {
     if (recovered == 0 && !server_.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
     }
@@ -36,6 +35,8 @@ class Life {
 
   std::string hash() { return client->result("session.hash").at("hash"); }
   std::uint64_t tick() { return client->result("session.hash").at("tick"); }
+  /// What was posted is written then.
+  void flush() { server_.flush(); }
 
  private:
   static ServerSettings settings(const std::string& folder, const ServerLimits& limits,
@@ -47,7 +48,7 @@ class Life {
     settings.storage = storage;
     return settings;
   }
-  SessionServer server_;
+  TestServer server_;
 
  public:
   const std::size_t recovered;
@@ -71,12 +72,13 @@ class SessionRecoveryTest : public testing::Test {
   /// Ends the present life as a crash does, and begins the next.
   void crash(ServerLimits limits = {}) {
     const std::string next = folder.file("data" + std::to_string(++lives_));
+    life->flush();
     copy_data(data, next);
     life.reset();
     data = next;
-    life.emplace(catalogue, data, limits, storage);
+    life.emplace(catalogue, data, clock, limits, storage);
   }
-  void begin() { life.emplace(catalogue, data, ServerLimits{}, storage); }
+  void begin() { life.emplace(catalogue, data, clock, ServerLimits{}, storage); }
   TestClient& client() { return *life->client; }
   void execute(const char* sql, const char* file = "/vat.db") {
     Database(data + file, Database::Mode::create).execute(sql);
@@ -84,6 +86,7 @@ class SessionRecoveryTest : public testing::Test {
 
   const TemporaryFolder folder;
   const Catalogue catalogue;
+  ManualClock clock;
   StorageLimits storage;
   std::string data = folder.file("data0");
   std::optional<Life> life;
@@ -158,7 +161,7 @@ TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
   const std::string held = life->hash();
   crash(impatient);
   EXPECT_TRUE(client().call("grab.move", {{"grab", 1}, {"target", {0, 0, 0}}}).contains("error"));
-  for (int i = 0; i < 200 && life->hash() == held; ++i) std::this_thread::sleep_for(20ms);
+  clock.advance(500ms);  // to the next status
   EXPECT_NE(life->hash(), held) << "the grab still pulls";
   const std::string free = life->hash();
   crash();
@@ -169,7 +172,7 @@ TEST_F(SessionRecoveryTest, WhatWasAcceptedIsAcceptedAgainAndWhatWasRefusedIsNot
   ServerLimits few;
   const Simulation alone = Simulation::create(to_scene(mixed_scene_text())).value();
   few.max_particles = alone.particle_count() + 2;  // too few for a second ball
-  life.emplace(catalogue, data, few);
+  life.emplace(catalogue, data, clock, few);
   client().result("control.pause");
   EXPECT_EQ(client().error("world.add_body", {{"body", kBall}}).at("data").at("kind"),
             "limit_reached");
@@ -222,7 +225,7 @@ TEST_F(SessionRecoveryTest, ASessionThatPlaysIsBackAtMostASecondEarlierAndPlays)
   const Json& description = life->joined.at("description");
   EXPECT_TRUE(description.at("playing"));
   EXPECT_EQ(description.at("speed"), 2);
-  EXPECT_GE(description.at("tick").get<std::uint64_t>() + 150, seen);  // a beat and its writing
+  EXPECT_GE(description.at("tick").get<std::uint64_t>() + 101, seen);  // a beat, and a tick
 }
 
 TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
@@ -233,9 +236,9 @@ TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
   for (int i = 0; i < 20; ++i) {
     client().result("control.step", {{"ticks", 10}});
     client().result("world.set_gravity", {{"gravity", {0, 0.1 * i, -9}}});
+    life->flush();
   }
   const std::string before = life->hash();
-  std::this_thread::sleep_for(100ms);  // for what was posted to be written
   copy_data(data, folder.file("look"));
   Database look(folder.file("look/checkpoints.db"), Database::Mode::create);
   ASSERT_GE(look.number("SELECT count(*) FROM checkpoints"), 2);
@@ -301,9 +304,9 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
   ServerSettings settings;
   settings.data_folder = data;
   {
-    SessionServer server(catalogue, settings);
+    TestServer server(catalogue, settings);
     EXPECT_EQ(server.recover(), 1U);
-    for (int i = 0; i < 1000 && !server.is_ready(); ++i) std::this_thread::sleep_for(20ms);
+    ASSERT_TRUE(wait_until([&] { return server.is_ready(); }));
     TestClient visitor(server, 1);
     const Json sessions = visitor.result("session.list").at("sessions");
     ASSERT_EQ(sessions.size(), 1U);
@@ -319,7 +322,7 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
     EXPECT_EQ(refused.at("data").at("least_role"), "owner");
     EXPECT_EQ(visitor.result("session.list").at("sessions").size(), 1U);
   }
-  SessionServer server(catalogue, settings);
+  TestServer server(catalogue, settings);
   EXPECT_EQ(server.recover(), 1U);
 }
 
@@ -331,7 +334,7 @@ TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
   execute("DELETE FROM checkpoints", "/checkpoints.db");  // all ticks are to be run again
   ServerSettings settings;
   settings.data_folder = data;
-  SessionServer server(catalogue, settings);
+  TestServer server(catalogue, settings);
   EXPECT_EQ(server.recover(), 1U);
   EXPECT_FALSE(server.is_ready());
   TestClient visitor(server, 1);
@@ -340,9 +343,7 @@ TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
   EXPECT_EQ(error.at("code"), 1011);
   EXPECT_EQ(error.at("data").at("state"), "recovering");
   const int joining = visitor.send("session.join", {{"session", "s1"}});
-  for (int i = 0; i < 3000 * kSlowdown && !server.is_ready(); ++i)
-    std::this_thread::sleep_for(20ms);
-  EXPECT_TRUE(server.is_ready());
+  EXPECT_TRUE(wait_until([&] { return server.is_ready(); }));
   EXPECT_TRUE(visitor.wait_reply(joining).contains("result"));
 }
 
@@ -367,7 +368,7 @@ TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
   EXPECT_EQ(before.at("role"), "owner");
   client().result("session.configure", {{"name", "hers"}, {"locked", true}});
   client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
-  std::this_thread::sleep_for(1500ms);  // within a second it is noted who is there
+  clock.advance(1s);  // it is then noted who is there
   crash();
   const Json after = client().result(
       "session.join", {{"session", made.at("session")}, {"resume", before.at("resume")}});

@@ -92,7 +92,7 @@ class SceneGetLimits : public testing::Test {
     ServerSettings settings;
     settings.limits = limits;
     settings.limits.burst_seconds = 1e9;
-    SessionServer server(catalogue, settings);
+    TestServer server(catalogue, settings);
     EXPECT_TRUE(server.create_session("first", to_scene(mixed_scene_text())));
     TestClient client(server, 1);
     client.result("session.join");

@@ -47,7 +47,7 @@ double helper_time() {
 class SessionThreads : public testing::Test {
  protected:
   /// Starts a paused session at tick 0, and a client in it.
-  std::unique_ptr<TestClient> start(SessionServer& server) {
+  std::unique_ptr<TestClient> start(TestServer& server) {
     const SessionId id = server.create_session("pool", pool_scene()).value();
     auto client = std::make_unique<TestClient>(server, ++last_connection_);
     client->result("session.join", {{"session", id}});
@@ -68,7 +68,7 @@ class SessionThreads : public testing::Test {
 };
 
 TEST_F(SessionThreads, ALoneSessionIsHelped) {
-  SessionServer server(catalogue, with_threads(4));
+  TestServer server(catalogue, with_threads(4));
   const auto client = start(server);
   const double before = helper_time();
   client->result("control.step", {{"ticks", kTicks}});
@@ -77,14 +77,14 @@ TEST_F(SessionThreads, ALoneSessionIsHelped) {
 }
 
 TEST_F(SessionThreads, OnOneThreadNobodyHelps) {
-  SessionServer server(catalogue, with_threads(1));
+  TestServer server(catalogue, with_threads(1));
   const auto client = start(server);
   client->result("control.step", {{"ticks", 1}});
   EXPECT_EQ(helper_time(), 0);
 }
 
 TEST_F(SessionThreads, SessionsAtOnceHaveTheBitsOfEachAlone) {
-  SessionServer server(catalogue, with_threads(4));
+  TestServer server(catalogue, with_threads(4));
   std::vector<std::unique_ptr<TestClient>> clients;
   std::vector<int> steps;
   for (int i = 0; i < 3; ++i) clients.push_back(start(server));

@@ -1,12 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <boost/asio/post.hpp>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <future>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "server/storage/data_folder.h"
 #include "server/storage/saved_scenes.h"
 #include "server/storage/storage.h"
+#include "tests/support/manual_clock.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat {
@@ -213,9 +216,10 @@ TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
 
 TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
   const test::TemporaryFolder folder;
+  test::ManualClock clock;
   std::uint64_t kept = 0;
   {
-    Storage storage(folder.file("data"), {});
+    Storage storage(folder.file("data"), {}, clock);
     const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
     const StoredSession session{0, "name", "avx2", "{}", 0, {}};
     const std::uint64_t closed = storage.sessions().create(session, first);
@@ -225,35 +229,74 @@ TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
     storage.sessions().close(closed);
     storage.remove_closed();
   }
-  Storage storage(folder.file("data"), {});
+  Storage storage(folder.file("data"), {}, clock);
   EXPECT_TRUE(storage.sessions().read(1, 0).empty());
   EXPECT_TRUE(storage.checkpoints().places(1).empty());
   EXPECT_EQ(storage.sessions().read(kept, 0).size(), 1U);
   EXPECT_EQ(storage.checkpoints().places(kept).size(), 1U);
 }
 
-// Its timer then cannot be cancelled any more.
-TEST(Storage, EndsWhereItsThreadIsLateForItsTimer) {
+/// Its timers are late: a task that is cancelled is queued already.
+class LateClock final : public Clock {
+ public:
+  SteadyClock::time_point now() const override { return {}; }
+  double wall_time() const override { return 0; }
+  std::unique_ptr<Timer> make_timer(boost::asio::any_io_executor executor) override {
+    class LateTimer final : public Timer {
+     public:
+      LateTimer(std::atomic<int>& starts, boost::asio::any_io_executor executor)
+          : starts_(starts), executor_(std::move(executor)) {}
+      void start(SteadyClock::time_point, std::function<void()> task) override {
+        ++starts_;
+        task_ = std::move(task);
+      }
+      void cancel() override { boost::asio::post(executor_, task_); }
+
+     private:
+      std::atomic<int>& starts_;
+      const boost::asio::any_io_executor executor_;
+      std::function<void()> task_;
+    };
+    return std::make_unique<LateTimer>(starts, std::move(executor));
+  }
+
+  std::atomic<int> starts = 0;
+};
+
+// A timer that is started again would keep the storage's thread running for ever.
+TEST(Storage, StartsNoTimerAtItsEnd) {
   const test::TemporaryFolder folder;
-  auto storage = std::make_unique<Storage>(folder.file("data"), StorageLimits{});
-  storage->flush();
-  storage->post([] { std::this_thread::sleep_for(std::chrono::milliseconds(1200)); });
-  storage->post([] {});
-  const auto has_ended = std::make_shared<std::promise<void>>();
-  std::future<void> end = has_ended->get_future();
-  // Detached: one that never ends must not hold up the test.
-  std::thread([storage = std::move(storage), has_ended]() mutable {
-    storage.reset();
-    has_ended->set_value();
-  }).detach();
-  EXPECT_EQ(end.wait_for(std::chrono::seconds(60)), std::future_status::ready);
+  LateClock clock;
+  { const Storage storage(folder.file("data"), {}, clock); }
+  EXPECT_EQ(clock.starts, 1);
+}
+
+TEST(Storage, MovesItsLogsEverySecond) {
+  const test::TemporaryFolder folder;
+  test::ManualClock clock;
+  Storage storage(folder.file("data"), {}, clock);
+  const std::string log = folder.file("data") + "/vat.db-wal";
+  const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
+  const StoredSession session{0, "name", "avx2", "{}", 0, {}};
+  const auto write = [&] {
+    storage.sessions().create(session, first);
+    return std::filesystem::file_size(log);
+  };
+  clock.advance(std::chrono::milliseconds(999));
+  const auto small = write();
+  const auto larger = write();
+  EXPECT_GT(larger, small);
+  clock.advance(std::chrono::milliseconds(1));
+  write();
+  EXPECT_EQ(std::filesystem::file_size(log), larger) << "it is used again from its start";
 }
 
 TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
   const test::TemporaryFolder folder;
+  test::ManualClock clock;
   bool ran = false;
   {
-    Storage storage(folder.file("data"), {});
+    Storage storage(folder.file("data"), {}, clock);
     storage.post([] { throw StorageError(StorageError::Kind::full, "the disk is full"); });
     storage.post([&] { ran = storage.counts().failures == 1; });
   }

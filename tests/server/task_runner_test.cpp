@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <ctime>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -12,6 +14,8 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "tests/support/wait.h"
 
 namespace vat {
 namespace {
@@ -79,7 +83,7 @@ TEST(TaskRunner, StopsWhereHelpersHaveHardlyBegun) {
   std::vector<std::thread> owners;
   std::atomic<int> stopped = 0;
   constexpr int kOwners = 6;
-  constexpr int kRunners = 2000;
+  constexpr int kRunners = 300;
   for (int owner = 0; owner < kOwners; ++owner) {
     owners.emplace_back([&] {
       for (int k = 0; k < kRunners; ++k) {
@@ -100,28 +104,44 @@ TEST(TaskRunner, ZeroThreadsMeansTheCallerAlone) {
   EXPECT_EQ(ids, std::set{std::this_thread::get_id()});
 }
 
-/// Waits until two blocks have come here: that needs two threads. False after ten seconds.
-bool meet(std::atomic<int>& arrived) {
-  using Clock = std::chrono::steady_clock;
-  const auto deadline = Clock::now() + std::chrono::seconds(10);
-  ++arrived;
-  while (arrived < 2 && Clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+/// Computes for some milliseconds: the rest of its run is then worth waking a helper.
+void work() {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(2);
+  while (std::chrono::steady_clock::now() < end) {
   }
-  return arrived >= 2;
 }
+
+/// The threads that run blocks; a block waits here until enough of them have come.
+class Threads {
+ public:
+  explicit Threads(std::size_t expected) : expected_(expected) {}
+
+  /// False if the expected number of threads does not come.
+  bool arrive() {
+    constexpr std::chrono::seconds kPatience(60);
+    std::unique_lock lock(mutex_);
+    ids_.insert(std::this_thread::get_id());
+    changed_.notify_all();
+    return changed_.wait_for(lock, kPatience, [this] { return ids_.size() >= expected_; });
+  }
+  std::set<std::thread::id> ids() const { return ids_; }
+
+ private:
+  const std::size_t expected_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<std::thread::id> ids_;
+};
 
 TEST(TaskRunner, TheCallerAndASleepingHelperWorkAtOnce) {
   ThreadPoolRunner runner(2);
   for (int i = 0; i < 3; ++i) {
-    // Long enough for the helper to fall asleep, as a rule: the test holds for one that has not.
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    std::atomic<int> arrived = 0;
+    Threads threads(2);
     std::atomic<int> met = 0;
     runner.run(3, [&](std::size_t b) {
       if (b == 0) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));  // worth waking someone
-      } else if (meet(arrived)) {
+        work();
+      } else if (threads.arrive()) {
         ++met;
       }
     });
@@ -129,50 +149,43 @@ TEST(TaskRunner, TheCallerAndASleepingHelperWorkAtOnce) {
   }
 }
 
-// All but the run that the system happens to interrupt.
 TEST(TaskRunner, ShortRunsWakeNobody) {
-  constexpr int kRuns = 100;
-  ThreadPoolRunner runner(4);
-  const auto caller = std::this_thread::get_id();
-  int alone = 0;
-  for (int i = 0; i < kRuns; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::atomic<int> by_others = 0;
-    runner.run(8, [&](std::size_t) {
-      if (std::this_thread::get_id() != caller) ++by_others;
-    });
-    if (by_others == 0) ++alone;
-  }
-  EXPECT_GE(alone, kRuns * 9 / 10);
+  using std::chrono::microseconds;
+  const auto is_worth = ThreadPoolRunner::is_worth_waking;
+  EXPECT_FALSE(is_worth(microseconds(1), 1, 7));
+  EXPECT_FALSE(is_worth(microseconds(39), 1, 1));
+  EXPECT_TRUE(is_worth(microseconds(40), 1, 1));
+  EXPECT_FALSE(is_worth(microseconds(40), 8, 7));
+  EXPECT_TRUE(is_worth(microseconds(40), 8, 8));
+  EXPECT_FALSE(is_worth(microseconds(1000), 8, 0)) << "nothing is left to do";
 }
 
-/// Runs blocks of a millisecond each, so that all helpers come; who did them.
-std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner) {
-  std::mutex mutex;
-  std::set<std::thread::id> ids;
-  runner.run(60, [&](std::size_t) {
-    {
-      const std::lock_guard lock(mutex);
-      ids.insert(std::this_thread::get_id());
+/// Runs blocks until so many threads have come; the threads that ran one. The caller may run the
+/// first block before it wakes anybody.
+std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::size_t expected) {
+  Threads threads(expected);
+  runner.run(10, [&](std::size_t b) {
+    work();
+    if (b > 0) {
+      EXPECT_TRUE(threads.arrive());
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   });
-  return ids;
+  return threads.ids();
 }
 
 TEST(TaskRunner, GuestsTakeThePlacesOfHelpers) {
   ThreadPoolRunner runner(3);
-  EXPECT_EQ(threads_of_a_long_run(runner).size(), 3U);
+  EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U);
   const ThreadPoolRunner::Guest caller(runner);
-  EXPECT_EQ(threads_of_a_long_run(runner).size(), 3U) << "the first guest is the caller";
+  EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U) << "the first guest is the caller";
   {
     const ThreadPoolRunner::Guest second(runner);
     const ThreadPoolRunner::Guest third(runner);
-    EXPECT_EQ(threads_of_a_long_run(runner), std::set{std::this_thread::get_id()});
+    EXPECT_EQ(threads_of_a_long_run(runner, 1), std::set{std::this_thread::get_id()});
     const ThreadPoolRunner::Guest fourth(runner);
-    EXPECT_EQ(threads_of_a_long_run(runner), std::set{std::this_thread::get_id()});
+    EXPECT_EQ(threads_of_a_long_run(runner, 1), std::set{std::this_thread::get_id()});
   }
-  EXPECT_EQ(threads_of_a_long_run(runner).size(), 3U);
+  EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U);
 }
 
 // A helper may be about to begin a block as the guests come, but no more than that one.
@@ -181,22 +194,23 @@ TEST(TaskRunner, HelpersLeaveForGuests) {
   ThreadPoolRunner runner(kThreads);
   const auto caller = std::this_thread::get_id();
   std::vector<std::unique_ptr<ThreadPoolRunner::Guest>> guests;
+  Threads threads(2);
   std::atomic<bool> guests_are_there = false;
-  std::atomic<std::size_t> helped_before = 0;
   std::atomic<std::size_t> helped_later = 0;
-  int own_blocks = 0;
-  runner.run(200, [&](std::size_t) {
+  runner.run(60, [&](std::size_t b) {
+    work();
+    if (b == 0) return;
     if (std::this_thread::get_id() != caller) {
-      ++(guests_are_there ? helped_later : helped_before);
-    } else if (++own_blocks == 10) {
+      if (guests_are_there) ++helped_later;
+      EXPECT_TRUE(threads.arrive());
+    } else if (guests.empty()) {
+      EXPECT_TRUE(threads.arrive()) << "a helper has come";
       while (guests.size() < kThreads) {
         guests.push_back(std::make_unique<ThreadPoolRunner::Guest>(runner));
       }
       guests_are_there = true;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   });
-  EXPECT_GT(helped_before, 0U);
   EXPECT_LE(helped_later, kThreads - 1);
 }
 
@@ -206,10 +220,33 @@ TEST(TaskRunner, TwoCallersAreBothHelped) {
   {
     std::vector<std::jthread> callers;
     for (auto& own : ids) {
-      callers.emplace_back([&runner, &own] { own = threads_of_a_long_run(runner); });
+      callers.emplace_back([&runner, &own] { own = threads_of_a_long_run(runner, 2); });
     }
   }
   for (const auto& own : ids) EXPECT_GE(own.size(), 2U);
+}
+
+// A helper whose block of another caller takes long holds up that caller alone.
+TEST(TaskRunner, ACallerWaitsForItsOwnHelpersOnly) {
+  ThreadPoolRunner runner(2);
+  Threads threads(2);
+  std::promise<void> is_held;
+  std::promise<void> may_end;
+  std::jthread other([&] {
+    const auto own = std::this_thread::get_id();
+    runner.run(3, [&](std::size_t b) {
+      if (b == 0) return work();
+      EXPECT_TRUE(threads.arrive());
+      if (std::this_thread::get_id() == own) return;
+      is_held.set_value();
+      may_end.get_future().wait();
+    });
+  });
+  is_held.get_future().wait();
+  std::atomic<int> calls = 0;
+  runner.run(100, [&](std::size_t) { ++calls; });
+  EXPECT_EQ(calls, 100);
+  may_end.set_value();
 }
 
 TEST(TaskRunner, RunWithinABlockIsDoneByThatBlock) {
@@ -259,17 +296,14 @@ TEST(TaskRunner, WaitingThreadsSleep) {
   constexpr std::chrono::milliseconds kWait(200);
   ThreadPoolRunner runner(4);
   runner.run(4, [](std::size_t) {});
-  EXPECT_LT(processor_load([&] { std::this_thread::sleep_for(kWait); }), kMaxLoad);
+  EXPECT_LT(processor_load([&] { test::pause(kWait); }), kMaxLoad);
 
   const auto caller = std::this_thread::get_id();
-  std::atomic<int> arrived = 0;
+  Threads threads(2);
   const auto wait_for_helper = [&](std::size_t b) {
-    if (b == 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // worth waking someone
-      return;
-    }
-    meet(arrived);
-    if (std::this_thread::get_id() != caller) std::this_thread::sleep_for(kWait);
+    if (b == 0) return work();
+    EXPECT_TRUE(threads.arrive());
+    if (std::this_thread::get_id() != caller) test::pause(kWait);
   };
   EXPECT_LT(processor_load([&] { runner.run(3, wait_for_helper); }), kMaxLoad);
 }

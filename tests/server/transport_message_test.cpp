@@ -2,6 +2,7 @@
 #include <thread>
 
 #include "tests/server/transport_fixture.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 
@@ -191,10 +192,8 @@ std::size_t bytes_taken(Connection& connection) {
   const auto bytes = std::make_shared<const std::string>(16 * 1024, 'x');
   for (std::size_t taken = 0; taken < kMost; taken += bytes->size()) {
     connection.send_binary(bytes);
-    for (int wait = 0; connection.queued_bytes() > 0; ++wait) {
-      if (wait == 1000) return taken;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    const auto is_taken = [&] { return connection.queued_bytes() == 0; };
+    if (!wait_until(is_taken, std::chrono::seconds(2))) return taken;
   }
   return kMost;
 }

@@ -7,10 +7,12 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
-#include <thread>
+#include <future>
 
 #include "tests/server/transport_fixture.h"
+#include "tests/support/wait.h"
 
 namespace vat::test {
 
@@ -66,22 +68,31 @@ TEST_F(TransportSocketsTest, HoldLittle) {
   EXPECT_EQ(option(sockets[0], SOL_SOCKET, SO_SNDBUF), 200'000);
 }
 
-bool wait_for_no_socket(std::uint16_t port, std::chrono::milliseconds most) {
-  const auto deadline = std::chrono::steady_clock::now() + most;
-  while (!sockets_of(port, false).empty()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
+bool wait_for_no_socket(std::uint16_t port) {
+  return wait_until([port] { return sockets_of(port, false).empty(); });
 }
+
+/// A handler of HTTP requests that does not answer until it is told to.
+class SlowHandler {
+ public:
+  HttpResponse operator()() {
+    entered_.set_value();
+    may_answer_.get_future().wait();
+    return {200, "text/plain", "slow", {}};
+  }
+  void wait_until_asked() { entered_.get_future().wait(); }
+  void answer() { may_answer_.set_value(); }
+
+ private:
+  std::promise<void> entered_;
+  std::promise<void> may_answer_;
+};
 
 // As browsers do: the close frame is answered, and the connection ended once the server has ended
 // its half. The server is at something else meanwhile, and learns of all of that end at once.
 TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
-  http_handler = [](std::string_view, std::string_view) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    return HttpResponse{200, "text/plain", "slow", {}};
-  };
+  SlowHandler handler;
+  http_handler = [&](std::string_view, std::string_view) { return handler(); };
   start();
   WsClient client(port);
   ASSERT_TRUE(recorder.wait_opened(1));
@@ -90,23 +101,29 @@ TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
   client.raw().read_all();
   RawClient slow(port);
   slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  handler.wait_until_asked();
   client.raw().close();
+  handler.answer();
   slow.read_all();
   slow.close();
-  EXPECT_TRUE(wait_for_no_socket(port, kPatience));
+  EXPECT_TRUE(wait_for_no_socket(port));
 }
 
 // At once, not after the second that a peer may take for its half.
 TEST_F(TransportSocketsTest, AreGivenBackAfterTheClientHasClosed) {
+  constexpr std::size_t kClients = 8;
   start();
-  WsClient client(port);
-  ASSERT_TRUE(recorder.wait_opened(1));
-  client.raw().write(client_frame(8, "\x03\xe8"));
-  client.raw().read_all();
-  client.raw().close();
-  EXPECT_TRUE(wait_for_no_socket(port, std::chrono::milliseconds(500)));
-  EXPECT_TRUE(recorder.wait_closed(1));
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < kClients; ++i) {
+    WsClient client(port);
+    ASSERT_TRUE(recorder.wait_opened(i + 1));
+    client.raw().write(client_frame(8, "\x03\xe8"));
+    client.raw().read_all();
+    client.raw().close();
+    EXPECT_TRUE(wait_for_no_socket(port));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kClients * std::chrono::seconds(1) / 2);
+  EXPECT_TRUE(recorder.wait_closed(kClients));
 }
 
 // Many come at once, when a server starts again. tcpi_sacked of a socket that listens is how many
@@ -125,10 +142,8 @@ TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {
 
 // A handler that is slow holds up those who come meanwhile, and costs none of them its connection.
 TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
-  http_handler = [](std::string_view, std::string_view) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    return HttpResponse{200, "text/plain", "slow", {}};
-  };
+  SlowHandler handler;
+  http_handler = [&](std::string_view, std::string_view) { return handler(); };
   recorder.echo = true;
   start();
   RawClient slow(port);
@@ -140,6 +155,8 @@ TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
     waiting.push_back(std::make_unique<RawClient>(port));
     waiting.back()->write(request);
   }
+  handler.wait_until_asked();
+  handler.answer();
   EXPECT_TRUE(recorder.wait_opened(100));
 }
 

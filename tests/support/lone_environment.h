@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/session/session_environment.h"
+#include "tests/support/manual_clock.h"
 
 namespace vat::test {
 
@@ -16,11 +17,13 @@ class LoneEnvironment {
 
   /// The same with another budget.
   SessionEnvironment with(ResourceBudget& resources) {
-    return {catalogue_, limits,    best_instruction_set(), runner_,
-            metrics_,   resources, frame_threads_,         tokens_};
+    return {catalogue_,     limits,   best_instruction_set(),
+            runner_,        metrics_, resources,
+            frame_threads_, tokens_,  clock};
   }
 
   ServerLimits limits;
+  mutable ManualClock clock;
 
  private:
   const Catalogue catalogue_;
@@ -28,7 +31,7 @@ class LoneEnvironment {
   ServerMetrics metrics_;
   ResourceBudget resources_{kUnlimitedResources};
   boost::asio::thread_pool frame_threads_{1};
-  AccessTokens tokens_{1};
+  AccessTokens tokens_{1, clock};
 
  public:
   const SessionEnvironment shared = with(resources_);
