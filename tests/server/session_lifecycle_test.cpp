@@ -101,6 +101,14 @@ TEST_F(SessionLifecycle, EveryHashNamesTheInstructionSetOfTheServer) {
             to_string(best_instruction_set()));
 }
 
+// Each keeps a pool at work until it is due.
+TEST_F(SessionLifecycle, StoppingCancelsAllTimers) {
+  client->result("control.play");
+  EXPECT_GT(server.clock().waiting(), 0U);
+  server.stop();
+  EXPECT_EQ(server.clock().waiting(), 0U);
+}
+
 TEST_F(SessionLifecycle, WhoClosesASessionIsAnsweredAfterItsEarlierCommands) {
   const int step = client->send("control.step", {{"ticks", 1000}});
   const int query = client->send("session.hash");

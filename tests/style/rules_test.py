@@ -78,6 +78,24 @@ class SourceRules(RuleTest):
             with self.subTest(line=line):
                 self.refuses(rule, {"core/a.cpp": line + "\n"}, "core/a.cpp:1")
 
+    def test_clock(self):
+        rule = source_rules.clock
+        self.accepts(rule, {"server/session/a.cpp": "clock_.now(); CostClock::now();\n",
+                            "server/clock.h": "SteadyClock::now()\n"})
+        for line in ("auto t = SteadyClock::now();", "std::chrono::steady_clock::now()",
+                     "std::chrono::system_clock::now()", "boost::asio::steady_timer timer;"):
+            with self.subTest(line=line):
+                self.refuses(rule, {"server/storage/a.h": line + "\n"}, "server/storage/a.h:1")
+
+    def test_waiting(self):
+        rule = source_rules.waiting
+        self.accepts(rule, {"tests/support/wait.h": "sleep_for(1ms);\n",
+                            "tests/bench/a.cpp": "sleep_for(1ms);\n",
+                            "tests/server/a.cpp": "wait_until(condition);\n"})
+        for line in ("std::this_thread::sleep_for(1ms);", "sleep_until(end);", "GTEST_SKIP();"):
+            with self.subTest(line=line):
+                self.refuses(rule, {"tests/server/a.cpp": line + "\n"}, "tests/server/a.cpp:1")
+
     def test_file_length(self):
         longest = "x\n" * source_rules.MAX_LINES
         self.accepts(source_rules.file_length, {"a.cpp": longest, "web/package-lock.json": "\n" * 999})

@@ -28,6 +28,14 @@ NOT_DETERMINISTIC = re.compile(
     r"\bunordered_|\bstd::(?:reduce|transform_reduce|execution|async)\b|\brand\(|ffast-math"
     r"|\batomic<\s*(?:float|double|Real)\b"
 )
+# The server reads the time from its Clock, which tests control. The cost of work is measured by
+# CostClock.
+CLOCKED = tuple(f"server/{folder}/" for folder in
+                ("access", "admission", "http", "replay", "session", "storage"))
+SYSTEM_TIME = re.compile(r"\b(?:steady_clock|system_clock|SteadyClock)::now\b|\bsteady_timer\b")
+# Tests wait for events. tests/bench generates load for a given time.
+WAITING = re.compile(r"\bsleep_(?:for|until)\b|\bGTEST_SKIP\b")
+MAY_WAIT = ("tests/bench/", "tests/support/wait.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 # Spelt so that no pattern matches itself.
 DENIED = re.compile(
@@ -73,6 +81,26 @@ def determinism(tree):
         for path, text in tree.matching(["core/"], CPP)
         for number, line in numbered(text)
         if (match := NOT_DETERMINISTIC.search(line.split("//")[0]))
+    ]
+
+
+def clock(tree):
+    return [
+        f"{path}:{number}: time that is not of the server's clock: {match.group()}"
+        for folder in CLOCKED
+        for path, text in tree.matching([folder], CPP)
+        for number, line in numbered(text)
+        if (match := SYSTEM_TIME.search(line))
+    ]
+
+
+def waiting(tree):
+    return [
+        f"{path}:{number}: tests wait for events, and run everywhere: {match.group()}"
+        for path, text in tree.matching(["tests/"], CPP)
+        if not path.startswith(MAY_WAIT)
+        for number, line in numbered(text)
+        if (match := WAITING.search(line))
     ]
 
 
@@ -131,5 +159,6 @@ def header_docstrings(tree):
 
 
 RULES = (
-    layering, determinism, file_length, line_ends, encoding, tabs, denied_words, header_docstrings,
+    layering, determinism, clock, waiting, file_length, line_ends, encoding, tabs, denied_words,
+    header_docstrings,
 )
