@@ -18,9 +18,22 @@ inline ServerLimits unhurried_limits() {
 /// is paused at tick 0.
 class Host {
  public:
+  Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits)
+      : server(catalogue, settings(folder, limits)) {
+    begin();
+  }
+  /// On a clock that outlives the server.
   Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits,
        ManualClock& clock)
       : server(catalogue, settings(folder, limits), clock) {
+    begin();
+  }
+  std::string hash() { return client->result("session.hash").at("hash"); }
+  std::uint64_t tick() { return client->result("session.hash").at("tick"); }
+  void step(int ticks) { client->result("control.step", {{"ticks", ticks}}); }
+
+ private:
+  void begin() {
     if (server.recover() == 0 && !server.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
     }
@@ -28,11 +41,6 @@ class Host {
     client->result("session.join", {{"session", "s1"}, {"name", "Ada"}});
     client->result("control.pause");
   }
-  std::string hash() { return client->result("session.hash").at("hash"); }
-  std::uint64_t tick() { return client->result("session.hash").at("tick"); }
-  void step(int ticks) { client->result("control.step", {{"ticks", ticks}}); }
-
- private:
   static ServerSettings settings(const std::string& folder, const ServerLimits& limits) {
     ServerSettings settings;
     settings.limits = limits;

@@ -45,7 +45,7 @@ const std::vector<Limit>& limit_table() {
       {"particles_in_all",
        "max_particles_in_all",
        {"SceneLimits.HoldAtTheirValueAndNotBeyond", "SharedBudget.ParticlesOfAllSessions",
-        "SharedBudget.WhatFitsOnceIsCreatedOnceHoweverManyAskAtOnce"}},
+        "ResourceBudget.WhatFitsOnceIsGivenOnceHoweverManyAskAtOnce"}},
       {"springs_in_all",
        "max_springs_in_all",
        {"SceneLimits.HoldAtTheirValueAndNotBeyond",

@@ -71,7 +71,7 @@ TEST_F(SessionTest, CommandsThatFollowAPointerWaitForTheNextTickAndAreAnsweredWi
     ids.push_back(client->send("world.set_gravity", {{"gravity", {0, 0, -i}}}));
   }
   std::vector<std::uint64_t> ticks;
-  for (const int id : ids) ticks.push_back(client->wait_reply(id).at("result").at("tick"));
+  for (const int id : ids) ticks.push_back(client->wait_reply_at_tick(id).at("result").at("tick"));
   EXPECT_THAT(ticks, testing::Each(ticks.front()));
   EXPECT_EQ(ticks.front(), before);
   const Json description = client->wait_event("session.description", [](const Json& d) {

@@ -205,7 +205,7 @@ TEST_F(SessionEdits, ThatFollowAPointerAreOneForEachThingInATick) {
     }
   }
   for (const int id : ids) {
-    EXPECT_TRUE(client->wait_reply(id).contains("result"));
+    EXPECT_TRUE(client->wait_reply_at_tick(id).contains("result"));
   }
 }
 

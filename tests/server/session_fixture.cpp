@@ -135,6 +135,16 @@ Json TestClient::result(std::string_view method, const Json& params) {
   return reply.value("result", Json());
 }
 
+Json TestClient::wait_reply_at_tick(int id) {
+  const auto is_reply = [id](const Json& text) { return text.value("id", Json()) == id; };
+  std::optional<Json> reply;
+  server_.advance_until([&] {
+    reply = connection->find_text(is_reply);
+    return reply.has_value();
+  });
+  return *reply;
+}
+
 Json TestClient::error(std::string_view method, const Json& params) {
   const Json reply = call(method, params);
   EXPECT_TRUE(reply.contains("error")) << method << " " << params << ": " << reply;

@@ -65,6 +65,9 @@ class TestClient {
 
   /// The reply to a request that was sent.
   Json wait_reply(const Json& id);
+  /// The reply to a command that a playing session carries out with its next tick. Advances the
+  /// clock to it.
+  Json wait_reply_at_tick(int id);
   /// Sends and waits: the whole reply, its `result`, or its `error`. The last two fail the test,
   /// and return null, where the reply is of the other sort.
   Json call(std::string_view method, const Json& params = nullptr);

@@ -286,17 +286,6 @@ TEST_F(SmallServer, HasAtMostSoManySessions) {
   EXPECT_EQ(create("third"), "s3");
 }
 
-TEST_F(SmallServer, HasAtMostSoManySessionsHoweverManyAreCreatedAtOnce) {
-  std::vector<int> ids;
-  for (int i = 0; i < 4; ++i) {
-    ids.push_back(client->send("session.create", {{"name", "n"}, {"scene", "mixed"}}));
-  }
-  int created = 0;
-  for (const int id : ids) created += client->wait_reply(id).contains("result") ? 1 : 0;
-  EXPECT_EQ(created, 1);
-  EXPECT_EQ(client->result("session.list").at("sessions").size(), 2u);
-}
-
 TEST_F(SmallServer, HasAtMostSoManyClientsInASession) {
   const auto second = join();
   const auto third = connect();

@@ -1,8 +1,5 @@
 // Limits of what clients may ask for together, and how often, at and beyond.
 
-#include <atomic>
-#include <thread>
-
 #include "tests/server/session_fixture.h"
 
 namespace vat::test {
@@ -160,18 +157,6 @@ TEST_F(SharedBudget, ARemovedBodyLeavesRoomForAReset) {
   expect_limit(client->error("session.create", {{"name", "n"}, {"scene", "mixed"}}),
                "particles_in_all");
   client->result("control.reset");
-}
-
-TEST_F(SharedBudget, WhatFitsOnceIsCreatedOnceHoweverManyAskAtOnce) {
-  const Scene scene = to_scene(mixed_scene_text());
-  std::atomic<int> created = 0;
-  {
-    std::vector<std::jthread> threads;
-    for (int i = 0; i < 8; ++i) {
-      threads.emplace_back([&] { created += server.create_session("n", scene) ? 1 : 0; });
-    }
-  }
-  EXPECT_EQ(created, 1);
 }
 
 class FewSprings : public SessionTest {

@@ -378,7 +378,8 @@ TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
   EXPECT_EQ(after.at("role"), "owner");
   EXPECT_EQ(after.at("settings").at("locked"), true);
   EXPECT_EQ(after.at("settings").at("name"), "hers");
-  client().result("grab.move", {{"grab", 1}, {"target", {0.5, 0.4, 0.9}}});
+  const int move = client().send("grab.move", {{"grab", 1}, {"target", {0.5, 0.4, 0.9}}});
+  EXPECT_TRUE(client().wait_reply_at_tick(move).contains("result"));
 }
 
 TEST_F(SessionRecoveryTest, WhatCannotBeLoggedIsRefusedAndChangesNothing) {

@@ -89,13 +89,14 @@ class ManualClock final : public Clock {
       clock_.timers_[this].executor = std::move(executor);
     }
     ~ManualTimer() override {
+      ManualTimer::cancel();
       const std::lock_guard lock(clock_.mutex_);
       clock_.timers_.erase(this);
     }
     void start(SteadyClock::time_point time, std::function<void()> task) override {
+      ManualTimer::cancel();
       const std::lock_guard lock(clock_.mutex_);
       Entry& entry = clock_.timers_.at(this);
-      entry.task = nullptr;
       if (time <= clock_.now_) {
         boost::asio::post(entry.executor, std::move(task));
         return;
@@ -105,8 +106,9 @@ class ManualClock final : public Clock {
       entry.task = std::move(task);
     }
     void cancel() override {
+      std::function<void()> dropped;  // ends without the mutex: it may own other timers
       const std::lock_guard lock(clock_.mutex_);
-      clock_.timers_.at(this).task = nullptr;
+      dropped.swap(clock_.timers_.at(this).task);
     }
 
    private:
