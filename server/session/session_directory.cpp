@@ -322,12 +322,12 @@ void SessionDirectory::drain(std::chrono::milliseconds time) {
   const std::unique_ptr<Timer> timer = clock_.make_timer(boost::asio::make_strand(pool_));
   std::unique_lock lock(mutex_);
   draining_ = true;
-  for (auto& [connection, client] : clients_) client.outbox->send(event);
   timer->start(clock_.now() + time, [this] {
     const std::lock_guard timer_lock(mutex_);
     drain_time_is_over_ = true;
     drained_.notify_all();
   });
+  for (auto& [connection, client] : clients_) client.outbox->send(event);
   drained_.wait(lock, [this] { return drain_time_is_over_ || clients_.empty(); });
   timer->cancel();
 }

@@ -1,9 +1,13 @@
 // Sessions come, are joined, left and closed.
 
+#include <future>
+
 #include "tests/server/session_fixture.h"
 
 namespace vat::test {
 namespace {
+
+using namespace std::chrono_literals;
 
 class SessionLifecycle : public SessionTest {
  protected:
@@ -99,6 +103,31 @@ TEST_F(SessionLifecycle, EveryHashNamesTheInstructionSetOfTheServer) {
   EXPECT_EQ(guest.result("session.hash").at("instruction_set"), "baseline");
   EXPECT_EQ(client->result("session.hash").at("instruction_set"),
             to_string(best_instruction_set()));
+}
+
+bool is_draining(const Json& text) {
+  return text.value("method", "") == "server.draining";
+}
+
+TEST_F(SessionLifecycle, ADrainEndsWhenTheLastClientHasGone) {
+  const auto other = connect();
+  const auto drain = std::async(std::launch::async, [this] { server.drain(1h); });
+  const Json told = client->connection->wait_text(is_draining);
+  EXPECT_EQ(told.at("params").at("seconds"), 3600);
+  EXPECT_EQ(connect()->connection->close_code(), 1013);
+  other->disconnect();
+  EXPECT_EQ(drain.wait_for(0s), std::future_status::timeout);
+  client->disconnect();
+  drain.wait();
+}
+
+TEST_F(SessionLifecycle, ADrainEndsInTime) {
+  const auto drain = std::async(std::launch::async, [this] { server.drain(10s); });
+  client->connection->wait_text(is_draining);
+  server.clock().advance(9s);
+  EXPECT_EQ(drain.wait_for(0s), std::future_status::timeout);
+  server.clock().advance(1s);
+  drain.wait();
 }
 
 // Each keeps a pool at work until it is due.
