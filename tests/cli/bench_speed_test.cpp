@@ -19,7 +19,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/allocator.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_speed_test {
 namespace {
 
 SpeedRow row(const std::string& name, std::size_t threads, std::size_t particles, Real seconds) {
@@ -190,4 +190,4 @@ TEST(BenchSpeedSkips, PairsRun) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_speed_test

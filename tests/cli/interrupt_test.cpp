@@ -10,7 +10,7 @@
 #include "tests/cli/readers.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::interrupt_test {
 namespace {
 
 using testing::ElementsAre;
@@ -94,4 +94,4 @@ TEST(Interrupt, LeavesOnlyWholeFilesOfASeries) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::interrupt_test

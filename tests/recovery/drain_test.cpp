@@ -11,7 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::drain_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -81,4 +81,4 @@ TEST_F(Drain, AnAdminEndsTheServerAsWell) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::drain_test

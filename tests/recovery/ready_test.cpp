@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::ready_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -58,4 +58,4 @@ TEST(Readiness, IsToldOnceAllSessionsAreBack) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::ready_test

@@ -12,7 +12,7 @@
 #include "server/session/deferred_tasks.h"
 #include "tests/support/manual_clock.h"
 
-namespace vat::test {
+namespace vat::test::clock_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -104,4 +104,4 @@ TEST_F(DeferredTasksTest, NoneRunsAfterTheStop) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::clock_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/manual_clock.h"
 
-namespace vat::test {
+namespace vat::test::downloads_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -53,4 +53,4 @@ TEST(Downloads, AreServedByTheSite) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::downloads_test

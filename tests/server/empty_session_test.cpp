@@ -3,7 +3,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::empty_session_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -176,4 +176,4 @@ TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::empty_session_test

@@ -9,7 +9,7 @@
 #include "tests/server/fake_connection.h"
 #include "tests/support/manual_clock.h"
 
-namespace vat::test {
+namespace vat::test::frame_feed_test {
 namespace {
 
 constexpr std::uint32_t kEpoch = 1;
@@ -95,4 +95,4 @@ TEST(FrameFeed, FourStatesGoRound) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::frame_feed_test

@@ -11,7 +11,7 @@
 #include "protocol/frame_codec.h"
 #include "server/session/frame_delivery.h"
 
-namespace vat::test {
+namespace vat::test::frame_line_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -195,4 +195,4 @@ TEST_F(FrameLine, AfterABreakThreeFramesAreOldAtMost) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::frame_line_test

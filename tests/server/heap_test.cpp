@@ -14,7 +14,7 @@
 
 #if VAT_HAS_SYSTEM_ALLOCATOR
 
-namespace vat::test {
+namespace vat::test::heap_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -50,5 +50,5 @@ TEST(Heap, GivesBackWhatLiesBetweenPiecesInUse) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::heap_test
 #endif  // VAT_HAS_SYSTEM_ALLOCATOR

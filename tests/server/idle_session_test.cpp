@@ -2,7 +2,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::idle_session_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -32,4 +32,4 @@ TEST_F(IdleSession, WithNobodyInItWakesForItsStatusesOnly) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::idle_session_test

@@ -16,7 +16,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::replay_seek_test {
 namespace {
 
 const std::atomic<bool> kGoOn = false;
@@ -216,4 +216,4 @@ TEST(KeptMoments, BeyondTheirBytesLieTwiceAsFarApart) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::replay_seek_test

@@ -14,7 +14,7 @@
 
 // What a session did is exported, and run again elsewhere.
 
-namespace vat::test {
+namespace vat::test::replay_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -470,4 +470,4 @@ TEST_F(ReplayTest, OldDownloadsGoThoughNobodyAsksForAnother) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::replay_test

@@ -4,7 +4,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_lifecycle_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -360,4 +360,4 @@ TEST_F(SmallServer, HasAtMostSoManyCommandsOfAClientInFlight) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_lifecycle_test

@@ -7,7 +7,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 
-namespace vat::test {
+namespace vat::test::session_places_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -65,4 +65,4 @@ TEST_F(SessionPlaces, ALongTickWaitsForItsPlaceAndAShortOneDoesNot) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_places_test

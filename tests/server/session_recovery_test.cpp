@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::session_recovery_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -395,4 +395,4 @@ TEST_F(SessionRecoveryTest, WhatCannotBeLoggedIsRefusedAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_recovery_test

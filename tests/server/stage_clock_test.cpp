@@ -7,7 +7,7 @@
 #include "server/thread_time.h"
 #include "tests/support/shaken_vat.h"
 
-namespace vat {
+namespace vat::stage_clock_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -68,4 +68,4 @@ TEST(StageClock, NothingOfAStepIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::stage_clock_test

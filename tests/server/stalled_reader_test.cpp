@@ -10,7 +10,7 @@
 #include "tests/support/allocator.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::stalled_reader_test {
 namespace {
 
 class NoWaker final : public FrameWaker {
@@ -96,4 +96,4 @@ TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
 #endif
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::stalled_reader_test

@@ -20,7 +20,7 @@
 #include "tests/support/manual_clock.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat {
+namespace vat::storage_checkpoint_test {
 namespace {
 
 /// Bytes that do not shrink.
@@ -304,4 +304,4 @@ TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::storage_checkpoint_test

@@ -17,7 +17,7 @@
 
 #include "tests/support/wait.h"
 
-namespace vat {
+namespace vat::task_runner_test {
 namespace {
 
 class TaskRunnerThreads : public testing::TestWithParam<std::size_t> {};
@@ -309,4 +309,4 @@ TEST(TaskRunner, WaitingThreadsSleep) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::task_runner_test

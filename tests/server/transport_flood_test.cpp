@@ -11,7 +11,7 @@
 #include "tests/support/resident_bytes.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::transport_flood_test {
 
 namespace {
 
@@ -201,4 +201,4 @@ TEST_F(TransportFloodTest, PingsAndPongsWithoutEnd) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_flood_test

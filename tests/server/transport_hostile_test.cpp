@@ -5,7 +5,7 @@
 #include "tests/server/transport_fixture.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::transport_hostile_test {
 
 namespace {
 
@@ -220,4 +220,4 @@ TEST_F(TransportHostileTest, AHandlerThatThrowsCostsThatConnectionOnly) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_hostile_test

@@ -4,7 +4,7 @@
 #include "tests/server/transport_fixture.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::transport_message_test {
 
 namespace {
 
@@ -280,4 +280,4 @@ TEST_F(TransportMessageTest, AConnectionMayOutliveTheTransport) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_message_test

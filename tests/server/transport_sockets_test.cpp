@@ -14,7 +14,7 @@
 #include "tests/server/transport_fixture.h"
 #include "tests/support/wait.h"
 
-namespace vat::test {
+namespace vat::test::transport_sockets_test {
 
 namespace {
 
@@ -162,4 +162,4 @@ TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_sockets_test
