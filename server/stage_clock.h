@@ -39,7 +39,7 @@ class StageClock final : public StageObserver {
   void charge_running();
   std::size_t find(std::string_view name);
 
-  Clock::time_point (*const now_)();
+  Clock::time_point (*now_)();
   std::vector<Stage> stages_;    // some twenty
   std::size_t running_ = kNone;  // index into stages_
   Clock::time_point since_;      // when it began

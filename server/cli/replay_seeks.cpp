@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "server/clock.h"
 #include "server/replay/replay_player.h"
 
 namespace vat {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 using Seconds = std::chrono::duration<double>;
 
@@ -47,12 +47,12 @@ void time_some(const Recording& recording, const SessionEnvironment& environment
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t span = recording.end - recording.begin + 1;
     const std::uint64_t position = recording.begin + random() % span;
-    const auto begin = Clock::now();
+    const auto begin = CostClock::now();
     player.begin_seek(core, position);
-    restoring.push_back(Milliseconds(Clock::now() - begin).count());
+    restoring.push_back(Milliseconds(CostClock::now() - begin).count());
     most_ticks = std::max(most_ticks, position - core.run().position());
     player.play_to(core, position, cancelled);
-    times.push_back(Milliseconds(Clock::now() - begin).count());
+    times.push_back(Milliseconds(CostClock::now() - begin).count());
   }
   std::cout << count << " seeks, of at most " << most_ticks << " ticks: " << describe(times)
             << "; the state to begin at: " << describe(restoring) << std::endl;
@@ -89,11 +89,11 @@ void time_seeks(const Recording& recording, const SessionEnvironment& environmen
   time_some(recording, environment, none, count);
 
   const auto moments = std::make_shared<KeptMoments>(keeping.work, keeping.most_bytes);
-  const auto begin = Clock::now();
+  const auto begin = CostClock::now();
   play_once(recording, environment, moments);
   std::cout << moments->count() << " moments filled in, "
             << static_cast<double>(moments->bytes()) / kMebibyte << " MiB, in "
-            << Seconds(Clock::now() - begin).count() << " s\n";
+            << Seconds(CostClock::now() - begin).count() << " s\n";
   time_some(recording, environment, moments, count);
 }
 
