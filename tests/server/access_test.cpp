@@ -80,7 +80,8 @@ TEST_F(DelayedAccess, OwaspWrongTokensAreAnsweredLateAndThenNotHeard) {
   const auto guest = connect();
   const int first = guest->send("access.enter", {{"token", "wrong"}});
   const auto is_answered = [&] {
-    return guest->connection->find_text([&](const Json& text) { return text.value("id", Json()) == first; });
+    return guest->connection->find_text(
+        [&](const Json& text) { return text.value("id", Json()) == first; });
   };
   server.clock().advance(AccessSettings{}.refusal_delay - 1ms);
   EXPECT_FALSE(is_answered());

@@ -136,7 +136,8 @@ TEST_F(MethodRoles, EveryMethodByEveryRole) {
       SCOPED_TRACE(std::string(method.name) + " by " + to_string(role));
       const Cast cast = this->cast(role);
       const Closer closer{*this, cast.session};
-      const Json reply = cast.subject->call(method.name, params_of(method.name, cast.session));
+      const int id = cast.subject->send(method.name, params_of(method.name, cast.session));
+      const Json reply = cast.subject->wait_reply_at_tick(id);
       const Json error = reply.value("error", Json::object());
       const int code = error.value("code", 0);
       const Role least = method.rules.least_role;

@@ -47,7 +47,8 @@ TEST_F(SessionCommands, OfAPlayingSessionTakeEffectAtTheTickOfTheirReply) {
   client->result("control.play");
   std::vector<std::uint64_t> ticks;
   for (int i = 0; i < 5; ++i) {
-    ticks.push_back(tick_of("world.set_gravity", {{"gravity", {i, 0, -9}}}));
+    const int id = client->send("world.set_gravity", {{"gravity", {i, 0, -9}}});
+    ticks.push_back(client->wait_reply_at_tick(id).at("result").at("tick"));
     client->wait_frame(
         [&](const GridFrame& frame) { return frame.header.tick > ticks.back() + 1; });
   }

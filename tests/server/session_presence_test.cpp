@@ -113,7 +113,7 @@ TEST_F(Presence, TellsWhereSomebodyPoints) {
 TEST_F(Presence, IsToldTenTimesASecondAtMostAndTheLastAlways) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
-  server.clock().advance(100ms);
+  server.clock().advance(250ms);
   client->mark();
   constexpr int kMoves = 50;
   for (int i = 1; i <= kMoves; ++i) guest->result("presence.point", {{"position", {i, 0, 0}}});
