@@ -147,6 +147,7 @@ TEST_F(Restart, WhoWasKickedStaysSo) {
 
 TEST_F(Restart, WhatHasExpiredDoesNotComeBack) {
   limits.expire_after = 60s;
+  limits.hibernate_after = 1s;
   limits.resume_time = 0ms;
   restart();
   {
