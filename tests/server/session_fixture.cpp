@@ -82,7 +82,7 @@ TestServer::TestServer(const Catalogue& catalogue, ServerSettings settings, Manu
     : SessionServer(catalogue, std::move(settings), clock), clock_(&clock) {}
 
 void TestServer::advance_until(const std::function<bool()>& condition) {
-  constexpr auto kMostTime = std::chrono::hours(1);
+  constexpr auto kMostTime = std::chrono::minutes(1);
   const auto end = clock_->now() + kMostTime;
   for (flush(); !condition(); flush()) {
     if (clock_->now() > end) throw std::runtime_error("an expected event did not come");

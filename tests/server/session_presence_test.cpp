@@ -164,8 +164,9 @@ TEST_F(IdleGrabs, EndAndThoseThatMoveDoNot) {
   EXPECT_TRUE(client->events("grab.ended").empty());
   guest->result("grab.move", {{"grab", used}, {"target", {0.5, 0.5, 0.8}}});
   server.clock().advance(1s);
-  const Json event = client->wait_event("grab.ended");
-  EXPECT_EQ(event,
+  const std::vector<Json> ended = client->events("grab.ended");
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_EQ(ended[0],
             Json({{"grab", idle}, {"body", kCube}, {"participant", number}, {"reason", "idle"}}));
   server.clock().advance(8s);
   EXPECT_EQ(client->events("grab.ended").size(), 1u);
@@ -179,7 +180,9 @@ TEST_F(IdleGrabs, EndWhileTheirParticipantIsAway) {
   guest->result("session.join");
   const std::uint64_t held = grab(*guest, kBall);
   guest->disconnect();
-  EXPECT_EQ(client->wait_event("grab.ended").at("grab"), held);
+  server.clock().advance(10500ms);
+  ASSERT_EQ(client->events("grab.ended").size(), 1u);
+  EXPECT_EQ(client->events("grab.ended")[0].at("grab"), held);
   grab(*client, kBall);
 }
 
