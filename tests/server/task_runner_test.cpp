@@ -214,16 +214,30 @@ TEST(TaskRunner, HelpersLeaveForGuests) {
   EXPECT_LE(helped_later, kThreads - 1);
 }
 
+// The first caller and its helper stay in their blocks until the second caller has had a helper.
 TEST(TaskRunner, TwoCallersAreBothHelped) {
   ThreadPoolRunner runner(4);
-  std::vector<std::set<std::thread::id>> ids(2);
-  {
-    std::vector<std::jthread> callers;
-    for (auto& own : ids) {
-      callers.emplace_back([&runner, &own] { own = threads_of_a_long_run(runner, 2); });
-    }
-  }
-  for (const auto& own : ids) EXPECT_GE(own.size(), 2U);
+  Threads first(2);
+  Threads second(2);
+  std::promise<void> first_is_helped;
+  std::promise<void> may_end;
+  const auto end = may_end.get_future().share();
+  const std::jthread caller([&] {
+    const auto own = std::this_thread::get_id();
+    runner.run(3, [&](std::size_t b) {
+      if (b == 0) return work();
+      EXPECT_TRUE(first.arrive());
+      if (std::this_thread::get_id() == own) first_is_helped.set_value();
+      end.wait();
+    });
+  });
+  first_is_helped.get_future().wait();
+  runner.run(3, [&](std::size_t b) {
+    if (b == 0) return work();
+    EXPECT_TRUE(second.arrive());
+  });
+  EXPECT_EQ(second.ids().size(), 2U);
+  may_end.set_value();
 }
 
 // A helper whose block of another caller takes long holds up that caller alone.
