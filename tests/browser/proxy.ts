@@ -3,8 +3,10 @@ import type { AddressInfo } from 'node:net';
 import { once } from 'node:events';
 import WebSocket, { WebSocketServer } from 'ws';
 
-/** What a server, or the line to it, does otherwise. */
+/** How a server differs from the real one. */
 export interface Ways {
+  /** It refuses every WebSocket. */
+  refuses?: boolean;
   /** Methods that it does not know, as one that is older. */
   unknown?: readonly string[];
 }
@@ -28,13 +30,16 @@ export class Proxy {
       response.end(Buffer.from(await answer.arrayBuffer()));
     });
   });
-  private readonly sockets = new WebSocketServer({ server: this.http });
+  private readonly sockets = new WebSocketServer({ noServer: true });
 
   constructor(
     private readonly server: string,
     private readonly ways: Ways = {},
   ) {
-    this.sockets.on('connection', (page) => this.join(page));
+    this.http.on('upgrade', (request, socket, head) => {
+      if (ways.refuses) socket.end('HTTP/1.1 400 Bad Request\r\n\r\n');
+      else this.sockets.handleUpgrade(request, socket, head, (page) => this.join(page));
+    });
   }
 
   async start(): Promise<string> {
