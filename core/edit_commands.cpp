@@ -9,6 +9,7 @@
 #include "core/limits.h"
 #include "core/model/compile.h"
 #include "core/rigid/rigid_motion.h"
+#include "core/scene/range_check.h"
 #include "core/scene/validate.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
@@ -29,10 +30,6 @@ Vec3 center_of(std::span<const Vec3> positions, std::span<const Real> masses) {
 
 Status out_of_range(const std::string& path, const std::string& range) {
   return Error{"out_of_range", path, "must be " + range};
-}
-
-bool are_at_most(const Vec3& value, Real limit) {
-  return value.allFinite() && value.cwiseAbs().maxCoeff() <= limit;
 }
 
 /// What is wrong with the numbers of a placement, whatever the scene has.

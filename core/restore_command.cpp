@@ -6,16 +6,13 @@
 #include "core/model/compile.h"
 #include "core/rigid/rigid_motion.h"
 #include "core/scene/interface_table.h"
+#include "core/scene/range_check.h"
 #include "core/scene/validate.h"
 #include "core/simulation.h"
 #include "core/simulation_impl.h"
 
 namespace vat {
 namespace {
-
-bool are_at_most(const Vec3& value, Real limit) {
-  return value.allFinite() && value.cwiseAbs().maxCoeff() <= limit;
-}
 
 Status wrong(const std::string& member, const std::string& range) {
   return Error{"out_of_range", "/state/" + member, "must be " + range};

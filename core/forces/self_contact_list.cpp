@@ -10,7 +10,7 @@ namespace vat {
 namespace {
 
 /// Of the reach, beyond what was asked for.
-constexpr Real kSkinShare = 0.6;
+constexpr Real kSelfSkinShare = 0.6;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ bool SelfContactList::is_current(const StepContext& c, Real slack) {
 
 bool SelfContactList::update(const StepContext& c, Real slack) {
   if (is_current(c, slack)) return false;
-  const Real skin = slack + kSkinShare * c.model.contact_reach;
+  const Real skin = slack + kSelfSkinShare * c.model.contact_reach;
   skin_ = 0;  // until the list is whole: there may be no memory for it
   search(c, skin);
   skin_ = skin;

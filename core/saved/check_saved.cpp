@@ -7,6 +7,7 @@
 
 #include "core/forces/vat_motion.h"
 #include "core/limits.h"
+#include "core/scene/lookup.h"
 #include "core/scene/validate.h"
 #include "core/sleep/islands.h"
 
@@ -92,7 +93,7 @@ Status check_saved_scene(const Scene& scene, const std::vector<SavedBody>& bodie
   BodyId last = 0;
   std::vector<const SampledBody*> samples;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const std::string path = "/bodies/" + std::to_string(b);
+    const std::string path = body_path(b);
     if (bodies[b].id <= last || bodies[b].id >= next_id) {
       return bad_value(path + "/id", "must be above those before and below the next one");
     }

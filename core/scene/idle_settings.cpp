@@ -5,6 +5,7 @@
 
 #include "core/forces/vat_motion.h"
 #include "core/scene/interface_table.h"
+#include "core/scene/lookup.h"
 #include "core/scene/volumes.h"
 
 namespace vat {
@@ -190,7 +191,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
-    const std::string path = "/bodies/" + std::to_string(b);
+    const std::string path = body_path(b);
     if (body.seed != 0 && body.jitter == 0) {
       warn(path + "/seed", "the body has no jitter", warnings);
     }

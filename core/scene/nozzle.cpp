@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/scene/lattice.h"
+#include "core/scene/lookup.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -29,10 +30,6 @@ Mat3 axes_of(const Emitter& emitter, int dimensions) {
   Mat3 axes;
   axes << across, along.cross(across), along;
   return axes;
-}
-
-const Material& material_of(const Scene& scene, const BodyDescription& body) {
-  return *std::ranges::find(scene.materials, body.material, &Material::name);
 }
 
 }  // namespace

@@ -7,6 +7,11 @@
 
 namespace vat {
 
+/// True if all components are finite and at most `limit` in magnitude.
+inline bool are_at_most(const Vec3& value, Real limit) {
+  return value.allFinite() && value.cwiseAbs().maxCoeff() <= limit;
+}
+
 /// Checks of single values of a scene; each adds one error that names the range. Codes:
 /// out_of_range, bad_text.
 class RangeCheck {

@@ -12,6 +12,7 @@
 #include "core/forces/cohesion.h"
 #include "core/forces/surface_tension.h"
 #include "core/scene/contact_limits.h"
+#include "core/scene/lookup.h"
 #include "core/scene/volumes.h"
 
 namespace vat {
@@ -29,14 +30,6 @@ struct KernelLimits {
 };
 constexpr KernelLimits limits_of(KernelId kernel) {
   return kernel == KernelId::cubic_spline ? KernelLimits{0.91, 0.03} : KernelLimits{0.86, 0.028};
-}
-
-const Material& material_of(const Scene& scene, const BodyDescription& body) {
-  return *std::ranges::find(scene.materials, body.material, &Material::name);
-}
-
-std::string body_path(std::size_t index) {
-  return "/bodies/" + std::to_string(index);
 }
 
 struct SpringBound {

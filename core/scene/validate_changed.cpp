@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/limits.h"
+#include "core/scene/lookup.h"
 #include "core/scene/pair_limits.h"
 #include "core/scene/validate.h"
 #include "core/scene/validate_parts.h"
@@ -65,7 +66,7 @@ Errors find_changed_errors(const Scene& scene, const std::vector<const SampledBo
   Allowance total;
   for (std::size_t b = 0; b < scene.bodies.size() && errors.empty(); ++b) {
     const BodyDescription& body = scene.bodies[b];
-    const std::string path = "/bodies/" + std::to_string(b);
+    const std::string path = body_path(b);
     if (levels_are_own && body.kind == BodyKind::liquid) {
       check.add("not_allowed", path + "/kind", "a liquid needs other steps or the solver \"gas\"");
     }

@@ -10,6 +10,7 @@
 #include "core/scene/cost_estimate.h"
 #include "core/scene/idle_settings.h"
 #include "core/scene/interface_table.h"
+#include "core/scene/lookup.h"
 #include "core/scene/sampling.h"
 #include "core/scene/step_limits.h"
 #include "core/scene/validate.h"
@@ -44,10 +45,6 @@ Start sample_all(const Scene& scene) {
     start.body.insert(start.body.end(), sample.positions.size(), index);
   }
   return start;
-}
-
-std::string body_path(std::size_t index) {
-  return "/bodies/" + std::to_string(index);
 }
 
 using BodyPair = std::pair<Index, Index>;

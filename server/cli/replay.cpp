@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t kMostLines = 200;  // about so many of the hashes are printed
 
-struct Options {
+struct ReplayOptions {
   std::string file;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
   bool verify = false;
@@ -65,7 +65,7 @@ void print_place(const SessionCore& core, std::uint64_t hash) {
             << describe_hash(hash) << '\n';
 }
 
-int play(const Options& options, const Recording& recording, const Catalogue& catalogue) {
+int play(const ReplayOptions& options, const Recording& recording, const Catalogue& catalogue) {
   const LonelyEnvironment environment(catalogue, recording.instructions);
   if (options.seeks > 0) {
     time_seeks(recording, environment.get(), options.seeks);
@@ -95,7 +95,7 @@ int play(const Options& options, const Recording& recording, const Catalogue& ca
   return kExitFailed;
 }
 
-int replay(const Options& options) {
+int replay(const ReplayOptions& options) {
   spdlog::set_level(spdlog::level::err);
   const Result<Recording> recording = read_file(options.file);
   if (!recording) return fail(options.file, recording.errors());
@@ -117,7 +117,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "replay",
       "Run a recording of a session again, and compare its states with the recorded ones");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   command->add_option("file", options->file, "Recording, in .vatrec")
       ->required()
       ->check(CLI::ExistingFile);

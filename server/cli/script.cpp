@@ -19,7 +19,7 @@ namespace vat {
 
 namespace {
 
-constexpr const char* kFooter = R"(A script is a file of JSON lines; protocol/SCRIPTS.md tells
+constexpr const char* kScriptFooter = R"(A script is a file of JSON lines; protocol/SCRIPTS.md tells
 what they can say, and tests/protocol/scripts has examples. Without --server each script is played
 against a server of its own on a free port.
 
@@ -28,7 +28,7 @@ in a script.)";
 
 constexpr double kMostPatience = 86'400;  // [s] a day
 
-struct Options {
+struct ScriptOptions {
   std::vector<std::string> files;
   std::string server;
   std::string scene = "sliding-vat-liquid";
@@ -72,7 +72,7 @@ bool is_trust_of_use(const script::PlaySettings& settings) {
   return !is_given || !settings.server || settings.server->is_secure;
 }
 
-int play_all(Options& options) {
+int play_all(ScriptOptions& options) {
   script::PlaySettings& settings = options.play;
   settings.patience = std::chrono::milliseconds(static_cast<std::int64_t>(options.patience * 1000));
   if (!options.server.empty()) settings.server = script::read_websocket_url(options.server);
@@ -95,7 +95,7 @@ int play_all(Options& options) {
   return kExitUsage;
 }
 
-void add_options(CLI::App& command, Options& options) {
+void add_script_options(CLI::App& command, ScriptOptions& options) {
   command.add_option("file", options.files, "Scripts, in .jsonl")->required();
   command
       .add_option(
@@ -137,9 +137,9 @@ void add_options(CLI::App& command, Options& options) {
 void add_script_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("script", "Play scripts of the protocol against a server and check it");
-  const auto options = std::make_shared<Options>();
-  add_options(*command, *options);
-  command->footer(kFooter);
+  const auto options = std::make_shared<ScriptOptions>();
+  add_script_options(*command, *options);
+  command->footer(kScriptFooter);
   command->callback([options, &exit_code] { exit_code = play_all(*options); });
 }
 

@@ -51,7 +51,7 @@ constexpr std::size_t kOtherFiles = 512;
 constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG", "VAT_FUZZ_SECONDS",
                                                 "VAT_KILLS"};
 
-constexpr const char* kFooter =
+constexpr const char* kServeFooter =
     R"(Every setting can also be a variable of the environment (VAT_MAX_CONNECTIONS for
 --max-connections) or a member of the configuration file ("max_connections"): the file counts least,
 options count most.
@@ -241,7 +241,7 @@ void add_setting(CLI::App& command, const Setting& setting, SettingTexts& texts)
       ->group(setting.group);
 }
 
-void add_options(CLI::App& command, CommandLine& line) {
+void add_serve_options(CLI::App& command, CommandLine& line) {
   line.settings.scenes_folder = VAT_DEFAULT_SCENES_DIR;
   line.settings.web_folder = VAT_DEFAULT_WEB_DIR;
   line.table = serve_settings(line.settings);
@@ -303,8 +303,8 @@ int run(CommandLine& line) {
 void add_serve_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("serve", "Serve the viewer and run sessions");
   const auto line = std::make_shared<CommandLine>();
-  add_options(*command, *line);
-  command->footer(kFooter);
+  add_serve_options(*command, *line);
+  command->footer(kServeFooter);
   command->callback([line, &exit_code] { exit_code = run(*line); });
 }
 

@@ -35,7 +35,7 @@ constexpr Real kDefaultUntil = 10;  // [s]
 constexpr Real kMaxUntil = 1e6;     // [s] keeps step counts exact in a double, at any step
 constexpr std::size_t kMaxThreads = 256;
 
-constexpr const char* kFooter = R"(Output files
+constexpr const char* kSimulateFooter = R"(Output files
   .csv   one row per particle and output time: time, body, kind, particle, position x y z,
          velocity vx vy vz, density and pressure (empty unless the body is a liquid)
   .vtk   legacy VTK polydata in text, a file per output time (NAME-0000.vtk, NAME-0001.vtk, ...):
@@ -76,7 +76,7 @@ std::map<std::string, StepControl> control_names() {
   return names;
 }
 
-struct Options {
+struct SimulateOptions {
   std::string scene;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
   std::optional<Real> until;
@@ -118,7 +118,7 @@ struct Writers {
   }
 };
 
-Result<Writers> create_writers(const Options& options, const Schedule& schedule,
+Result<Writers> create_writers(const SimulateOptions& options, const Schedule& schedule,
                                const Simulation& simulation) {
   Writers writers;
   if (!options.output.empty()) {
@@ -140,7 +140,7 @@ Error interrupted_at(Real time) {
   return {"interrupted", "", message + " s; files that are not complete end in .part"};
 }
 
-Status run_with_outputs(const Options& options, const Schedule& schedule,
+Status run_with_outputs(const SimulateOptions& options, const Schedule& schedule,
                         const InterruptWatch& interrupt, Simulation& simulation,
                         RunTotals& totals) {
   Result<Writers> writers = create_writers(options, schedule, simulation);
@@ -194,7 +194,7 @@ void print_hash(const Simulation& simulation) {
   std::cout << line << ' ' << to_string(simulation.instruction_set()) << '\n';
 }
 
-Result<Scene> load_scene_for(const Options& options, Schedule& schedule) {
+Result<Scene> load_scene_for(const SimulateOptions& options, Schedule& schedule) {
   Result<Scene> scene = load_scene(options.scene, options.scenes_folder);
   if (!scene) return scene;
   Numerics& numerics = scene.value().numerics;
@@ -216,7 +216,7 @@ Result<Scene> load_scene_for(const Options& options, Schedule& schedule) {
   return scene;
 }
 
-int simulate(const Options& options) {
+int simulate(const SimulateOptions& options) {
   Schedule schedule;
   const Result<Scene> scene = load_scene_for(options, schedule);
   if (!scene) return fail(options.scene, scene.errors());
@@ -249,7 +249,7 @@ std::string check_frame_file_name(const std::string& name) {
   return "'" + name + "' must end in " + kFrameEndings;
 }
 
-void add_options(CLI::App& command, Options& options) {
+void add_simulate_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("scene", options.scene, kSceneHelp)->required();
   command.add_option("--scenes", options.scenes_folder, "Folder of the catalogue");
   command.add_option("--until", options.until, "End of the run [s]; default: 10")
@@ -285,7 +285,7 @@ void add_options(CLI::App& command, Options& options) {
   command.add_flag("--hash", options.hash, "Print a hash of the last state");
 }
 
-void check_together(const Options& options) {
+void check_together(const SimulateOptions& options) {
   namespace fs = std::filesystem;
   if (options.output.empty() || options.diagnostics.empty()) return;
   const auto place = [](const std::string& name) {
@@ -300,9 +300,9 @@ void check_together(const Options& options) {
 
 void add_simulate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("simulate", "Run a scene without a server");
-  const auto options = std::make_shared<Options>();
-  add_options(*command, *options);
-  command->footer(kFooter);
+  const auto options = std::make_shared<SimulateOptions>();
+  add_simulate_options(*command, *options);
+  command->footer(kSimulateFooter);
   command->callback([options, &exit_code] {
     check_together(*options);
     exit_code = simulate(*options);

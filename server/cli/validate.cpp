@@ -15,7 +15,7 @@ namespace vat {
 
 namespace {
 
-struct Options {
+struct ValidateOptions {
   std::string scene;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
 };
@@ -38,7 +38,7 @@ void print_summary(const std::string& argument, const Simulation& simulation) {
   print_cost(simulation.scene());
 }
 
-int validate(const Options& options) {
+int validate(const ValidateOptions& options) {
   const Result<Scene> scene = load_scene(options.scene, options.scenes_folder);
   if (!scene) return fail(options.scene, scene.errors());
   const Result<Simulation> simulation = Simulation::create(scene.value());
@@ -53,7 +53,7 @@ int validate(const Options& options) {
 void add_validate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "validate", "Check a scene; print every error and warning with its JSON pointer");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ValidateOptions>();
   command->add_option("scene", options->scene, kSceneHelp)->required();
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
   command->footer("Exit codes: 0 valid (warnings allowed), 1 invalid, 2 wrong usage.");

@@ -1,9 +1,11 @@
 #include "server/script/client.h"
 
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
 
-#include "server/script/stream_runner.h"
+#include "server/script/socket_stream.h"
 
 namespace vat::script {
 namespace {
@@ -14,22 +16,20 @@ namespace websocket = beast::websocket;
 using boost::system::error_code;
 
 /// Everything happens inside next() and connect(), on the caller's thread.
-template <class Layer>
 class WebSocketClient final : public Client {
  public:
-  explicit WebSocketClient(const TlsTrust& trust)
-      : runner_(trust), stream_(runner_.template make<websocket::stream<Layer>>()) {}
+  WebSocketClient(const WebSocketUrl& url, const TlsTrust& trust)
+      : url_(url), stream_(operations_.context(), url, trust) {}
   ~WebSocketClient() override {
-    error_code ignored;  // the peer may have gone
     try {
-      beast::get_lowest_layer(stream_).socket().close(ignored);
-      runner_.run_out();  // ends the operations in flight, which refer to this
-    } catch (...) {       // nobody is left to tell
+      stream_.next_layer().close_socket();
+      operations_.run_out();  // ends the operations in flight, which refer to this
+    } catch (...) {           // nobody is left to tell
     }
   }
 
   /// The HTTP status.
-  unsigned connect(const WebSocketUrl& url, const ConnectRequest& request, Deadline deadline);
+  unsigned connect(const ConnectRequest& request, Deadline deadline);
 
   void send_text(const std::string& text) override { send({Message::Kind::text, text, 0}); }
   void send_binary(const std::string& bytes) override { send({Message::Kind::binary, bytes, 0}); }
@@ -44,7 +44,7 @@ class WebSocketClient final : public Client {
     start_read();
   }
   std::optional<Message> next(Deadline deadline) override {
-    runner_.run_until(deadline, [this] { return !received_.empty(); });
+    operations_.run_until(deadline, [this] { return !received_.empty(); });
     if (received_.empty()) return {};
     Message message = std::move(received_.front());
     received_.pop_front();
@@ -52,15 +52,16 @@ class WebSocketClient final : public Client {
   }
 
  private:
-  unsigned upgrade(const WebSocketUrl& url, const ConnectRequest& request, Deadline deadline);
+  unsigned upgrade(const ConnectRequest& request, Deadline deadline);
   void send(Message message);
   void start_write();
   void start_read();
   void read_ended(error_code failure);
   void ended(error_code failure);
 
-  StreamRunner<Layer> runner_;
-  websocket::stream<Layer> stream_;
+  WebSocketUrl url_;
+  Operations operations_;
+  websocket::stream<SocketStream, false> stream_;  // scripts offer no compression
   beast::flat_buffer buffer_;
   std::deque<Message> to_send_;
   std::deque<Message> received_;
@@ -71,9 +72,7 @@ class WebSocketClient final : public Client {
   bool closed_ = false;
 };
 
-template <class Layer>
-unsigned WebSocketClient<Layer>::upgrade(const WebSocketUrl& url, const ConnectRequest& request,
-                                         Deadline deadline) {
+unsigned WebSocketClient::upgrade(const ConnectRequest& request, Deadline deadline) {
   if (!request.subprotocol.empty()) {
     stream_.set_option(websocket::stream_base::decorator([&](websocket::request_type& upgrade) {
       upgrade.set(beast::http::field::sec_websocket_protocol, request.subprotocol);
@@ -81,37 +80,34 @@ unsigned WebSocketClient<Layer>::upgrade(const WebSocketUrl& url, const ConnectR
   }
   websocket::response_type response;
   std::optional<error_code> outcome;
-  stream_.async_handshake(response, url.authority(), request.path.empty() ? url.path : request.path,
+  stream_.async_handshake(response, url_.authority(),
+                          request.path.empty() ? url_.path : request.path,
                           [&](error_code failure) { outcome = failure; });
-  runner_.finish(stream_.next_layer(), outcome, deadline,
-                 "the server did not answer the upgrade in time");
+  operations_.finish(stream_.next_layer(), outcome, deadline,
+                     "the server did not answer the upgrade in time");
   if (*outcome && *outcome != websocket::error::upgrade_declined) {
-    const std::string hint = runner_.kIsSecure ? "" : "; a server with TLS is at wss://";
+    const std::string hint = url_.is_secure ? "" : "; a server with TLS is at wss://";
     throw std::runtime_error("the upgrade failed: " + outcome->message() + hint);
   }
   return response.result_int();
 }
 
-template <class Layer>
-unsigned WebSocketClient<Layer>::connect(const WebSocketUrl& url, const ConnectRequest& request,
-                                         Deadline deadline) {
-  runner_.open(stream_.next_layer(), url, deadline);
-  const unsigned status = upgrade(url, request, deadline);
+unsigned WebSocketClient::connect(const ConnectRequest& request, Deadline deadline) {
+  stream_.next_layer().open(deadline);
+  const unsigned status = upgrade(request, deadline);
   if (status != 101) return status;
   stream_.read_message_max(std::size_t{64} << 20);
   start_read();
   return status;
 }
 
-template <class Layer>
-void WebSocketClient<Layer>::send(Message message) {
+void WebSocketClient::send(Message message) {
   to_send_.push_back(std::move(message));
   if (!writing_) start_write();
-  runner_.run_ready();
+  operations_.run_ready();
 }
 
-template <class Layer>
-void WebSocketClient<Layer>::start_write() {
+void WebSocketClient::start_write() {
   writing_ = true;
   const Message& message = to_send_.front();
   stream_.binary(message.kind == Message::Kind::binary);
@@ -126,15 +122,13 @@ void WebSocketClient<Layer>::start_write() {
   });
 }
 
-template <class Layer>
-void WebSocketClient<Layer>::start_read() {
+void WebSocketClient::start_read() {
   if (reading_ || closed_ || !read_wanted_) return;
   reading_ = true;
   stream_.async_read(buffer_, [this](error_code failure, std::size_t) { read_ended(failure); });
 }
 
-template <class Layer>
-void WebSocketClient<Layer>::read_ended(error_code failure) {
+void WebSocketClient::read_ended(error_code failure) {
   reading_ = false;
   if (failure) {
     if (!closing_) ended(failure);
@@ -146,29 +140,21 @@ void WebSocketClient<Layer>::read_ended(error_code failure) {
   start_read();
 }
 
-template <class Layer>
-void WebSocketClient<Layer>::ended(error_code failure) {
+void WebSocketClient::ended(error_code failure) {
   closed_ = true;
   const std::uint16_t code = failure == websocket::error::closed ? stream_.reason().code : 0;
   const std::string reason(stream_.reason().reason.data(), stream_.reason().reason.size());
   received_.push_back({Message::Kind::closed, code == 0 ? failure.message() : reason, code});
 }
 
-template <class Layer>
-Connected connect_over(const WebSocketUrl& url, const TlsTrust& trust,
-                       const ConnectRequest& request, Deadline deadline) {
-  auto client = std::make_unique<WebSocketClient<Layer>>(trust);
-  const unsigned status = client->connect(url, request, deadline);
-  if (status != 101) return {nullptr, status};
-  return {std::move(client), status};
-}
-
 }  // namespace
 
 Connected connect_websocket(const WebSocketUrl& url, const TlsTrust& trust,
                             const ConnectRequest& request, Deadline deadline) {
-  return url.is_secure ? connect_over<SecureStream>(url, trust, request, deadline)
-                       : connect_over<PlainStream>(url, trust, request, deadline);
+  auto client = std::make_unique<WebSocketClient>(url, trust);
+  const unsigned status = client->connect(request, deadline);
+  if (status != 101) return {nullptr, status};
+  return {std::move(client), status};
 }
 
 }  // namespace vat::script

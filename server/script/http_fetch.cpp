@@ -1,10 +1,11 @@
 #include "server/script/http_fetch.h"
 
 #include <algorithm>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <cctype>
 
-#include "server/script/stream_runner.h"
+#include "server/script/socket_stream.h"
 
 namespace vat::script {
 namespace {
@@ -32,36 +33,30 @@ Json to_json(const http::response<http::string_body>& response) {
   return answer;
 }
 
-template <class Stream>
-Json fetch_over(const WebSocketUrl& url, const TlsTrust& trust, const std::string& path,
+}  // namespace
+
+Json fetch_http(const WebSocketUrl& url, const TlsTrust& trust, const std::string& path,
                 std::chrono::steady_clock::time_point deadline) {
-  StreamRunner<Stream> runner(trust);
-  Stream stream = runner.make();
-  runner.open(stream, url, deadline);
+  Operations operations;
+  SocketStream stream(operations.context(), url, trust);
+  stream.open(deadline);
   http::request<http::empty_body> request(http::verb::get, path, kHttp11);
   request.set(http::field::host, url.authority());
   request.set(http::field::connection, "close");
   std::optional<boost::system::error_code> outcome;
   const auto ended = [&](boost::system::error_code failure, std::size_t) { outcome = failure; };
   http::async_write(stream, request, ended);
-  runner.finish(stream, outcome, deadline, "the server did not take the HTTP request in time");
+  operations.finish(stream, outcome, deadline, "the server did not take the HTTP request in time");
   if (*outcome) throw std::runtime_error("the HTTP request failed: " + outcome->message());
   outcome.reset();
   boost::beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
   parser.body_limit(kMostBody);
   http::async_read(stream, buffer, parser, ended);
-  runner.finish(stream, outcome, deadline, "the server did not answer the HTTP request in time");
+  operations.finish(stream, outcome, deadline,
+                    "the server did not answer the HTTP request in time");
   if (*outcome) throw std::runtime_error("no HTTP answer: " + outcome->message());
   return to_json(parser.get());
-}
-
-}  // namespace
-
-Json fetch_http(const WebSocketUrl& url, const TlsTrust& trust, const std::string& path,
-                std::chrono::steady_clock::time_point deadline) {
-  return url.is_secure ? fetch_over<SecureStream>(url, trust, path, deadline)
-                       : fetch_over<PlainStream>(url, trust, path, deadline);
 }
 
 }  // namespace vat::script

@@ -7,7 +7,7 @@
 namespace vat {
 namespace {
 
-constexpr auto kMostBytes = static_cast<std::size_t>(std::numeric_limits<int>::max());
+constexpr auto kMaxDecodedBytes = static_cast<std::size_t>(std::numeric_limits<int>::max());
 
 std::uint8_t* bytes_of(std::string& text) {
   return reinterpret_cast<std::uint8_t*>(text.data());
@@ -23,7 +23,7 @@ std::string to_base64(std::span<const std::uint8_t> bytes) {
 }
 
 std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
-  if (text.size() % 4 != 0 || text.size() > kMostBytes) return {};
+  if (text.size() % 4 != 0 || text.size() > kMaxDecodedBytes) return {};
   std::vector<std::uint8_t> bytes(text.size() / 4 * 3);
   const auto* characters = reinterpret_cast<const std::uint8_t*>(text.data());
   const int size = EVP_DecodeBlock(bytes.data(), characters, static_cast<int>(text.size()));

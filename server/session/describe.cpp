@@ -8,10 +8,10 @@
 namespace vat {
 namespace {
 
-Json to_json(std::span<const Vec3> vectors) {
+Json to_triples_json(std::span<const Vec3> vectors) {
   Json list = Json::array();
   list.get_ref<Json::array_t&>().reserve(vectors.size());
-  for (const Vec3& vector : vectors) list.push_back(vat::to_json(vector));
+  for (const Vec3& vector : vectors) list.push_back(to_json(vector));
   return list;
 }
 
@@ -65,8 +65,8 @@ Json describe_state(const BodyView& body) {
       {"body", body.id},
       {"name", body.name},
       {"kind", to_string(body.kind)},
-      {"positions", to_json(body.positions)},
-      {"velocities", to_json(body.velocities)},
+      {"positions", to_triples_json(body.positions)},
+      {"velocities", to_triples_json(body.velocities)},
   };
   if (!body.numbers.empty())
     state["numbers"] = std::vector(body.numbers.begin(), body.numbers.end());

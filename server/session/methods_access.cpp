@@ -26,7 +26,7 @@ ServerAction read_ticket(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kAccessMethods[] = {
     {"access.enter", read_enter},
     {"access.ticket", read_ticket},
 };
@@ -34,7 +34,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> access_methods() {
-  return kMethods;
+  return kAccessMethods;
 }
 
 }  // namespace vat

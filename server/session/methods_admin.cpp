@@ -46,7 +46,7 @@ ServerAction read_drain(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kAdminMethods[] = {
     {"server.sessions", read_sessions},
     {"server.drain", read_drain},
 };
@@ -54,7 +54,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> admin_methods() {
-  return kMethods;
+  return kAdminMethods;
 }
 
 }  // namespace vat

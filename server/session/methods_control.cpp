@@ -21,7 +21,7 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
   return Json::object();
 }
 
-SessionAction read_load(ObjectReader& params, Errors&) {
+SessionAction read_load_scene(ObjectReader& params, Errors&) {
   return read_action_on("scene", params, load_scene);
 }
 
@@ -63,16 +63,16 @@ SessionAction read_set_speed(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
-    {"scene.load", read_load},     {"control.play", read_play},
-    {"control.pause", read_pause}, {"control.step", read_step},
-    {"control.reset", read_reset}, {"control.set_speed", read_set_speed},
+constexpr Method kControlMethods[] = {
+    {"scene.load", read_load_scene}, {"control.play", read_play},
+    {"control.pause", read_pause},   {"control.step", read_step},
+    {"control.reset", read_reset},   {"control.set_speed", read_set_speed},
 };
 
 }  // namespace
 
 std::span<const Method> control_methods() {
-  return kMethods;
+  return kControlMethods;
 }
 
 }  // namespace vat

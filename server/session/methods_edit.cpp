@@ -79,7 +79,7 @@ SessionAction read_move_vat(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kEditMethods[] = {
     {"world.move_body", read_move_body},
     {"world.set_material", read_set_material},
     {"world.set_numerics", read_set_numerics},
@@ -89,7 +89,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> edit_methods() {
-  return kMethods;
+  return kEditMethods;
 }
 
 }  // namespace vat

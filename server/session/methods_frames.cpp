@@ -80,7 +80,7 @@ ServerAction read_ack(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kFramesMethods[] = {
     {"frames.subscribe", read_subscribe},
     {"frames.unsubscribe", read_unsubscribe},
     {"frames.ack", read_ack},
@@ -89,7 +89,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> frame_methods() {
-  return kMethods;
+  return kFramesMethods;
 }
 
 }  // namespace vat

@@ -92,7 +92,7 @@ SessionAction read_end(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kGrabMethods[] = {
     {"grab.start", read_start},
     {"grab.move", read_move},
     {"grab.end", read_end},
@@ -101,7 +101,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> grab_methods() {
-  return kMethods;
+  return kGrabMethods;
 }
 
 }  // namespace vat

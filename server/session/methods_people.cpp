@@ -14,7 +14,7 @@ constexpr std::size_t kMaxUses = 10'000;
 constexpr std::uint64_t kMaxExpirySeconds = 30 * 24 * 3600;
 constexpr std::uint64_t kUsualExpirySeconds = 24 * 3600;
 
-constexpr Role kRoles[] = {Role::viewer, Role::controller, Role::owner};
+constexpr Role kGrantableRoles[] = {Role::viewer, Role::controller, Role::owner};
 
 ParticipantNumber read_participant(ObjectReader& params) {
   return params.count("participant", 1, kMaxExactCount);
@@ -42,7 +42,7 @@ SessionAction read_configure(ObjectReader& params, Errors& errors) {
   std::optional<bool> is_locked;
   if (params.has("name")) name = read_person_name(params, "name", errors);
   if (params.has("default_role"))
-    role = kRoles[params.choice("default_role", {"viewer", "controller"})];
+    role = kGrantableRoles[params.choice("default_role", {"viewer", "controller"})];
   if (params.has("locked")) is_locked = params.boolean("locked");
   return [=](SessionCore& core, Participant&) -> ActionResult {
     SessionSettings settings = core.settings();
@@ -55,7 +55,7 @@ SessionAction read_configure(ObjectReader& params, Errors& errors) {
 }
 
 SessionAction read_invite(ObjectReader& params, Errors&) {
-  const Role role = kRoles[params.choice("role", {"viewer", "controller"})];
+  const Role role = kGrantableRoles[params.choice("role", {"viewer", "controller"})];
   std::optional<std::size_t> uses;
   if (params.has("uses")) uses = params.count("uses", 1, kMaxUses);
   const std::uint64_t seconds = params.count("expires", 1, kMaxExpirySeconds, kUsualExpirySeconds);
@@ -79,7 +79,7 @@ SessionAction read_rename(ObjectReader& params, Errors& errors) {
 
 SessionAction read_set_role(ObjectReader& params, Errors&) {
   const ParticipantNumber number = read_participant(params);
-  const Role role = kRoles[params.choice("role", {"viewer", "controller", "owner"})];
+  const Role role = kGrantableRoles[params.choice("role", {"viewer", "controller", "owner"})];
   return [number, role](SessionCore& core, Participant& caller) -> ActionResult {
     const auto other = find_other(core, caller, number);
     if (const auto* error = std::get_if<RpcError>(&other)) return *error;
@@ -126,7 +126,7 @@ SessionAction read_hand_over(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kPeopleMethods[] = {
     {"session.configure", read_configure}, {"session.invite", read_invite},
     {"participant.rename", read_rename},   {"participant.set_role", read_set_role},
     {"participant.kick", read_kick},       {"control.request", read_request},
@@ -136,7 +136,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> people_methods() {
-  return kMethods;
+  return kPeopleMethods;
 }
 
 }  // namespace vat

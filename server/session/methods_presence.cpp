@@ -6,7 +6,7 @@
 namespace vat {
 namespace {
 
-SessionAction read_list(ObjectReader&, Errors&) {
+SessionAction read_list_presence(ObjectReader&, Errors&) {
   return [](SessionCore& core, Participant&) -> ActionResult {
     return Json{{"participants", describe_participants(core.participants())}};
   };
@@ -31,15 +31,15 @@ SessionAction read_point(ObjectReader& params, Errors& errors) {
   };
 }
 
-constexpr Method kMethods[] = {
-    {"presence.list", read_list},
+constexpr Method kPresenceMethods[] = {
+    {"presence.list", read_list_presence},
     {"presence.point", read_point},
 };
 
 }  // namespace
 
 std::span<const Method> presence_methods() {
-  return kMethods;
+  return kPresenceMethods;
 }
 
 }  // namespace vat

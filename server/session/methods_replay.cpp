@@ -43,7 +43,7 @@ RpcError no_replay() {
   return not_allowed("the session is no replay; replay.open makes one");
 }
 
-SessionAction read_info(ObjectReader&, Errors&) {
+SessionAction read_replay_info(ObjectReader&, Errors&) {
   return [](SessionCore& core, Participant&) -> ActionResult {
     if (core.replay() == nullptr) return no_replay();
     return core.replay()->describe(core);
@@ -71,17 +71,17 @@ SessionAction read_seek(ObjectReader& params, Errors& errors) {
   return [position, tick](SessionCore& core, Participant&) { return seek(core, position, tick); };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kReplayMethods[] = {
     {"recording.import", read_import},
     {"replay.open", read_open},
-    {"replay.info", read_info},
+    {"replay.info", read_replay_info},
     {"replay.seek", read_seek},
 };
 
 }  // namespace
 
 std::span<const Method> replay_methods() {
-  return kMethods;
+  return kReplayMethods;
 }
 
 }  // namespace vat

@@ -23,7 +23,7 @@ SessionAction read_save(ObjectReader& params, Errors& errors) {
   };
 }
 
-SessionAction read_load(ObjectReader& params, Errors& errors) {
+SessionAction read_load_state(ObjectReader& params, Errors& errors) {
   read_person_name(params, "name", errors);
   return [](SessionCore&, Participant&) -> ActionResult {
     throw std::logic_error("a state is loaded by its entry of the log");
@@ -148,8 +148,8 @@ ServerAction read_delete_scene(ObjectReader& params, Errors& errors) {
   };
 }
 
-constexpr Method kMethods[] = {
-    {"session.save", read_save},     {"session.load", read_load},
+constexpr Method kSavedMethods[] = {
+    {"session.save", read_save},     {"session.load", read_load_state},
     {"session.saves", read_saves},   {"session.delete_save", read_delete_save},
     {"scene.save", read_save_scene}, {"scene.delete", read_delete_scene},
 };
@@ -157,7 +157,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> saved_methods() {
-  return kMethods;
+  return kSavedMethods;
 }
 
 }  // namespace vat

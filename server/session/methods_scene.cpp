@@ -59,14 +59,14 @@ SessionAction read_get(ObjectReader& params, Errors& errors) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kSceneMethods[] = {
     {"scene.get", read_get},
 };
 
 }  // namespace
 
 std::span<const Method> scene_methods() {
-  return kMethods;
+  return kSceneMethods;
 }
 
 }  // namespace vat

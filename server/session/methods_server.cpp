@@ -116,7 +116,7 @@ std::optional<RpcResult> list_scenes(const SessionDirectory& directory) {
   return Json{{"scenes", std::move(scenes)}};
 }
 
-ServerAction read_info(ObjectReader&, Errors&) {
+ServerAction read_server_info(ObjectReader&, Errors&) {
   return [](SessionDirectory& directory, Caller&) { return info(directory); };
 }
 
@@ -124,15 +124,15 @@ ServerAction read_list_scenes(ObjectReader&, Errors&) {
   return [](SessionDirectory& directory, Caller&) { return list_scenes(directory); };
 }
 
-constexpr Method kMethods[] = {
-    {"server.info", read_info},
+constexpr Method kServerMethods[] = {
+    {"server.info", read_server_info},
     {"scene.list", read_list_scenes},
 };
 
 }  // namespace
 
 std::span<const Method> server_methods() {
-  return kMethods;
+  return kServerMethods;
 }
 
 }  // namespace vat

@@ -26,7 +26,7 @@ void add_clients(Json& session, const SessionSummary& summary) {
   session["clients"] = summary.clients;
 }
 
-ServerAction read_list(ObjectReader&, Errors&) {
+ServerAction read_list_sessions(ObjectReader&, Errors&) {
   return [](SessionDirectory& directory, Caller& caller) {
     return list_sessions(directory, caller, add_clients);
   };
@@ -56,15 +56,16 @@ ServerAction read_close(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
-    {"session.create", read_create}, {"session.list", read_list},   {"session.join", read_join},
-    {"session.leave", read_leave},   {"session.close", read_close},
+constexpr Method kSessionMethods[] = {
+    {"session.create", read_create}, {"session.list", read_list_sessions},
+    {"session.join", read_join},     {"session.leave", read_leave},
+    {"session.close", read_close},
 };
 
 }  // namespace
 
 std::span<const Method> session_methods() {
-  return kMethods;
+  return kSessionMethods;
 }
 
 }  // namespace vat

@@ -139,7 +139,7 @@ SessionAction read_export(ObjectReader&, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kStateMethods[] = {
     {"state.query", read_query},       {"state.connections", read_connections},
     {"session.hash", read_hash},       {"session.stats", read_stats},
     {"recording.export", read_export},
@@ -148,7 +148,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> state_methods() {
-  return kMethods;
+  return kStateMethods;
 }
 
 }  // namespace vat

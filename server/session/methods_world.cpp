@@ -137,7 +137,7 @@ SessionAction read_apply_force(ObjectReader& params, Errors&) {
   };
 }
 
-constexpr Method kMethods[] = {
+constexpr Method kWorldMethods[] = {
     {"world.add_body", read_add_body},       {"world.remove_body", read_remove_body},
     {"world.melt_body", read_melt_body},     {"world.set_emitter", read_set_emitter},
     {"world.set_gravity", read_set_gravity}, {"world.set_interface", read_set_interface},
@@ -147,7 +147,7 @@ constexpr Method kMethods[] = {
 }  // namespace
 
 std::span<const Method> world_methods() {
-  return kMethods;
+  return kWorldMethods;
 }
 
 }  // namespace vat

@@ -21,7 +21,8 @@ constexpr std::size_t kMostReason = 1000;  // bytes
 constexpr auto kPeopleInterval = std::chrono::milliseconds(100);
 constexpr KeptMoments::Seconds kWork{
     0.04};  // between two moments, of a seek of a fifth of a second
-constexpr std::size_t kMostBytes = std::size_t{128} << 20;  // of moments beside the recording's own
+constexpr std::size_t kMaxMomentBytes = std::size_t{128}
+                                        << 20;  // of moments beside the recording's own
 
 /// Pointers are not recorded, but where those who hold something draw it.
 Json describe_hand(const SessionCore& core, const Participant& person) {
@@ -37,7 +38,7 @@ ReplayRun::ReplayRun(std::shared_ptr<const Recording> recording,
                      const SessionEnvironment& environment)
     : recording_(std::move(recording)),
       environment_(environment),
-      moments_(std::make_shared<KeptMoments>(kWork, kMostBytes)),
+      moments_(std::make_shared<KeptMoments>(kWork, kMaxMomentBytes)),
       player_(*recording_, environment_) {
   player_.share(moments_);
   read_names();

@@ -15,11 +15,11 @@ bool is_id(const Json& value) {
   return value.is_string() && value.get_ref<const std::string&>().size() <= kMaxIdBytes;
 }
 
-Json to_json(const Error& error) {
+Json error_to_json(const Error& error) {
   return {{"code", error.code}, {"path", error.path}, {"message", error.message}};
 }
 
-Json to_json(const RpcError& error) {
+Json rpc_error_to_json(const RpcError& error) {
   const ErrorRow& row = error_row(error.kind);
   Json data = error.data;
   data["kind"] = row.name;
@@ -49,7 +49,7 @@ RpcError method_not_found(std::string_view method) {
 RpcError invalid_params(const Errors& errors) {
   VAT_CHECK(!errors.empty());
   Json list = Json::array();
-  for (const Error& error : errors) list.push_back(to_json(error));
+  for (const Error& error : errors) list.push_back(error_to_json(error));
   const Error& first = errors.front();
   const std::string message =
       first.path.empty() ? first.message : first.path + ": " + first.message;
@@ -171,7 +171,7 @@ std::variant<RpcRequest, RpcError> read_request(Json message, std::optional<Json
 std::string write_reply(const Json& id, const RpcResult& result) {
   Json message{{"jsonrpc", "2.0"}, {"id", id}};
   if (const auto* error = std::get_if<RpcError>(&result)) {
-    message["error"] = to_json(*error);
+    message["error"] = rpc_error_to_json(*error);
   } else {
     message["result"] = std::get<Json>(result);
   }

@@ -46,10 +46,10 @@ Json parse(const std::string& text) {
   return std::move(json).value();
 }
 
-constexpr Role kRoles[] = {Role::viewer, Role::controller, Role::owner, Role::admin};
+constexpr Role kAllRoles[] = {Role::viewer, Role::controller, Role::owner, Role::admin};
 
 Role read_role(ObjectReader& reader, std::string_view key) {
-  return kRoles[reader.choice(key, {"viewer", "controller", "owner", "admin"})];
+  return kAllRoles[reader.choice(key, {"viewer", "controller", "owner", "admin"})];
 }
 
 Json write_subscription(const Subscription& subscription) {

@@ -8,7 +8,7 @@
 namespace vat {
 namespace {
 
-constexpr auto kTurnTime = std::chrono::milliseconds(10);  // so that others get theirs
+constexpr auto kSeekTurnTime = std::chrono::milliseconds(10);  // so that others get theirs
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void Session::begin_seek(Caller caller, std::uint64_t position) {
 void Session::seek_turn() {
   seek_scheduled_ = false;
   if (!seek_) return;
-  if (replay_->seek_on(core_, SteadyClock::now() + kTurnTime)) return end_seek();
+  if (replay_->seek_on(core_, SteadyClock::now() + kSeekTurnTime)) return end_seek();
   seek_scheduled_ = true;
   schedule(&Session::seek_turn);
 }

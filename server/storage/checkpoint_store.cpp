@@ -12,9 +12,9 @@
 namespace vat {
 namespace {
 
-constexpr std::uint32_t kApplication = 0x76617463;  // "vatc"
+constexpr std::uint32_t kCheckpointApplication = 0x76617463;  // "vatc"
 
-constexpr const char* kSteps[] = {R"(
+constexpr const char* kCheckpointSteps[] = {R"(
 CREATE TABLE checkpoints (
   number INTEGER PRIMARY KEY,
   session INTEGER NOT NULL,
@@ -25,7 +25,7 @@ CREATE TABLE checkpoints (
 ) STRICT;
 CREATE INDEX checkpoints_of_session ON checkpoints (session, position, sequence);
 )",
-                                  R"(
+                                            R"(
 CREATE TABLE hashes (
   session INTEGER NOT NULL,
   last INTEGER NOT NULL,
@@ -55,7 +55,7 @@ std::size_t find_needless(const std::vector<CheckpointPlace>& places) {
 
 CheckpointStore::CheckpointStore(const std::string& path, std::size_t session_bytes)
     : session_bytes_(session_bytes),
-      database_(open_database(path, {kApplication, kSteps})),
+      database_(open_database(path, {kCheckpointApplication, kCheckpointSteps})),
       mover_(path, Database::Mode::create) {
   mover_.use_log();
 }

@@ -5,9 +5,9 @@
 namespace vat {
 namespace {
 
-constexpr std::uint32_t kApplication = 0x76617473;  // "vats"
+constexpr std::uint32_t kMainApplication = 0x76617473;  // "vats"
 
-constexpr const char* kSteps[] = {
+constexpr const char* kMainSteps[] = {
     R"(
 CREATE TABLE sessions (
   number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -62,6 +62,6 @@ CREATE INDEX scenes_by_address ON scenes (address, bytes);
 }  // namespace
 
 MainDatabase::MainDatabase(const std::string& path)
-    : database(open_database(path, {kApplication, kSteps})) {}
+    : database(open_database(path, {kMainApplication, kMainSteps})) {}
 
 }  // namespace vat

@@ -7,7 +7,7 @@
 namespace vat {
 namespace {
 
-constexpr const char* kWrite =
+constexpr const char* kWriteScene =
     "INSERT OR REPLACE INTO scenes"
     " (name, title, description, saved_by, address, key, time, bytes, scene)"
     " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
@@ -41,7 +41,7 @@ std::optional<SavedExcess> SavedScenes::write(const SavedScene& scene,
   const std::lock_guard lock(main_->mutex);
   if (auto excess = find_excess(scene, limits)) return excess;
   const SavedSceneEntry& entry = scene.entry;
-  main_->database.prepare(kWrite)
+  main_->database.prepare(kWriteScene)
       .bind(0, std::string_view(entry.name))
       .bind(1, std::string_view(entry.title))
       .bind(2, std::string_view(entry.description))

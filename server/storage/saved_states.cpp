@@ -10,9 +10,9 @@
 namespace vat {
 namespace {
 
-constexpr std::uint32_t kApplication = 0x76617474;  // "vatt"
+constexpr std::uint32_t kStateApplication = 0x76617474;  // "vatt"
 
-constexpr const char* kSteps[] = {R"(
+constexpr const char* kStateSteps[] = {R"(
 CREATE TABLE states (
   number INTEGER PRIMARY KEY,
   session TEXT NOT NULL,
@@ -30,13 +30,13 @@ CREATE TABLE states (
 CREATE INDEX bytes_of_states ON states (session, name, bytes);
 )"};
 
-constexpr const char* kWrite =
+constexpr const char* kWriteState =
     "INSERT OR REPLACE INTO states"
     " (session, name, saved_by, time, tick, simulation_time, hash, bytes, fields, state)"
     " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 constexpr const char* kColumns = "name, saved_by, time, tick, simulation_time, hash, bytes";
 
-SavedStateEntry to_entry(const Statement& row) {
+SavedStateEntry to_state_entry(const Statement& row) {
   return {std::string(row.text(0)),
           std::string(row.text(1)),
           row.real(2),
@@ -53,7 +53,7 @@ std::size_t bytes_of(const SavedState& state) {
 }  // namespace
 
 SavedStates::SavedStates(const std::string& path)
-    : database_(open_database(path, {kApplication, kSteps})) {}
+    : database_(open_database(path, {kStateApplication, kStateSteps})) {}
 
 std::optional<SavedExcess> SavedStates::find_excess(const std::string& session,
                                                     const SavedState& state,
@@ -80,7 +80,7 @@ std::optional<SavedExcess> SavedStates::write(const std::string& session, const 
   const std::lock_guard lock(mutex_);
   if (auto excess = find_excess(session, state, limits)) return excess;
   const SavedStateEntry& entry = state.entry;
-  database_.prepare(kWrite)
+  database_.prepare(kWriteState)
       .bind(0, std::string_view(session))
       .bind(1, std::string_view(entry.name))
       .bind(2, std::string_view(entry.saved_by))
@@ -101,7 +101,7 @@ std::vector<SavedStateEntry> SavedStates::list(const std::string& session) {
   Statement query = database_.prepare(std::string("SELECT ") + kColumns +
                                       " FROM states WHERE session = ? ORDER BY name");
   query.bind(0, std::string_view(session));
-  while (query.step()) entries.push_back(to_entry(query));
+  while (query.step()) entries.push_back(to_state_entry(query));
   return entries;
 }
 
@@ -112,7 +112,8 @@ std::optional<SavedState> SavedStates::find(const std::string& session, const st
   query.bind(0, std::string_view(session)).bind(1, std::string_view(name));
   if (!query.step()) return {};
   const std::span<const std::uint8_t> state = query.bytes(8);
-  return SavedState{to_entry(query), std::string(query.text(7)), {state.begin(), state.end()}};
+  return SavedState{
+      to_state_entry(query), std::string(query.text(7)), {state.begin(), state.end()}};
 }
 
 bool SavedStates::remove(const std::string& session, const std::string& name) {

@@ -30,7 +30,7 @@ std::optional<SessionBeat> to_beat(const Statement& row, int column) {
   return beat;
 }
 
-LogEntry to_entry(const Statement& row) {
+LogEntry to_log_entry(const Statement& row) {
   return {row.count(0),
           row.count(1),
           row.count(2),
@@ -151,7 +151,7 @@ std::vector<LogEntry> SessionStore::read(std::uint64_t session, std::uint64_t af
       database_.prepare(std::string(kSelectEntries) +
                         " WHERE session = ? AND sequence > ? ORDER BY sequence LIMIT ?");
   query.bind(0, session).bind(1, after).bind(2, std::uint64_t{kEntriesAtOnce});
-  while (query.step()) entries.push_back(to_entry(query));
+  while (query.step()) entries.push_back(to_log_entry(query));
   return entries;
 }
 
@@ -161,7 +161,7 @@ std::optional<LogEntry> SessionStore::find(std::uint64_t session, std::uint64_t 
       database_.prepare(std::string(kSelectEntries) + " WHERE session = ? AND sequence = ?");
   query.bind(0, session).bind(1, sequence);
   if (!query.step()) return {};
-  return to_entry(query);
+  return to_log_entry(query);
 }
 
 std::uint64_t SessionStore::last_sequence(std::uint64_t session) {

@@ -114,7 +114,6 @@ Table to_table(const std::vector<Row>& rows) {
 }
 
 Table to_table(const std::vector<PeerRow>& rows) {
-  constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
   Table table{{"case", "greatest error [spacings]", "codec", "what", "bits per particle",
                "encode [ns]", "decode [ns]"},
               {}};

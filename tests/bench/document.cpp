@@ -26,8 +26,8 @@ Result<std::string> read_text(const fs::path& file) {
 }
 
 /// FOLDER/COMMAND/NAME.json, as the command of that name writes it.
-Result<Json> read_rows(const fs::path& folder, const std::string& command,
-                       const std::string& name) {
+Result<Json> read_document_rows(const fs::path& folder, const std::string& command,
+                                const std::string& name) {
   const fs::path file = folder / command / (name + ".json");
   const Result<std::string> text = read_text(file);
   if (!text) {
@@ -46,17 +46,17 @@ std::map<std::string, std::string> case_titles() {
 
 /// What each marker of the page stands for.
 Result<std::map<std::string, std::string>> make_contents(const fs::path& folder) {
-  const Result<Json> validation = read_rows(folder, "validate", "validation");
+  const Result<Json> validation = read_document_rows(folder, "validate", "validation");
   if (!validation) return validation.errors();
-  const Result<Json> cheapest = read_rows(folder, "accuracy", "cheapest");
+  const Result<Json> cheapest = read_document_rows(folder, "accuracy", "cheapest");
   if (!cheapest) return cheapest.errors();
-  const Result<Json> control = read_rows(folder, "accuracy", "control");
+  const Result<Json> control = read_document_rows(folder, "accuracy", "control");
   if (!control) return control.errors();
-  const Result<Json> solvers = read_rows(folder, "accuracy", "solvers");
+  const Result<Json> solvers = read_document_rows(folder, "accuracy", "solvers");
   if (!solvers) return solvers.errors();
-  const Result<Json> laws = read_rows(folder, "accuracy", "laws");
+  const Result<Json> laws = read_document_rows(folder, "accuracy", "laws");
   if (!laws) return laws.errors();
-  const Result<Json> stability = read_rows(folder, "stability", "stability");
+  const Result<Json> stability = read_document_rows(folder, "stability", "stability");
   if (!stability) return stability.errors();
   try {
     return std::map<std::string, std::string>{

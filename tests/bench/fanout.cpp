@@ -47,7 +47,7 @@ std::vector<std::string> case_names() {
   return names;
 }
 
-Table to_table(const std::vector<FanoutResult>& results) {
+Table to_fanout_table(const std::vector<FanoutResult>& results) {
   const Machine machine = this_machine();
   Table table{{"case",
                "kind",
@@ -95,7 +95,7 @@ Table to_table(const std::vector<FanoutResult>& results) {
   return table;
 }
 
-Table to_table(const std::vector<TurnsResult>& results) {
+Table to_fanout_table(const std::vector<TurnsResult>& results) {
   const Machine machine = this_machine();
   Table table{{"case", "quantity", "viewers", "viewers who come", "segments", "values",
                "median without", "median with", "ratio", "ratio low", "ratio high", "99 % without",
@@ -150,8 +150,9 @@ int run_cases(const std::vector<std::size_t>& chosen, const FanoutOptions& optio
     }
   }
   for (const Status& written :
-       {write_results(to_table(results), folder, "fanout", "# Fan-out"),
-        write_results(to_table(turns), folder, "turns", "# With and without some viewers")}) {
+       {write_results(to_fanout_table(results), folder, "fanout", "# Fan-out"),
+        write_results(to_fanout_table(turns), folder, "turns",
+                      "# With and without some viewers")}) {
     if (!written) return fail(options.common.output, written.errors());
   }
   std::cout << "\nwritten to " << options.common.output << '\n';

@@ -33,8 +33,8 @@ std::vector<std::string> names_of_scenes() {
 }
 
 /// Counts the scenes and writes the table.
-Result<std::vector<InstructionCount>> count_all(const std::vector<std::size_t>& chosen,
-                                                const std::string& folder) {
+Result<std::vector<InstructionCount>> count_scenes(const std::vector<std::size_t>& chosen,
+                                                   const std::string& folder) {
   std::vector<InstructionCount> counts;
   Table table{{"scene", "build", "particles", "steps", "instructions",
                "instructions per particle and step"},
@@ -95,7 +95,7 @@ int instructions(const InstructionOptions& options) {
     if (!is_renewal() && !is_stored_build(stored)) return kExitSkipped;
   }
   const Result<std::vector<InstructionCount>> counts =
-      count_all(chosen.value(), options.common.output);
+      count_scenes(chosen.value(), options.common.output);
   if (!counts) return fail("instructions", counts.errors());
   if (options.stored.empty()) return kExitOk;
   if (is_renewal()) {

@@ -109,7 +109,7 @@ class Seeks {
   std::uint64_t end_ = 0;
 };
 
-Table to_table(const Series& series, const SeeksOptions& options) {
+Table to_seek_table(const Series& series, const SeeksOptions& options) {
   const Machine machine = this_machine();
   const auto& [checkpoints, times] = series;
   const auto part = [&, &sorted = times](double of) {
@@ -125,7 +125,7 @@ Table to_table(const Series& series, const SeeksOptions& options) {
 
 int seeks(const SeeksOptions& options) {
   try {
-    const Table table = to_table(Seeks(options).run(), options);
+    const Table table = to_seek_table(Seeks(options).run(), options);
     std::cout << to_markdown(table);
     if (const Status written = write_table(table, options.output, "seeks", "# Seeks"); !written) {
       return fail(options.output, written.errors());

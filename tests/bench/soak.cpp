@@ -25,7 +25,7 @@ namespace vat::bench {
 namespace {
 
 using std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
+using SoakSeconds = std::chrono::duration<double>;
 
 struct SoakOptions {
   double seconds = 600;
@@ -46,7 +46,7 @@ constexpr double kMostHeapGrowth = 0.05;
 constexpr double kMostResidentGrowth = 0.125;
 constexpr std::size_t kSamples = 600;
 constexpr std::chrono::seconds kReturn{30};  // for connections of clients that broke off
-constexpr std::size_t kOtherFiles = 64;
+constexpr std::size_t kSoakOtherFiles = 64;
 
 class Soak {
  public:
@@ -121,18 +121,18 @@ class Soak {
       });
     }
     const auto begin = steady_clock::now();
-    const auto end = begin + Seconds(seconds);
+    const auto end = begin + SoakSeconds(seconds);
     auto next = begin;
     while (steady_clock::now() < end && server_.is_running() && tally_.faults().empty()) {
       resident_.push_back(process_figures(server_.process()).resident);
-      next +=
-          std::chrono::duration_cast<steady_clock::duration>(Seconds(options_.seconds) / kSamples);
+      next += std::chrono::duration_cast<steady_clock::duration>(SoakSeconds(options_.seconds) /
+                                                                 kSamples);
       std::this_thread::sleep_until(next);
     }
     if (!server_.is_running()) fail("the server has ended");
     stop = true;
     for (std::thread& client : clients) client.join();
-    seconds_ += Seconds(steady_clock::now() - begin).count();
+    seconds_ += SoakSeconds(steady_clock::now() - begin).count();
   }
 
   /// All have left: what they took is given back.
@@ -226,7 +226,7 @@ class Soak {
 };
 
 int soak(const SoakOptions& options) {
-  const std::size_t files = options.clients + kOtherFiles;
+  const std::size_t files = options.clients + kSoakOtherFiles;
   if (raise_open_files(files) < files) {
     std::cerr << "soak: the system does not allow " << files << " open files (ulimit -n)\n";
     return kExitFailed;

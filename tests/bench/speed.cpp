@@ -154,7 +154,7 @@ Status write_part(const Table& table, const std::string& folder, const std::stri
   return write_table(table, folder, name, heading);
 }
 
-Status write_results(const SpeedResults& results, const std::string& folder) {
+Status write_speed_results(const SpeedResults& results, const std::string& folder) {
   const auto& [rows, skips] = results;
   Status written = write_table(speed_table(rows, this_machine()), folder, "speed", "# Speed");
   if (written) written = write_table(stage_table(rows), folder, "stages", "# Time by stage");
@@ -186,7 +186,7 @@ int speed(SpeedOptions options) {
   }
   const Result<SpeedResults> results = time_all(choice.value(), options);
   if (!results) return fail("speed", results.errors());
-  Status written = write_results(results.value(), options.common.output);
+  Status written = write_speed_results(results.value(), options.common.output);
   if (written && is_drawn) written = draw_results(results.value().rows, options);
   if (!written) return fail(options.common.output, written.errors());
   std::cout << "\nwritten to " << options.common.output << '\n';

@@ -1,4 +1,5 @@
 #include "tests/bench/validate_table.h"
+#include "tests/bench/report/table.h"
 
 #include <cmath>
 #include <limits>
@@ -45,7 +46,6 @@ Real share_of_tolerance(const Row& row) {
 }
 
 Table validation_table(const std::vector<Outcome>& outcomes) {
-  constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
   Table table{{"case", "metric", "reference", "measured", "must be", "share of tolerance",
                "tolerance from", "passed", "seconds", "state hash"},
               {}};

@@ -10,7 +10,7 @@
 #include "tests/bench/report/plot.h"
 #include "tests/cli/program.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_accuracy_test {
 namespace {
 
 constexpr Method kVerlet{IntegratorId::velocity_verlet, StepControl::fixed};
@@ -141,4 +141,4 @@ TEST(BenchAccuracy, CommandWritesTablesAndPlots) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_accuracy_test

@@ -4,7 +4,7 @@
 #include "tests/cli/readers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::bench_codec_test {
 namespace {
 
 using testing::HasSubstr;
@@ -46,4 +46,4 @@ TEST(BenchCodec, TheErrorHoldsOnEveryFrame) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::bench_codec_test

@@ -8,7 +8,7 @@
 #include "tests/bench/speed/comparison.h"
 #include "tests/cli/program.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_compare_test {
 namespace {
 
 using test::ProgramResult;
@@ -132,4 +132,4 @@ TEST(BenchCompare, OtherFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_compare_test

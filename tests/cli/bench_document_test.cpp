@@ -13,7 +13,7 @@
 #include "tests/cli/program.h"
 #include "tests/validation/cases.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_document_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -219,4 +219,4 @@ TEST(BenchDocument, ShareOfTheToleranceIsOneAtItsEnd) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_document_test

@@ -9,7 +9,7 @@
 #include "tests/cli/readers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::bench_fanout_test {
 namespace {
 
 std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
@@ -64,4 +64,4 @@ TEST(BenchFanout, CountsTheFramesOfAViewer) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::bench_fanout_test

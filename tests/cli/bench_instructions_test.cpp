@@ -5,7 +5,7 @@
 #include "tests/bench/instructions/stored_counts.h"
 #include "tests/cli/program.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_instructions_test {
 namespace {
 
 using test::ProgramResult;
@@ -67,4 +67,4 @@ TEST(BenchInstructions, OtherBuildsAreSkippedWithAReason) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_instructions_test

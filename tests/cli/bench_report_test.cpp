@@ -13,7 +13,7 @@
 #include "tests/cli/program.h"
 #include "tests/validation/order.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_report_test {
 namespace {
 
 using test::read_file;
@@ -222,4 +222,4 @@ TEST(BenchOrder, OrderAndFrequencyOfKnownData) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_report_test

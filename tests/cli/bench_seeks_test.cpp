@@ -4,7 +4,7 @@
 #include "tests/cli/readers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::bench_seeks_test {
 namespace {
 
 TEST(BenchSeeks, GoesToMomentsOfARecording) {
@@ -32,4 +32,4 @@ TEST(BenchSeeks, SaysWhatTheServerRefuses) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::bench_seeks_test

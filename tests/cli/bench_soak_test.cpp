@@ -7,7 +7,7 @@
 #include "tests/cli/readers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::bench_soak_test {
 namespace {
 
 // A line's growth is found as it is; of values beside one, by least squares: with the places -1.5,
@@ -39,4 +39,4 @@ TEST(BenchSoak, ServerOutlivesClientsOfAllManners) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::bench_soak_test

@@ -18,7 +18,7 @@
 #include "tests/bench/speed/targets.h"
 #include "tests/cli/program.h"
 
-namespace vat::bench {
+namespace vat::bench::bench_speed_test {
 namespace {
 
 SpeedRow row(const std::string& name, std::size_t threads, std::size_t particles, Real seconds) {
@@ -189,4 +189,4 @@ TEST(BenchSpeedSkips, PairsRun) {
 }
 
 }  // namespace
-}  // namespace vat::bench
+}  // namespace vat::bench::bench_speed_test

@@ -5,7 +5,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
-namespace vat::test {
+namespace vat::test::bench_test {
 namespace {
 
 TEST(BenchSpeed, RowsAreConsistent) {
@@ -123,4 +123,4 @@ TEST(BenchValidate, TableIsWrittenThreeTimes) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::bench_test

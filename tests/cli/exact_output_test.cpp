@@ -11,7 +11,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
-namespace vat::test {
+namespace vat::test::exact_output_test {
 namespace {
 
 constexpr std::uint32_t kStepsPerOutput = 30;  // not the tick's 20: the program stops more often
@@ -238,4 +238,4 @@ TEST(ExactOutput, HashAndProfileNameTheInstructionSet) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::exact_output_test

@@ -11,7 +11,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
-namespace vat::test {
+namespace vat::test::interrupt_test {
 namespace {
 
 using testing::ElementsAre;
@@ -99,4 +99,4 @@ TEST(Interrupt, LeavesOnlyWholeFilesOfASeries) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::interrupt_test

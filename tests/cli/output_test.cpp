@@ -9,7 +9,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
-namespace vat::test {
+namespace vat::test::output_test {
 namespace {
 
 using testing::_;
@@ -280,4 +280,4 @@ TEST(Output, PipesAndDevicesAreWrittenAndNotReplaced) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::output_test

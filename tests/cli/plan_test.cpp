@@ -10,7 +10,7 @@
 
 #include "tests/cli/program.h"
 
-namespace vat::test {
+namespace vat::test::plan_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,4 +49,4 @@ TEST(Plan, CatalogueScenesKeepTheirPlans) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::plan_test

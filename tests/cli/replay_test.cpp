@@ -8,7 +8,7 @@
 #include "server/replay/recording.h"
 #include "tests/cli/program.h"
 
-namespace vat::test {
+namespace vat::test::replay_test {
 namespace {
 
 using testing::HasSubstr;
@@ -92,4 +92,4 @@ TEST_F(VatReplay, RefusesACommandThatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::replay_test

@@ -4,7 +4,7 @@
 
 #include "core/limits.h"
 
-namespace vat {
+namespace vat::schedule_test {
 namespace {
 
 TEST(Schedule, KeepsAStepThatDividesTheInterval) {
@@ -57,4 +57,4 @@ TEST(Schedule, TickStaysWhereItIsAWholeNumberOfSteps) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::schedule_test

@@ -6,7 +6,7 @@
 #include "server/script/server_process.h"
 #include "tests/cli/program.h"
 
-namespace vat::test {
+namespace vat::test::script_test {
 namespace {
 
 using testing::EndsWith;
@@ -108,4 +108,4 @@ TEST_F(VatScript, ATranscriptHasEveryMessage) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::script_test

@@ -7,7 +7,7 @@
 #include "tests/cli/program.h"
 #include "tests/support/certificate.h"
 
-namespace vat::test {
+namespace vat::test::script_tls_test {
 namespace {
 
 using testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST_F(VatScriptTls, OptionsWithoutUseAreRefused) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::script_tls_test

@@ -8,7 +8,7 @@
 
 #include "tests/cli/program.h"
 
-namespace vat::test {
+namespace vat::test::serve_settings_test {
 namespace {
 
 using testing::HasSubstr;
@@ -80,4 +80,4 @@ TEST(ServeSettings, AVariableThatIsNoSettingIsTold) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::serve_settings_test

@@ -9,7 +9,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
-namespace vat::test {
+namespace vat::test::simulate_test {
 namespace {
 
 using testing::ElementsAre;
@@ -203,4 +203,4 @@ TEST(Simulate, GuardFailureNamesBodyAndKeepsThePartialFile) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::simulate_test

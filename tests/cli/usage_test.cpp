@@ -5,7 +5,7 @@
 
 #include "tests/cli/program.h"
 
-namespace vat::test {
+namespace vat::test::usage_test {
 namespace {
 
 using testing::ElementsAre;
@@ -149,4 +149,4 @@ TEST(Usage, UnreadableScenesAreErrors) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::usage_test

@@ -6,7 +6,7 @@
 
 #include "tests/cli/program.h"
 
-namespace vat::test {
+namespace vat::test::validate_test {
 namespace {
 
 using testing::Contains;
@@ -56,4 +56,4 @@ TEST(Validate, TextThatIsNoJsonIsAnErrorOfTheFile) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::validate_test

@@ -7,7 +7,7 @@
 
 // What a scene gets that asks for an accuracy.
 
-namespace vat {
+namespace vat::accuracy_test {
 namespace {
 
 using namespace test;
@@ -135,4 +135,4 @@ TEST(Accuracy, DoesNotChangeTheStepsOfARunThatGoesOn) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::accuracy_test

@@ -8,7 +8,7 @@
 
 // What adaptive step control reaches, and at what cost.
 
-namespace vat {
+namespace vat::adaptive_step_test {
 namespace {
 
 using namespace test;
@@ -229,4 +229,4 @@ TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::adaptive_step_test

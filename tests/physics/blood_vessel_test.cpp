@@ -9,7 +9,7 @@
 
 // The scene of the catalogue in which liquid presses on soft tissue.
 
-namespace vat {
+namespace vat::blood_vessel_test {
 namespace {
 
 using namespace test;
@@ -75,4 +75,4 @@ TEST_F(BloodVessel, SwellsWithEachBeatAndMostWhereTheTissueIsWeak) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::blood_vessel_test

@@ -11,7 +11,7 @@
 
 // Each scene of the catalogue, for the twenty seconds that it is made for.
 
-namespace vat {
+namespace vat::catalogue_scenes_test {
 namespace {
 
 using namespace test;
@@ -80,4 +80,4 @@ std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
 INSTANTIATE_TEST_SUITE_P(All, CatalogueScene, testing::ValuesIn(catalogue()), test_name);
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::catalogue_scenes_test

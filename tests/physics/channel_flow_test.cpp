@@ -9,7 +9,7 @@
 // Start-up of the flow between two plates (LIQ-7): Couette flow, where one plate moves, and
 // Poiseuille flow, where a force drives the liquid.
 
-namespace vat {
+namespace vat::channel_flow_test {
 namespace {
 
 using namespace test;
@@ -101,4 +101,4 @@ TEST(ChannelFlow, ConvergesWithTheSpacing) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::channel_flow_test

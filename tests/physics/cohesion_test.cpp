@@ -10,7 +10,7 @@
 
 // What drops do whose particles attract each other.
 
-namespace vat {
+namespace vat::cohesion_test {
 namespace {
 
 using namespace test;
@@ -227,4 +227,4 @@ TEST(Cohesion, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::cohesion_test

@@ -11,7 +11,7 @@
 
 // Without gravity and vat nothing outside acts: what one body gains another loses, to round-off.
 
-namespace vat {
+namespace vat::conservation_test {
 namespace {
 
 using namespace test;
@@ -312,4 +312,4 @@ TEST(Conservation, MotionIsTheSameFromAMovingFrame) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::conservation_test

@@ -3,7 +3,7 @@
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/thread_runner.h"
 
-namespace vat {
+namespace vat::determinism_test {
 namespace {
 
 using namespace test;
@@ -94,4 +94,4 @@ TEST(Determinism, OfTwoSimulationsSideBySide) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::determinism_test

@@ -10,7 +10,7 @@
 
 // Friction in motion: closed forms of a block on a floor and on slopes, and what collisions keep.
 
-namespace vat {
+namespace vat::friction_test {
 namespace {
 
 using namespace test;
@@ -199,4 +199,4 @@ TEST(Friction, OfAMovingWallTakesABlockAlong) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::friction_test

@@ -7,7 +7,7 @@
 
 // A grabbed body takes its energy from the spring that holds it, and from nothing else.
 
-namespace vat {
+namespace vat::grab_test {
 namespace {
 
 using namespace test;
@@ -149,4 +149,4 @@ TEST(GrabbedBody, ALightParticleBesideAHeavyOneIsHeldGently) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::grab_test

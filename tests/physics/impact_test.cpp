@@ -8,7 +8,7 @@
 
 // Impacts and rest on penalty springs against closed forms (the cases RIG-4 to RIG-8, INT-6).
 
-namespace vat {
+namespace vat::impact_test {
 namespace {
 
 using namespace test;
@@ -227,4 +227,4 @@ TEST(Impact, SlidingBallDoesNotTurn) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::impact_test

@@ -3,7 +3,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::implicit_springs_test {
 namespace {
 
 constexpr Real kSpacing = 0.05;
@@ -86,4 +86,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, ImplicitSpringsInScenes,
                          [](const auto& solver) { return std::string(to_string(solver.param)); });
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::implicit_springs_test

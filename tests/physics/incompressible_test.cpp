@@ -10,7 +10,7 @@
 
 // The incompressible liquid: what it keeps, and how well it stands.
 
-namespace vat {
+namespace vat::incompressible_test {
 namespace {
 
 using namespace test;
@@ -353,4 +353,4 @@ TEST(Incompressible, TellsWhatItsSolvesTookAndLeft) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::incompressible_test

@@ -6,7 +6,7 @@
 
 // Solids in a weakly compressible liquid, near walls.
 
-namespace vat {
+namespace vat::liquid_solids_test {
 namespace {
 
 using namespace test;
@@ -67,4 +67,4 @@ TEST(LiquidSolids, MoveAtAWallAsBesideTheirMirrorImages) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::liquid_solids_test

@@ -9,7 +9,7 @@
 // The liquid's linear operators on a lattice against numbers of an independent computation (LIQ-4,
 // LIQ-5), and a column at rest (LIQ-3).
 
-namespace vat {
+namespace vat::liquid_test {
 namespace {
 
 using namespace test;
@@ -217,4 +217,4 @@ TEST(Liquid, ColumnComesToRestUnderItsWeight) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::liquid_test

@@ -12,7 +12,7 @@
 
 // Local step control: what it keeps, how exact it is, and what it saves.
 
-namespace vat {
+namespace vat::local_step_test {
 namespace {
 
 using namespace test;
@@ -249,4 +249,4 @@ TEST(LocalStep, SavesTheEvaluationsThatOnlyAStiffPartNeeds) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::local_step_test

@@ -8,7 +8,7 @@
 
 // No-slip walls of the weakly compressible liquid in long steps; LIQ-7-tait and LIQ-19 have theory.
 
-namespace vat {
+namespace vat::no_slip_walls_test {
 namespace {
 
 using namespace test;
@@ -110,4 +110,4 @@ TEST(NoSlipWalls, GiveTheSameBitsForAnyThreadsAndFromASnapshot) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::no_slip_walls_test

@@ -7,7 +7,7 @@
 
 // One mass on one spring: every integrator's discrete solution is known, not only its limit.
 
-namespace vat {
+namespace vat::oscillator_test {
 namespace {
 
 using namespace test;
@@ -236,4 +236,4 @@ TEST(Oscillator, FreeFallIsExact) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::oscillator_test

@@ -10,7 +10,7 @@
 
 // Contacts by projection, at steps of a display's frame and longer.
 
-namespace vat {
+namespace vat::projection_test {
 namespace {
 
 using namespace test;
@@ -313,4 +313,4 @@ TEST(Projection, GoesWithDashpotsThatStepsDoNotResolve) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::projection_test

@@ -8,7 +8,7 @@
 
 // What the walls of a sliding vat give to what they hold.
 
-namespace vat {
+namespace vat::sliding_vat_test {
 namespace {
 
 using namespace test;
@@ -102,4 +102,4 @@ TEST(SlidingVat, OffsetIsThatOfTheScene) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::sliding_vat_test

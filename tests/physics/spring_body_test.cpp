@@ -9,7 +9,7 @@
 // Bodies of several springs against closed forms and against numbers of an independent solver
 // (the cases DEF-2 to DEF-6).
 
-namespace vat {
+namespace vat::spring_body_test {
 namespace {
 
 using namespace test;
@@ -243,4 +243,4 @@ TEST(SpringBody, SpinningCubeFollowsTheReference) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::spring_body_test

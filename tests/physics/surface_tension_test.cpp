@@ -10,7 +10,7 @@
 
 // What surface tension does to drops.
 
-namespace vat {
+namespace vat::surface_tension_test {
 namespace {
 
 using namespace test;
@@ -171,4 +171,4 @@ TEST(SurfaceTension, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::surface_tension_test

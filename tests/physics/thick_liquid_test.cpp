@@ -7,7 +7,7 @@
 
 // Solids in a liquid so thick that steps do not resolve its viscosity.
 
-namespace vat {
+namespace vat::thick_liquid_test {
 namespace {
 
 using namespace test;
@@ -94,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, ThickLiquid,
                          [](const auto& solver) { return std::string(to_string(solver.param)); });
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::thick_liquid_test

@@ -7,7 +7,7 @@
 
 // Free rotation against Jacobi's solution (the cases RIG-1 to RIG-3).
 
-namespace vat {
+namespace vat::top_test {
 namespace {
 
 using namespace test;
@@ -255,4 +255,4 @@ TEST(Top, MotionDoesNotDependOnTheBodyAxes) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::top_test

@@ -8,7 +8,7 @@
 
 // Liquids that fill their world, in which particles are moved with a transport velocity.
 
-namespace vat {
+namespace vat::transport_test {
 namespace {
 
 using namespace test;
@@ -117,4 +117,4 @@ TEST(Transport, IsOfLiquidsThatFillTheirWorld) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::transport_test

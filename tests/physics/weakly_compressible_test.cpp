@@ -10,7 +10,7 @@
 
 // The weakly compressible liquid: what it keeps, and how well it stands.
 
-namespace vat {
+namespace vat::weakly_compressible_test {
 namespace {
 
 using namespace test;
@@ -184,4 +184,4 @@ TEST(WeaklyCompressible, ParticleLeavesEdgesAndCornersAsFastAsItCame) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::weakly_compressible_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace vat::script {
+namespace vat::script::pattern_test {
 namespace {
 
 using testing::HasSubstr;
@@ -153,4 +153,4 @@ TEST(Substitute, ReplacesCapturesSumsAndTexts) {
 }
 
 }  // namespace
-}  // namespace vat::script
+}  // namespace vat::script::pattern_test

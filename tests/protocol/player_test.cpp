@@ -7,7 +7,7 @@
 
 #include "protocol/frame_codec.h"
 
-namespace vat::script {
+namespace vat::script::player_test {
 namespace {
 
 using testing::AllOf;
@@ -240,4 +240,4 @@ TEST(Player, WaitsForTicks) {
 }
 
 }  // namespace
-}  // namespace vat::script
+}  // namespace vat::script::player_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace vat::script {
+namespace vat::script::websocket_url_test {
 namespace {
 
 TEST(WebSocketUrl, HasADefaultPortAndPath) {
@@ -47,4 +47,4 @@ TEST(WebSocketUrl, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace vat::script
+}  // namespace vat::script::websocket_url_test

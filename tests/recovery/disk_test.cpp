@@ -11,7 +11,7 @@
 #include "tests/recovery/client.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::disk_test {
 namespace {
 
 using testing::HasSubstr;
@@ -81,4 +81,4 @@ TEST(Disk, OneThatFillsUpRefusesCommandsAndLosesNothing) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::disk_test

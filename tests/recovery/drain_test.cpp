@@ -11,7 +11,7 @@
 #include "tests/recovery/client.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::drain_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -85,4 +85,4 @@ TEST_F(Drain, AnAdminEndsTheServerAsWell) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::drain_test

@@ -15,7 +15,7 @@
 #include "tests/support/pool_scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::kill_test {
 namespace {
 
 constexpr int kSessions = 4;
@@ -120,4 +120,4 @@ TEST_F(Kill, AtAnyMomentLosesNothingThatWasAnswered) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::kill_test

@@ -12,7 +12,7 @@
 #include "tests/support/pool_scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::ready_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -57,4 +57,4 @@ TEST(Readiness, IsToldOnceAllSessionsAreBack) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::ready_test

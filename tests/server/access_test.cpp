@@ -4,7 +4,7 @@
 
 #include "tests/server/access_fixture.h"
 
-namespace vat::test {
+namespace vat::test::access_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -198,4 +198,4 @@ TEST(AccessTokens, AreBoundedAndOldOnesMakeRoom) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::access_test

@@ -10,7 +10,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/server/transport_client.h"
 
-namespace vat::test {
+namespace vat::test::admission_race_test {
 namespace {
 
 constexpr int kAsking = 16;
@@ -223,4 +223,4 @@ TEST_F(TransportRace, ForTheLastConnectionsOfAnAddress) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::admission_race_test

@@ -11,7 +11,7 @@
 #include "server/admission/resource_budget.h"
 #include "server/net/address_counts.h"
 
-namespace vat::test {
+namespace vat::test::admission_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -174,4 +174,4 @@ TEST(AddressCounts, APlaceMayOutliveThem) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::admission_test

@@ -8,7 +8,7 @@
 #include "protocol/frame_codec.h"
 #include "tests/server/fake_connection.h"
 
-namespace vat::test {
+namespace vat::test::client_outbox_test {
 namespace {
 
 SharedFrame make_frame(const PublishedState& state) {
@@ -304,4 +304,4 @@ TEST_F(Outbox, CommandsInFlightAreBounded) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::client_outbox_test

@@ -14,7 +14,7 @@
 
 #include "server/task_runner.h"
 
-namespace vat {
+namespace vat::crowded_machine_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -106,4 +106,4 @@ TEST(CrowdedMachine, TicksSlowDownInProportion) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::crowded_machine_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat::test {
+namespace vat::test::downloads_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -47,4 +47,4 @@ TEST(Downloads, AreServedByTheSite) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::downloads_test

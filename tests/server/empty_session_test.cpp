@@ -5,7 +5,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::empty_session_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -148,4 +148,4 @@ TEST(EmptyReplay, EndsAfterAWhileThoughSessionsDoNot) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::empty_session_test

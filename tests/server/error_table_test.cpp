@@ -10,7 +10,7 @@
 
 #include "server/session/rpc_message.h"
 
-namespace vat {
+namespace vat::error_table_test {
 namespace {
 
 /// "code kind hint" of each row of PROTOCOL.md's table of errors.
@@ -62,4 +62,4 @@ TEST(ErrorTable, AReplyCarriesTheRowAndThePath) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::error_table_test

@@ -5,7 +5,7 @@
 #include "server/http/downloads.h"
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::exact_limits_test {
 namespace {
 
 /// A request as text, with so many bytes.
@@ -154,4 +154,4 @@ TEST(Downloads, AreBounded) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::exact_limits_test

@@ -9,7 +9,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::fair_share_test {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
@@ -182,4 +182,4 @@ TEST_F(FairShare, HeavySessionsShareTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::fair_share_test

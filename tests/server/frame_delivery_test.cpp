@@ -9,7 +9,7 @@
 #include "server/limits.h"
 #include "tests/server/fake_connection.h"
 
-namespace vat::test {
+namespace vat::test::frame_delivery_test {
 namespace {
 
 class Wakes final : public FrameWaker {
@@ -312,4 +312,4 @@ TEST_F(FrameDeliveryTest, EveryPathThroughTheFramesShowsTheSame) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::frame_delivery_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vat::test {
+namespace vat::test::frame_domain_test {
 namespace {
 
 constexpr Real kSteps = 65'535;
@@ -147,4 +147,4 @@ TEST(FrameDomain, WithoutAnythingToCoverTheGridIsStillOne) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::frame_domain_test

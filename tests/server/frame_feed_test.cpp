@@ -8,7 +8,7 @@
 
 #include "tests/server/fake_connection.h"
 
-namespace vat::test {
+namespace vat::test::frame_feed_test {
 namespace {
 
 constexpr std::uint32_t kEpoch = 1;
@@ -92,4 +92,4 @@ TEST(FrameFeed, FourStatesGoRound) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::frame_feed_test

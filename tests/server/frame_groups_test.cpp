@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace vat {
+namespace vat::frame_groups_test {
 namespace {
 
 using testing::ElementsAre;
@@ -26,4 +26,4 @@ TEST(FrameGroups, OfThoseWhoHaveWaitedAlikeTheLarger) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::frame_groups_test

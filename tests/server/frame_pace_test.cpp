@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vat {
+namespace vat::frame_pace_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -137,4 +137,4 @@ TEST_F(FramePaceTest, TheRateGoesDownNoFurtherThanIsAllowed) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::frame_pace_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat {
+namespace vat::frame_source_test {
 namespace {
 
 constexpr double kError = 0.005;  // [m]: a grid of 0.01 m
@@ -174,4 +174,4 @@ TEST_F(FrameSourceTest, BuildsOnWhatIsHeldAsFarAsThatGoes) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::frame_source_test

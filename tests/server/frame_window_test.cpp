@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat {
+namespace vat::frame_window_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -65,4 +65,4 @@ TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::frame_window_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/resident_bytes.h"
 
-namespace vat::test {
+namespace vat::test::heap_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -60,4 +60,4 @@ TEST(Heap, GivesBackWhatLiesBetweenPiecesInUse) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::heap_test

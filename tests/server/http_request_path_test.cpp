@@ -4,7 +4,7 @@
 
 #include "server/http/request_path.h"
 
-namespace vat {
+namespace vat::http_request_path_test {
 
 namespace {
 
@@ -45,4 +45,4 @@ TEST(RequestPath, RefusesNul) {
 
 }  // namespace
 
-}  // namespace vat
+}  // namespace vat::http_request_path_test

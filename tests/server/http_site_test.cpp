@@ -13,7 +13,7 @@
 #include "tests/server/transport_fixture.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::http_site_test {
 
 namespace {
 
@@ -179,4 +179,4 @@ TEST_F(HttpSiteTest, WithoutAViewerTheRootSaysHowToBuildIt) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::http_site_test

@@ -8,7 +8,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/patience.h"
 
-namespace vat::test {
+namespace vat::test::idle_session_test {
 namespace {
 
 double processor_seconds() {
@@ -61,4 +61,4 @@ TEST_F(PausedSessions, CostNextToNothing) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::idle_session_test

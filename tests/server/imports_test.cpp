@@ -6,7 +6,7 @@
 
 #include "server/session/base64.h"
 
-namespace vat::test {
+namespace vat::test::imports_test {
 namespace {
 
 const Imports::Clock::time_point kStart{};
@@ -58,4 +58,4 @@ TEST(Base64, IsReadWholeOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::imports_test

@@ -10,7 +10,7 @@
 #include "server/settings/serve_settings.h"
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::limit_table_test {
 namespace {
 
 struct Limit {
@@ -217,4 +217,4 @@ TEST(LimitTable, NamesTestsThatThereAre) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::limit_table_test

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace vat::test {
+namespace vat::test::log_format_test {
 namespace {
 
 std::string logged(const std::string& message, spdlog::level::level_enum level) {
@@ -48,4 +48,4 @@ TEST(JsonLog, NothingInAMessageLeavesIt) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::log_format_test

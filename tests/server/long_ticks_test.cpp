@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace vat::test {
+namespace vat::test::long_ticks_test {
 namespace {
 
 TEST(LongTicks, WhoFindsNoPlaceGetsTheFirstThatIsFree) {
@@ -79,4 +79,4 @@ TEST(LongTicks, NeverMoreAtOnceThanThereArePlaces) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::long_ticks_test

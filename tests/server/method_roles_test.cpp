@@ -5,7 +5,7 @@
 #include "server/session/method_table.h"
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::method_roles_test {
 namespace {
 
 /// Params that are read without an error, of every method that needs some.
@@ -156,4 +156,4 @@ TEST_F(MethodRoles, EveryMethodByEveryRole) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::method_roles_test

@@ -9,7 +9,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::pointer_commands_test {
 namespace {
 
 const MethodRules* rules_of(std::string_view method) {
@@ -92,4 +92,4 @@ TEST_F(SessionTest, AQuestionOfTheSameClientIsAnsweredAfterWhatItSentBefore) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::pointer_commands_test

@@ -7,7 +7,7 @@
 
 // The file of a recording: what is not one is refused, and named.
 
-namespace vat {
+namespace vat::recording_test {
 namespace {
 
 Recording make_recording() {
@@ -126,4 +126,4 @@ TEST(RecordingFile, OfAShortenedLogBeginsAtItsFirstMoment) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::recording_test

@@ -16,7 +16,7 @@
 #include "tests/support/lone_environment.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::replay_seek_test {
 namespace {
 
 const std::atomic<bool> kGoOn = false;
@@ -217,4 +217,4 @@ TEST(KeptMoments, BeyondTheirBytesLieTwiceAsFarApart) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::replay_seek_test

@@ -16,7 +16,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::replay_session_test {
 namespace {
 
 using testing::HasSubstr;
@@ -492,4 +492,4 @@ TEST_F(ReplaySession, RefusesRecordingsThatAreTooLong) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::replay_session_test

@@ -15,7 +15,7 @@
 
 // What a session did is exported, and run again elsewhere.
 
-namespace vat::test {
+namespace vat::test::replay_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -481,4 +481,4 @@ TEST_F(OldDownloads, GoThoughNobodyAsksForAnother) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::replay_test

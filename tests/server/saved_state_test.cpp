@@ -9,7 +9,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 
-namespace vat::test {
+namespace vat::test::saved_state_test {
 namespace {
 
 using testing::HasSubstr;
@@ -73,4 +73,4 @@ TEST_F(SavedStateEntries, ThatAreNoObjectAreDamaged) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::saved_state_test

@@ -11,7 +11,7 @@
 #include "server/session/error_table.h"
 #include "server/session/method_rules.h"
 
-namespace vat {
+namespace vat::schemas_test {
 namespace {
 
 /// The definitions of a file of schemas; empty where there is none.
@@ -66,4 +66,4 @@ TEST(Schemas, HaveTheErrorsOfTheTable) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::schemas_test

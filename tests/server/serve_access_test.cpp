@@ -8,7 +8,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::serve_access_test {
 namespace {
 
 constexpr const char* kVariable = "VAT_ADMIN_TOKEN";
@@ -88,4 +88,4 @@ TEST_F(ServeAccessTest, RefusesWhatCannotBeReadOrGuessesWouldFind) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::serve_access_test

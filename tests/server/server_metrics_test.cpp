@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace vat {
+namespace vat::server_metrics_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -31,9 +31,10 @@ TEST(ServerMetrics, WhatIsSoNow) {
                         "# HELP vat_build_info Version, and instruction set of all sessions.\n"
                         "# TYPE vat_build_info gauge\n"
                         "vat_build_info{version=\"1.2.3\",instruction_set=\"avx2\"} 1\n"));
-  for (const char* sample : {"\nvat_threads 4\n", "\nvat_sessions{state=\"playing\"} 2\n",
-                             "\nvat_sessions{state=\"paused\"} 1\n", "\nvat_connections 7\n",
-                             "\nvat_clients 5\n", "\nvat_particles 1200\n", "\nvat_heap_bytes 9000000\n"}) {
+  for (const char* sample :
+       {"\nvat_threads 4\n", "\nvat_sessions{state=\"playing\"} 2\n",
+        "\nvat_sessions{state=\"paused\"} 1\n", "\nvat_connections 7\n", "\nvat_clients 5\n",
+        "\nvat_particles 1200\n", "\nvat_heap_bytes 9000000\n"}) {
     EXPECT_THAT(text, HasSubstr(sample));
   }
 }
@@ -107,4 +108,4 @@ TEST(ServerMetrics, FramesByWhatBecameOfThem) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::server_metrics_test

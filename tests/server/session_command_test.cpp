@@ -3,7 +3,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_command_test {
 namespace {
 
 class SessionCommands : public SessionTest {
@@ -220,4 +220,4 @@ TEST_F(SessionCommands, GravityAndInterfacesAreOfTheSceneFromThenOn) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_command_test

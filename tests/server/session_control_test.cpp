@@ -3,7 +3,7 @@
 #include "server/session/tick_clock.h"
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_control_test {
 namespace {
 
 class SessionControl : public SessionTest {
@@ -144,4 +144,4 @@ TEST_F(SessionControl, PlayingIsNotFasterThanTheSpeed) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_control_test

@@ -11,7 +11,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 
-namespace vat::test {
+namespace vat::test::session_core_test {
 namespace {
 
 class SessionCoreTest : public testing::Test {
@@ -79,4 +79,4 @@ TEST_F(SessionCoreTest, WhoComesWhileItPausesGetsAFrameAtOnce) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_core_test

@@ -8,7 +8,7 @@
 #include "tests/server/host.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::session_edit_test {
 namespace {
 
 class SessionEdits : public SessionTest {
@@ -346,4 +346,4 @@ TEST_F(StatsWithDiagnostics, HaveTheSumsOfTheSimulation) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_edit_test

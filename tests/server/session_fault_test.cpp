@@ -2,7 +2,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_fault_test {
 namespace {
 
 class SessionFaults : public SessionTest {};
@@ -79,4 +79,4 @@ TEST_F(SessionFaults, AFaultWhileASessionIsCreatedIsAnsweredToItsId) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_fault_test

@@ -4,7 +4,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_frames_test {
 namespace {
 
 class SessionFrames : public SessionTest {
@@ -292,4 +292,4 @@ TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_frames_test

@@ -3,7 +3,7 @@
 #include "core/limits.h"
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_grab_test {
 namespace {
 
 constexpr BodyId kBall = 3;
@@ -187,4 +187,4 @@ TEST_F(SessionGrabs, ForcesOfASessionAreBoundedToo) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_grab_test

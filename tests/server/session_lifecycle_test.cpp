@@ -2,7 +2,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_lifecycle_test {
 namespace {
 
 class SessionLifecycle : public SessionTest {
@@ -334,4 +334,4 @@ TEST_F(SmallServer, HasAtMostSoManyCommandsOfAClientInFlight) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_lifecycle_test

@@ -5,7 +5,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_limits_test {
 namespace {
 
 Simulation mixed() {
@@ -189,4 +189,4 @@ TEST_F(FewSprings, SpringsOfASession) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_limits_test

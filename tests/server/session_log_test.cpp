@@ -7,7 +7,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::session_log_test {
 namespace {
 
 using Seconds = CheckpointPace::Seconds;
@@ -130,4 +130,4 @@ TEST_F(BoundedLog, WithoutACheckpointNothingIsForgotten) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_log_test

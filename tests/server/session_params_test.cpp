@@ -2,7 +2,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_params_test {
 namespace {
 
 struct BadParams {
@@ -315,4 +315,4 @@ TEST_F(GoodParameters, TheDescriptionHasAllThatTheProtocolNames) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_params_test

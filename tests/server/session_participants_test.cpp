@@ -4,7 +4,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_participants_test {
 namespace {
 
 constexpr std::uint16_t kReplaced = 4010;
@@ -192,4 +192,4 @@ TEST_F(FewParticipants, TheFirstOfTooManyWhoAreAwayLeaves) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_participants_test

@@ -2,7 +2,7 @@
 
 #include "tests/server/access_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_people_test {
 namespace {
 
 constexpr std::uint16_t kKicked = 4003;
@@ -150,4 +150,4 @@ TEST_F(SessionPeople, EverybodyMayChangeTheirName) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_people_test

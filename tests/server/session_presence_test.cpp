@@ -4,7 +4,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_presence_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -182,4 +182,4 @@ TEST_F(IdleGrabs, EndWhileTheirParticipantIsAway) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_presence_test

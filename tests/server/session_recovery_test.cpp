@@ -15,7 +15,7 @@
 #include "tests/support/patience.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::session_recovery_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -393,4 +393,4 @@ TEST_F(SessionRecoveryTest, WhatCannotBeLoggedIsRefusedAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_recovery_test

@@ -2,7 +2,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_request_test {
 namespace {
 
 struct BadText {
@@ -170,4 +170,4 @@ TEST_F(Requests, OfAConnectionThatIsGoneHaveNoEffect) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_request_test

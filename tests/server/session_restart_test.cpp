@@ -10,7 +10,7 @@
 #include "tests/server/host.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::session_restart_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -234,4 +234,4 @@ TEST(StoredByVersion1, ComesBackAsItWas) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_restart_test

@@ -7,7 +7,7 @@
 #include "tests/server/host.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::session_saved_test {
 namespace {
 
 /// Both with a data folder and without one.
@@ -349,4 +349,4 @@ INSTANTIATE_TEST_SUITE_P(Storage, SavedScenesTest, testing::Bool(),
                          [](const auto& test) { return test.param ? "Folder" : "Memory"; });
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_saved_test

@@ -3,7 +3,7 @@
 #include "protocol/scene_json.h"
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_scene_test {
 namespace {
 
 class SceneGet : public SessionTest {
@@ -139,4 +139,4 @@ TEST_F(SceneGetLimits, ValuesAreCountedAsThoseOfAMessage) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_scene_test

@@ -6,7 +6,7 @@
 
 #include "tests/server/session_fixture.h"
 
-namespace vat::test {
+namespace vat::test::session_stats_test {
 namespace {
 
 constexpr int kStepsPerTick = 10;  // of the fixture's scene
@@ -99,4 +99,4 @@ TEST_F(SessionStats, MetricsAreThoseOfAllSessions) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_stats_test

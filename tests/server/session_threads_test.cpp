@@ -8,7 +8,7 @@
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::session_threads_test {
 namespace {
 
 constexpr int kTicks = 10;
@@ -99,4 +99,4 @@ TEST_F(SessionThreads, SessionsAtOnceHaveTheBitsOfEachAlone) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::session_threads_test

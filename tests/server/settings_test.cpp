@@ -12,7 +12,7 @@
 #include "server/settings/setting_sources.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::settings_test {
 namespace {
 
 using testing::ElementsAre;
@@ -136,4 +136,4 @@ TEST_F(Settings, ThePageHasTheTable) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::settings_test

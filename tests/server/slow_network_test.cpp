@@ -10,7 +10,7 @@
 #include "tests/server/transport_client.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::slow_network_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -186,4 +186,4 @@ TEST_F(SlowNetwork, AfterABreakThreeFramesAreOldAtMost) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::slow_network_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/shaken_vat.h"
 
-namespace vat {
+namespace vat::stage_clock_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -61,4 +61,4 @@ TEST(StageClock, NothingOfAStepIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::stage_clock_test

@@ -9,7 +9,7 @@
 #include "server/session/frame_delivery.h"
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::stalled_reader_test {
 namespace {
 
 class NoWaker final : public FrameWaker {
@@ -99,4 +99,4 @@ TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::stalled_reader_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::static_files_test {
 
 namespace {
 
@@ -93,4 +93,4 @@ TEST(StaticFiles, ContentTypes) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::static_files_test

@@ -17,7 +17,7 @@
 #include "server/storage/storage.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat {
+namespace vat::storage_checkpoint_test {
 namespace {
 
 /// Bytes that do not shrink.
@@ -261,4 +261,4 @@ TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::storage_checkpoint_test

@@ -10,7 +10,7 @@
 #include "server/storage/schema.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat {
+namespace vat::storage_database_test {
 namespace {
 
 constexpr std::uint32_t kApplication = 77;
@@ -141,4 +141,4 @@ TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsToldByItsKind) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::storage_database_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace vat {
+namespace vat::storage_session_store_test {
 namespace {
 
 LogEntry entry(std::uint64_t sequence, std::uint64_t position, std::string params = "{}") {
@@ -213,4 +213,4 @@ TEST_F(StorageSessions, WhatWasWrittenSurvivesTheEndOfTheProcessAtAnyMoment) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::storage_session_store_test

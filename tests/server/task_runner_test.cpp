@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace vat {
+namespace vat::task_runner_test {
 namespace {
 
 class TaskRunnerThreads : public testing::TestWithParam<std::size_t> {};
@@ -275,4 +275,4 @@ TEST(TaskRunner, WaitingThreadsSleep) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::task_runner_test

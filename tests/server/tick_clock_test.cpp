@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat::test {
+namespace vat::test::tick_clock_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -112,4 +112,4 @@ TEST(RateMeter, DoesNotCallTheFirstTicksSlow) {
 }
 
 }  // namespace
-}  // namespace vat::test
+}  // namespace vat::test::tick_clock_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat {
+namespace vat::tick_profile_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -74,4 +74,4 @@ TEST_F(TickProfileTest, LooksMoreOftenWhereTicksGrowLonger) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::tick_profile_test

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace vat {
+namespace vat::token_test {
 namespace {
 
 std::string to_hex(const TokenHash& hash) {
@@ -48,4 +48,4 @@ TEST(Token, IsOfRandomCharactersAndNeverTheSame) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::token_test

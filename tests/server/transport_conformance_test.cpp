@@ -4,7 +4,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_conformance_test {
 
 namespace {
 
@@ -162,4 +162,4 @@ TEST_F(WebSocketConformance, UnmaskedFrames) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_conformance_test

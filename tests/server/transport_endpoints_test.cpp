@@ -6,7 +6,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_endpoints_test {
 
 namespace {
 
@@ -149,4 +149,4 @@ TEST_F(TransportEndpointsTest, APortInUseIsAnErrorThatNamesIt) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_endpoints_test

@@ -10,7 +10,7 @@
 #include "tests/support/patience.h"
 #include "tests/support/resident_bytes.h"
 
-namespace vat::test {
+namespace vat::test::transport_flood_test {
 
 namespace {
 
@@ -198,4 +198,4 @@ TEST_F(TransportFloodTest, PingsAndPongsWithoutEnd) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_flood_test

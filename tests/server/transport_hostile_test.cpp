@@ -4,7 +4,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_hostile_test {
 
 namespace {
 
@@ -222,4 +222,4 @@ TEST_F(TransportHostileTest, AHandlerThatThrowsCostsThatConnectionOnly) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_hostile_test

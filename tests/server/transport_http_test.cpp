@@ -3,7 +3,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_http_test {
 
 namespace {
 
@@ -100,4 +100,4 @@ TEST_F(TransportHttpTest, ServesRequestsBesideWebSockets) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_http_test

@@ -3,7 +3,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_message_test {
 
 namespace {
 
@@ -281,4 +281,4 @@ TEST_F(TransportMessageTest, AConnectionMayOutliveTheTransport) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_message_test

@@ -12,7 +12,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_sockets_test {
 
 namespace {
 
@@ -145,4 +145,4 @@ TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_sockets_test

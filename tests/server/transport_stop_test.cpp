@@ -3,7 +3,7 @@
 
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_stop_test {
 
 namespace {
 
@@ -138,4 +138,4 @@ TEST_F(TransportStopTest, AnAddressOfNobodyIsAnErrorThatNamesIt) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_stop_test

@@ -12,7 +12,7 @@
 #include "tests/support/certificate.h"
 #include "tests/support/temporary_folder.h"
 
-namespace vat::test {
+namespace vat::test::transport_tls_test {
 
 namespace {
 
@@ -162,4 +162,4 @@ TEST_F(TransportTlsTest, FilesThatCannotBeUsedAreNamed) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_tls_test

@@ -1,7 +1,7 @@
 #include "server/net/ws_upgrade.h"
 #include "tests/server/transport_fixture.h"
 
-namespace vat::test {
+namespace vat::test::transport_upgrade_test {
 
 namespace {
 
@@ -104,4 +104,4 @@ TEST_F(TransportUpgradeTest, ARefusedClientIsNotAnnounced) {
 
 }  // namespace
 
-}  // namespace vat::test
+}  // namespace vat::test::transport_upgrade_test

@@ -6,7 +6,7 @@
 
 #include "tests/stability/adversarial.h"
 
-namespace vat::stability {
+namespace vat::stability::adversarial_test {
 namespace {
 
 class Adversarial : public testing::TestWithParam<std::string> {};
@@ -54,4 +54,4 @@ TEST(AdversarialCases, AreManyAndDiffer) {
 }
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::adversarial_test

@@ -4,7 +4,7 @@
 
 #include "tests/stability/closed_pairs.h"
 
-namespace vat::stability {
+namespace vat::stability::conservation_test {
 namespace {
 
 TEST(ClosedPairs, KeepMomentumAndAngularMomentumOverTenThousandSteps) {
@@ -28,4 +28,4 @@ TEST(ClosedPairs, NoticeAForceFromOutside) {
 }
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::conservation_test

@@ -9,7 +9,7 @@
 
 // A scene and the same scene seen differently stay the same up to round-off.
 
-namespace vat::stability {
+namespace vat::stability::invariance_test {
 namespace {
 
 /// Two bodies of every kind in a heap, so that every pairing touches, and off the lattice so that
@@ -133,4 +133,4 @@ std::string integrator_name(const testing::TestParamInfo<IntegratorId>& info) {
 INSTANTIATE_TEST_SUITE_P(All, Invariance, testing::ValuesIn(test::kIntegrators), integrator_name);
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::invariance_test

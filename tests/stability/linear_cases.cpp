@@ -99,7 +99,7 @@ LinearCase make_pair(Real stiffness, Real mass_ratio, Real ratio) {
                       {{0, 1, {stiffness, 0}, {}}}, ratio);
 }
 
-LinearCase make_chain(Real stiffness, Real mass_ratio, Real ratio) {
+LinearCase make_linear_chain(Real stiffness, Real mass_ratio, Real ratio) {
   std::vector<Vec3> points;
   std::vector<Real> masses;
   std::vector<SpringDescription> springs;
@@ -172,7 +172,7 @@ std::vector<LinearCase> implicit_cases(bool quick) {
       for (const Real mass_ratio :
            quick ? std::vector<Real>{100} : std::vector<Real>{1, 100, 1e4}) {
         cases.push_back(make_pair(stiffness, mass_ratio, ratio));
-        cases.push_back(make_chain(stiffness, mass_ratio, ratio));
+        cases.push_back(make_linear_chain(stiffness, mass_ratio, ratio));
         cases.push_back(make_lattice(stiffness, mass_ratio, ratio));
       }
     }
@@ -202,7 +202,7 @@ std::vector<LinearCase> linear_cases(bool quick) {
       for (const Real mass_ratio :
            quick ? std::vector<Real>{1, 100} : std::vector<Real>{1, 10, 100, 1e3, 1e4}) {
         cases.push_back(make_pair(stiffness, mass_ratio, ratio));
-        cases.push_back(make_chain(stiffness, mass_ratio, ratio));
+        cases.push_back(make_linear_chain(stiffness, mass_ratio, ratio));
         if (!quick || mass_ratio > 1) cases.push_back(make_lattice(stiffness, mass_ratio, ratio));
         cases.push_back(
             make_balls("two balls on the floor", {ball, ball * mass_ratio}, stiffness, ratio));

@@ -8,16 +8,16 @@
 namespace vat::stability {
 namespace {
 
-constexpr int kEdge = 8;
+constexpr int kLatticeEdge = 8;
 
 /// For each particle of the lattice a vector along x that depends on x alone, without a mean: all
 /// waves along an axis. Some others grow whatever the step, since the kernels of density and
 /// pressure differ.
 std::vector<Vec3> make_noise(Real size) {
-  std::vector<Vec3> noise(kEdge * kEdge * kEdge);
+  std::vector<Vec3> noise(kLatticeEdge * kLatticeEdge * kLatticeEdge);
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    constexpr Real kLayers[kEdge] = {1, -0.9, 0.7, -0.8, 0.5, -0.6, 0.8, -0.7};
-    noise[i] = {size * kLayers[i % kEdge], 0, 0};
+    constexpr Real kLayers[kLatticeEdge] = {1, -0.9, 0.7, -0.8, 0.5, -0.6, 0.8, -0.7};
+    noise[i] = {size * kLayers[i % kLatticeEdge], 0, 0};
   }
   return noise;
 }
@@ -43,10 +43,10 @@ LinearCase make_liquid(bool is_viscous, Real spacings) {
   linear.scene.gravity = Vec3::Zero();
   Material& water = linear.scene.materials[0];
   water.liquid = LiquidConstants{is_viscous ? 0.0 : 100.0, is_viscous ? 100.0 : 0.0, support};
-  const Real edge = kEdge * kSpacing;
+  const Real edge = kLatticeEdge * kSpacing;
   linear.scene.periodic = Periodicity{Vec3::Zero(), Vec3::Constant(edge), {true, true, true}};
 
-  linear.rest = test::make_lattice(kEdge, kEdge, kEdge, kSpacing);
+  linear.rest = test::make_lattice(kLatticeEdge, kLatticeEdge, kLatticeEdge, kSpacing);
   for (Vec3& point : linear.rest) point += Vec3::Constant(edge / 2);
   ParticleShape shape = test::make_particles(linear.rest, 1000 * std::pow(kSpacing, 3));
   linear.scene.bodies = {test::make_body("liquid", BodyKind::liquid, "water", shape, kSpacing / 2)};

@@ -16,7 +16,7 @@ Real round_off(std::uint64_t steps) {
   return 12 * 1.2e-16 * std::sqrt(static_cast<Real>(steps)) + 1e-15;
 }
 
-Vec3 momentum_of(const Diagnostics& now) {
+Vec3 long_momentum_of(const Diagnostics& now) {
   Vec3 sum = Vec3::Zero();
   for (const BodyDiagnostics& body : now.bodies) sum += body.linear_momentum;
   return sum;
@@ -134,12 +134,12 @@ std::vector<LongRunRow> run_spring_cube(std::uint64_t steps) {
   Real elastic = 0;
   const Run run = watch_run(scene, steps, [&](const Simulation&, const Diagnostics& now) {
     if (energy.values.empty()) {
-      momentum = momentum_of(now);
+      momentum = long_momentum_of(now);
       angular_momentum = angular_momentum_of(now);
     }
     energy.values.push_back(energy_of(now));
     elastic = std::max(elastic, now.elastic_energy);
-    momentum_error = std::max(momentum_error, (momentum_of(now) - momentum).norm());
+    momentum_error = std::max(momentum_error, (long_momentum_of(now) - momentum).norm());
     // About the origin: the centre of mass flies away, and with it grows what L is the sum of.
     const Real size = 1 + now.bodies[0].center_of_mass.norm();
     angular_error =

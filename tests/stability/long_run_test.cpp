@@ -4,7 +4,7 @@
 
 #include "tests/stability/long_run.h"
 
-namespace vat::stability {
+namespace vat::stability::long_run_test {
 namespace {
 
 class LongRun : public testing::TestWithParam<std::string> {};
@@ -30,4 +30,4 @@ std::string long_run_name(const testing::TestParamInfo<std::string>& info) {
 INSTANTIATE_TEST_SUITE_P(All, LongRun, testing::ValuesIn(long_run_names()), long_run_name);
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::long_run_test

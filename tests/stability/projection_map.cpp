@@ -10,21 +10,21 @@ namespace vat::stability {
 namespace {
 
 constexpr int kBalls = 5;
-constexpr Real kRadius = 0.5;    // [m]
-constexpr Real kDrop = 0.01;     // [m]
-constexpr Real kGravity = 9.81;  // [m/s^2]
+constexpr Real kMapRadius = 0.5;    // [m]
+constexpr Real kDrop = 0.01;        // [m]
+constexpr Real kMapGravity = 9.81;  // [m/s^2]
 
-Scene make_stack(const ProjectionPoint& point) {
+Scene make_map_stack(const ProjectionPoint& point) {
   Scene scene = test::make_scene(point.integrator, point.step);
-  scene.gravity = {0, 0, -kGravity};
+  scene.gravity = {0, 0, -kMapGravity};
   scene.materials = {test::make_material("steel")};
   scene.default_interface = {.friction = 0.5, .law = InterfaceLaw::projection};
   scene.vat = Vat{{-5, -5, 0}, {5, 5, 10}, false, {}, {}};
   for (int i = 0; i < kBalls; ++i) {
     const Real mass = i % 2 == 0 ? 1 : point.mass_ratio;
     BodyDescription ball = test::make_body("ball " + std::to_string(i), BodyKind::rigid, "steel",
-                                           test::make_particles({{0, 0, 0}}, mass), kRadius);
-    ball.position.z() = kRadius * (2 * i + 1) + kDrop * (i + 1);
+                                           test::make_particles({{0, 0, 0}}, mass), kMapRadius);
+    ball.position.z() = kMapRadius * (2 * i + 1) + kDrop * (i + 1);
     scene.bodies.push_back(ball);
   }
   return scene;
@@ -36,13 +36,13 @@ Real mechanical(const Diagnostics& now) {
 
 Real greatest_overlap(const Simulation& simulation) {
   Real greatest = 0;
-  Real below = -kRadius;
+  Real below = -kMapRadius;
   for (const BodyView& body : simulation.bodies()) {
     const Real z = body.positions[0].z();
-    greatest = std::max(greatest, 2 * kRadius - (z - below));
+    greatest = std::max(greatest, 2 * kMapRadius - (z - below));
     below = z;
   }
-  return greatest / (2 * kRadius);
+  return greatest / (2 * kMapRadius);
 }
 
 }  // namespace
@@ -63,10 +63,10 @@ std::vector<ProjectionPoint> projection_points(bool quick) {
 
 ProjectionPoint measure_projection(ProjectionPoint point) {
   constexpr int kSteps = 1000;
-  Simulation simulation = test::make_simulation(make_stack(point));
+  Simulation simulation = test::make_simulation(make_map_stack(point));
   const Real start = mechanical(simulation.diagnostics());
   Real fall = 0;
-  for (const BodyView& body : simulation.bodies()) fall += body.masses[0] * kGravity * kDrop;
+  for (const BodyView& body : simulation.bodies()) fall += body.masses[0] * kMapGravity * kDrop;
   for (int n = 0; n < kSteps; ++n) {
     point.is_guarded |= simulation.advance(1).undone_steps > 0;
     const Diagnostics now = simulation.diagnostics();

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat::stability {
+namespace vat::stability::projection_map_test {
 namespace {
 
 TEST(ProjectionMap, IsStableAtAnyStepAndMassRatio) {
@@ -16,4 +16,4 @@ TEST(ProjectionMap, IsStableAtAnyStepAndMassRatio) {
 }
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::projection_map_test

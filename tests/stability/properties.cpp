@@ -21,7 +21,7 @@ bool is_finite(const Diagnostics& now) {
          });
 }
 
-std::string number(Real value) {
+std::string property_number(Real value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
@@ -63,13 +63,13 @@ std::string judge_budgets(const Scene& scene, const PropertyReport& report) {
   // impulses of hard walls either.
   if (report.undone > 0 || report.wall_stops > 0) return {};
   if (report.has_momentum_budget && report.momentum_error > report.momentum_bound) {
-    return "momentum does not add up: " + number(report.momentum_error);
+    return "momentum does not add up: " + property_number(report.momentum_error);
   }
   const IntegratorId integrator = scene.numerics.integrator;
   const bool grows = integrator == IntegratorId::explicit_euler || integrator == IntegratorId::heun;
   if (!grows && report.energy_excess > report.energy_bound) {
-    return "energy grows by " + number(report.energy_excess) + ", bound " +
-           number(report.energy_bound);
+    return "energy grows by " + property_number(report.energy_excess) + ", bound " +
+           property_number(report.energy_bound);
   }
   return {};
 }

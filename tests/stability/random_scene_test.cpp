@@ -11,7 +11,7 @@
 #include "tests/stability/random_scene.h"
 #include "tests/stability/shrink.h"
 
-namespace vat::stability {
+namespace vat::stability::random_scene_test {
 namespace {
 
 constexpr std::uint64_t kScenes = 30;
@@ -78,4 +78,4 @@ TEST(Shrinking, LeavesWhatMakesASceneFail) {
 }
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::random_scene_test

@@ -11,11 +11,10 @@
 namespace vat::stability {
 namespace {
 
-constexpr Real kPi = std::numbers::pi;
 constexpr Real kGravity = 9.81;
 
 /// The floor's part of a lattice that the whole vat holds, `layers` high.
-BodyDescription make_pool(const Vec3& cells, int layers, Real spacing) {
+BodyDescription make_random_pool(const Vec3& cells, int layers, Real spacing) {
   const Vec3 size(cells.x(), cells.y(), layers);
   BodyDescription pool{"pool", BodyKind::liquid, "water",
                        BoxShape{spacing * size / 2, spacing * size}, spacing};
@@ -41,11 +40,11 @@ SlideMotion make_motion(Random& random, Real width) {
   const Real stroke = random.scale(0.02, 0.5) * width;
   const Real acceleration = random.between(0.2, 2) * kGravity;
   return {random.chance(0.5) ? Vec3(Vec3::UnitX()) : Vec3(1, random.between(-1, 1), 0), stroke,
-          2 * kPi * std::sqrt(stroke / 2 / acceleration)};
+          2 * std::numbers::pi * std::sqrt(stroke / 2 / acceleration)};
 }
 
 Real greatest_slide(const Vat& vat) {
-  return vat.motion ? kPi * vat.motion->stroke / vat.motion->period : 0;
+  return vat.motion ? std::numbers::pi * vat.motion->stroke / vat.motion->period : 0;
 }
 
 /// Materials, contacts that bear the fall of a body through the vat, and steps.
@@ -70,11 +69,11 @@ void set_constants(Random& random, RandomVat& vat, Real spacing, PressureSolver 
 }
 
 Vec3 gravity_at(const RandomVat& vat, Real time) {
-  const Real angle = vat.tilt_angle * std::sin(2 * kPi * time / vat.tilt_period);
+  const Real angle = vat.tilt_angle * std::sin(2 * std::numbers::pi * time / vat.tilt_period);
   return Eigen::AngleAxis<Real>(angle, vat.tilt_axis) * Vec3(0, 0, -kGravity);
 }
 
-std::string text_of(const GuardEvent& event, bool failed) {
+std::string random_text_of(const GuardEvent& event, bool failed) {
   return std::string(to_string(event.cause)) + ", body " + std::to_string(event.body) + ", " +
          std::to_string(event.time) + (failed ? " s: the guard could not go on" : " s");
 }
@@ -107,7 +106,7 @@ RandomVat random_vat(std::uint64_t seed, PressureSolver solver) {
   vat.tilt_period = random.between(2, 20) * std::sqrt(spacing * cells.z() / kGravity);
   vat.scene.gravity = gravity_at(vat, 0);
   const int layers = 2 + random.below(4);
-  vat.scene.bodies = {make_pool(cells, layers, spacing)};
+  vat.scene.bodies = {make_random_pool(cells, layers, spacing)};
   const int floaters = random.below(3);
   for (int n = 0; n < std::min(floaters, static_cast<int>(cells.x() / 4) - 1); ++n) {
     vat.scene.bodies.push_back(make_floater(random, cells, layers, spacing, n));
@@ -134,7 +133,7 @@ VatReport shake(const RandomVat& vat) {
     const std::size_t outside = simulation.diagnostics().particles_outside;
     report.outside = std::max(report.outside, outside);
     report.greatest_speed = std::max(report.greatest_speed, greatest_speed(simulation) / vat.sound);
-    if (part.undone_steps > 0) report.fault = text_of(part.events.front(), part.failed);
+    if (part.undone_steps > 0) report.fault = random_text_of(part.events.front(), part.failed);
     if (outside > 0) report.fault = "a particle left the vat";
     if (!(report.greatest_speed < 1)) report.fault = "liquid became as fast as sound";
   }

@@ -7,7 +7,7 @@
 #include "core/scene/validate.h"
 #include "protocol/scene_json.h"
 
-namespace vat::stability {
+namespace vat::stability::random_vat_test {
 namespace {
 
 constexpr std::uint64_t kVats = 6;
@@ -41,4 +41,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, RandomVatsOf, testing::ValuesIn(kSolvers),
                          [](const auto& solver) { return to_string(solver.param); });
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::random_vat_test

@@ -6,7 +6,7 @@
 #include "tests/stability/step_map.h"
 #include "tests/support/scenes.h"
 
-namespace vat::stability {
+namespace vat::stability::step_map_test {
 namespace {
 
 // The start need not have the fastest mode in it alone, so that more than the limit may pass a
@@ -36,4 +36,4 @@ TEST(StepMap, HasNoLimitForImplicitSprings) {
 }
 
 }  // namespace
-}  // namespace vat::stability
+}  // namespace vat::stability::step_map_test

@@ -7,7 +7,7 @@
 #include "tests/support/shaken_vat.h"
 #include "tests/unit/allocation_counter.h"
 
-namespace vat {
+namespace vat::allocation_test {
 namespace {
 
 using namespace test;
@@ -154,4 +154,4 @@ TEST(Allocation, NoneInASteadyStepOfASurface) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::allocation_test

@@ -8,7 +8,7 @@
 
 // An applied force acts for whole steps, and its impulse is force times duration.
 
-namespace vat {
+namespace vat::applied_force_test {
 namespace {
 
 using namespace test;
@@ -145,4 +145,4 @@ TEST(AppliedForce, GivesItsImpulseInStepsThatAreTakenInParts) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::applied_force_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat {
+namespace vat::byte_io_test {
 namespace {
 
 TEST(ByteIo, IsLittleEndian) {
@@ -35,4 +35,4 @@ TEST(ByteIo, AReaderStaysAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::byte_io_test

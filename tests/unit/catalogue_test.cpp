@@ -7,7 +7,7 @@
 
 #include "tests/unit/scene_json_cases.h"
 
-namespace vat {
+namespace vat::catalogue_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -154,4 +154,4 @@ TEST_F(SceneFiles, ACatalogueNeedsItsFolder) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::catalogue_test

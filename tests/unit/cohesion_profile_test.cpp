@@ -13,7 +13,7 @@
 // Where the constants of cohesion come from: layers of liquid as a continuum, a support radius of 1
 // and A = 2, come to rest below a free surface or a wall.
 
-namespace vat {
+namespace vat::cohesion_profile_test {
 namespace {
 
 constexpr int kPerSupport = 10;  // layers
@@ -150,4 +150,4 @@ TEST(CohesionProfile, GivesTheAnglesOfWalls) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::cohesion_profile_test

@@ -11,7 +11,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::cohesion_test {
 namespace {
 
 using namespace test;
@@ -185,4 +185,4 @@ TEST(Cohesion, ReplacesTheStagesOfCurvature) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::cohesion_test

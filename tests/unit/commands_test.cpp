@@ -8,7 +8,7 @@
 
 // Commands take effect at the time they are given, and one that fails changes nothing.
 
-namespace vat {
+namespace vat::commands_test {
 namespace {
 
 using namespace test;
@@ -250,4 +250,4 @@ TEST(SetInterface, RefusesBadOnes) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::commands_test

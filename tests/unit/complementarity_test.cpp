@@ -7,7 +7,7 @@
 
 #include "tests/support/thread_runner.h"
 
-namespace vat {
+namespace vat::complementarity_test {
 namespace {
 
 /// A = B^T B with few entries in each row of B, as of particles that touch a few others.
@@ -178,4 +178,4 @@ TEST(Complementarity, EndsAtOnceWithNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::complementarity_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/shaken_vat.h"
 
-namespace vat {
+namespace vat::connections_test {
 namespace {
 
 using namespace test;
@@ -142,4 +142,4 @@ TEST(Connections, AreThinnedToSoManyAtMost) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::connections_test

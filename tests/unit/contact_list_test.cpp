@@ -10,7 +10,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
-namespace vat {
+namespace vat::contact_list_test {
 namespace {
 
 using namespace test;
@@ -212,4 +212,4 @@ TEST(ContactList, OfABodyWithItselfHasAllContactsWhileItChangesItsShape) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::contact_list_test

@@ -6,7 +6,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::contact_test {
 namespace {
 
 using test::ForceProbe;
@@ -255,4 +255,4 @@ TEST(Contact, WithAMovingWallSeesItsPlaceAndSpeed) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::contact_test

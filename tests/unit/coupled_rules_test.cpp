@@ -6,7 +6,7 @@
 
 // What liquids that walls and solids take part in cannot do yet.
 
-namespace vat {
+namespace vat::coupled_rules_test {
 namespace {
 
 using namespace test;
@@ -131,4 +131,4 @@ TEST(CoupledLiquids, ThatAttractThemselvesNeedRoomWhereverTheyAreListed) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::coupled_rules_test

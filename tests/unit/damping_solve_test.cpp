@@ -8,7 +8,7 @@
 #include "tests/support/thread_runner.h"
 #include "tests/support/totals.h"
 
-namespace vat {
+namespace vat::damping_solve_test {
 namespace {
 
 constexpr Real kStep = 0.01;
@@ -178,4 +178,4 @@ TEST(DampingSolve, GivesTheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::damping_solve_test

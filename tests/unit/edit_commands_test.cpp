@@ -8,7 +8,7 @@
 #include "tests/support/edited_scene.h"
 #include "tests/support/saved_bits.h"
 
-namespace vat {
+namespace vat::edit_commands_test {
 namespace {
 
 using namespace test;
@@ -278,4 +278,4 @@ TEST(SetMaterialOfAnEmitter, KeepsItsSupportRadius) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::edit_commands_test

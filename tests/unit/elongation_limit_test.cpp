@@ -11,7 +11,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::elongation_limit_test {
 namespace {
 
 constexpr Real kLimit = 0.1;
@@ -140,4 +140,4 @@ TEST(ElongationLimit, NeedsAMethodWithOneDrift) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::elongation_limit_test

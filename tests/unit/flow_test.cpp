@@ -12,7 +12,7 @@
 
 // Emitters and drains.
 
-namespace vat {
+namespace vat::flow_test {
 namespace {
 
 using namespace test;
@@ -386,4 +386,4 @@ TEST(Flow, TheLastLiquidMayLeaveAnIncompressibleScene) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::flow_test

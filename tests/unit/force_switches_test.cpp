@@ -7,7 +7,7 @@
 #include "tests/support/scenes.h"
 
 /// Forces that a scene turns off, and the central field.
-namespace vat {
+namespace vat::force_switches_test {
 namespace {
 
 using testing::Contains;
@@ -180,4 +180,4 @@ TEST(CentralField, KeepsAnOrbitAndItsEnergy) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::force_switches_test

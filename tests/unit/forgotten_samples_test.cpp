@@ -5,7 +5,7 @@
 
 // Samples of liquids are let go, and made again where they are asked for.
 
-namespace vat {
+namespace vat::forgotten_samples_test {
 namespace {
 
 using namespace test;
@@ -60,4 +60,4 @@ TEST(ForgottenSamples, AreNotThoseOfScenesThatFlow) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::forgotten_samples_test

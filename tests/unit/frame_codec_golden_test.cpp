@@ -6,7 +6,7 @@
 #include "protocol/json_reader.h"
 #include "tests/unit/frame_limit_cases.h"
 
-namespace vat {
+namespace vat::frame_codec_golden_test {
 namespace {
 
 using namespace frame_cases;
@@ -152,4 +152,4 @@ TEST(BadFrames, AreRefusedWithTheNamedError) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::frame_codec_golden_test

@@ -10,7 +10,7 @@
 #include "tests/unit/allocation_counter.h"
 #include "tests/unit/frame_limit_cases.h"
 
-namespace vat {
+namespace vat::frame_codec_test {
 namespace {
 
 using namespace frame_cases;
@@ -310,4 +310,4 @@ TEST(FrameCodec, SmoothMotionCostsLittle) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::frame_codec_test

@@ -9,7 +9,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"
 
-namespace vat {
+namespace vat::friction_test {
 namespace {
 
 using test::ForceProbe;
@@ -207,4 +207,4 @@ TEST(Friction, IsStableWhereItMustBeSolvedFor) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::friction_test

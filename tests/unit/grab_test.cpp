@@ -7,7 +7,7 @@
 #include "core/limits.h"
 #include "tests/support/shaken_vat.h"
 
-namespace vat {
+namespace vat::grab_test {
 namespace {
 
 using namespace test;
@@ -155,4 +155,4 @@ TEST(Grab, RefusesBadValues) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::grab_test

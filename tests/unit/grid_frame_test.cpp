@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace vat {
+namespace vat::grid_frame_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -145,4 +145,4 @@ TEST(GridFrame, ASelectionHasItsParticlesAlone) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::grid_frame_test

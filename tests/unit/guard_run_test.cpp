@@ -6,7 +6,7 @@
 
 // What the guard does to a run: which bits come out, and what the report says.
 
-namespace vat {
+namespace vat::guard_run_test {
 namespace {
 
 using namespace test;
@@ -172,4 +172,4 @@ TEST(GuardRun, AGrainIsLimitedByAnotherGrain) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::guard_run_test

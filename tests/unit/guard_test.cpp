@@ -10,7 +10,7 @@
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/thread_runner.h"
 
-namespace vat {
+namespace vat::guard_test {
 namespace {
 
 using namespace test;
@@ -275,4 +275,4 @@ TEST(Guard, GoesBackToTheStartOfTheCall) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::guard_test

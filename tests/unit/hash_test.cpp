@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vat {
+namespace vat::hash_test {
 namespace {
 
 template <class... Values>
@@ -48,4 +48,4 @@ TEST(Hash, AChangeOfTheHighestBitReachesTheLowHalf) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::hash_test

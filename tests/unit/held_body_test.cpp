@@ -3,7 +3,7 @@
 #include "tests/support/scenes.h"
 
 /// Rigid bodies that are held, for ever or up to a time.
-namespace vat {
+namespace vat::held_body_test {
 namespace {
 
 constexpr Real kGravity = 10;
@@ -134,4 +134,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, HeldBody, testing::ValuesIn(test::kIntegra
                          [](const auto& integrator) { return to_string(integrator.param); });
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::held_body_test

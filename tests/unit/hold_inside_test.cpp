@@ -11,7 +11,7 @@
 #include "tests/support/shaken_vat.h"
 
 /// The planes behind the walls' springs.
-namespace vat {
+namespace vat::hold_inside_test {
 namespace {
 
 constexpr Real kStep = 1e-3;
@@ -310,4 +310,4 @@ TEST(HoldInsideBits, AreTheSameForAnyThreadsAndSnapshots) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::hold_inside_test

@@ -9,7 +9,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"
 
-namespace vat {
+namespace vat::implicit_springs_test {
 namespace {
 
 constexpr Real kSpacing = 0.05;
@@ -257,4 +257,4 @@ TEST(ImplicitSprings, ReportWhereRoundingLeavesMore) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::implicit_springs_test

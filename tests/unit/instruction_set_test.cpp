@@ -9,7 +9,7 @@
 #include "core/simulation.h"
 #include "tests/support/shaken_vat.h"
 
-namespace vat {
+namespace vat::instruction_set_test {
 namespace {
 
 using testing::AllOf;
@@ -79,4 +79,4 @@ TEST(InstructionSet, ASimulationGoesOnWithItsOwn) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::instruction_set_test

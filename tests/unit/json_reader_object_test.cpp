@@ -5,7 +5,7 @@
 
 #include "protocol/json_reader.h"
 
-namespace vat {
+namespace vat::json_reader_object_test {
 namespace {
 
 using testing::HasSubstr;
@@ -221,4 +221,4 @@ TEST(JsonPointer, EscapesKeysOnly) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::json_reader_object_test

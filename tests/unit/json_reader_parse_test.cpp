@@ -3,7 +3,7 @@
 
 #include "protocol/json_reader.h"
 
-namespace vat {
+namespace vat::json_reader_parse_test {
 namespace {
 
 using testing::HasSubstr;
@@ -152,4 +152,4 @@ TEST(ParseJson, MessagesAreShortPlainText) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::json_reader_parse_test

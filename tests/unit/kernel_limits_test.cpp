@@ -12,7 +12,7 @@
 #include "core/scene/step_limits.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::kernel_limits_test {
 namespace {
 
 // The stable steps of liquids with a smoothing kernel are those of the shortest waves on a cubic
@@ -179,4 +179,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelLimits,
                          [](const auto& kernel) { return std::string(to_string(kernel.param)); });
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::kernel_limits_test

@@ -8,7 +8,7 @@
 #include "core/kernels/spiky.h"
 #include "core/kernels/viscosity_kernel.h"
 
-namespace vat {
+namespace vat::kernel_test {
 namespace {
 
 constexpr Real kSupports[] = {0.04, 1.0, 3.5};
@@ -133,4 +133,4 @@ TEST(Kernel, LaplacianIsThatOfTheKernelAndNeverNegative) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::kernel_test

@@ -7,7 +7,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::lennard_jones_test {
 namespace {
 
 using namespace test;
@@ -139,4 +139,4 @@ TEST(LennardJones, KeepsEnergyAndMomentumInAllControls) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::lennard_jones_test

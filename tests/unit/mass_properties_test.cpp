@@ -7,7 +7,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::mass_properties_test {
 namespace {
 
 SampledBody make_sample(std::vector<Vec3> positions, std::vector<Real> masses, Real radius) {
@@ -97,4 +97,4 @@ TEST(MassProperties, OfACylinderConverge) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::mass_properties_test

@@ -6,7 +6,7 @@
 
 // Deformable bodies that become liquid.
 
-namespace vat {
+namespace vat::melting_test {
 namespace {
 
 using namespace test;
@@ -174,4 +174,4 @@ TEST(Melting, LimitsStepsByTheLiquidToBe) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::melting_test

@@ -9,7 +9,7 @@
 #include "core/scene/validate_parts.h"
 #include "tests/unit/mesh_shapes.h"
 
-namespace vat {
+namespace vat::mesh_test {
 namespace {
 
 /// An octahedron: its faces are the planes |x| + |y| + |z| = 1.
@@ -137,4 +137,4 @@ TEST(Mesh, TooMuchWorkIsRefusedBeforeItIsDone) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::mesh_test

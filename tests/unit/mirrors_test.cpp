@@ -6,7 +6,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::mirrors_test {
 namespace {
 
 using namespace test;
@@ -82,4 +82,4 @@ TEST(Mirrors, ReflectPlacesAtMovingWalls) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::mirrors_test

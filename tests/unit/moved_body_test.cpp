@@ -15,7 +15,7 @@
 #include "tests/support/edited_scene.h"
 #include "tests/support/saved_bits.h"
 
-namespace vat {
+namespace vat::moved_body_test {
 namespace {
 
 using namespace test;
@@ -284,4 +284,4 @@ TEST(MovedBody, KeepsAndForgetsWhatCompilingAllKeepsAndForgets) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::moved_body_test

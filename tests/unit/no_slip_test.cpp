@@ -12,7 +12,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::no_slip_test {
 namespace {
 
 using namespace test;
@@ -178,4 +178,4 @@ TEST(NoSlip, CostsNothingWhereItDoesNothing) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::no_slip_test

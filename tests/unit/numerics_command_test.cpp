@@ -8,7 +8,7 @@
 #include "tests/support/edited_scene.h"
 #include "tests/support/saved_bits.h"
 
-namespace vat {
+namespace vat::numerics_command_test {
 namespace {
 
 using namespace test;
@@ -177,4 +177,4 @@ TEST(SetNumerics, OfASceneWithEmittersKeepTheStep) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::numerics_command_test

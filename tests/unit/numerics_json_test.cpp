@@ -4,7 +4,7 @@
 
 // The numerics of a scene file: what may stand together, and what comes back.
 
-namespace vat {
+namespace vat::numerics_json_test {
 namespace {
 
 /// An oscillator with these numerics.
@@ -69,4 +69,4 @@ TEST(NumericsJson, LocalControlNeedsVelocityVerlet) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::numerics_json_test

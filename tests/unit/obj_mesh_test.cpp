@@ -6,7 +6,7 @@
 #include "core/limits.h"
 #include "tests/unit/scene_json_cases.h"
 
-namespace vat {
+namespace vat::obj_mesh_test {
 namespace {
 
 using scene_cases::lines;
@@ -78,4 +78,4 @@ TEST(ReadObj, BoundsTheSizeOfTheMesh) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::obj_mesh_test

@@ -8,7 +8,7 @@
 
 // A command that runs out of memory changes nothing, wherever it does.
 
-namespace vat {
+namespace vat::out_of_memory_test {
 namespace {
 
 using namespace test;
@@ -172,4 +172,4 @@ TEST(OutOfMemory, AdvanceThatTheGuardWatchesDoesAllOrNothing) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::out_of_memory_test

@@ -3,7 +3,7 @@
 #include "tests/support/scenes.h"
 
 /// What walls and other bodies do to a body, as the diagnostics tell it.
-namespace vat {
+namespace vat::outer_force_test {
 namespace {
 
 constexpr Real kRadius = 0.05;
@@ -86,4 +86,4 @@ TEST(OuterForce, OnAHeldBodyIsWhatHoldsItsLoad) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::outer_force_test

@@ -11,7 +11,7 @@
 
 // Clusters of targets and their candidates against all pairs, tried one by one.
 
-namespace vat {
+namespace vat::pair_clusters_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -203,4 +203,4 @@ TEST(PairClusters, GiveEachTargetItsOwnSums) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::pair_clusters_test

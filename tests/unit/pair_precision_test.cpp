@@ -9,7 +9,7 @@
 
 // What single precision is worth, and where double takes its place.
 
-namespace vat {
+namespace vat::pair_precision_test {
 namespace {
 
 using namespace test;
@@ -64,4 +64,4 @@ TEST(PairPrecision, IsDoubleWhereParticlesAreFurtherApart) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::pair_precision_test

@@ -8,7 +8,7 @@
 
 // Pairs and densities of places that have not changed are not found again.
 
-namespace vat {
+namespace vat::pair_reuse_test {
 namespace {
 
 using namespace test;
@@ -58,4 +58,4 @@ TEST(PairReuse, SeesTheLeastMotionOfLiquidsSolidsAndWalls) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::pair_reuse_test

@@ -11,7 +11,7 @@
 
 // Every sum with every instruction set against plain sums in double precision.
 
-namespace vat {
+namespace vat::pair_sums_test {
 namespace {
 
 constexpr Real kSupport = 0.3;
@@ -319,4 +319,4 @@ TEST(PairSums, OfTheBaselineAreTheSameBitsWithoutVectors) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::pair_sums_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/thread_runner.h"
 
-namespace vat {
+namespace vat::parallel_test {
 namespace {
 
 using test::ThreadRunner;
@@ -54,4 +54,4 @@ TEST(Parallel, ASingleBlockStaysOnTheCallersThread) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::parallel_test

@@ -7,7 +7,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"
 
-namespace vat {
+namespace vat::periodic_test {
 namespace {
 
 using namespace test;
@@ -334,4 +334,4 @@ TEST(Periodic, AxesHaveNoWalls) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::periodic_test

@@ -11,7 +11,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::plane_physics_test {
 namespace {
 
 using namespace test;
@@ -159,4 +159,4 @@ TEST(PlanePhysics, NothingLeavesItInAThousandSteps) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::plane_physics_test

@@ -4,7 +4,7 @@
 
 /// Scenes of two dimensions stay in their plane, and periodic ones keep periods that are long
 /// enough, whatever users do.
-namespace vat {
+namespace vat::plane_test {
 namespace {
 
 BodyDescription sampled(const char* name, BodyKind kind, const char* material, Shape shape,
@@ -122,4 +122,4 @@ TEST(PeriodCommands, ThatReachTooFarAreRefused) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::plane_test

@@ -11,7 +11,7 @@
 
 // What pressures and motions do in one place of a liquid with solids and walls.
 
-namespace vat {
+namespace vat::pressure_response_test {
 namespace {
 
 using namespace test;
@@ -201,4 +201,4 @@ TEST(PressureResponse, KeepsMomentumWithoutWalls) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::pressure_response_test

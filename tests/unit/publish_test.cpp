@@ -7,7 +7,7 @@
 #include "tests/support/scenes.h"
 #include "tests/unit/allocation_counter.h"
 
-namespace vat {
+namespace vat::publish_test {
 namespace {
 
 using namespace test;
@@ -150,4 +150,4 @@ TEST(Publish, ARigidBodysRadiusReachesItsFarthestParticle) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::publish_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::restitution_test {
 namespace {
 
 using namespace test;
@@ -147,4 +147,4 @@ TEST(Restitution, IsThatOfAFallOnTheFloor) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::restitution_test

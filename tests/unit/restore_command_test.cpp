@@ -8,7 +8,7 @@
 #include "tests/support/edited_scene.h"
 #include "tests/support/saved_bits.h"
 
-namespace vat {
+namespace vat::restore_command_test {
 namespace {
 
 using namespace test;
@@ -141,4 +141,4 @@ TEST_F(RestoredBody, IsRefusedByWhatIsWrongAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::restore_command_test

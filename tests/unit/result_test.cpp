@@ -4,7 +4,7 @@
 
 #include <memory>
 
-namespace vat {
+namespace vat::result_test {
 namespace {
 
 const Error kError{"out_of_range", "/bodies/0/radius", "must be above 0"};
@@ -50,4 +50,4 @@ TEST(ResultDeathTest, WrongUseIsAnErrorOfTheProgram) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::result_test

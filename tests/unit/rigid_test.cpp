@@ -7,7 +7,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::rigid_test {
 namespace {
 
 using test::ForceProbe;
@@ -189,4 +189,4 @@ TEST(Rigid, ASingleParticleSpinsAsASphere) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::rigid_test

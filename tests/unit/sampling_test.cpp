@@ -10,7 +10,7 @@
 
 #include "tests/unit/mesh_shapes.h"
 
-namespace vat {
+namespace vat::sampling_test {
 namespace {
 
 Material steel() {
@@ -198,4 +198,4 @@ TEST(Sampling, GivesParticlesWithoutMassesWhatTheBodySays) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::sampling_test

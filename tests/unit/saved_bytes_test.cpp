@@ -9,7 +9,7 @@
 
 // The reader of saved simulations: whatever is not what a snapshot gave is refused, and named.
 
-namespace vat {
+namespace vat::saved_bytes_test {
 namespace {
 
 using namespace test;
@@ -126,4 +126,4 @@ TEST(SavedBytes, CutAndSignedAnewAreRefused) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::saved_bytes_test

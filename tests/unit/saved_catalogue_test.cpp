@@ -8,7 +8,7 @@
 
 // Each scene of the catalogue goes on from bytes as if nothing had been, from its start and later.
 
-namespace vat {
+namespace vat::saved_catalogue_test {
 namespace {
 
 using namespace test;
@@ -27,4 +27,4 @@ TEST(SavedCatalogue, GoesOnFromItsBytes) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::saved_catalogue_test

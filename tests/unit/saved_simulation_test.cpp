@@ -8,7 +8,7 @@
 // Snapshots that outlive their process, at moments at which there is more than places and
 // velocities to go on from.
 
-namespace vat {
+namespace vat::saved_simulation_test {
 namespace {
 
 using namespace test;
@@ -195,4 +195,4 @@ TEST(SavedSimulation, GoesBackToAStartMadeAnew) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::saved_simulation_test

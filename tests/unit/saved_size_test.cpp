@@ -10,7 +10,7 @@
 
 // What a saved simulation takes, and the bound that is told before it is read.
 
-namespace vat {
+namespace vat::saved_size_test {
 namespace {
 
 struct Size {
@@ -83,4 +83,4 @@ TEST(SavedSizes, OfTheCatalogueAreBelowTheGreatest) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::saved_size_test

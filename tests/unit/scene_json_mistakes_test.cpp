@@ -5,7 +5,7 @@
 
 #include "tests/unit/scene_json_cases.h"
 
-namespace vat {
+namespace vat::scene_json_mistakes_test {
 namespace {
 
 constexpr const char* kFolder = VAT_SOURCE_DIR "/tests/golden/errors/";
@@ -115,4 +115,4 @@ TEST_F(SceneMistakesAlone, InLists) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::scene_json_mistakes_test

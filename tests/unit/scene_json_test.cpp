@@ -7,7 +7,7 @@
 #include "core/simulation.h"
 #include "tests/unit/scene_json_cases.h"
 
-namespace vat {
+namespace vat::scene_json_test {
 namespace {
 
 using namespace scene_cases;
@@ -311,4 +311,4 @@ TEST(SceneJson, AnInterfaceOnItsOwnIsReadAtItsPath) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::scene_json_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/scene_json_cases.h"
 
-namespace vat {
+namespace vat::scene_rules_test {
 namespace {
 
 using namespace scene_cases;
@@ -50,4 +50,4 @@ INSTANTIATE_TEST_SUITE_P(Files, SceneRules, testing::Values("world-rules.json", 
                          });
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::scene_rules_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::settling_test {
 namespace {
 
 using namespace test;
@@ -52,4 +52,4 @@ TEST(Settling, IsTowardsTheVelocityOfTheVat) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::settling_test

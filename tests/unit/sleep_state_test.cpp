@@ -6,7 +6,7 @@
 
 // Sleep as part of the state.
 
-namespace vat {
+namespace vat::sleep_state_test {
 namespace {
 
 using namespace test;
@@ -189,4 +189,4 @@ TEST(SleepState, NoAllocationWhereAllSleep) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::sleep_state_test

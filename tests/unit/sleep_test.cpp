@@ -4,7 +4,7 @@
 
 // What falls asleep, and what must not.
 
-namespace vat {
+namespace vat::sleep_test {
 namespace {
 
 using namespace test;
@@ -300,4 +300,4 @@ TEST(Sleep, WhatIsFarFromTheSleepersDoesNotNoticeThem) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::sleep_test

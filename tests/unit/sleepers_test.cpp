@@ -9,7 +9,7 @@
 
 // The columns of some of a model's bodies.
 
-namespace vat {
+namespace vat::sleepers_test {
 namespace {
 
 using namespace test;
@@ -171,4 +171,4 @@ TEST(Sleepers, LiquidsKeepTheirConstants) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::sleepers_test

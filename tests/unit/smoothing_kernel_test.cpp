@@ -8,7 +8,7 @@
 
 #include "core/scene/scene.h"
 
-namespace vat {
+namespace vat::smoothing_kernel_test {
 namespace {
 
 constexpr Real kSupport = 0.3;
@@ -85,4 +85,4 @@ TEST(SmoothingKernel, LatticeSumsAreThoseOfTheDossier) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::smoothing_kernel_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/shaken_vat.h"
 
-namespace vat {
+namespace vat::snapshot_test {
 namespace {
 
 using namespace test;
@@ -132,4 +132,4 @@ TEST(Snapshot, OutlivesTheChangesAndItsCopies) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::snapshot_test

@@ -9,7 +9,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::spring_changes_test {
 namespace {
 
 constexpr Real kLength = 2;  // [m] at the start
@@ -250,4 +250,4 @@ TEST(SpringChanges, AreCheckedAtTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::spring_changes_test

@@ -5,7 +5,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::springs_test {
 namespace {
 
 using test::ForceProbe;
@@ -103,4 +103,4 @@ TEST(Springs, DoNotMoveFixedParticles) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::springs_test

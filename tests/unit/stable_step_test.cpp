@@ -10,7 +10,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::stable_step_test {
 
 void PrintTo(IntegratorId integrator, std::ostream* out) {
   *out << to_string(integrator);
@@ -95,4 +95,4 @@ TEST_P(StableStepOf, IsWhereASimulationBeginsToGrow) {
 INSTANTIATE_TEST_SUITE_P(Every, StableStepOf, testing::ValuesIn(test::kIntegrators));
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::stable_step_test

@@ -9,7 +9,7 @@
 #include "tests/support/scenes.h"
 
 /// How fields, jitter and the number of dimensions change what a body starts with.
-namespace vat {
+namespace vat::start_test {
 namespace {
 
 Material water() {
@@ -182,4 +182,4 @@ TEST(Start, OfTwoDimensionsALatticeHasSpringsInThePlane) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::start_test

@@ -7,7 +7,7 @@
 
 // The hash covers all that the next steps start from: equal hashes have equal futures.
 
-namespace vat {
+namespace vat::state_hash_test {
 namespace {
 
 using namespace test;
@@ -166,4 +166,4 @@ TEST(StateHash, EqualHashesHaveEqualFutures) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::state_hash_test

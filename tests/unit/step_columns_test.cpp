@@ -15,7 +15,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::step_columns_test {
 namespace {
 
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
@@ -362,4 +362,4 @@ TEST(StepColumns, OfACollapsedLiquidAreCutOffAndFailTheStep) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::step_columns_test

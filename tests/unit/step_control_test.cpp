@@ -9,7 +9,7 @@
 #include "core/scene/error_model.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::step_control_test {
 namespace {
 
 using namespace test;
@@ -86,4 +86,4 @@ TEST(ErrorModel, StepsOfItsPhaseMakeItsError) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::step_control_test

@@ -7,7 +7,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::step_plan_test {
 namespace {
 
 using test::make_body;
@@ -200,4 +200,4 @@ TEST(StepPlanDeathTest, AColumnIsReadOnlyOnceWritten) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::step_plan_test

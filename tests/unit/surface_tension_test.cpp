@@ -11,7 +11,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::surface_tension_test {
 namespace {
 
 using namespace test;
@@ -225,4 +225,4 @@ TEST(SurfaceTension, IsReadFromAScene) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::surface_tension_test

@@ -4,7 +4,7 @@
 
 #include "core/forces/weakly_compressible_pairs.h"
 
-namespace vat {
+namespace vat::tait_pressure_test {
 namespace {
 
 TEST(TaitPressure, IsTaitsEquationUpToThreePercent) {
@@ -26,4 +26,4 @@ TEST(TaitPressure, GoesOnAlongItsTangentFromTwiceTheDensity) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::tait_pressure_test

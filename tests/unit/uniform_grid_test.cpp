@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace vat {
+namespace vat::uniform_grid_test {
 namespace {
 
 std::vector<Vec3> make_random_points(std::size_t count, Real low, Real high, unsigned seed) {
@@ -173,4 +173,4 @@ TEST(UniformGrid, GrowsItsCellsWherePointsAreSparse) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::uniform_grid_test

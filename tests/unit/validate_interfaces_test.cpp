@@ -8,7 +8,7 @@
 
 // What each law of an interface needs.
 
-namespace vat {
+namespace vat::validate_interfaces_test {
 namespace {
 
 using namespace test;
@@ -140,4 +140,4 @@ TEST(ValidateInterfaces, HoldForWhatCommandsAdd) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::validate_interfaces_test

@@ -12,7 +12,7 @@
 #include "core/simulation.h"
 #include "tests/unit/mesh_shapes.h"
 
-namespace vat {
+namespace vat::validate_test {
 namespace {
 
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
@@ -496,4 +496,4 @@ TEST(Validate, ChecksAnInterfaceAlone) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::validate_test

@@ -8,7 +8,7 @@
 #include "core/limits.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::vat_by_hand_test {
 namespace {
 
 constexpr Real kV = kMaxHandSpeed;
@@ -239,4 +239,4 @@ TEST(MovedVat, IsRefusedWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::vat_by_hand_test

@@ -9,7 +9,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::viscous_images_test {
 namespace {
 
 using namespace test;
@@ -121,4 +121,4 @@ TEST(ViscousImages, CostNothingWhereTheyDoNothing) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::viscous_images_test

@@ -11,7 +11,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::volume_test {
 namespace {
 
 constexpr std::array<Index, 8> kCorners{0, 1, 2, 3, 4, 5, 6, 7};
@@ -172,4 +172,4 @@ TEST(Volume, IsNotKeptWhereSpringsTear) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::volume_test

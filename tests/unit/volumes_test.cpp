@@ -9,7 +9,7 @@
 #include "core/scene/validate.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::volumes_test {
 namespace {
 
 using namespace test;
@@ -116,4 +116,4 @@ TEST(StepLimits, OfCoupledLiquidsHaveNoContacts) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::volumes_test

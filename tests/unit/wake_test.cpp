@@ -6,7 +6,7 @@
 
 // What wakes bodies that sleep.
 
-namespace vat {
+namespace vat::wake_test {
 namespace {
 
 using namespace test;
@@ -275,4 +275,4 @@ TEST(Wake, NotByCommandsThatFail) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::wake_test

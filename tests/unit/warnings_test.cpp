@@ -8,7 +8,7 @@
 #include "core/scene/validate.h"
 #include "tests/support/scenes.h"
 
-namespace vat {
+namespace vat::warnings_test {
 namespace {
 
 /// All but that of run time, for scenes here are of any size.
@@ -433,4 +433,4 @@ TEST(Warnings, NameIdleSettingsOfSurfaces) {
 }
 
 }  // namespace
-}  // namespace vat
+}  // namespace vat::warnings_test

@@ -14,6 +14,8 @@
 
 namespace vat::validation {
 
+inline constexpr Real kGravity = 9.81;  ///< standard of the reference cases [m/s^2]
+
 struct Settings {
   bool quick = false;            ///< fewer or shorter runs, a few seconds a case
   TaskRunner* runner = nullptr;  ///< for all runs of the case; null: serial

@@ -6,7 +6,7 @@ namespace vat::validation {
 
 namespace {
 
-std::vector<Case> collect() {
+std::vector<Case> collect_cases() {
   std::vector<Case> cases;
   for (const auto group : {oscillator_cases,
                            chain_cases,
@@ -47,7 +47,7 @@ std::vector<Case> collect() {
 }  // namespace
 
 const std::vector<Case>& all_cases() {
-  static const std::vector<Case> kCases = collect();
+  static const std::vector<Case> kCases = collect_cases();
   return kCases;
 }
 

@@ -12,7 +12,7 @@ namespace vat::validation {
 
 namespace {
 
-std::string text_of(const Errors& errors) {
+std::string run_text_of(const Errors& errors) {
   std::string text;
   for (const Error& error : errors) {
     text += (text.empty() ? "" : "; ") + error.path + ": " + error.message;
@@ -22,7 +22,7 @@ std::string text_of(const Errors& errors) {
 
 template <class T>
 T value_of(Result<T> result, const std::string& what) {
-  if (!result) throw std::invalid_argument(what + ": " + text_of(result.errors()));
+  if (!result) throw std::invalid_argument(what + ": " + run_text_of(result.errors()));
   return std::move(result).value();
 }
 

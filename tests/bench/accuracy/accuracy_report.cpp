@@ -10,8 +10,6 @@ namespace vat::bench {
 
 namespace {
 
-constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
-
 /// Errors above the size of the problem say nothing but that the method failed.
 std::vector<std::array<Real, 2>> points_of(const std::vector<Solution>& solutions,
                                            double (*cost)(const Solution&)) {

@@ -24,7 +24,7 @@ Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return std::sqrt(sum);
 }
 
-Scene load(const std::string& name) {
+Scene load_catalogue(const std::string& name) {
   Result<Scene> scene = read_scene_file(VAT_DEFAULT_SCENES_DIR "/" + name + ".json");
   if (!scene) throw std::runtime_error(name + " is not a scene of the catalogue");
   return std::move(scene).value();
@@ -35,7 +35,7 @@ Scene load(const std::string& name) {
 Problem first_impacts(const std::string& name, TaskRunner* runner) {
   Problem problem{.title = "Scene " + name + ", its first 0.3 s",
                   .error_name = "centres of mass against a fine run, in ways from the start",
-                  .scene = load(name),
+                  .scene = load_catalogue(name),
                   .end = 0.3,
                   .step_counts = doubled(75, 5),
                   .longest_step_count = 75,

@@ -8,8 +8,6 @@ namespace vat::bench {
 
 namespace {
 
-constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
-
 /// Solutions with an error above the size of the problem have not begun to converge.
 bool is_converging(const Solution& solution) {
   return solution.failure.empty() && solution.error <= 1;

@@ -10,8 +10,6 @@ namespace vat::bench {
 
 namespace {
 
-constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
-
 struct Variation {
   const char* ending;
   const char* first_law;

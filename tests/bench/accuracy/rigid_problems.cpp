@@ -10,7 +10,7 @@ using validation::Run;
 
 namespace {
 
-Problem top(TaskRunner*) {
+Problem spinning_top(TaskRunner*) {
   return {.title = "Free asymmetric top",
           .error_name = "attitude at t = 10 s, in radians",
           .scene = validation::load_scene("RIG-1"),
@@ -120,9 +120,9 @@ Problem hard_slide(TaskRunner* runner) {
 }  // namespace
 
 std::vector<ProblemEntry> rigid_problems() {
-  return {{"RIG-1", top},       {"RIG-4", bounce},
-          {"RIG-5", collision}, {"RIG-5-projection", hard_collision},
-          {"RIG-7", slide},     {"RIG-7-projection", hard_slide}};
+  return {{"RIG-1", spinning_top}, {"RIG-4", bounce},
+          {"RIG-5", collision},    {"RIG-5-projection", hard_collision},
+          {"RIG-7", slide},        {"RIG-7-projection", hard_slide}};
 }
 
 }  // namespace vat::bench

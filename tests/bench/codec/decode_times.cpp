@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWeb = VAT_SOURCE_DIR "/web";
 constexpr int kRounds = 3;  // and one before
-constexpr Real kMillisecond = 1e-3;
+constexpr Real kDecodeMillisecond = 1e-3;
 
 /// A row is a decoder, its version, "delta" or "key", and a time [ms]; those of a decoder follow
 /// each other.
@@ -34,7 +34,7 @@ Result<std::vector<DecodeTimes>> read_times(const fs::path& file) {
       return Error{"format", file.string(), "\"" + row[3] + "\" is no time"};
     }
     auto& times = row[2] == "key" ? all.back().keys : all.back().deltas;
-    times.push_back(kMillisecond * milliseconds);
+    times.push_back(kDecodeMillisecond * milliseconds);
   }
   return all;
 }

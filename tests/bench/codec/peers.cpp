@@ -198,7 +198,7 @@ Positions positions_of(const GridFrame& frame) {
   return positions;
 }
 
-PeerResult measure(const Peer& peer, const std::vector<Positions>& frames) {
+PeerResult measure_peer(const Peer& peer, const std::vector<Positions>& frames) {
   using Clock = std::chrono::steady_clock;
   const auto seconds = [](Clock::time_point from) {
     return std::chrono::duration<Real>(Clock::now() - from).count();
@@ -231,21 +231,21 @@ std::vector<PeerResult> measure_peers(const std::vector<GridFrame>& frames) {
   std::vector<Positions> positions;
   for (const GridFrame& frame : frames) positions.push_back(positions_of(frame));
   if (positions.size() < 2 || positions.front().empty()) return {};
-  std::vector<PeerResult> results{measure(raw_peer(), positions)};
+  std::vector<PeerResult> results{measure_peer(raw_peer(), positions)};
 #ifdef VAT_HAS_ZSTD
-  results.push_back(measure(zstd_peer(), positions));
-  results.push_back(measure(zstd_delta_peer(), positions));
+  results.push_back(measure_peer(zstd_peer(), positions));
+  results.push_back(measure_peer(zstd_delta_peer(), positions));
 #else
   results.push_back(missing("16 bits, zstd"));
   results.push_back(missing("differences, zstd"));
 #endif
 #ifdef VAT_HAS_DRACO
-  results.push_back(measure(draco_peer(), positions));
+  results.push_back(measure_peer(draco_peer(), positions));
 #else
   results.push_back(missing("Draco"));
 #endif
 #ifdef VAT_HAS_MESHOPTIMIZER
-  results.push_back(measure(meshoptimizer_peer(), positions));
+  results.push_back(measure_peer(meshoptimizer_peer(), positions));
 #else
   results.push_back(missing("meshoptimizer"));
 #endif

@@ -8,12 +8,12 @@ namespace vat::bench {
 
 namespace {
 
-std::string text(const Json& row, const char* column) {
+std::string cell_text(const Json& row, const char* column) {
   return row.at(column).get<std::string>();
 }
 
 /// With three digits; a dash where the value is absent.
-std::string number(const Json& row, const char* column) {
+std::string cell_number(const Json& row, const char* column) {
   const Json& value = row.at(column);
   if (value.is_null()) return "–";
   char buffer[32];
@@ -41,16 +41,16 @@ std::vector<std::vector<Json>> by_case(const Json& rows) {
 }
 
 std::string method_cell(const Json& row) {
-  const std::string method = text(row, "fewest evaluations");
+  const std::string method = cell_text(row, "fewest evaluations");
   if (row.at("evaluations per particle").is_null()) return "–";
-  return method + ": " + number(row, "evaluations per particle");
+  return method + ": " + cell_number(row, "evaluations per particle");
 }
 
 std::string law_cell(const Json& row) {
   if (row.at("seconds").is_null()) return "–";
   char milliseconds[32];
   std::snprintf(milliseconds, sizeof milliseconds, "%.2g", 1e3 * row.at("seconds").get<Real>());
-  return text(row, "least time") + ": " + milliseconds + " ms";
+  return cell_text(row, "least time") + ": " + milliseconds + " ms";
 }
 
 }  // namespace
@@ -62,9 +62,10 @@ Table cases_table(const Json& validation, const std::map<std::string, std::strin
     const Json& main = *std::ranges::max_element(rows, [](const Json& a, const Json& b) {
       return std::pair(is_judged(a), share(a)) < std::pair(is_judged(b), share(b));
     });
-    const std::string name = text(main, "case");
-    table.rows.push_back({name, titles.at(name), std::uint64_t{rows.size()}, text(main, "metric"),
-                          main.at("measured").get<Real>(), text(main, "must be")});
+    const std::string name = cell_text(main, "case");
+    table.rows.push_back({name, titles.at(name), std::uint64_t{rows.size()},
+                          cell_text(main, "metric"), main.at("measured").get<Real>(),
+                          cell_text(main, "must be")});
   }
   return table;
 }
@@ -73,8 +74,9 @@ Table limits_table(const Json& validation) {
   Table table{{"case", "metric", "measured", "exact, or published", "why"}, {}};
   for (const Json& row : validation) {
     if (is_judged(row)) continue;
-    table.rows.push_back({text(row, "case"), text(row, "metric"), number(row, "measured"),
-                          number(row, "reference"), text(row, "tolerance from")});
+    table.rows.push_back({cell_text(row, "case"), cell_text(row, "metric"),
+                          cell_number(row, "measured"), cell_number(row, "reference"),
+                          cell_text(row, "tolerance from")});
   }
   return table;
 }
@@ -82,9 +84,9 @@ Table limits_table(const Json& validation) {
 Table methods_table(const Json& cheapest) {
   Table table{{"problem"}, {}};
   for (const std::vector<Json>& rows : by_case(cheapest)) {
-    std::vector<Cell> cells = {text(rows.front(), "case")};
+    std::vector<Cell> cells = {cell_text(rows.front(), "case")};
     for (const Json& row : rows) {
-      if (table.rows.empty()) table.columns.push_back("error " + number(row, "error at most"));
+      if (table.rows.empty()) table.columns.push_back("error " + cell_number(row, "error at most"));
       cells.emplace_back(method_cell(row));
     }
     table.rows.push_back(std::move(cells));
@@ -98,11 +100,11 @@ Table steps_table(const Json& control) {
               {}};
   for (const Json& row : control) {
     if (row.at("its evaluations per particle").is_null()) continue;
-    table.rows.push_back({text(row, "case"), number(row, "error at most"), text(row, "best fixed"),
-                          number(row, "its evaluations per particle"), text(row, "best adaptive"),
-                          number(row, "evaluations / fixed"), number(row, "time / fixed"),
-                          number(row, "local: evaluations / fixed"),
-                          number(row, "local: time / fixed")});
+    table.rows.push_back(
+        {cell_text(row, "case"), cell_number(row, "error at most"), cell_text(row, "best fixed"),
+         cell_number(row, "its evaluations per particle"), cell_text(row, "best adaptive"),
+         cell_number(row, "evaluations / fixed"), cell_number(row, "time / fixed"),
+         cell_number(row, "local: evaluations / fixed"), cell_number(row, "local: time / fixed")});
   }
   return table;
 }
@@ -110,14 +112,15 @@ Table steps_table(const Json& control) {
 Table laws_table(const Json& laws) {
   Table table{{"problem", "law"}, {}};
   const auto is_of = [](const std::vector<Cell>& cells, const Json& row) {
-    return std::get<std::string>(cells[0]) == text(row, "problem") &&
-           std::get<std::string>(cells[1]) == text(row, "law");
+    return std::get<std::string>(cells[0]) == cell_text(row, "problem") &&
+           std::get<std::string>(cells[1]) == cell_text(row, "law");
   };
   for (const Json& row : laws) {
     if (table.rows.empty() || !is_of(table.rows.back(), row)) {
-      table.rows.push_back({text(row, "problem"), text(row, "law")});
+      table.rows.push_back({cell_text(row, "problem"), cell_text(row, "law")});
     }
-    if (table.rows.size() == 1) table.columns.push_back("error " + number(row, "error at most"));
+    if (table.rows.size() == 1)
+      table.columns.push_back("error " + cell_number(row, "error at most"));
     table.rows.back().emplace_back(law_cell(row));
   }
   return table;
@@ -128,8 +131,8 @@ Table solvers_table(const Json& solvers) {
                "greatest density error", "steps"},
               {}};
   for (const Json& row : solvers) {
-    table.rows.push_back({text(row, "problem"), text(row, "solver"),
-                          row.at("layers").get<std::uint64_t>(), text(row, "error of"),
+    table.rows.push_back({cell_text(row, "problem"), cell_text(row, "solver"),
+                          row.at("layers").get<std::uint64_t>(), cell_text(row, "error of"),
                           row.at("error").get<Real>(), row.at("mean density error").get<Real>(),
                           row.at("greatest density error").get<Real>(),
                           row.at("steps").get<std::uint64_t>()});
@@ -142,7 +145,7 @@ Table counts_table(const Json& stability) {
                "wall stops", "stopped", "refused", "faults"},
               {}};
   for (const Json& row : stability) {
-    std::vector<Cell> cells = {text(row, "part")};
+    std::vector<Cell> cells = {cell_text(row, "part")};
     for (auto column = table.columns.begin() + 1; column != table.columns.end(); ++column) {
       cells.emplace_back(row.at(*column).get<std::uint64_t>());
     }

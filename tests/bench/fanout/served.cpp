@@ -34,7 +34,7 @@ struct Times {
 };
 
 /// Of a process or thread; proc(5) describes the line.
-Times read_times(const std::filesystem::path& folder) {
+Times read_served_times(const std::filesystem::path& folder) {
   std::ifstream file(folder / "stat");
   std::string text;
   std::getline(file, text);
@@ -111,14 +111,14 @@ Served::~Served() {
 }
 
 double Served::processor_seconds() const {
-  return read_times("/proc/" + std::to_string(process_)).seconds;
+  return read_served_times("/proc/" + std::to_string(process_)).seconds;
 }
 
 double Served::delivery_seconds() const {
   double seconds = 0;
   const std::string tasks = "/proc/" + std::to_string(process_) + "/task";
   for (const auto& task : std::filesystem::directory_iterator(tasks)) {
-    const Times times = read_times(task.path());
+    const Times times = read_served_times(task.path());
     if (times.name == "vat-frames" || times.name == "vat-network") seconds += times.seconds;
   }
   return seconds;

@@ -20,7 +20,7 @@ constexpr auto kSegment = std::chrono::seconds(6);
 constexpr std::size_t kPairs = 10;
 constexpr std::size_t kQuickPairs = 2;
 
-std::size_t count_all(const ViewerCounts& viewers) {
+std::size_t count_all_turns(const ViewerCounts& viewers) {
   return std::accumulate(viewers.begin(), viewers.end(), std::size_t{0});
 }
 
@@ -53,7 +53,7 @@ Segment measure_segment(const Served& server, LoadProcess* staying) {
 
 std::unique_ptr<LoadProcess> start(const LoadSettings& settings, const ViewerCounts& viewers,
                                    std::uint32_t seed) {
-  if (count_all(viewers) == 0) return nullptr;
+  if (count_all_turns(viewers) == 0) return nullptr;
   auto load = std::make_unique<LoadProcess>(settings, viewers, seed);
   load->wait_ready();
   return load;
@@ -63,7 +63,8 @@ std::unique_ptr<LoadProcess> start(const LoadSettings& settings, const ViewerCou
 template <class Read>
 TurnsResult gather(const TurnsCase& one, const char* quantity,
                    const std::array<std::vector<Segment>, 2>& segments, Read&& read) {
-  TurnsResult result{one.name, quantity, count_all(one.staying), count_all(one.coming), {}, {}};
+  TurnsResult result{one.name, quantity, count_all_turns(one.staying), count_all_turns(one.coming),
+                     {},       {}};
   for (const Segment& segment : segments[0]) result.without.push_back(read(segment));
   for (const Segment& segment : segments[1]) result.with.push_back(read(segment));
   return result;

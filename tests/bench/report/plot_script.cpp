@@ -24,7 +24,7 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-std::string number(Real value) {
+std::string plot_number(Real value) {
   std::string text;
   append_number(text, value);
   return text;
@@ -85,7 +85,7 @@ std::string plot_data(const LogPlot& plot) {
     bool empty = true;
     for (const std::array<Real, 2>& point : series.points) {
       if (!can_be_drawn(point)) continue;
-      text += number(point[0]) + ' ' + number(point[1]) + '\n';
+      text += plot_number(point[0]) + ' ' + plot_number(point[1]) + '\n';
       empty = false;
     }
     if (empty) text += "NaN NaN\n";  // a block of its own for gnuplot
@@ -117,7 +117,7 @@ std::string plot_data(const GridPlot& plot) {
     for (std::size_t x = 0; x < plot.values[y].size(); ++x) {
       const Real value = plot.values[y][x];
       text += std::to_string(x) + ' ' + std::to_string(y) + ' ' +
-              (std::isfinite(value) ? number(value) : "NaN") + '\n';
+              (std::isfinite(value) ? plot_number(value) : "NaN") + '\n';
     }
   }
   return text;
@@ -127,10 +127,10 @@ std::string plot_script(const GridPlot& plot, const std::string& name) {
   const std::string file = quoted(name + ".dat");
   return preamble(name, plot.title, plot.x_label, plot.y_label) + tics("x", plot.x_names) +
          tics("y", plot.y_names) +
-         "set xrange [-0.5:" + number(static_cast<Real>(plot.x_names.size()) - 0.5) + "]\n" +
-         "set yrange [-0.5:" + number(static_cast<Real>(plot.y_names.size()) - 0.5) + "]\n" +
-         "set cbrange [" + number(plot.min) + ':' + number(plot.max) + "]\n" + "set cblabel " +
-         quoted(plot.value_label) + "\n" +
+         "set xrange [-0.5:" + plot_number(static_cast<Real>(plot.x_names.size()) - 0.5) + "]\n" +
+         "set yrange [-0.5:" + plot_number(static_cast<Real>(plot.y_names.size()) - 0.5) + "]\n" +
+         "set cbrange [" + plot_number(plot.min) + ':' + plot_number(plot.max) + "]\n" +
+         "set cblabel " + quoted(plot.value_label) + "\n" +
          "set palette defined (0 '#7f3b08', 0.5 '#f7f7f7', 1 '#2d8a57')\n"
          "set datafile missing 'NaN'\n"
          "plot " +

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,6 +14,9 @@ namespace vat::bench {
 
 /// Counts are whole numbers; a Real that is not finite is an absent value.
 using Cell = std::variant<std::string, Real, std::uint64_t, bool>;
+
+/// An absent value of a Real cell.
+inline constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 
 /// Results as rows of one cell a column.
 struct Table {

@@ -12,7 +12,7 @@ namespace {
 using std::chrono::steady_clock;
 
 /// A sanitizer's server on a busy machine takes seconds.
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kCallerPatience{60};
 constexpr int kInternalError = -32603;
 
 script::WebSocketUrl url_of(std::uint16_t port) {
@@ -22,7 +22,8 @@ script::WebSocketUrl url_of(std::uint16_t port) {
 }  // namespace
 
 std::unique_ptr<script::Client> connect(std::uint16_t port) {
-  auto connected = script::connect_websocket(url_of(port), {}, {}, steady_clock::now() + kPatience);
+  auto connected =
+      script::connect_websocket(url_of(port), {}, {}, steady_clock::now() + kCallerPatience);
   if (connected.client == nullptr) {
     throw std::runtime_error("not let in: " + std::to_string(connected.http_status));
   }
@@ -30,7 +31,7 @@ std::unique_ptr<script::Client> connect(std::uint16_t port) {
 }
 
 Json fetch(std::uint16_t port, const std::string& path) {
-  return script::fetch_http(url_of(port), {}, path, steady_clock::now() + kPatience);
+  return script::fetch_http(url_of(port), {}, path, steady_clock::now() + kCallerPatience);
 }
 
 Caller::Caller(std::uint16_t port, Tally& tally) : tally_(tally), client_(connect(port)) {}
@@ -39,7 +40,7 @@ Json Caller::call(const std::string& method, const Json& params) {
   const auto begin = steady_clock::now();
   send(method, params);
   for (;;) {
-    const auto message = client_->next(begin + kPatience);
+    const auto message = client_->next(begin + kCallerPatience);
     if (!message) throw std::runtime_error(method + " was not answered");
     Json json = take(*message);
     if (!json.is_object() || json.value("id", Json()) != Json(id_)) continue;

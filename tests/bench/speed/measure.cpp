@@ -10,6 +10,7 @@
 
 #include "core/simulation.h"
 #include "server/cli/simulate_run.h"
+#include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
 #include "tests/bench/speed/neighbours.h"
 #include "tests/bench/speed/switch_runner.h"
@@ -22,12 +23,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostSamples = 256;  // of diagnostics, each as dear as a step
 
-Real seconds_since(Clock::time_point begin) {
+Real speed_seconds_since(Clock::time_point begin) {
   return std::chrono::duration<Real>(Clock::now() - begin).count();
 }
 
 /// How many nominal steps, in whole ticks, cover the interval.
-std::uint64_t steps_of(const Simulation& simulation, Real interval) {
+std::uint64_t speed_steps_of(const Simulation& simulation, Real interval) {
   const std::uint32_t steps_per_tick = simulation.steps_per_tick();
   const Real tick = simulation.step_size() * steps_per_tick;
   if (interval <= 0) return 0;
@@ -59,7 +60,6 @@ class FlowSamples {
   }
 
   FlowFigures means(const Scene& scene, bool has_liquid) const {
-    constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
     const bool is_solved = scene.pressure_solver == PressureSolver::incompressible;
     const auto mean = [this](Real sum, bool present) {
       return present ? sum / static_cast<Real>(count_) : kAbsent;
@@ -119,7 +119,7 @@ template <class Repeat>
 Status repeat_within(const SpeedSettings& settings, Repeat&& repeat) {
   const Clock::time_point begin = Clock::now();
   for (int i = 0; i < settings.repetitions; ++i) {
-    if (i > 0 && seconds_since(begin) > settings.longest_time) break;
+    if (i > 0 && speed_seconds_since(begin) > settings.longest_time) break;
     if (Status done = repeat(); !done) return done;
   }
   return {};
@@ -137,10 +137,10 @@ class TimedScene {
     const Clock::time_point begin = Clock::now();
     Result<Simulation> created = Simulation::create(scene, runner.get(), setup.instructions);
     if (!created) return created.errors();
-    const Real creation = seconds_since(begin);
+    const Real creation = speed_seconds_since(begin);
     Simulation& simulation = created.value();
     const Result<AdvanceReport> warmed_up =
-        advance_by(simulation, steps_of(simulation, settings.warm_up));
+        advance_by(simulation, speed_steps_of(simulation, settings.warm_up));
     if (!warmed_up) return warmed_up.errors();
     SpeedRow row = describe_scene(name, simulation);
     row.creation = creation;
@@ -179,7 +179,7 @@ class TimedScene {
       : runner_(std::move(runner)),
         simulation_(std::move(simulation)),
         rows_(threads.size(), row),
-        steps_(steps_of(simulation_, measured)),
+        steps_(speed_steps_of(simulation_, measured)),
         bytes_of_snapshot_(heap_in_use()),
         start_(simulation_.snapshot()) {
     bytes_of_snapshot_ = heap_in_use() - bytes_of_snapshot_;
@@ -197,7 +197,7 @@ class TimedScene {
     simulation_.set_observer(&stages);
     const Clock::time_point begin = Clock::now();
     const Result<AdvanceReport> report = advance_by(simulation_, steps_);
-    const Real seconds = seconds_since(begin);
+    const Real seconds = speed_seconds_since(begin);
     simulation_.set_observer(nullptr);
     if (!report) return report.errors();
     if (row.seconds.empty() || seconds < std::ranges::min(row.seconds)) {

@@ -40,7 +40,7 @@ struct Column {
   Cell (*cell)(const SpeedRow& row);
 };
 
-constexpr Column kColumns[] = {
+constexpr Column kTableColumns[] = {
     {"case", [](const SpeedRow& row) -> Cell { return row.name; }},
     {"threads", [](const SpeedRow& row) -> Cell { return std::uint64_t{row.threads}; }},
     {"instruction set", [](const SpeedRow& row) -> Cell { return to_string(row.instructions); }},
@@ -80,11 +80,11 @@ constexpr Column kColumns[] = {
 
 Table speed_table(const std::vector<SpeedRow>& rows, const Machine& machine) {
   Table table;
-  for (const Column& column : kColumns) table.columns.emplace_back(column.name);
+  for (const Column& column : kTableColumns) table.columns.emplace_back(column.name);
   for (const char* name : {"commit", "cpu", "cores"}) table.columns.emplace_back(name);
   for (const SpeedRow& row : rows) {
     std::vector<Cell>& cells = table.rows.emplace_back();
-    for (const Column& column : kColumns) cells.push_back(column.cell(row));
+    for (const Column& column : kTableColumns) cells.push_back(column.cell(row));
     cells.insert(cells.end(), {machine.commit, machine.cpu, std::uint64_t{machine.cores}});
   }
   return table;

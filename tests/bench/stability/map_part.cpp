@@ -41,7 +41,7 @@ Table map_table(const std::vector<StepMapPoint>& points) {
 }
 
 /// Place of `name` in `names`, which it is added to where it is new.
-std::size_t place_of(const std::string& name, std::vector<std::string>& names) {
+std::size_t map_place_of(const std::string& name, std::vector<std::string>& names) {
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   names.push_back(name);
@@ -59,16 +59,16 @@ GridPlot grid_of(const std::vector<StepMapPoint>& points, IntegratorId integrato
   plot.max = 1.1;
   for (const StepMapPoint& point : points) {
     if (std::isinf(point.theory)) continue;
-    place_of(short_text(point.damping_ratio), plot.x_names);
-    place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names);
+    map_place_of(short_text(point.damping_ratio), plot.x_names);
+    map_place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names);
   }
   plot.values.assign(plot.y_names.size(),
                      std::vector<Real>(plot.x_names.size(), std::numeric_limits<Real>::infinity()));
   for (const StepMapPoint& point : points) {
     if (point.integrator != integrator || !has_limit(point)) continue;
     Real& value =
-        plot.values[place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names)]
-                   [place_of(short_text(point.damping_ratio), plot.x_names)];
+        plot.values[map_place_of(point.body + ", " + short_text(point.mass_ratio), plot.y_names)]
+                   [map_place_of(short_text(point.damping_ratio), plot.x_names)];
     value = std::min(value, point.measured / point.theory);
   }
   return plot;
@@ -88,8 +88,8 @@ GridPlot limits_of(const std::vector<StepMapPoint>& points) {
   }
   for (const StepMapPoint& point : points) {
     if (point.body != "oscillator") continue;
-    const std::size_t x = place_of(short_text(point.damping_ratio), plot.x_names);
-    std::vector<Real>& row = plot.values[place_of(to_string(point.integrator), plot.y_names)];
+    const std::size_t x = map_place_of(short_text(point.damping_ratio), plot.x_names);
+    std::vector<Real>& row = plot.values[map_place_of(to_string(point.integrator), plot.y_names)];
     row.resize(std::max(row.size(), x + 1));
     row[x] = point.measured * point.frequency;
   }
@@ -116,8 +116,8 @@ LogPlot measured_against_theory(const std::vector<StepMapPoint>& points) {
 
 /// The field of these names, which are added where they are new; infinite, so empty, at first.
 Real& field_of(const std::string& x_name, const std::string& y_name, GridPlot& plot) {
-  const std::size_t x = place_of(x_name, plot.x_names);
-  const std::size_t y = place_of(y_name, plot.y_names);
+  const std::size_t x = map_place_of(x_name, plot.x_names);
+  const std::size_t y = map_place_of(y_name, plot.y_names);
   plot.values.resize(plot.y_names.size());
   std::vector<Real>& row = plot.values[y];
   row.resize(plot.x_names.size(), std::numeric_limits<Real>::infinity());

@@ -14,7 +14,7 @@ namespace {
 const std::string kBeam = "/deformable/DEF-5/";
 constexpr std::size_t kTip = 10 * 9 + 1 * 3 + 1;  // node (10, 1, 1)
 
-const std::vector<Vec3>& nodes(const Scene& scene) {
+const std::vector<Vec3>& cantilever_nodes(const Scene& scene) {
   return std::get<ParticleShape>(scene.bodies[0].shape).positions;
 }
 
@@ -25,7 +25,7 @@ Equilibrium add_static_rows(Sheet& sheet) {
     Row row = rest.origin;
     row.metric = std::string("static tip ") + (axis == 0 ? "x" : "z") + " [m]";
     row.reference = expected[axis];
-    row.measured = nodes(rest.scene)[kTip][axis];
+    row.measured = cantilever_nodes(rest.scene)[kTip][axis];
     row.tolerance = within_relative(1e-6, "equilibrium to a force of 1e-9 N");
     sheet.add(std::move(row));
   }

@@ -10,7 +10,7 @@ namespace vat::validation {
 namespace {
 
 constexpr int kMasses = 16;
-constexpr Real kStep = 1e-3;
+constexpr Real kChainStep = 1e-3;
 
 Real mode_shape(int mode, int node) {
   return std::sin(mode * std::numbers::pi * node / (kMasses + 1));
@@ -18,7 +18,7 @@ Real mode_shape(int mode, int node) {
 
 /// Displaces the nodes from their places along the x axis in one mode.
 Scene chain_in_mode(int mode, int axis, Real amplitude) {
-  Scene scene = with_step(load_scene("DEF-2"), kStep);
+  Scene scene = with_step(load_scene("DEF-2"), kChainStep);
   std::vector<Vec3>& positions = std::get<ParticleShape>(scene.bodies[0].shape).positions;
   for (int i = 0; i < kMasses + 2; ++i) {
     const auto node = static_cast<std::size_t>(i);
@@ -42,13 +42,14 @@ void add_mode(Sheet& sheet, const std::string& direction, int mode, int axis, Re
   const std::string number = std::to_string(mode);
   const Real omega = reference("/deformable/DEF-2/omega_" + direction + '/' + number);
   const int periods = sheet.quick() ? 5 : 20;
-  const Real end = std::round(periods * 2 * std::numbers::pi / omega / kStep) * kStep;
+  const Real end = std::round(periods * 2 * std::numbers::pi / omega / kChainStep) * kChainStep;
   Run run = sheet.start(chain_in_mode(mode, axis, amplitude));
   std::vector<Real> samples;
-  run.observe_until(end, kStep, [&] { samples.push_back(mode_amplitude(run.body(), mode, axis)); });
-  const Real z2 = std::pow(omega * kStep, 2);
+  run.observe_until(end, kChainStep,
+                    [&] { samples.push_back(mode_amplitude(run.body(), mode, axis)); });
+  const Real z2 = std::pow(omega * kChainStep, 2);
   sheet.add("frequency of " + direction + ". mode " + number + " [rad/s]", omega,
-            fitted_frequency(samples, kStep),
+            fitted_frequency(samples, kChainStep),
             within_relative(z2 / 24 + z2 * z2 / 100 + 1e-6, "z^2/24 of Verlet, fit 1e-6"), run);
 }
 

@@ -43,9 +43,9 @@ void add_oscillator_rows(Sheet& sheet) {
 
 /// Errors of the beam's tip beside those of position-based and of block descent methods.
 void add_beam_rows(Sheet& sheet) {
-  constexpr std::size_t kTip = 10 * 9 + 1 * 3 + 1;
   const std::string beam = "/deformable/DEF-5/dynamic_release/tip_z/";
   const Scene scene = load_implicit("DEF-5");
+  constexpr std::size_t kTipNode = 10 * 9 + 1 * 3 + 1;
   for (const char* method : {"xpbd_1_iteration", "vbd"}) {
     for (const Json& published :
          reference_at(std::string("/measured_yardsticks/cantilever_dynamic_DEF5/") + method)) {
@@ -57,7 +57,8 @@ void add_beam_rows(Sheet& sheet) {
         const Real exact = reference(beam + (half == 1 ? "0.5" : "1.0"));
         sheet.add("error of tip z(" + std::string(half == 1 ? "0.5" : "1") + ") [m], step " +
                       published.at(0).dump() + ", beside " + method,
-                  published.at(half).get<Real>(), std::abs(run.body().positions[kTip].z() - exact),
+                  published.at(half).get<Real>(),
+                  std::abs(run.body().positions[kTipNode].z() - exact),
                   at_most("the other method's"), run);
       }
     }
@@ -71,13 +72,13 @@ void add_cube_rows(Sheet& sheet) {
   };
   add_order_row(sheet, scene, IntegratorId::velocity_verlet, halved(1.25e-3, 3), 5, 2,
                 corner_error);
-  constexpr Real kStep = 0.1;  // omega dt = 4
-  Run run = sheet.start(with_step(scene, kStep));
+  constexpr Real kCoarseStep = 0.1;  // omega dt = 4
+  Run run = sheet.start(with_step(scene, kCoarseStep));
   const BodyDiagnostics start = run.diagnostics().bodies[0];
   const Real energy = run.energy();
   run.advance_to(5);
   const BodyDiagnostics end = run.diagnostics().bodies[0];
-  const Real steps = 5 / kStep;
+  const Real steps = 5 / kCoarseStep;
   sheet.add("momentum drift [kg m/s], step 0.1", 1e-12,
             (end.linear_momentum - start.linear_momentum).norm(), at_most("round-off"), run);
   sheet.add("angular momentum drift [kg m^2/s], step 0.1", 1e-12,

@@ -10,10 +10,10 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
-constexpr Real kDepth = 0.8;   // of the pool, and its width [m]
-constexpr Real kRadius = 0.2;  // of the ball: four spacings [m]
-constexpr Real kVolume = 4 * std::numbers::pi / 3 * kRadius * kRadius * kRadius;
+constexpr Real kDepth = 0.8;           // of the pool, and its width [m]
+constexpr Real kBuoyancyRadius = 0.2;  // of the ball: four spacings [m]
+constexpr Real kVolume =
+    4 * std::numbers::pi / 3 * kBuoyancyRadius * kBuoyancyRadius * kBuoyancyRadius;
 constexpr const char* kInterface =
     "an interface of springs: its threshold, not the displaced liquid, sets the force";
 
@@ -24,13 +24,13 @@ Scene pool_with_ball(Real threshold, Real density_ratio, Real height = 0.4) {
   scene.bodies[1].position.z() = height;
   set_rest_mass(scene);
   const Real spacing = scene.bodies[0].spacing;
-  clear_around_ball(scene, kRadius + spacing / 4);
+  clear_around_ball(scene, kBuoyancyRadius + spacing / 4);
   scene.interfaces[1].threshold = threshold * spacing;
   scene.materials[1].density = 1000 * density_ratio;
   return with_step(scene, acoustic_step(scene, 0.02));
 }
 
-std::string text(Real value) {
+std::string buoyancy_text(Real value) {
   std::string digits = std::to_string(value);
   return digits.substr(0, digits.find('.') + 3);
 }
@@ -50,7 +50,7 @@ void check_held(Sheet& sheet, Real threshold) {
     on_ball += now.bodies[1].outer_force.z();
     ++samples;
   });
-  const std::string of = ", threshold " + text(threshold) + " dx";
+  const std::string of = ", threshold " + buoyancy_text(threshold) + " dx";
   sheet.add("buoyant force / (rho g V)" + of, 1, on_ball / samples / (1000 * kGravity * kVolume),
             reported(kInterface), run);
   const Real weight = run.diagnostics().bodies[0].mass * kGravity;
@@ -71,19 +71,20 @@ void check_floating(Sheet& sheet, const char* ratio, Real threshold) {
   const Real exact =
       reference(std::string("/interaction/INT-1/sphere_draft_over_diameter/") + ratio);
   // It starts where it should float, for it is slow to rise between the walls.
-  Scene scene = pool_with_ball(threshold, std::stod(ratio), kDepth + kRadius * (1 - 2 * exact));
+  Scene scene =
+      pool_with_ball(threshold, std::stod(ratio), kDepth + kBuoyancyRadius * (1 - 2 * exact));
   scene.bodies[1].fixed = false;
   Run run = sheet.start(scene);
   run.advance_to(2);
   Real sum = 0;
   int samples = 0;
   run.observe_until(3, 0.02, [&] {
-    sum += draft(run, kRadius, kDepth * kDepth);
+    sum += draft(run, kBuoyancyRadius, kDepth * kDepth);
     ++samples;
   });
   sheet.add(
-      std::string("draft / diameter, density ratio ") + ratio + ", threshold " + text(threshold) +
-          " dx",
+      std::string("draft / diameter, density ratio ") + ratio + ", threshold " +
+          buoyancy_text(threshold) + " dx",
       exact, sum / samples,
       reported(std::string(kInterface) + "; and the liquid is denser at walls, its level lower"),
       run);

@@ -10,8 +10,6 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kPi = std::numbers::pi;
-
 Real constant(const char* name) {
   return reference(std::string("/liquid/LIQ-7/") + name);
 }
@@ -22,8 +20,8 @@ Real couette(Real z, Real t) {
   const Real top = constant("V0");
   Real speed = top * z / length;
   for (int n = 1; n < 200; ++n) {
-    const Real k = n * kPi / length;
-    speed += 2 * top / (n * kPi) * (n % 2 == 0 ? 1 : -1) * std::sin(k * z) *
+    const Real k = n * std::numbers::pi / length;
+    speed += 2 * top / (n * std::numbers::pi) * (n % 2 == 0 ? 1 : -1) * std::sin(k * z) *
              std::exp(-constant("nu") * k * k * t);
   }
   return speed;
@@ -35,9 +33,9 @@ Real poiseuille(Real z, Real t) {
   const Real nu = constant("nu");
   Real speed = constant("F") / (2 * nu) * z * (length - z);
   for (int n = 1; n < 200; n += 2) {
-    const Real k = n * kPi / length;
-    speed -= 4 * constant("F") * length * length / (nu * std::pow(n * kPi, 3)) * std::sin(k * z) *
-             std::exp(-nu * k * k * t);
+    const Real k = n * std::numbers::pi / length;
+    speed -= 4 * constant("F") * length * length / (nu * std::pow(n * std::numbers::pi, 3)) *
+             std::sin(k * z) * std::exp(-nu * k * k * t);
   }
   return speed;
 }
@@ -67,8 +65,8 @@ Real lattice_viscosity(int reach) {
     for (int j = -reach; j <= reach; ++j) {
       const Real r = std::hypot(i, j);
       if (r >= reach) continue;
-      density += 4 / (kPi * std::pow(reach, 8)) * std::pow(reach * reach - r * r, 3);
-      moment += 0.5 * i * i * 40 * (reach - r) / (kPi * std::pow(reach, 5));
+      density += 4 / (std::numbers::pi * std::pow(reach, 8)) * std::pow(reach * reach - r * r, 3);
+      moment += 0.5 * i * i * 40 * (reach - r) / (std::numbers::pi * std::pow(reach, 5));
     }
   }
   return moment / (density * density);

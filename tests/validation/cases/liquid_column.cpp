@@ -10,11 +10,10 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
-constexpr Real kDepth = 0.5;  // before it is compressed [m]
+constexpr Real kColumnDepth = 0.5;  // before it is compressed [m]
 constexpr const char* kWalls =
     "the walls push, but are no part of the density: at the floor the liquid lacks neighbours";
-constexpr const char* kAsked = "what the best explicit solvers reach with 20 layers";
+constexpr const char* kColumnAsked = "what the best explicit solvers reach with 20 layers";
 
 /// Of the gas with a speed of sound of 10 m/s.
 Real gas_pressure(Real z) {
@@ -68,7 +67,7 @@ Real pressure_error(const MeanPressure& mean, Real (*exact_pressure)(Real z)) {
   return std::sqrt(error / scale);
 }
 
-Real greatest_speed(const Run& run) {
+Real column_greatest_speed(const Run& run) {
   Real speed = 0;
   for (const Vec3& v : run.body().velocities) speed = std::max(speed, v.norm());
   return speed;
@@ -76,7 +75,7 @@ Real greatest_speed(const Run& run) {
 
 Scene column(int layers) {
   Scene scene = load_scene("LIQ-3");
-  set_spacing(scene, kDepth / layers);
+  set_spacing(scene, kColumnDepth / layers);
   set_walls_like_liquid(scene);
   const LiquidConstants& liquid = *scene.materials[0].liquid;
   const Real viscous = 0.05 * std::pow(liquid.support_radius, 2) * 1000 / liquid.viscosity;
@@ -89,11 +88,12 @@ void check_column(Sheet& sheet, int layers) {
   const bool fine = layers >= 20;  // as published
   Run run = sheet.start(column(layers));
   const MeanPressure mean = mean_pressure(run, 3, 4);
-  const Line found = fitted_line(mean.heights, mean.pressures, 0.1 * kDepth, 0.8 * kDepth);
+  const Line found =
+      fitted_line(mean.heights, mean.pressures, 0.1 * kColumnDepth, 0.8 * kColumnDepth);
   sheet.add("slope of the pressure / (-rho g)" + of, 1, -found.slope / (1000 * kGravity),
             fine ? within(0.2, target) : reported(kWalls), run);
   sheet.add("greatest speed / sqrt(g H)" + of, 0.05,
-            greatest_speed(run) / std::sqrt(kGravity * kDepth), at_most(target), run);
+            column_greatest_speed(run) / std::sqrt(kGravity * kColumnDepth), at_most(target), run);
   sheet.add("pressure at the floor by the fitted line / (rho g H)" + of, 1,
             found.at_zero / reference("/liquid/LIQ-3/H0=0.5,c=10/gas_p_bottom"),
             fine ? within(0.2, "slope and depth") : reported(kWalls), run);
@@ -123,20 +123,22 @@ void check_tait_column(Sheet& sheet, int layers, KernelId kernel = KernelId::wen
     scene.kernel = kernel;
     scene.materials[0].liquid->support_radius = 2.5 * scene.bodies[0].spacing;
   }
-  set_spacing(scene, kDepth / layers);
+  set_spacing(scene, kColumnDepth / layers);
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.02)));
   const MeanPressure mean = mean_pressure(run, 2, 3);
-  const Line found = fitted_line(mean.heights, mean.pressures, 0.1 * kDepth, 0.8 * kDepth);
+  const Line found =
+      fitted_line(mean.heights, mean.pressures, 0.1 * kColumnDepth, 0.8 * kColumnDepth);
   sheet.add("relative L2 error of the pressure" + of, layers == 20 ? 0.03 : reference(published),
             pressure_error(mean, tait_pressure),
-            at_most(layers == 20 ? kAsked : "the best explicit method elsewhere"), run);
+            at_most(layers == 20 ? kColumnAsked : "the best explicit method elsewhere"), run);
   sheet.add("slope of the pressure / (-rho g)" + of, 1, -found.slope / (1000 * kGravity),
-            within(0.01, kAsked), run);
+            within(0.01, kColumnAsked), run);
   sheet.add("pressure at the floor by the fitted line / (rho g H)" + of, 1,
             found.at_zero / reference("/liquid/LIQ-3/H0=0.5,c=20/tait_p_bottom"),
-            within(0.01, kAsked), run);
+            within(0.01, kColumnAsked), run);
   sheet.add("greatest speed / sqrt(g H)" + of, 4e-3,
-            greatest_speed(run) / std::sqrt(kGravity * kDepth), at_most(kAsked), run);
+            column_greatest_speed(run) / std::sqrt(kGravity * kColumnDepth), at_most(kColumnAsked),
+            run);
 }
 
 void run_tait_column(Sheet& sheet) {

@@ -13,7 +13,6 @@ namespace vat::validation {
 namespace {
 
 constexpr Real kWidth = 0.2;  // a of Martin and Moyce; the column is 2a high [m]
-constexpr Real kGravity = 9.81;
 const std::string kSeries = "/data_series/martin_moyce_1952/n2_2/";
 
 Series measured_series(const char* times, const char* values) {

@@ -6,7 +6,6 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
 constexpr Real kSpeed = 2;         // of the nozzle [m/s]
 constexpr Real kArea = 0.1 * 0.1;  // of its opening: 5 x 5 spacings [m^2]
 const Vec3 kOpening(0.2, 0.25, 0.8);

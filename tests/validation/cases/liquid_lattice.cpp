@@ -10,11 +10,11 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kSpacing = 0.1;  // of all these scenes [m]
+constexpr Real kLatticeSpacing = 0.1;  // of all these scenes [m]
 constexpr Real kDensity = 1000;
 
 void set_support(Scene& scene, const std::string& over_spacing) {
-  scene.materials[0].liquid->support_radius = std::stod(over_spacing) * kSpacing;
+  scene.materials[0].liquid->support_radius = std::stod(over_spacing) * kLatticeSpacing;
 }
 
 // --- LIQ-1 ---
@@ -31,11 +31,11 @@ std::vector<Cell> cells() {
           {"fcc", {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}}};
 }
 
-/// A periodic world of 8^3 cells, each particle standing for the volume of kSpacing^3.
+/// A periodic world of 8^3 cells, each particle standing for the volume of kLatticeSpacing^3.
 Scene lattice_scene(const Cell& cell) {
   constexpr int kCells = 8;
   Scene scene = load_scene("LIQ-1");
-  const Real edge = kSpacing * std::cbrt(static_cast<Real>(cell.points.size()));
+  const Real edge = kLatticeSpacing * std::cbrt(static_cast<Real>(cell.points.size()));
   ParticleShape shape;
   for (int x = 0; x < kCells; ++x) {
     for (int y = 0; y < kCells; ++y) {
@@ -72,14 +72,14 @@ Scene wave_scene(const std::string& name, int count, const std::string& reach) {
   Scene scene = load_scene(name);
   set_support(scene, reach);
   const int across = 2 * static_cast<int>(std::ceil(std::stod(reach)));
-  const Vec3 size = kSpacing * Vec3(count, across, across);
+  const Vec3 size = kLatticeSpacing * Vec3(count, across, across);
   scene.periodic->max = size;
   scene.bodies[0].shape = BoxShape{size / 2, size};
   return scene;
 }
 
 Real wave_number(int count) {
-  return 2 * std::numbers::pi / (count * kSpacing);
+  return 2 * std::numbers::pi / (count * kLatticeSpacing);
 }
 
 /// Amplitude of sin(k x), of values at the places of an undisturbed lattice.
@@ -104,7 +104,7 @@ Real smoothed_wave(Sheet& sheet, int count, const std::string& reach, Row& row) 
   const Real k = wave_number(count);
   ParticleShape shape;
   for (const Vec3& place : lattice_places(scene)) {
-    const Real mass = kDensity * kSpacing * kSpacing * kSpacing;
+    const Real mass = kDensity * kLatticeSpacing * kLatticeSpacing * kLatticeSpacing;
     shape.positions.push_back(place);
     shape.masses.push_back(mass * (1 + kWave * std::sin(k * place.x())));
   }
@@ -150,14 +150,14 @@ Real order_of_approach(Real coarse, Real middle, Real fine) {
 /// omega / (c k) of a sound wave of `count` spacings.
 Real sound_frequency(Sheet& sheet, int count, const std::string& reach, Row& row) {
   const Real k = wave_number(count);
-  const Real step = 0.2 * kSpacing / 10;  // c = 10 m/s
+  const Real step = 0.2 * kLatticeSpacing / 10;  // c = 10 m/s
   Scene scene = with_step(wave_scene("LIQ-4", count, reach), step);
   PlaneWave& wave = scene.bodies[0].displacement_field->waves[0];
   wave.wave_vector.x() = k;
   // A little more dense than at rest, so that the pressure is above zero in the troughs too.
   const Real background = 2 * k * wave.amplitude.x();
   const std::vector<Vec3> places = lattice_places(scene);
-  scene.bodies[0].mass = (1 + background) * kDensity * std::pow(kSpacing, 3) *
+  scene.bodies[0].mass = (1 + background) * kDensity * std::pow(kLatticeSpacing, 3) *
                          static_cast<Real>(places.size()) /
                          reference("/liquid/LIQ-1/table/sc/" + reach + "/poly6");
   Run run = sheet.start(scene);
@@ -207,7 +207,7 @@ Real shear_viscosity(Sheet& sheet, const std::string& name, int count, const std
                      Row& row) {
   const Real k = wave_number(count);
   const Real step = 0.01;
-  const Real support = std::stod(reach) * kSpacing;
+  const Real support = std::stod(reach) * kLatticeSpacing;
   // Well within what is stable, and slow enough for the error of Runge-Kutta to be 1e-7.
   const Real nu = 0.05 * std::min(support * support, 1 / (k * k)) / step;
   Scene scene = with_step(wave_scene(name, count, reach), step);

@@ -10,8 +10,8 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kSlot = 0.1;   // between the plates' faces; five spacings [m]
-constexpr Real kWidth = 0.8;  // of the tank [m]
+constexpr Real kSlot = 0.1;         // between the plates' faces; five spacings [m]
+constexpr Real kOutletWidth = 0.8;  // of the tank [m]
 
 /// Area of liquid above the plates [m^2].
 Real area_left(const Run& run) {
@@ -23,7 +23,7 @@ Real area_left(const Run& run) {
 
 /// Goes on until the liquid above the plates is `depth` deep; the time then [s].
 Real time_at_depth(Run& run, Real depth) {
-  while (area_left(run) > depth * kWidth) {
+  while (area_left(run) > depth * kOutletWidth) {
     if (run.simulation().time() > 10) throw std::runtime_error("the tank does not run out");
     run.advance_to(run.simulation().time() + 0.01);
   }
@@ -32,7 +32,7 @@ Real time_at_depth(Run& run, Real depth) {
 
 /// Time that a jet as wide as the slot, of the speed sqrt(2 g h), takes from one depth to another.
 Real ideal_time(Real from, Real to) {
-  return kWidth / kSlot * std::sqrt(2 / 9.81) * (std::sqrt(from) - std::sqrt(to));
+  return kOutletWidth / kSlot * std::sqrt(2 / 9.81) * (std::sqrt(from) - std::sqrt(to));
 }
 
 void run_outlet(Sheet& sheet) {

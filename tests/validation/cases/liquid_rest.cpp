@@ -56,7 +56,6 @@ Real artificial_viscosity(const Scene& scene, Real alpha) {
 }
 
 Real pressed_height(Real thickness, Real above, Real c2) {
-  constexpr Real kGravity = 9.81;
   const auto power = [&](Real depth) { return std::pow(1 + 7 * kGravity * depth / c2, 6.0 / 7); };
   return c2 / (6 * kGravity) * (power(above + thickness) - power(above));
 }

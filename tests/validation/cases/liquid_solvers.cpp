@@ -16,7 +16,6 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
 const char* const kTarget = "twice the error that a weakly compressible liquid may have";
 
 /// The scene's liquid at rest density with this solver, in adaptive steps of at most `step`.
@@ -44,7 +43,7 @@ void add_density(Sheet& sheet, const std::string& of, const SolverRun& result) {
 
 // --- LIQ-3 ---
 
-constexpr Real kDepth = 0.5;
+constexpr Real kSolverDepth = 0.5;
 
 /// The weakly compressible column's scene, settling and all; of incompressible liquid with its
 /// artificial viscosity as a real one, for there is no sound that it could go by.
@@ -62,12 +61,13 @@ Scene make_column(PressureSolver solver, Real spacing) {
   return scene;
 }
 
-void check_column(Sheet& sheet, int layers) {
+void check_solver_column(Sheet& sheet, int layers) {
   const std::string of = ", " + std::to_string(layers) + " layers";
   const ColumnRun column = run_column(PressureSolver::incompressible, layers, sheet.runner());
   sheet.add("relative L2 error of the pressure" + of, 0.06, column.pressure_error(),
             at_most(kTarget), column.run);
-  const Line line = fitted_line(column.heights, column.pressures, 0.1 * kDepth, 0.8 * kDepth);
+  const Line line =
+      fitted_line(column.heights, column.pressures, 0.1 * kSolverDepth, 0.8 * kSolverDepth);
   sheet.add("slope of the pressure / (-rho g)" + of, 1, -line.slope / (1000 * kGravity),
             within(0.02, kTarget), column.run);
   sheet.add("greatest speed / sqrt(g H)" + of, 8e-3, column.residual_speed(), at_most(kTarget),
@@ -77,7 +77,7 @@ void check_column(Sheet& sheet, int layers) {
 
 void check_columns(Sheet& sheet) {
   for (const int layers : {20, 40}) {
-    if (!sheet.quick() || layers == 20) check_column(sheet, layers);
+    if (!sheet.quick() || layers == 20) check_solver_column(sheet, layers);
   }
 }
 
@@ -107,38 +107,38 @@ void check_dam_breaks(Sheet& sheet) {
 
 // --- INT-1 ---
 
-constexpr Real kRadius = 0.2;  // of the ball: four spacings [m]
+constexpr Real kSolverRadius = 0.2;  // of the ball: four spacings [m]
 
 /// A ball that starts where it should float, in a pool of which it displaces as much as it should.
-Scene pool_with_ball(const std::string& ratio, Real draft) {
+Scene solver_pool_with_ball(const std::string& ratio, Real draft) {
   Scene scene = with_solver(load_scene("INT-5"), PressureSolver::incompressible, 0.05, 0, 0.005);
   BodyDescription& ball = body_of(scene, "ball");
-  ball.position.z() = 0.8 + kRadius * (1 - 2 * draft);
+  ball.position.z() = 0.8 + kSolverRadius * (1 - 2 * draft);
   ball.fixed = false;
   scene.materials[1].density = 1000 * std::stod(ratio);
-  clear_around_ball(scene, kRadius + 0.0125);
+  clear_around_ball(scene, kSolverRadius + 0.0125);
   return scene;
 }
 
-void check_floating(Sheet& sheet, const std::string& ratio) {
+void check_solver_floating(Sheet& sheet, const std::string& ratio) {
   const Real exact = reference("/interaction/INT-1/sphere_draft_over_diameter/" + ratio);
-  Run run = sheet.start(pool_with_ball(ratio, exact));
+  Run run = sheet.start(solver_pool_with_ball(ratio, exact));
   run.advance_to(2);
   Real sum = 0;
   int samples = 0;
   run.observe_until(3, 0.02, [&] {
     const Diagnostics now = run.diagnostics();
     const Real level = (now.bodies[0].mass + now.bodies[1].mass) / (1000 * 0.8 * 0.8);
-    sum += (level - now.bodies[1].center_of_mass.z() + kRadius) / (2 * kRadius);
+    sum += (level - now.bodies[1].center_of_mass.z() + kSolverRadius) / (2 * kSolverRadius);
     ++samples;
   });
   sheet.add("draft / diameter, density ratio " + ratio, exact, sum / samples, within(0.02, kTarget),
             run);
 }
 
-void run_floating(Sheet& sheet) {
+void run_solver_floating(Sheet& sheet) {
   for (const char* ratio : {"0.25", "0.5", "0.75"}) {
-    if (!sheet.quick() || ratio == std::string("0.5")) check_floating(sheet, ratio);
+    if (!sheet.quick() || ratio == std::string("0.5")) check_solver_floating(sheet, ratio);
   }
 }
 
@@ -162,7 +162,7 @@ DamBreakRun run_dam_break(PressureSolver solver, int layers, TaskRunner* runner)
 }
 
 ColumnRun run_column(PressureSolver solver, int layers, TaskRunner* runner) {
-  ColumnRun column{{Run(make_column(solver, kDepth / layers), runner), {}}, {}, {}};
+  ColumnRun column{{Run(make_column(solver, kSolverDepth / layers), runner), {}}, {}, {}};
   Run& run = column.run;
   run.advance_to(0.02);  // its first step moves what was placed too close together
   run.observe_until(2, 0.02, [&] { column.density.add(run.diagnostics()); });
@@ -189,7 +189,7 @@ Real ColumnRun::pressure_error() const {
   Real error = 0;
   Real scale = 0;
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    const Real exact = 1000 * kGravity * (kDepth - heights[i]);
+    const Real exact = 1000 * kGravity * (kSolverDepth - heights[i]);
     error += std::pow(pressures[i] - exact, 2);
     scale += exact * exact;
   }
@@ -199,7 +199,7 @@ Real ColumnRun::pressure_error() const {
 Real ColumnRun::residual_speed() const {
   Real speed = 0;
   for (const Vec3& velocity : run.body().velocities) speed = std::max(speed, velocity.norm());
-  return speed / std::sqrt(kGravity * kDepth);
+  return speed / std::sqrt(kGravity * kSolverDepth);
 }
 
 std::vector<Case> liquid_solver_cases() {
@@ -209,7 +209,7 @@ std::vector<Case> liquid_solver_cases() {
            "ball that floats in incompressible liquid",
            "interaction",
            {"INT-5"},
-           run_floating}};
+           run_solver_floating}};
 }
 
 }  // namespace vat::validation

@@ -9,14 +9,14 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kRadius = 0.05;
+constexpr Real kSurfaceRadius = 0.05;
 
 /// The radius `layers` spacings and the support radius 2.5 of them with curvature in space, else 3.
 Scene make_drop(SurfaceModel model, int dimensions, int layers) {
   Scene scene = load_scene("LIQ-8");
   scene.surface_model = model;
   scene.dimensions = dimensions;
-  const Real spacing = kRadius / layers;
+  const Real spacing = kSurfaceRadius / layers;
   scene.bodies[0].spacing = spacing;
   scene.materials[0].liquid->support_radius =
       (dimensions == 3 && model == SurfaceModel::curvature ? 2.5 : 3) * spacing;
@@ -31,7 +31,7 @@ Real radius_ratio(const Run& run) {
   const Real volume = mass / scene.materials[0].density;
   const Real radius = scene.dimensions == 3 ? std::cbrt(volume / (4 * std::numbers::pi / 3))
                                             : std::sqrt(volume / std::numbers::pi);
-  return radius / kRadius;
+  return radius / kSurfaceRadius;
 }
 
 /// Whether the body is longer along z than along x.
@@ -67,7 +67,7 @@ Real inner_pressure(Run& run, Real duration) {
     const LiquidFields fields = run.simulation().liquid_fields(body.id).value();
     const Vec3 center = run.diagnostics().bodies[0].center_of_mass;
     for (std::size_t i = 0; i < body.positions.size(); ++i) {
-      if ((body.positions[i] - center).norm() > kRadius / 2) continue;
+      if ((body.positions[i] - center).norm() > kSurfaceRadius / 2) continue;
       sum += fields.pressure[i];
       ++count;
     }
@@ -83,7 +83,7 @@ void add_drop(Sheet& sheet, SurfaceModel model, int dimensions, int layers) {
   const std::string of = std::string(is_plane ? ", in the plane" : ", in space") + ", " +
                          to_string(model) + ", R/dx = " + std::to_string(layers);
   Scene scene = make_drop(model, dimensions, layers);
-  const Real speed = 0.5 * std::sqrt(0.5 / (1000 * kRadius)) / kRadius;
+  const Real speed = 0.5 * std::sqrt(0.5 / (1000 * kSurfaceRadius)) / kSurfaceRadius;
   VectorField field;
   field.gradient = (speed * Vec3(is_plane ? -1 : -0.5, is_plane ? 0 : -0.5, 1)).asDiagonal();
   scene.bodies[0].velocity_field = field;

@@ -10,9 +10,6 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
-constexpr Real kPi = std::numbers::pi;
-
 /// Where the liquid's centre of mass is along x, in the tank [m].
 Real center(const Run& run) {
   return run.diagnostics().bodies[0].center_of_mass.x() - run.simulation().vat_offset().x();
@@ -56,9 +53,9 @@ Scene standing_wave(const std::string& name, int layers) {
   ParticleShape shape = lattice_of(scene);
   press_together(shape, depth, scene);
   for (Vec3& x : shape.positions) {  // as a linear wave moves them
-    const Real scale = kWave / std::sinh(kPi * depth);
-    x += scale * Vec3(-std::cosh(kPi * x.z()) * std::sin(kPi * x.x()), 0,
-                      std::sinh(kPi * x.z()) * std::cos(kPi * x.x()));
+    const Real scale = kWave / std::sinh(std::numbers::pi * depth);
+    x += scale * Vec3(-std::cosh(std::numbers::pi * x.z()) * std::sin(std::numbers::pi * x.x()), 0,
+                      std::sinh(std::numbers::pi * x.z()) * std::cos(std::numbers::pi * x.x()));
   }
   scene.bodies[0].shape = shape;
   return with_step(scene, acoustic_step(scene, 0.01));
@@ -101,7 +98,7 @@ void run_standing_wave(Sheet& sheet, const std::string& name) {
 Real sloshed(Real t, Real depth) {
   Real shift = 0;
   for (int n = 1; n < 200; n += 2) {
-    const Real k = n * kPi;
+    const Real k = n * std::numbers::pi;
     const Real omega = std::sqrt(kGravity * k * std::tanh(k * depth));
     const Real surface = 4 / (kGravity * k * k) * (1 - std::cos(omega * t));
     shift += surface * 2 / (k * k * depth);
@@ -121,8 +118,8 @@ void run_sliding_tank(Sheet& sheet) {
   scene.bodies[0].shape = shape;
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.01)));
   // What a rise of the surface by one spacing at the wall, in the first mode, is worth.
-  const Tolerance tolerance =
-      within(2 * spacing / (kPi * kPi * depth), "a surface known to a spacing at the wall");
+  const Tolerance tolerance = within(2 * spacing / (std::numbers::pi * std::numbers::pi * depth),
+                                     "a surface known to a spacing at the wall");
   for (const char* time : {"0.2", "0.4", "0.6", "0.8", "1.0"}) {
     run.advance_to(std::stod(time));
     sheet.add(std::string("shift of the centre of mass at ") + time + " s [m]",

@@ -9,11 +9,9 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kPi = std::numbers::pi;
-
 /// Speed of the vortices at x, relative to the greatest.
 Real pattern(const Vec3& x) {
-  const Vec3 angle = 2 * kPi * x;
+  const Vec3 angle = 2 * std::numbers::pi * x;
   return std::hypot(std::cos(angle.x()) * std::sin(angle.z()),
                     std::sin(angle.x()) * std::cos(angle.z()));
 }

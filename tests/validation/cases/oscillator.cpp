@@ -30,7 +30,7 @@ std::vector<Real> steps_for(IntegratorId integrator) {
   return halved(order < 2 ? 1e-3 : order < 4 ? 1e-2 : 2e-2, 4);
 }
 
-void add_published_errors(Sheet& sheet, const Scene& scene) {
+void add_oscillator_published_errors(Sheet& sheet, const Scene& scene) {
   const std::string published = "/measured_yardsticks/integrator_yardsticks/DEF-1 |x-ref| t=10/";
   const std::pair<const char*, IntegratorId> methods[] = {{"symp", IntegratorId::symplectic_euler},
                                                           {"verlet", IntegratorId::velocity_verlet},
@@ -70,7 +70,7 @@ void run_undamped(Sheet& sheet) {
     add_order_row(sheet, scene, integrator, steps_for(integrator), 1, theoretical_order(integrator),
                   phase_plane_error);
   }
-  add_published_errors(sheet, scene);
+  add_oscillator_published_errors(sheet, scene);
   add_long_run(sheet, scene);
 }
 

@@ -16,7 +16,7 @@ Real error_at_five_seconds(const Run& run, const std::string& stiffness) {
   return std::hypot(place.x() - reference(state + "0"), place.y() - reference(state + "1"));
 }
 
-void add_published_errors(Sheet& sheet, const Scene& scene) {
+void add_pendulum_published_errors(Sheet& sheet, const Scene& scene) {
   const std::string published =
       "/measured_yardsticks/integrator_yardsticks/DEF-4b k=1e4 |x-ref| t=5/";
   const std::pair<const char*, IntegratorId> methods[] = {{"symp", IntegratorId::symplectic_euler},
@@ -51,7 +51,7 @@ void add_path(Sheet& sheet, Scene scene, const std::string& stiffness) {
 
 void run_pendulum(Sheet& sheet) {
   const Scene scene = load_scene("DEF-4");
-  add_published_errors(sheet, scene);
+  add_pendulum_published_errors(sheet, scene);
   for (const char* stiffness : {"1000", "10000", "100000"}) add_path(sheet, scene, stiffness);
 }
 

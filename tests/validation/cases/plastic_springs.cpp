@@ -18,7 +18,7 @@ constexpr Way kWays[] = {{"velocity_verlet", IntegratorId::velocity_verlet, fals
                          {"runge_kutta_4", IntegratorId::runge_kutta_4, false},
                          {"implicit springs", IntegratorId::velocity_verlet, true}};
 
-Scene load(const std::string& name, const Way& way, Real step) {
+Scene load_plastic(const std::string& name, const Way& way, Real step) {
   Scene scene = with_method(load_scene(name), way.integrator, step);
   for (Material& material : scene.materials) material.implicit_springs = way.implicit;
   return scene;
@@ -39,14 +39,14 @@ void load_slowly(Run& run, Real from, Real to) {
   run.advance_to(run.simulation().time() + 10);
 }
 
-// Under a load S, with the elastic strain S / k: p = (S / k -+ Y) / H where it yields, to one side
-// after the other, and as it was where it does not.
+// Under a load_plastic S, with the elastic strain S / k: p = (S / k -+ Y) / H where it yields, to
+// one side after the other, and as it was where it does not.
 void add_stress_strain(Sheet& sheet) {
   constexpr Real kStiffness = 1000;
   constexpr Real kYield = 0.01;
   constexpr Real kHardening = 0.2;
   for (const Way& way : kWays) {
-    Scene scene = load("DEF-8", way, 1e-3);
+    Scene scene = load_plastic("DEF-8", way, 1e-3);
     scene.materials[0].plasticity->hardening = kHardening;
     Run run = sheet.start(scene);
     Real last = 0;
@@ -58,7 +58,7 @@ void add_stress_strain(Sheet& sheet) {
       last = weight;
       sheet.add("strain under " + std::to_string(static_cast<int>(weight)) + " N, " + way.name,
                 weight / kStiffness + plastic, -1 - run.body().positions[1].z(),
-                within(1e-6, "at rest to a thousandth of the load's last ten"), run);
+                within(1e-6, "at rest to a thousandth of the load_plastic's last ten"), run);
     }
   }
 }
@@ -71,7 +71,7 @@ void add_push(Sheet& sheet) {
   const Real set = (kSpeed * kSpeed / 2 - kStiffness * kYield * kYield / 2) / (kStiffness * kYield);
   for (const Way& way : kWays) {
     for (const Real step : {1e-4, 1e-5}) {
-      Scene scene = load("DEF-8", way, step);
+      Scene scene = load_plastic("DEF-8", way, step);
       scene.bodies[0].springs[0].constants.damping = 0;
       auto& shape = std::get<ParticleShape>(scene.bodies[0].shape);
       shape.velocities = {Vec3::Zero(), {0, 0, -kSpeed}};
@@ -99,7 +99,7 @@ void add_push(Sheet& sheet) {
 void add_chain(Sheet& sheet) {
   constexpr Real kIncrement = 0.01;  // [m/s^2] every 20 ms
   for (const Way& way : kWays) {
-    Run run = sheet.start(load("DEF-9", way, 1e-3));
+    Run run = sheet.start(load_plastic("DEF-9", way, 1e-3));
     Real gravity = 0;
     while (run.diagnostics().torn_springs == 0 && gravity < 20) {
       gravity += kIncrement;
@@ -108,7 +108,8 @@ void add_chain(Sheet& sheet) {
     }
     // The first spring bears ten masses of 0.1 kg: it tears at k 0.1 l0 = 10 N.
     sheet.add(std::string("gravity at which it tears [m/s2], ") + way.name, 10, gravity,
-              within(3 * kIncrement, "steps of the load, which swings by as much again"), run);
+              within(3 * kIncrement, "steps of the load_plastic, which swings by as much again"),
+              run);
     sheet.add(std::string("torn springs, ") + way.name, 1,
               static_cast<Real>(run.diagnostics().torn_springs), within(0, "the first alone"), run);
     const Real momentum = run.diagnostics().bodies[0].linear_momentum.z();

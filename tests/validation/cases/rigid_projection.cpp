@@ -37,7 +37,7 @@ Real steps_until(Real time, Real step) {
 
 // --- RIG-4 and RIG-5 ---
 
-void check_restitution(Sheet& sheet) {
+void check_projected_restitution(Sheet& sheet) {
   for (const Real e : {1.0, 0.5, 0.0}) {
     Scene scene = load_hard("RIG-4", kFrame, 0, e);
     scene.gravity.setZero();
@@ -80,11 +80,11 @@ void check_collisions(Sheet& sheet) {
 
 // --- RIG-6 ---
 
-constexpr int kStack = 5;
+constexpr int kProjectedStack = 5;
 
-std::array<Real, kStack> heights(const Run& run) {
-  std::array<Real, kStack> result{};
-  for (std::size_t i = 0; i < kStack; ++i) {
+std::array<Real, kProjectedStack> heights(const Run& run) {
+  std::array<Real, kProjectedStack> result{};
+  for (std::size_t i = 0; i < kProjectedStack; ++i) {
     result[i] = run.simulation().bodies()[i].pose->center_of_mass.z();
   }
   return result;
@@ -93,12 +93,12 @@ std::array<Real, kStack> heights(const Run& run) {
 void check_stack(Sheet& sheet) {
   Run run = sheet.start(load_hard("RIG-6", kFrame, 0, 0));
   run.advance_to(5);
-  const std::array<Real, kStack> settled = heights(run);
+  const std::array<Real, kProjectedStack> settled = heights(run);
   run.advance_to(sheet.quick() ? 10 : 65);
-  const std::array<Real, kStack> last = heights(run);
+  const std::array<Real, kProjectedStack> last = heights(run);
   Real deepest = 0;
   Real creep = 0;
-  for (std::size_t i = 0; i < kStack; ++i) {
+  for (std::size_t i = 0; i < kProjectedStack; ++i) {
     deepest = std::max(deepest, std::abs(last[i] - (0.05 + 0.1 * static_cast<Real>(i))));
     creep = std::max(creep, std::abs(last[i] - settled[i]));
   }
@@ -111,18 +111,18 @@ void check_stack(Sheet& sheet) {
 
 // --- RIG-7 ---
 
-Real of_reference(const char* name) {
+Real projected_of_reference(const char* name) {
   return reference(std::string("/rigid/RIG-7/") + name);
 }
 
-Real radians(Real degrees) {
+Real projected_radians(Real degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
 /// The ball of RIG-7 on a slope, 0.05 m above it.
 Scene ball_on_slope(Real angle, Real step, Real friction) {
   Scene scene = load_hard("RIG-7", step, friction, 0);
-  const Real g = of_reference("g");
+  const Real g = projected_of_reference("g");
   scene.gravity = {g * std::sin(angle), 0, -g * std::cos(angle)};
   scene.bodies[0].kind = BodyKind::rigid;
   scene.bodies[0].velocity.setZero();
@@ -131,7 +131,7 @@ Scene ball_on_slope(Real angle, Real step, Real friction) {
 }
 
 /// The same with a block of 4 by 4 by 2 balls.
-Scene block_on_slope(Real angle, Real step, Real friction) {
+Scene projected_block_on_slope(Real angle, Real step, Real friction) {
   Scene scene = ball_on_slope(angle, step, friction);
   ParticleShape block;
   for (int i = 0; i < 32; ++i) {
@@ -143,21 +143,22 @@ Scene block_on_slope(Real angle, Real step, Real friction) {
   return scene;
 }
 
-void check_stop(Sheet& sheet) {
-  Scene scene = block_on_slope(0, kFrame, of_reference("mu"));
-  scene.bodies[0].velocity.x() = of_reference("v0");
+void check_projected_stop(Sheet& sheet) {
+  Scene scene = projected_block_on_slope(0, kFrame, projected_of_reference("mu"));
+  scene.bodies[0].velocity.x() = projected_of_reference("v0");
   Run run = sheet.start(scene);
   const Real start = pose_of(run).center_of_mass.x();
   run.advance_to(2);
-  const Real deceleration = of_reference("mu") * of_reference("g");
-  sheet.add("way of a block to its stop [m]", of_reference("stop_distance"),
+  const Real deceleration = projected_of_reference("mu") * projected_of_reference("g");
+  sheet.add("way of a block to its stop [m]", projected_of_reference("stop_distance"),
             pose_of(run).center_of_mass.x() - start,
             within(deceleration * kFrame * kFrame, "mu g dt^2: it stops within a step"), run);
   sheet.add("speed at 2 s [m/s]", 0, pose_of(run).velocity.norm(), within(1e-6, "the solve"), run);
 }
 
-bool slips(Sheet& sheet, Real degrees) {
-  Run run = sheet.start(block_on_slope(radians(degrees), kFrame, of_reference("mu")));
+bool projected_slips(Sheet& sheet, Real degrees) {
+  Run run = sheet.start(
+      projected_block_on_slope(projected_radians(degrees), kFrame, projected_of_reference("mu")));
   run.advance_to(steps_until(1, kFrame));
   return pose_of(run).velocity.x() > 1e-4;
 }
@@ -168,17 +169,21 @@ void check_slope(Sheet& sheet) {
   Real high = 30;
   while (high - low > kAccuracy) {
     const Real middle = (low + high) / 2;
-    (slips(sheet, middle) ? high : low) = middle;
+    (projected_slips(sheet, middle) ? high : low) = middle;
   }
-  Run run = sheet.start(block_on_slope(radians(30), kFrame, of_reference("mu")));
-  sheet.add("steepest slope that holds a block [degrees]", of_reference("incline_critical_deg"),
-            low, within(2 * kAccuracy, "the bisection that finds it"), run);
+  Run run = sheet.start(
+      projected_block_on_slope(projected_radians(30), kFrame, projected_of_reference("mu")));
+  sheet.add("steepest slope that holds a block [degrees]",
+            projected_of_reference("incline_critical_deg"), low,
+            within(2 * kAccuracy, "the bisection that finds it"), run);
   run.advance_to(0.5);
   const Real before = pose_of(run).velocity.x();
   run.advance_to(1);
-  sheet.add("acceleration on a slope of 30 degrees [m/s^2]", of_reference("incline30_acc"),
-            (pose_of(run).velocity.x() - before) / 0.5, within_relative(1e-5, "the solve"), run);
-  Run holds = sheet.start(block_on_slope(radians(15), kFrame, of_reference("mu")));
+  sheet.add("acceleration on a slope of 30 degrees [m/s^2]",
+            projected_of_reference("incline30_acc"), (pose_of(run).velocity.x() - before) / 0.5,
+            within_relative(1e-5, "the solve"), run);
+  Run holds = sheet.start(
+      projected_block_on_slope(projected_radians(15), kFrame, projected_of_reference("mu")));
   holds.advance_to(1);
   const Vec3 settled = pose_of(holds).center_of_mass;
   holds.advance_to(sheet.quick() ? 5 : 61);
@@ -187,27 +192,28 @@ void check_slope(Sheet& sheet) {
             holds);
 }
 
-void check_rolling(Sheet& sheet) {
-  Scene scene = ball_on_slope(0, 1e-3, of_reference("mu"));
-  scene.bodies[0].velocity.x() = of_reference("v0");
+void check_projected_rolling(Sheet& sheet) {
+  Scene scene = ball_on_slope(0, 1e-3, projected_of_reference("mu"));
+  scene.bodies[0].velocity.x() = projected_of_reference("v0");
   Run run = sheet.start(scene);
   const auto slip = [&] {
     const RigidPose pose = pose_of(run);
     return pose.velocity.x() - 0.05 * pose.angular_velocity.y();
   };
   while (slip() > 1e-6) run.advance_to(run.simulation().time() + 1e-3);
-  sheet.add("time until a ball rolls [s]", of_reference("sphere_roll_time"),
+  sheet.add("time until a ball rolls [s]", projected_of_reference("sphere_roll_time"),
             run.simulation().time(), within(1e-3, "one step"), run);
-  sheet.add("way until it rolls [m]", of_reference("sphere_roll_distance"),
+  sheet.add("way until it rolls [m]", projected_of_reference("sphere_roll_distance"),
             pose_of(run).center_of_mass.x(), within(2e-3, "one step at 2 m/s"), run);
   run.advance_to(0.5);
-  sheet.add("speed of rolling [m/s]", of_reference("sphere_roll_speed"), pose_of(run).velocity.x(),
-            within(1e-6, "the solve"), run);
-  Run down = sheet.start(ball_on_slope(radians(20), kFrame, of_reference("mu")));
+  sheet.add("speed of rolling [m/s]", projected_of_reference("sphere_roll_speed"),
+            pose_of(run).velocity.x(), within(1e-6, "the solve"), run);
+  Run down =
+      sheet.start(ball_on_slope(projected_radians(20), kFrame, projected_of_reference("mu")));
   down.advance_to(0.5);
   sheet.add("acceleration, rolling down 20 degrees [m/s^2]",
-            of_reference("sphere_incline_roll_acc_20deg"), pose_of(down).velocity.x() / 0.5,
-            within_relative(1e-6, "the solve"), down);
+            projected_of_reference("sphere_incline_roll_acc_20deg"),
+            pose_of(down).velocity.x() / 0.5, within_relative(1e-6, "the solve"), down);
 }
 
 // --- RIG-8 ---
@@ -226,12 +232,12 @@ void check_eccentric(Sheet& sheet) {
 }
 
 void run_projection(Sheet& sheet) {
-  check_restitution(sheet);
+  check_projected_restitution(sheet);
   check_collisions(sheet);
   check_stack(sheet);
-  check_stop(sheet);
+  check_projected_stop(sheet);
   check_slope(sheet);
-  check_rolling(sheet);
+  check_projected_rolling(sheet);
   check_eccentric(sheet);
 }
 

@@ -86,7 +86,8 @@ struct Place {
   Quat orientation;
 };
 
-Place place_of(Sheet& sheet, IntegratorId integrator, Real step, Row& row, Real* energy = nullptr) {
+Place sampling_place_of(Sheet& sheet, IntegratorId integrator, Real step, Row& row,
+                        Real* energy = nullptr) {
   Scene scene = load_scene("RIG-torque");
   scene.numerics.integrator = integrator;
   scene.numerics.step = step;
@@ -105,7 +106,8 @@ void run_torque(Sheet& sheet) {
   Row fine{.metric = "relative change of the energy in the run compared with",
            .reference = 0,
            .tolerance = within(1e-10, "(omega dt)^4 with omega = 1.4 rad/s, dt = 1/512")};
-  const Place exact = place_of(sheet, IntegratorId::runge_kutta_4, 1.0 / 512, fine, &fine.measured);
+  const Place exact =
+      sampling_place_of(sheet, IntegratorId::runge_kutta_4, 1.0 / 512, fine, &fine.measured);
   sheet.add(fine);
   for (const IntegratorId integrator : kIntegrators) {
     const Real longest = theoretical_order(integrator) < 2 ? 1.0 / 256 : 1.0 / 16;
@@ -115,7 +117,7 @@ void run_torque(Sheet& sheet) {
             .reference = theoretical_order(integrator),
             .tolerance = within(0.2, "order of the method")};
     for (const Real step : steps) {
-      const Place place = place_of(sheet, integrator, step, row);
+      const Place place = sampling_place_of(sheet, integrator, step, row);
       errors.push_back(std::hypot((place.center - exact.center).norm(),
                                   place.orientation.angularDistance(exact.orientation)));
     }

@@ -10,7 +10,7 @@ namespace vat::validation {
 
 namespace {
 
-Scene top(const std::string& name, IntegratorId integrator, Real step) {
+Scene heavy_top(const std::string& name, IntegratorId integrator, Real step) {
   Scene scene = load_scene(name);
   scene.numerics.integrator = integrator;
   scene.numerics.step = step;
@@ -48,7 +48,7 @@ void check_orders(Sheet& sheet) {
             .reference = order,
             .tolerance = within(0.2, "order of the method")};
     for (const Real step : steps) {
-      Run run = sheet.start(top("RIG-1", integrator, step));
+      Run run = sheet.start(heavy_top("RIG-1", integrator, step));
       run.advance_to(10);
       errors.push_back(attitude_error(run, "/rigid/RIG-1/quat/10"));
       row.seconds += run.seconds();
@@ -60,7 +60,7 @@ void check_orders(Sheet& sheet) {
 }
 
 void check_motion(Sheet& sheet) {
-  Run run = sheet.start(top("RIG-1", IntegratorId::velocity_verlet, 0.01));
+  Run run = sheet.start(heavy_top("RIG-1", IntegratorId::velocity_verlet, 0.01));
   sheet.add("energy at the start [J]", reference("/rigid/RIG-1/energy"), run.energy(),
             within_relative(1e-11, "the particles' own inertia"), run);
   const Real published =
@@ -82,7 +82,7 @@ void check_motion(Sheet& sheet) {
 
 void check_drift(Sheet& sheet) {
   const Real steps = sheet.quick() ? 1e4 : 1e6;
-  Run run = sheet.start(top("RIG-1", IntegratorId::velocity_verlet, 0.02));
+  Run run = sheet.start(heavy_top("RIG-1", IntegratorId::velocity_verlet, 0.02));
   const Vec3 momentum = run.diagnostics().bodies[0].angular_momentum;
   const Real energy = run.energy();
   Real worst = 0;
@@ -108,7 +108,7 @@ void run_asymmetric(Sheet& sheet) {
 Real first_zero(Run& run, Real step) {
   for (Real before = body_rate(run).y();;) {
     const Real begin = run.simulation().time();
-    if (begin > 20) throw std::runtime_error("the top did not turn over in 20 s");
+    if (begin > 20) throw std::runtime_error("the heavy_top did not turn over in 20 s");
     run.advance_to(begin + step);
     const Real after = body_rate(run).y();
     if (after <= 0) return begin + step * before / (before - after);
@@ -120,14 +120,14 @@ void run_middle_axis(Sheet& sheet) {
   const std::string source = "published target for order 2";
   for (const IntegratorId integrator :
        {IntegratorId::velocity_verlet, IntegratorId::heun, IntegratorId::runge_kutta_4}) {
-    Run run = sheet.start(top("RIG-2", integrator, 0.01));
+    Run run = sheet.start(heavy_top("RIG-2", integrator, 0.01));
     const Real zero = first_zero(run, 0.01);
     sheet.add(std::string("time at which it has turned half over [s], step 0.01, ") +
                   to_string(integrator),
               reference("/rigid/RIG-2/first_zero_crossings_of_w2/0"), zero, within(1e-3, source),
               run);
   }
-  Run run = sheet.start(top("RIG-2", IntegratorId::velocity_verlet, 0.01));
+  Run run = sheet.start(heavy_top("RIG-2", IntegratorId::velocity_verlet, 0.01));
   for (const char* time : {"5", "10", "20", "40"}) {
     run.advance_to(std::stod(time));
     const Vec3 error = body_rate(run) - reference_vector(std::string("/rigid/RIG-2/w/") + time);
@@ -138,7 +138,7 @@ void run_middle_axis(Sheet& sheet) {
 
 void run_symmetric(Sheet& sheet) {
   const Tolerance exact = within(1e-10, "exact for equal moments, to round-off");
-  Run run = sheet.start(top("RIG-3", IntegratorId::velocity_verlet, 0.01));
+  Run run = sheet.start(heavy_top("RIG-3", IntegratorId::velocity_verlet, 0.01));
   for (const char* time : {"1", "10"}) {
     run.advance_to(std::stod(time));
     const Vec3 error = body_rate(run) - reference_vector(std::string("/rigid/RIG-3a/w/") + time);

@@ -15,8 +15,6 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
-
 /// The lattice of springs: columns of particles, held apart by the vat, under pressure.
 struct Bed {
   Real spacing = 0;
@@ -110,7 +108,7 @@ struct Bounce {
 };
 
 /// Whole periods are from one passage downwards through the middle to another.
-Bounce measure(const std::vector<Real>& compressions, Real interval, Real middle) {
+Bounce measure_bed(const std::vector<Real>& compressions, Real interval, Real middle) {
   std::vector<Real> passages;
   std::vector<std::size_t> samples;
   for (std::size_t i = 1; i < compressions.size(); ++i) {
@@ -128,7 +126,7 @@ Bounce measure(const std::vector<Real>& compressions, Real interval, Real middle
                          static_cast<Real>(whole.size())};
 }
 
-void run_bounce(Sheet& sheet) {
+void run_bed_bounce(Sheet& sheet) {
   constexpr Real kInterval = 1e-3;
   const Scene scene = load_scene("INT-9");
   const Bed bed = bed_of(scene);
@@ -141,7 +139,7 @@ void run_bounce(Sheet& sheet) {
     const BodyView view = run.body("bed");
     compressions.push_back(height - height_of(view, bed, bed.rows - 1) + height_of(view, bed, 0));
   });
-  const Bounce bounce = measure(compressions, kInterval, expected);
+  const Bounce bounce = measure_bed(compressions, kInterval, expected);
   // The liquid presses somewhere between the bed's top layer and its own lowest one.
   const Real place = bed.spacing / 2 / height;
   sheet.add("mean compression of the bed [m]", expected, bounce.compression,
@@ -157,7 +155,7 @@ std::vector<Case> soft_bed_cases() {
            "weakly compressible liquid that bounces on a soft bed",
            "interaction",
            {"INT-9"},
-           run_bounce}};
+           run_bed_bounce}};
 }
 
 }  // namespace vat::validation

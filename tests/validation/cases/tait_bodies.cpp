@@ -12,12 +12,11 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
-constexpr Real kRadius = 0.1;  // of the ball: four spacings [m]
-constexpr Real kVolume = 4 * std::numbers::pi / 3 * kRadius * kRadius * kRadius;
-constexpr const char* kAsked = "asked of a liquid that is to float bodies right";
+constexpr Real kTaitRadius = 0.1;  // of the ball: four spacings [m]
+constexpr Real kTaitVolume = 4 * std::numbers::pi / 3 * kTaitRadius * kTaitRadius * kTaitRadius;
+constexpr const char* kTaitAsked = "asked of a liquid that is to float bodies right";
 
-struct Pool {
+struct TaitPool {
   Real width = 0.5;  ///< [m]
   Real depth = 0;    ///< [m]
 
@@ -26,12 +25,12 @@ struct Pool {
 };
 
 /// Narrow for a quick run: what rests does not feel the walls.
-Pool pool_at_rest(const Sheet& sheet, Real depth) {
+TaitPool pool_at_rest(const Sheet& sheet, Real depth) {
   return {sheet.quick() ? 0.35 : 0.5, depth};
 }
 
 /// The scene with that pool, and a ball of that density ratio with its centre at that place.
-Scene pool_with_ball(const Pool& pool, Real density_ratio, const Vec3& center) {
+Scene tait_pool_with_ball(const TaitPool& pool, Real density_ratio, const Vec3& center) {
   const Real depth = pool.depth;
   Scene scene = load_scene("INT-5-tait");
   const Real c2 = 100 * kGravity * depth;  // ten times the speed of a long wave
@@ -43,7 +42,7 @@ Scene pool_with_ball(const Pool& pool, Real density_ratio, const Vec3& center) {
   box.size = {pool.width, pool.width, depth};
   scene.vat->max = {pool.width, pool.width, 2};
   scene.bodies[1].position = center;
-  clear_around_ball(scene, kRadius + scene.bodies[0].spacing / 2);
+  clear_around_ball(scene, kTaitRadius + scene.bodies[0].spacing / 2);
   return with_step(scene, acoustic_step(scene, 0.02));
 }
 
@@ -70,19 +69,19 @@ Real buoyancy(Run& run) {
     sum += run.diagnostics().bodies[1].outer_force.z();
     ++samples;
   });
-  return sum / samples / (1000 * kGravity * kVolume);
+  return sum / samples / (1000 * kGravity * kTaitVolume);
 }
 
-void run_held(Sheet& sheet) {
+void run_tait_held(Sheet& sheet) {
   // Where the lattice happens to be cut makes a percent: the mean over its places is judged.
   const int places = sheet.quick() ? 2 : 8;
   Row row{.metric = "buoyant force / (rho g V), mean of " + std::to_string(places) + " places",
           .reference = 1,
-          .tolerance = within(0.015, kAsked)};
+          .tolerance = within(0.015, kTaitAsked)};
   for (int i = 1; i <= places; ++i) {
     const Vec3 offset(spread(i, 2), spread(i, 3), spread(i, 5));
-    const Pool pool = pool_at_rest(sheet, 0.45);
-    Run run = sheet.start(pool_with_ball(pool, 1, pool.at(0.225) + 0.025 * offset));
+    const TaitPool pool = pool_at_rest(sheet, 0.45);
+    Run run = sheet.start(tait_pool_with_ball(pool, 1, pool.at(0.225) + 0.025 * offset));
     row.measured += buoyancy(run) / places;
     row.seconds += run.seconds();
     row.state_hash = run.state_hash();
@@ -114,9 +113,9 @@ Real exact_draft(const char* ratio) {
 }
 
 /// The pool with a ball of that density ratio, placed a spacing higher than it floats.
-Scene pool_with_floating_ball(const Pool& pool, const char* ratio) {
-  const Real height = pool.depth + kRadius * (1 - 2 * exact_draft(ratio)) + 0.025;
-  return pool_with_ball(pool, std::stod(ratio), pool.at(height));
+Scene pool_with_floating_ball(const TaitPool& pool, const char* ratio) {
+  const Real height = pool.depth + kTaitRadius * (1 - 2 * exact_draft(ratio)) + 0.025;
+  return tait_pool_with_ball(pool, std::stod(ratio), pool.at(height));
 }
 
 void add_draft(Sheet& sheet, const char* ratio, const Scene& scene, Real tolerance) {
@@ -126,14 +125,14 @@ void add_draft(Sheet& sheet, const char* ratio, const Scene& scene, Real toleran
   Real sum = 0;
   int samples = 0;
   run.observe_until(sheet.quick() ? 1.2 : 3, 0.02, [&] {
-    sum += draft(run, kRadius, area);
+    sum += draft(run, kTaitRadius, area);
     ++samples;
   });
   sheet.add(std::string("draft / diameter, density ratio ") + ratio, exact_draft(ratio),
-            sum / samples, within(tolerance, kAsked), run);
+            sum / samples, within(tolerance, kTaitAsked), run);
 }
 
-void run_floating(Sheet& sheet) {
+void run_tait_floating(Sheet& sheet) {
   for (const char* ratio : {"0.25", "0.5", "0.75"}) {
     if (sheet.quick() && ratio != std::string("0.5")) continue;
     Scene scene = pool_with_floating_ball(pool_at_rest(sheet, 0.35), ratio);
@@ -164,16 +163,16 @@ void run_soft_floating(Sheet& sheet) {
 // --- INT-3 ---
 
 /// Downwards, in a spherical shell of liquid as wide as the pool.
-Real release_acceleration(const Pool& pool, Real ratio) {
-  const Real b3 = std::pow(pool.width / 2 / kRadius, 3);
+Real release_acceleration(const TaitPool& pool, Real ratio) {
+  const Real b3 = std::pow(pool.width / 2 / kTaitRadius, 3);
   const Real added_mass = 0.5 * (b3 + 2) / (b3 - 1);
   return (ratio - 1) / (ratio + added_mass) * kGravity;
 }
 
-void check_release(Sheet& sheet, const char* ratio) {
+void check_tait_release(Sheet& sheet, const char* ratio) {
   constexpr Real kRelease = 0.6;
-  const Pool pool{.depth = 0.5};
-  Scene scene = pool_with_ball(pool, std::stod(ratio), pool.at(0.25));
+  const TaitPool pool{.depth = 0.5};
+  Scene scene = tait_pool_with_ball(pool, std::stod(ratio), pool.at(0.25));
   scene.settling->until = 0.4;
   // The theory is that of a liquid without viscosity.
   scene.materials[0].liquid->viscosity = 0;
@@ -191,29 +190,29 @@ void check_release(Sheet& sheet, const char* ratio) {
   });
   sheet.add(std::string("acceleration downwards after release [m/s2], density ratio ") + ratio,
             release_acceleration(pool, std::stod(ratio)), sum_tv / sum_tt,
-            within_relative(0.05, kAsked), run);
+            within_relative(0.05, kTaitAsked), run);
 }
 
-void run_release(Sheet& sheet) {
+void run_tait_release(Sheet& sheet) {
   for (const char* ratio : {"0.5", "2", "4"}) {
     if (sheet.quick() && ratio != std::string("2")) continue;
-    check_release(sheet, ratio);
+    check_tait_release(sheet, ratio);
   }
 }
 
 // --- a ball on the floor ---
 
 void run_sinking(Sheet& sheet) {
-  const Pool pool = pool_at_rest(sheet, 0.35);
-  Scene scene = pool_with_ball(pool, 1.5, pool.at(0.2));
+  const TaitPool pool = pool_at_rest(sheet, 0.35);
+  Scene scene = tait_pool_with_ball(pool, 1.5, pool.at(0.2));
   free_ball(scene, 0.6);
   Run run = sheet.start(scene);
   run.advance_to(sheet.quick() ? 2 : 4);
   // Its weight less its buoyancy, on one spring of the lowest layer of particles.
-  const Real sink = 500 * kVolume * kGravity / scene.interfaces[0].constants.stiffness;
+  const Real sink = 500 * kTaitVolume * kGravity / scene.interfaces[0].constants.stiffness;
   const RigidPose pose = *run.body("ball").pose;
-  sheet.add("height of the centre on the floor / radius", 1, pose.center_of_mass.z() / kRadius,
-            within(sink / kRadius, "at most the load on one spring of the floor"), run);
+  sheet.add("height of the centre on the floor / radius", 1, pose.center_of_mass.z() / kTaitRadius,
+            within(sink / kTaitRadius, "at most the load on one spring of the floor"), run);
   sheet.add("speed on the floor / sqrt(g H)", 4e-3,
             pose.velocity.norm() / std::sqrt(kGravity * pool.depth),
             at_most("the residual speed of a liquid at rest"), run);
@@ -226,7 +225,7 @@ std::vector<Case> tait_body_cases() {
            "ball that floats in a weakly compressible liquid",
            "interaction",
            {"INT-5-tait"},
-           run_floating},
+           run_tait_floating},
           {"INT-1-soft",
            "ball of springs that floats in a weakly compressible liquid",
            "interaction",
@@ -241,12 +240,12 @@ std::vector<Case> tait_body_cases() {
            "ball let go in a weakly compressible liquid",
            "interaction",
            {"INT-5-tait"},
-           run_release},
+           run_tait_release},
           {"INT-5-tait",
            "buoyancy of a held ball in a weakly compressible liquid",
            "interaction",
            {"INT-5-tait"},
-           run_held},
+           run_tait_held},
           {"INT-8-tait",
            "force of a weakly compressible liquid on a dam",
            "interaction",

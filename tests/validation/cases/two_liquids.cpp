@@ -11,11 +11,10 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kGravity = 9.81;
 constexpr Real kWaveNumber = std::numbers::pi;  // half a wave in the tank [1/m]
 constexpr std::size_t kAbove = 0;               // of the scene's materials and bodies
 constexpr std::size_t kBelow = 1;
-constexpr Real kWave = 0.05;  // amplitude of the interface [m]
+constexpr Real kLayersWave = 0.05;  // amplitude of the interface [m]
 
 /// Linear waves of two liquids without viscosity, the upper one with a free surface (H. Lamb,
 /// Hydrodynamics, 6th ed., Cambridge, 1932, art. 231).
@@ -44,18 +43,18 @@ struct TwoLayers {
   /// How far that mode, with its crest at the left wall, moves what is at x, with z from the floor.
   Vec3 displacement(const Vec3& x) const {
     const Real k = kWaveNumber;
-    const Real below = kWave / std::sinh(k * depth_below);
+    const Real below = kLayersWave / std::sinh(k * depth_below);
     if (x.z() < depth_below) {
       return below * Vec3(-std::cosh(k * x.z()) * std::sin(k * x.x()), 0,
                           std::sinh(k * x.z()) * std::cos(k * x.x()));
     }
     // From the same pressure on both sides of the interface.
     const Real push = density_below * below * std::cosh(k * depth_below) -
-                      (density_below - density_above) * kGravity * k * kWave / omega2();
+                      (density_below - density_above) * kGravity * k * kLayersWave / omega2();
     const Real even = push / density_above;
     const Real z = k * (x.z() - depth_below);
-    const Real along = even * std::cosh(z) + kWave * std::sinh(z);
-    const Real across = even * std::sinh(z) + kWave * std::cosh(z);
+    const Real along = even * std::cosh(z) + kLayersWave * std::sinh(z);
+    const Real across = even * std::sinh(z) + kLayersWave * std::cosh(z);
     return {-along * std::sin(k * x.x()), 0, across * std::cos(k * x.x())};
   }
 };

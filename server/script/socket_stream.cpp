@@ -1,0 +1,138 @@
+#include "server/script/socket_stream.h"
+
+#include <boost/asio/basic_stream_socket.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <stdexcept>
+
+#include "server/script/tls.h"
+
+namespace vat::script {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+struct SocketStream::Transport {
+  using Socket = asio::basic_stream_socket<tcp, executor_type>;
+
+  Transport(asio::io_context& context, const WebSocketUrl& url, const TlsTrust& trust)
+      : socket(context.get_executor()) {
+    if (!url.is_secure) return;
+    tls_context.emplace(make_client_context(trust));
+    tls.emplace(socket, *tls_context);
+  }
+
+  Socket socket;
+  std::optional<asio::ssl::context> tls_context;
+  std::optional<asio::ssl::stream<Socket&>> tls;  // empty: no TLS
+};
+
+SocketStream::SocketStream(asio::io_context& context, const WebSocketUrl& url,
+                           const TlsTrust& trust)
+    : context_(context), url_(url), transport_(std::make_unique<Transport>(context, url, trust)) {}
+
+SocketStream::~SocketStream() = default;
+
+SocketStream::executor_type SocketStream::get_executor() {
+  return context_.get_executor();
+}
+
+void SocketStream::open(Deadline deadline) {
+  // The context belongs to the caller's Operations; only this stream has operations in it yet.
+  const auto run = [&](const std::optional<ErrorCode>& outcome) {
+    context_.restart();
+    while (!outcome && context_.run_one_until(deadline) > 0) {
+    }
+    const bool in_time = outcome.has_value();
+    if (!in_time) {
+      close_socket();
+      context_.restart();
+      context_.run();
+    }
+    return in_time;
+  };
+  tcp::resolver resolver(context_);
+  ErrorCode failure;
+  const auto found = resolver.resolve(url_.host, url_.port, failure);
+  if (failure) throw std::runtime_error("no address of " + url_.host + ": " + failure.message());
+  std::optional<ErrorCode> outcome;
+  asio::async_connect(transport_->socket, found,
+                      [&](ErrorCode result, const tcp::endpoint&) { outcome = result; });
+  if (!run(outcome)) outcome = asio::error::timed_out;
+  if (*outcome) {
+    throw std::runtime_error("no server at " + url_.authority() + ": " + outcome->message());
+  }
+  if (!transport_->tls) return;
+  SSL* const tls = transport_->tls->native_handle();
+  expect_server(tls, url_);
+  outcome.reset();
+  transport_->tls->async_handshake(asio::ssl::stream_base::client,
+                                   [&](ErrorCode result) { outcome = result; });
+  if (!run(outcome)) {
+    throw std::runtime_error("the server did not answer the handshake of TLS in time");
+  }
+  if (*outcome) throw std::runtime_error(handshake_fault(tls, url_, *outcome));
+}
+
+void SocketStream::close_socket() {
+  ErrorCode ignored;  // the peer may have closed it
+  transport_->socket.close(ignored);
+}
+
+void SocketStream::start_read(asio::mutable_buffer buffer, Handler handler) {
+  if (transport_->tls) {
+    transport_->tls->async_read_some(buffer, std::move(handler));
+  } else {
+    transport_->socket.async_read_some(buffer, std::move(handler));
+  }
+}
+
+void SocketStream::start_write(asio::const_buffer buffer, Handler handler) {
+  if (transport_->tls) {
+    transport_->tls->async_write_some(buffer, std::move(handler));
+  } else {
+    transport_->socket.async_write_some(buffer, std::move(handler));
+  }
+}
+
+void SocketStream::start_teardown(std::function<void(ErrorCode)> handler) {
+  if (transport_->tls) {
+    transport_->tls->async_shutdown(std::move(handler));
+    return;
+  }
+  ErrorCode failure;
+  transport_->socket.shutdown(tcp::socket::shutdown_both, failure);
+  asio::post(context_, [handler = std::move(handler), failure] { handler(failure); });
+}
+
+void Operations::finish(SocketStream& stream, const std::optional<SocketStream::ErrorCode>& outcome,
+                        Deadline deadline, const char* fault) {
+  run_until(deadline, [&] { return outcome.has_value(); });
+  if (outcome) return;
+  stream.close_socket();
+  run_until(Deadline::max(), [&] { return outcome.has_value(); });
+  throw std::runtime_error(fault);
+}
+
+void Operations::run_until(Deadline deadline, const std::function<bool()>& reached) {
+  run_ready();
+  while (!reached() && std::chrono::steady_clock::now() < deadline) {
+    context_.restart();
+    const bool is_idle = context_.run_one_until(deadline) == 0 && context_.stopped();
+    if (is_idle) return;  // nothing to wait for
+  }
+}
+
+void Operations::run_ready() {
+  context_.restart();
+  context_.poll();
+}
+
+void Operations::run_out() {
+  context_.restart();
+  context_.run();
+}
+
+}  // namespace vat::script

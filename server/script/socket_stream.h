@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <boost/asio/async_result.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/core/role.hpp>
+#include <boost/beast/core/stream_traits.hpp>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "server/script/websocket_url.h"
+
+namespace vat::script {
+
+/// A TCP connection, with TLS if the server's URL asks for it. HTTP and WebSocket of Boost.Beast
+/// run on top of it. Its handlers are of one type, so that those templates are compiled once. Used
+/// by one thread: operations proceed only inside the member functions of Operations.
+class SocketStream {
+ public:
+  using executor_type = boost::asio::io_context::executor_type;
+  using ErrorCode = boost::system::error_code;
+  using Handler = std::function<void(ErrorCode, std::size_t)>;
+  using Deadline = std::chrono::steady_clock::time_point;
+
+  /// Throws std::runtime_error if the certificates of `trust` cannot be read.
+  SocketStream(boost::asio::io_context& context, const WebSocketUrl& url, const TlsTrust& trust);
+  ~SocketStream();
+  SocketStream(const SocketStream&) = delete;
+  SocketStream& operator=(const SocketStream&) = delete;
+
+  executor_type get_executor();
+  /// Connects and checks the server's certificate. Throws std::runtime_error with the cause.
+  void open(Deadline deadline);
+  /// Ends operations in progress with an error.
+  void close_socket();
+
+  template <class Buffers, class Token>
+  auto async_read_some(const Buffers& buffers, Token&& token) {
+    return boost::asio::async_initiate<Token, void(ErrorCode, std::size_t)>(
+        [this, &buffers](auto handler) {
+          start_read(first_buffer<boost::asio::mutable_buffer>(buffers), share(std::move(handler)));
+        },
+        token);
+  }
+  template <class Buffers, class Token>
+  auto async_write_some(const Buffers& buffers, Token&& token) {
+    return boost::asio::async_initiate<Token, void(ErrorCode, std::size_t)>(
+        [this, &buffers](auto handler) {
+          start_write(first_buffer<boost::asio::const_buffer>(buffers), share(std::move(handler)));
+        },
+        token);
+  }
+  /// Closes the transport after the closing handshake of WebSocket.
+  void start_teardown(std::function<void(ErrorCode)> handler);
+
+ private:
+  struct Transport;
+
+  /// A partial read or write is allowed, so that one buffer of the sequence is enough.
+  template <class Buffer, class Buffers>
+  static Buffer first_buffer(const Buffers& buffers) {
+    const auto end = boost::asio::buffer_sequence_end(buffers);
+    for (auto it = boost::asio::buffer_sequence_begin(buffers); it != end; ++it) {
+      if (Buffer(*it).size() > 0) return *it;
+    }
+    return {};
+  }
+  /// The handlers of Boost.Beast can be moved only; Handler must be copyable.
+  template <class Moved>
+  static Handler share(Moved handler) {
+    return [shared = std::make_shared<Moved>(std::move(handler))](
+               ErrorCode failure, std::size_t bytes) { std::move (*shared)(failure, bytes); };
+  }
+
+  void start_read(boost::asio::mutable_buffer buffer, Handler handler);
+  void start_write(boost::asio::const_buffer buffer, Handler handler);
+
+  boost::asio::io_context& context_;
+  WebSocketUrl url_;
+  std::unique_ptr<Transport> transport_;
+};
+
+/// Found by Boost.Beast through argument-dependent lookup.
+template <class Handler>
+void async_teardown(boost::beast::role_type, SocketStream& stream, Handler&& handler) {
+  auto shared = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler));
+  stream.start_teardown(
+      [shared](SocketStream::ErrorCode failure) { std::move (*shared)(failure); });
+}
+inline void beast_close_socket(SocketStream& stream) {
+  stream.close_socket();
+}
+
+/// Runs the operations of one stream on the caller's thread.
+class Operations {
+ public:
+  using Deadline = SocketStream::Deadline;
+
+  boost::asio::io_context& context() { return context_; }
+
+  /// Runs until the operation has set `outcome`. At the deadline closes the stream and throws
+  /// std::runtime_error with the message `fault`.
+  void finish(SocketStream& stream, const std::optional<SocketStream::ErrorCode>& outcome,
+              Deadline deadline, const char* fault);
+  /// Runs until `reached`, until the deadline, or until nothing is left to wait for.
+  void run_until(Deadline deadline, const std::function<bool()>& reached);
+  /// Runs handlers that need no waiting.
+  void run_ready();
+  /// Runs until all operations have ended.
+  void run_out();
+
+ private:
+  boost::asio::io_context context_;
+};
+
+}  // namespace vat::script

@@ -1,0 +1,27 @@
+"""test_targets.py BUILD_FOLDER < chosen.json: the ninja targets that the chosen tests need.
+
+Reads the output of `ctest --show-only=json-v1`. Prints one target a line. Prints nothing if no test
+is chosen or if the tests of a chosen program are unknown, so that everything must be built.
+"""
+
+import json
+import re
+import subprocess
+import sys
+
+
+def main():
+    folder = sys.argv[1]
+    tests = json.load(sys.stdin)["tests"]
+    if any(test["name"].endswith("_NOT_BUILT") for test in tests):
+        return
+    listed = subprocess.run(
+        ["ninja", "-C", folder, "-t", "targets", "all"], check=True, capture_output=True, text=True)
+    programs = {line.split(": ")[0] for line in listed.stdout.splitlines()
+                if "CXX_EXECUTABLE_LINKER" in line}
+    paths = re.findall(re.escape(folder) + r"/([\w./-]+)", json.dumps(tests))
+    print("\n".join(sorted(programs.intersection(paths))))
+
+
+if __name__ == "__main__":
+    main()
