@@ -122,7 +122,8 @@ it('downloads a recording, and shows it when it is opened as a file', async () =
   await live();
   const download = visits.viewer.page.waitForEvent('download');
   await visits.viewer.page.click('#recording-export');
-  const path = (await (await download).path())!;
+  const path = join(data, 'mine.vatrec');
+  await (await download).saveAs(path);
   expect(readFileSync(path).subarray(0, 7).toString()).toBe('vat.rec');
   await visits.viewer.page.setInputFiles('#recording-input', {
     name: 'mine.vatrec',

@@ -1,17 +1,16 @@
-import { beforeAll, describe, expect, it } from 'vitest';
+import { beforeEach, describe, expect, it } from 'vitest';
 import { differenceFromReference, pixelsOf, statisticsOf } from './pixels';
 import type { Region } from './pixels';
 import { kInTime, Visits } from './visits';
 
 /** How the view draws the session: pictures of states that stand still. */
 const visits = new Visits();
-const kFine = { deviceScaleFactor: 1 };
 
 /** Pictures of one state on two machines differ by rounding at edges alone: some pixels in 100. */
 const kAlike = 2;
 
 /** The least number of pixels that a mark takes. */
-const kMark = 1000;
+const kMark = 250;
 
 /** Pixels that differ though nothing has changed. */
 const kSame = 20;
@@ -21,8 +20,24 @@ const kWater = { left: 0.14, top: 0.4, right: 0.22, bottom: 0.55 };
 const kAir = { left: 0.5, top: 0.3, right: 0.7, bottom: 0.5 };
 const kStyles = ['fluid', 'surface', 'splats', 'particles'];
 
-const visit = (scene: string, tick: number, view = ''): Promise<void> =>
-  visits.visit(scene, { tick, view, ...kFine });
+/** Where the page is, if the last test left it there. */
+let place = '';
+
+async function visit(scene: string, tick: number, view = ''): Promise<void> {
+  place = '';
+  await visits.visit(scene, { tick, view });
+}
+
+/** Before each test of a group: the scene at this tick, which the tests may step once. */
+function stayAt(scene: string, tick: number): void {
+  beforeEach(async () => {
+    const there = `${scene} ${tick}`;
+    if (place !== there || !visits.isOpen) await visit(scene, tick);
+    else await visits.set('');
+    place = there;
+  });
+}
+
 const statistics = async (region: Region) => statisticsOf(await pixelsOf(visits.viewer), region);
 const textOf = async (id: string): Promise<string> =>
   (await visits.viewer.page.textContent(`#${id}`)) ?? '';
@@ -49,7 +64,7 @@ const changeFrom = async (picture: string): Promise<number> =>
   visits.viewer.difference(picture, await visits.viewer.picture());
 
 describe('the dam break at its start', () => {
-  beforeAll(() => visit('dam-break', 0));
+  stayAt('dam-break', 0);
 
   it('is drawn as splats where the processor draws, which is said', async () => {
     expect(await visits.viewer.said('liquid')).toBe('splats');
@@ -84,7 +99,7 @@ describe('the dam break at its start', () => {
 });
 
 describe('the dam break in motion', () => {
-  beforeAll(() => visit('dam-break', 12));
+  stayAt('dam-break', 12);
   const kFront = { left: 0.46, top: 0.68, right: 0.52, bottom: 0.72 };
   const kBack = { left: 0.12, top: 0.5, right: 0.18, bottom: 0.6 };
 
@@ -135,9 +150,7 @@ describe('the dam break in motion', () => {
 });
 
 describe('a scene with bodies of all kinds', () => {
-  beforeAll(async () => {
-    await visit('sliding-vat-liquid', 40);
-  });
+  stayAt('sliding-vat-liquid', 40);
 
   it.each(kStyles)('looks as it did, with the liquid as %s', async (style) => {
     await setStyle(style);
@@ -183,13 +196,13 @@ it('gives bodies smooth skins', async () => {
   const before = await visits.viewer.stillPicture();
   // Two deformable bodies, three rigid ones.
   await untilSurfaces(5, () => visits.set('liquid:particles,solids:skin'));
-  await expect.poll(() => changeFrom(before), kInTime).toBeGreaterThan(3000);
+  await expect.poll(() => changeFrom(before), kInTime).toBeGreaterThan(750);
   await expect
     .poll(() => differenceFromReference(visits.viewer, 'skins'), kInTime)
     .toBeLessThan(kAlike);
   const skins = await visits.viewer.stillPicture();
   await untilSurfaces(5, () => visits.set('liquid:particles,solids:both'));
-  await expect.poll(() => changeFrom(skins), kInTime).toBeGreaterThan(3000);
+  await expect.poll(() => changeFrom(skins), kInTime).toBeGreaterThan(750);
 });
 
 /** Of the picture's strong colours: how many hues, in twelfths of the circle. */

@@ -40,7 +40,7 @@ it('tilts gravity as the device is tilted, relative to how it was held first', a
   await page.evaluate(async () => {
     const button = document.getElementById('gravity-device') as HTMLButtonElement;
     button.click();
-    while (button.ariaPressed !== 'true') await Promise.resolve();
+    while (button.ariaPressed !== 'true') await new Promise(requestAnimationFrame);
     for (const gamma of [0, 30]) {
       window.dispatchEvent(new DeviceOrientationEvent('deviceorientation', { beta: 40, gamma }));
     }

@@ -7,6 +7,8 @@ import WebSocket, { WebSocketServer } from 'ws';
 export interface Ways {
   /** It refuses every WebSocket. */
   refuses?: boolean;
+  /** Runs before the script of the page's worker. */
+  worker?: string;
   /** Methods that it does not know, as one that is older. */
   unknown?: readonly string[];
 }
@@ -27,7 +29,9 @@ export class Proxy {
         (name) => [name, answer.headers.get(name) ?? ''] as const,
       );
       response.writeHead(answer.status, Object.fromEntries(headers));
-      response.end(Buffer.from(await answer.arrayBuffer()));
+      const isWorker = request.url?.includes('stream.worker') ?? false;
+      const before = Buffer.from(isWorker ? (this.ways.worker ?? '') : '');
+      response.end(Buffer.concat([before, Buffer.from(await answer.arrayBuffer())]));
     });
   });
   private readonly sockets = new WebSocketServer({ noServer: true });

@@ -60,6 +60,10 @@ export class Visits {
     return this.client;
   }
 
+  get isOpen(): boolean {
+    return this.page !== undefined;
+  }
+
   get viewer(): Viewer {
     if (!this.page) throw new Error('this test has visited no scene');
     return this.page;
@@ -112,7 +116,8 @@ export async function unfold({ page }: Viewer, id: string): Promise<void> {
   await page.evaluate((open) => {
     const sheet = document.getElementById('sheet')!;
     if (sheet.checkVisibility() && sheet.ariaExpanded === 'false') sheet.click();
-    for (const section of document.querySelectorAll<HTMLDetailsElement>('#sections > details')) {
+    const sections = document.querySelectorAll<HTMLDetailsElement>('#sections > details[id]');
+    for (const section of sections) {
       section.open = section.id === open;
     }
   }, id);
