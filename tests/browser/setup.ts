@@ -19,9 +19,9 @@ const kPage = fileURLToPath(new URL('../../web/dist/index.html', import.meta.url
 /** Starts the browser and the server of the whole suite. Returns what ends both. */
 export default async function start({ provide }: TestProject): Promise<() => Promise<void>> {
   if (!existsSync(kPage)) throw new Error(`no ${kPage}: type npm --prefix web run build`);
-  const browser = await chromium.launchServer(launchOptions());
   const server = new Server(['--max-scenes-per-second', '1000']);
   await server.start();
+  const browser = await chromium.launchServer(launchOptions());
   provide('chromium', browser.wsEndpoint());
   provide('server', server.url);
   return async () => {
