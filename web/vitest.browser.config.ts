@@ -18,10 +18,12 @@ export default defineConfig({
   },
   test: {
     include: ['tests/browser/**/*.test.ts'],
+    globalSetup: 'tests/browser/setup.ts',
+    // One process for all files, one after the other: they share a browser, and load takes long.
     fileParallelism: false,
+    pool: 'forks',
+    poolOptions: { forks: { singleFork: true, isolate: false } },
     testTimeout: 180_000,
     hookTimeout: 180_000,
-    // A picture may miss its moment where others use the processor; what fails twice is wrong.
-    retry: 1,
   },
 });

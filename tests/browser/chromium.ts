@@ -1,6 +1,6 @@
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
-import type { Browser } from 'playwright-core';
+import type { Browser, LaunchOptions } from 'playwright-core';
 
 const kFlags = [
   '--headless',
@@ -15,7 +15,7 @@ const kFlags = [
   '--enable-unsafe-swiftshader',
 ];
 
-/** Software rendering on a slow, busy machine still meets this. */
+/** Limit of every wait [ms]: reached only where something is wrong, also on a slow, busy machine. */
 export const kDeadlineMs = 120_000;
 
 /** Where the browser is, or should be. */
@@ -23,8 +23,13 @@ export function chromiumPath(): string {
   return process.env.CHROMIUM ?? '/usr/bin/chromium';
 }
 
-export async function launchChromium(): Promise<Browser> {
-  const path = chromiumPath();
-  if (!existsSync(path)) throw new Error(`no browser at ${path}; set CHROMIUM`);
-  return chromium.launch({ executablePath: path, args: kFlags, timeout: kDeadlineMs });
+/** How Chromium is started. */
+export function launchOptions(): LaunchOptions {
+  const executablePath = chromiumPath();
+  if (!existsSync(executablePath)) throw new Error(`no browser at ${executablePath}; set CHROMIUM`);
+  return { executablePath, args: kFlags, timeout: kDeadlineMs };
+}
+
+export function launchChromium(): Promise<Browser> {
+  return chromium.launch(launchOptions());
 }

@@ -1,7 +1,9 @@
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import { Observer } from './observer';
 import { Server } from './server';
-import { Viewer } from './viewer';
+import { openPage } from './shared';
+import type { Viewer } from './viewer';
+import { kInTime } from './visits';
 
 /** Curves over time, and what a tick is spent on. */
 const server = new Server();
@@ -11,7 +13,7 @@ let observer: Observer;
 beforeAll(async () => {
   await server.start();
   observer = await Observer.join(server.url);
-  viewer = await Viewer.open(server.url);
+  viewer = await openPage(server.url, { deviceScaleFactor: 0.5 });
   await viewer.untilTick(1);
 });
 afterAll(async () => {
@@ -58,7 +60,7 @@ it('draws a line for each, which goes on as the session does', async () => {
   );
   const charts = await viewer.page.locator('.chart').count();
   for (let n = 0; n < charts; ++n) {
-    await expect.poll(() => inked(n), { timeout: 120_000 }).toBeGreaterThan(60);
+    await expect.poll(() => inked(n), kInTime).toBeGreaterThan(60);
   }
 });
 

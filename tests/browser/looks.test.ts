@@ -1,263 +1,301 @@
-import { describe, expect, it } from 'vitest';
+import { beforeEach, describe, expect, it } from 'vitest';
 import { differenceFromReference, pixelsOf, statisticsOf } from './pixels';
 import type { Region } from './pixels';
 import type { Look } from './viewer';
-import { Visits } from './visits';
+import { kInTime, Visits } from './visits';
 
-/** How the view shows what the session holds: pictures of states that stand still. */
+/** How the view draws the session: pictures of states that stand still. */
 const visits = new Visits();
 
 /** Pictures of one state on two machines differ by rounding at edges alone: some pixels in 100. */
 const kAlike = 2;
 
 /** The least number of pixels that a mark takes. */
-const kMark = 1000;
+const kMark = 250;
+
+/** Pixels that differ though nothing has changed. */
+const kSame = 20;
 
 /** Of the view of the dam break at its start: in the column of water, and beside it. */
 const kWater = { left: 0.14, top: 0.4, right: 0.22, bottom: 0.55 };
 const kAir = { left: 0.5, top: 0.3, right: 0.7, bottom: 0.5 };
+const kStyles = ['fluid', 'surface', 'splats', 'particles'];
 
-/** The page with these settings of the view, at this tick of the scene, which stands still. */
-async function look(scene: string, tick: number, view: string, looks: Look = {}): Promise<void> {
-  await visits.visit(scene, { tick, hash: `#view=${view}`, ...looks });
-  await visits.viewer.page.click('#view-details > summary');
-  if (view.includes('liquid:surface')) await untilSurfaces(1);
+/** Where the page is, if the last test left it there. */
+let place = '';
+
+async function visit(scene: string, tick: number, view = '', look: Look = {}): Promise<void> {
+  place = '';
+  await visits.visit(scene, { tick, view, ...look });
 }
 
-/** Waits for surfaces around particles, which are made beside the page. */
-async function untilSurfaces(least: number): Promise<void> {
-  await visits.viewer.page.waitForFunction((count) => {
-    return Number(document.getElementById('view')?.dataset.surfaces) >= count;
-  }, least);
+/** Before each test of a group: the scene at this tick, which the tests may step once. */
+function stayAt(scene: string, tick: number, look: Look = {}): void {
+  beforeEach(async () => {
+    const there = JSON.stringify([scene, tick, look]);
+    if (place !== there || !visits.isOpen) await visit(scene, tick, '', look);
+    else await visits.set('');
+    place = there;
+  });
 }
 
-describe.each(['fluid', 'surface', 'splats', 'particles'])('a liquid as %s', (style) => {
-  it.each(['light', 'dark'] as const)('is blue before a %s scene', async (colorScheme) => {
-    await look('dam-break', 0, `liquid:${style}`, { colorScheme });
+const statistics = async (region: Region) => statisticsOf(await pixelsOf(visits.viewer), region);
+const textOf = async (id: string): Promise<string> =>
+  (await visits.viewer.page.textContent(`#${id}`)) ?? '';
+const most = async (): Promise<number> =>
+  Number(await visits.viewer.page.getAttribute('#colour-legend', 'data-max'));
+
+/** Surfaces around particles that were made so far, beside the page. */
+const surfaces = async (): Promise<number> => Number((await visits.viewer.said('surfaces')) ?? 0);
+
+/** Changes the view by `act`; resolves once `count` more surfaces were made. */
+async function untilSurfaces(count: number, act: () => Promise<unknown>): Promise<void> {
+  const before = await surfaces();
+  await act();
+  await expect.poll(surfaces, kInTime).toBeGreaterThanOrEqual(before + count);
+}
+
+const setStyle = (style: string): Promise<unknown> =>
+  style === 'surface'
+    ? untilSurfaces(1, () => visits.set(`liquid:${style}`))
+    : visits.set(`liquid:${style}`);
+
+/** The number of pixels that differ from a picture. */
+const changeFrom = async (picture: string): Promise<number> =>
+  visits.viewer.difference(picture, await visits.viewer.picture());
+
+describe('the dam break at its start', () => {
+  stayAt('dam-break', 0);
+
+  it('is drawn as splats where the processor draws, which is said', async () => {
+    expect(await visits.viewer.said('liquid')).toBe('splats');
+    expect(await textOf('view-notice')).toContain('processor');
+  });
+
+  it.each(kStyles)('is blue before a light and a dark scene, as %s', async (style) => {
+    await setStyle(style);
     expect(await visits.viewer.said('liquid')).toBe(style);
-    const picture = await pixelsOf(visits.viewer);
-    const water = statisticsOf(picture, kWater);
-    const air = statisticsOf(picture, kAir);
-    expect(water.blue - water.red).toBeGreaterThan(50);
-    expect(Math.abs(air.blue - air.red)).toBeLessThan(25);
-    expect(air.green > 127).toBe(colorScheme === 'light');
-  });
-
-  it('looks as it did', async () => {
-    await look('sliding-vat-liquid', 40, `liquid:${style}`);
-    expect(await differenceFromReference(visits.viewer, `liquid-${style}`)).toBeLessThan(kAlike);
-  });
-});
-
-it('falls back to splats where the processor draws, and says so', async () => {
-  await look('dam-break', 0, '');
-  expect(await visits.viewer.said('liquid')).toBe('splats');
-  expect(await visits.viewer.page.textContent('#view-notice')).toContain('processor');
-});
-
-it('keeps what was chosen when the page is loaded again', async () => {
-  await look('dam-break', 0, '');
-  await visits.viewer.page.selectOption('#view-liquid', 'particles');
-  expect(await visits.viewer.said('liquid')).toBe('particles');
-  await visits.viewer.page.goto('about:blank');
-  await visits.viewer.page.goto(visits.server.url);
-  await visits.viewer.until('#view[data-liquid="particles"]');
-  expect(await visits.viewer.page.inputValue('#view-liquid')).toBe('particles');
-});
-
-/** The greatest speed of a particle [m/s]. */
-async function greatestSpeed(): Promise<number> {
-  const { bodies } = await visits.observer.request('state.query', {});
-  return Math.max(...bodies.flatMap(({ velocities }) => velocities.map((v) => Math.hypot(...v))));
-}
-
-it('colours by speed, and its legend tells the speeds that there are', async () => {
-  await look('dam-break', 12, 'colour:speed');
-  await visits.viewer.until('#colour-legend[data-max]');
-  const fastest = await greatestSpeed();
-  const most = async (): Promise<number> =>
-    Number(await visits.viewer.page.getAttribute('#colour-legend', 'data-max'));
-  await expect.poll(most).toBeGreaterThan(fastest - 0.03);
-  expect(await most()).toBeLessThan(fastest + 0.03);
-  expect(await visits.viewer.page.textContent('#colour-legend')).toContain('m/s');
-  const picture = await pixelsOf(visits.viewer);
-  const front = statisticsOf(picture, { left: 0.46, top: 0.68, right: 0.52, bottom: 0.72 });
-  expect(Math.min(front.red, front.green) - front.blue).toBeGreaterThan(40); // yellow: fast
-  const back = statisticsOf(picture, { left: 0.12, top: 0.5, right: 0.18, bottom: 0.6 });
-  expect(back.blue - back.red).toBeGreaterThan(5); // blue: slow
-  await visits.viewer.page.selectOption('#view-map', 'cividis');
-  await visits.viewer.page.fill('#view-from', '0');
-  await visits.viewer.page.fill('#view-to', '100');
-  await visits.viewer.page.press('#view-to', 'Enter');
-  await visits.viewer.until('#colour-legend[data-max="100"]');
-  const dark = statisticsOf(await pixelsOf(visits.viewer), {
-    left: 0.46,
-    top: 0.68,
-    right: 0.52,
-    bottom: 0.72,
-  });
-  expect(dark.blue - dark.red).toBeGreaterThan(0); // the least of cividis
-});
-
-/** Greater numbers have more of it in the colours that are used at first. */
-async function greenAt(region: Region): Promise<number> {
-  return statisticsOf(await pixelsOf(visits.viewer), region).green;
-}
-
-it.each([
-  ['pressure', 'Pa', [980, 40_000]], // of water 0.1 m and 4 m deep
-  ['density', 'kg/m³', [1000, 1100]],
-] as const)('colours by %s', async (name, unit, [low, high]) => {
-  await look('dam-break', 12, `colour:${name}`);
-  await visits.viewer.until('#colour-legend[data-max]');
-  expect(await visits.viewer.page.textContent('#colour-legend')).toContain(unit);
-  const most = Number(await visits.viewer.page.getAttribute('#colour-legend', 'data-max'));
-  expect(most).toBeGreaterThan(low);
-  expect(most).toBeLessThan(high);
-  // Liquid deep within the column of water, and at its surface, which is under no pressure.
-  const deep = await greenAt({ left: 0.16, top: 0.6, right: 0.26, bottom: 0.66 });
-  const surface = await greenAt({ left: 0.2, top: 0.36, right: 0.28, bottom: 0.4 });
-  expect(deep).toBeGreaterThan(surface + 30);
-});
-
-it('tells bodies or their kinds by colours, which need no legend', async () => {
-  await look('rigid-stack', 0, 'colour:body,solids:particles');
-  expect(await visits.viewer.page.isVisible('#colour-legend')).toBe(false);
-  const hues = async (): Promise<number> => {
-    const { data } = await pixelsOf(visits.viewer);
-    const seen = new Map<number, number>();
-    for (let i = 0; i < data.length; i += 3) {
-      const [red, green, blue] = data.slice(i, i + 3) as [number, number, number];
-      const greatest = Math.max(red, green, blue);
-      const chroma = greatest - Math.min(red, green, blue);
-      if (chroma < 40) continue; // grey: the vat
-      const sixth =
-        greatest === red
-          ? (green - blue) / chroma
-          : greatest === green
-            ? 2 + (blue - red) / chroma
-            : 4 + (red - green) / chroma;
-      const hue = (Math.round(2 * sixth) + 12) % 12;
-      seen.set(hue, (seen.get(hue) ?? 0) + 1);
+    for (const colorScheme of ['dark', 'light'] as const) {
+      await visits.viewer.page.emulateMedia({ colorScheme });
+      const isLight = async (): Promise<boolean> => (await statistics(kAir)).green > 127;
+      await expect.poll(isLight, kInTime).toBe(colorScheme === 'light');
+      const water = await statistics(kWater);
+      const air = await statistics(kAir);
+      expect(water.blue - water.red, colorScheme).toBeGreaterThan(50);
+      expect(Math.abs(air.blue - air.red), colorScheme).toBeLessThan(25);
     }
-    return [...seen.values()].filter((count) => count > 10).length;
-  };
-  const byBody = await hues();
-  await visits.viewer.page.selectOption('#view-colour', 'kind');
-  const byKind = await hues();
-  expect(byKind).toBeLessThan(byBody);
-  expect(await visits.viewer.page.isVisible('#colour-legend')).toBe(false);
+  });
+
+  it('is cut beyond a plane', async () => {
+    const above = { left: 0.14, top: 0.36, right: 0.2, bottom: 0.42 };
+    const blue = async (): Promise<number> => {
+      const { blue, red } = await statistics(above);
+      return blue - red;
+    };
+    await visits.set('clip:z,clipAt:0.4,liquid:particles');
+    await expect.poll(async () => Math.abs(await blue()), kInTime).toBeLessThan(25);
+    await visits.viewer.page.selectOption('#view-clip', 'off', { force: true });
+    await expect.poll(blue, kInTime).toBeGreaterThan(50);
+  });
 });
 
-it('cuts away what is beyond a plane', async () => {
-  await look('dam-break', 0, 'clip:z,clipAt:0.4,liquid:particles');
-  const above = { left: 0.14, top: 0.36, right: 0.2, bottom: 0.42 };
-  const cut = statisticsOf(await pixelsOf(visits.viewer), above);
-  expect(Math.abs(cut.blue - cut.red)).toBeLessThan(25);
-  await visits.viewer.page.selectOption('#view-clip', 'off');
-  const whole = statisticsOf(await pixelsOf(visits.viewer), above);
-  expect(whole.blue - whole.red).toBeGreaterThan(50);
+describe('the dam break in motion', () => {
+  stayAt('dam-break', 12);
+  const kFront = { left: 0.46, top: 0.68, right: 0.52, bottom: 0.72 };
+  const kBack = { left: 0.12, top: 0.5, right: 0.18, bottom: 0.6 };
+
+  it('is coloured by speed, and the legend has the present speeds', async () => {
+    await visits.set('colour:speed');
+    await visits.viewer.until('#colour-legend[data-max]');
+    const { bodies } = await visits.observer.request('state.query', {});
+    const speeds = bodies.flatMap(({ velocities }) => velocities.map((v) => Math.hypot(...v)));
+    const fastest = Math.max(...speeds);
+    await expect.poll(async () => Math.abs((await most()) - fastest), kInTime).toBeLessThan(0.03);
+    expect(await textOf('colour-legend')).toContain('m/s');
+    const yellow = async (): Promise<number> => {
+      const { red, green, blue } = await statistics(kFront);
+      return Math.min(red, green) - blue;
+    };
+    await expect.poll(yellow, kInTime).toBeGreaterThan(40); // fast
+    const back = await statistics(kBack);
+    expect(back.blue - back.red).toBeGreaterThan(5); // slow
+    await visits.set('colour:speed,map:cividis,from:0,to:100');
+    await visits.viewer.until('#colour-legend[data-max="100"]');
+    await expect.poll(yellow, kInTime).toBeLessThan(0); // the least of cividis
+  });
+
+  it.each([
+    ['pressure', 'Pa', [980, 40_000]], // of water 0.1 m and 4 m deep
+    ['density', 'kg/m³', [1000, 1100]],
+  ] as const)('is coloured by %s', async (name, unit, [low, high]) => {
+    await visits.set(`colour:${name}`);
+    await visits.viewer.until('#colour-legend[data-max]');
+    await expect.poll(() => textOf('colour-legend'), kInTime).toContain(unit);
+    await expect.poll(most, kInTime).toBeGreaterThan(low);
+    expect(await most()).toBeLessThan(high);
+    // Liquid deep within the column of water, and at its surface, which is under no pressure.
+    // Greater numbers are greener.
+    const deeper = async (): Promise<number> =>
+      (await statistics({ left: 0.16, top: 0.6, right: 0.26, bottom: 0.66 })).green -
+      (await statistics({ left: 0.2, top: 0.36, right: 0.28, bottom: 0.4 })).green;
+    await expect.poll(deeper, kInTime).toBeGreaterThan(30);
+  });
+
+  it('is coloured by the force per mass', async () => {
+    await visits.set('colour:force,liquid:particles');
+    await visits.observer.request('control.step', { ticks: 1 });
+    await visits.viewer.untilTick(13, 13);
+    await expect.poll(() => textOf('colour-legend'), kInTime).toContain('m/s²');
+    await expect.poll(most, kInTime).toBeGreaterThan(5); // what falls has 9.81
+  });
 });
 
-it('moves between frames, and tells how much later it is', async () => {
-  await look('dam-break', 0, 'smooth:on,liquid:particles');
-  await visits.observer.request('control.play', {});
-  await visits.viewer.untilTick(10);
-  await visits.viewer.page.waitForFunction(() =>
-    document.getElementById('view-options')?.textContent?.includes('ms later'),
-  );
-  await visits.observer.request('control.pause', {});
-  const { tick } = await visits.observer.request('state.query', {});
-  await visits.viewer.untilTick(tick, tick);
-  const before = await visits.viewer.picture();
-  await visits.viewer.page.selectOption('#view-smooth', 'off');
-  expect(await visits.viewer.difference(before, await visits.viewer.picture())).toBeLessThan(20);
+describe('a scene with bodies of all kinds', () => {
+  stayAt('sliding-vat-liquid', 40);
+
+  it.each(kStyles)('looks as it did, with the liquid as %s', async (style) => {
+    await setStyle(style);
+    await visits.viewer.stillPicture();
+    await expect
+      .poll(() => differenceFromReference(visits.viewer, `liquid-${style}`), kInTime)
+      .toBeLessThan(kAlike);
+  });
 });
 
-it.each([
-  ['arrows', 'Arrows point to where'],
-  ['axes', ''],
-  ['cells', 'cm wide'],
-] as const)('shows and hides %s', async (mark, words) => {
-  await look('sliding-vat-liquid', 40, 'liquid:splats');
-  await visits.observer.request('control.step', { ticks: 1 }); // velocities are known from two frames
-  await visits.viewer.untilTick(41, 41);
-  const without = await visits.viewer.picture();
-  await visits.viewer.page.check(`#view-${mark}`);
-  const changed = await visits.viewer.difference(without, await visits.viewer.picture());
-  expect(changed).toBeGreaterThan(kMark);
-  expect(changed).toBeLessThan(40 * kMark); // lines, and not the picture
-  expect(await visits.viewer.page.textContent('#view-options')).toContain(words);
-  await visits.viewer.page.uncheck(`#view-${mark}`);
-  expect(await visits.viewer.difference(without, await visits.viewer.picture())).toBeLessThan(20);
+describe('marks over a scene, at full resolution', () => {
+  stayAt('sliding-vat-liquid', 40, { deviceScaleFactor: 1 });
+
+  it.each([
+    ['arrows', 'Arrows point to where'],
+    ['axes', ''],
+    ['cells', 'cm wide'],
+  ] as const)('shows and hides %s', async (mark, words) => {
+    let without = '';
+    // Two frames of different ticks give velocities: a frame that is sent again gives none.
+    const shown = async (): Promise<number> => {
+      const { tick } = await visits.observer.request('control.step', { ticks: 1 });
+      await visits.set('liquid:splats');
+      await visits.viewer.untilTick(tick, tick);
+      without = await visits.viewer.stillPicture();
+      await visits.set(`liquid:splats,${mark}:true`);
+      return changeFrom(without);
+    };
+    await expect.poll(shown, kInTime).toBeGreaterThan(4 * kMark);
+    expect(await changeFrom(without)).toBeLessThan(160 * kMark); // lines, and not the picture
+    expect(await textOf('view-options')).toContain(words);
+    await visits.set('liquid:splats');
+    await expect.poll(() => changeFrom(without), kInTime).toBeLessThan(kSame);
+  });
 });
 
 it('points arrows where the liquid goes', async () => {
-  await look('dam-break', 5, 'liquid:particles');
-  await visits.observer.request('control.step', { ticks: 1 });
-  await visits.viewer.untilTick(6, 6);
+  await visit('dam-break', 5, 'liquid:particles');
   const kFalling = { left: 0.1, top: 0.42, right: 0.25, bottom: 0.5 };
-  const without = statisticsOf(await pixelsOf(visits.viewer), kFalling);
-  await visits.viewer.page.check('#view-arrows');
-  const falling = statisticsOf(await pixelsOf(visits.viewer), kFalling);
-  expect(falling.blue).toBeLessThan(without.blue - 10); // dark ink over the water
+  const darker = async (): Promise<number> => {
+    const { tick } = await visits.observer.request('control.step', { ticks: 1 });
+    await visits.set('liquid:particles');
+    await visits.viewer.untilTick(tick, tick);
+    await visits.viewer.stillPicture();
+    const without = (await statistics(kFalling)).blue;
+    await visits.set('liquid:particles,arrows:true');
+    return without - (await statistics(kFalling)).blue;
+  };
+  await expect.poll(darker, kInTime).toBeGreaterThan(10); // dark ink over the water
 });
 
 it('gives bodies smooth skins', async () => {
-  await look('sliding-vat-liquid', 1, 'liquid:particles');
-  const before = await visits.viewer.picture();
-  await visits.viewer.page.selectOption('#view-solids', 'skin');
-  await untilSurfaces(5); // two deformable bodies, three rigid ones
-  const skins = await visits.viewer.picture();
-  expect(await visits.viewer.difference(before, skins)).toBeGreaterThan(3000);
-  expect(await differenceFromReference(visits.viewer, 'skins')).toBeLessThan(kAlike);
-  await visits.viewer.page.selectOption('#view-solids', 'both');
-  await untilSurfaces(10);
-  expect(await visits.viewer.difference(skins, await visits.viewer.picture())).toBeGreaterThan(
-    3000,
-  );
+  await visit('sliding-vat-liquid', 1, 'liquid:particles');
+  const before = await visits.viewer.stillPicture();
+  // Two deformable bodies, three rigid ones.
+  await untilSurfaces(5, () => visits.set('liquid:particles,solids:skin'));
+  await expect.poll(() => changeFrom(before), kInTime).toBeGreaterThan(750);
+  await visits.viewer.stillPicture();
+  await expect
+    .poll(() => differenceFromReference(visits.viewer, 'skins'), kInTime)
+    .toBeLessThan(kAlike);
+  const skins = await visits.viewer.stillPicture();
+  await untilSurfaces(5, () => visits.set('liquid:particles,solids:both'));
+  await expect.poll(() => changeFrom(skins), kInTime).toBeGreaterThan(750);
 });
 
-it('draws springs by their strain, and says how far they are strained', async () => {
-  await look('hammock', 40, 'solids:particles');
-  const without = await visits.viewer.picture();
-  await visits.viewer.page.check('#view-springs');
-  await visits.viewer.page.waitForFunction(
-    () => Number(document.getElementById('view')?.dataset.links?.split(' ')[0]) > 50,
-  );
-  const { springs } = await visits.observer.request('state.connections', { most: 10_000 });
-  const most = Math.max(...springs.strains.map(Math.abs));
-  const told = /by up to ([\d.]+) %/.exec(
-    (await visits.viewer.page.textContent('#links-words')) ?? '',
-  );
-  expect(Number(told?.[1]) / (100 * most)).toBeCloseTo(1, 1);
-  expect(await visits.viewer.difference(without, await visits.viewer.picture())).toBeGreaterThan(
-    kMark,
-  );
-  await visits.viewer.page.uncheck('#view-springs');
-  await visits.viewer.until('#view[data-links="0 0"]');
-  expect(await visits.viewer.difference(without, await visits.viewer.picture())).toBeLessThan(20);
+/** Of the picture's strong colours: how many hues, in twelfths of the circle. */
+async function hues(): Promise<number> {
+  const { data } = await pixelsOf(visits.viewer);
+  const seen = new Map<number, number>();
+  for (let i = 0; i < data.length; i += 3) {
+    const [red, green, blue] = data.slice(i, i + 3) as [number, number, number];
+    const greatest = Math.max(red, green, blue);
+    const chroma = greatest - Math.min(red, green, blue);
+    if (chroma < 40) continue; // grey: the vat
+    const sixth =
+      greatest === red
+        ? (green - blue) / chroma
+        : greatest === green
+          ? 2 + (blue - red) / chroma
+          : 4 + (red - green) / chroma;
+    const hue = (Math.round(2 * sixth) + 12) % 12;
+    seen.set(hue, (seen.get(hue) ?? 0) + 1);
+  }
+  return [...seen.values()].filter((count) => count > 10).length;
+}
+
+it('tells bodies or their kinds by colours, which need no legend', async () => {
+  await visit('rigid-stack', 0, 'colour:body,solids:particles');
+  expect(await visits.viewer.page.isVisible('#colour-legend')).toBe(false);
+  await visits.viewer.stillPicture();
+  const byBody = await hues();
+  await visits.set('colour:kind,solids:particles');
+  await expect.poll(hues, kInTime).toBeLessThan(byBody);
+  expect(await visits.viewer.page.isVisible('#colour-legend')).toBe(false);
 });
 
 it('draws contacts by their force', async () => {
-  await look('rigid-stack', 120, '');
-  await visits.viewer.page.check('#view-contacts');
+  await visit('rigid-stack', 120, 'contacts:true');
   const { contacts } = await visits.observer.request('state.connections', {});
   expect(contacts.total).toBeGreaterThan(0);
-  await visits.viewer.page.waitForFunction(
-    (total) => Number(document.getElementById('view')?.dataset.links?.split(' ')[1]) === total,
-    contacts.total,
-  );
-  expect(await visits.viewer.page.textContent('#links-words')).toMatch(/up to [\d.e]+ N/);
+  await expect
+    .poll(async () => Number((await visits.viewer.said('links'))?.split(' ')[1]), kInTime)
+    .toBe(contacts.total);
+  expect(await textOf('links-words')).toMatch(/up to [\d.e]+ N/);
 });
 
-it('colours by the force on particles', async () => {
-  await look('dam-break', 12, 'colour:force,liquid:particles');
-  await visits.observer.request('control.step', { ticks: 1 });
-  await visits.viewer.untilTick(13, 13);
-  await visits.viewer.until('#colour-legend[data-max]');
-  expect(await visits.viewer.page.textContent('#colour-legend')).toContain('m/s²');
-  const most = async (): Promise<number> =>
-    Number(await visits.viewer.page.getAttribute('#colour-legend', 'data-max'));
-  await expect.poll(most, { timeout: 60_000 }).toBeGreaterThan(5); // what falls has 9.81
+it('draws springs by their strain, and gives the greatest strain', async () => {
+  await visit('hammock', 40, 'solids:particles');
+  const without = await visits.viewer.stillPicture();
+  await visits.set('solids:particles,springs:true');
+  const drawn = async (): Promise<number> =>
+    Number((await visits.viewer.said('links'))?.split(' ')[0]);
+  await expect.poll(drawn, kInTime).toBeGreaterThan(50);
+  const { springs } = await visits.observer.request('state.connections', { most: 10_000 });
+  const greatest = Math.max(...springs.strains.map(Math.abs));
+  const told = /by up to ([\d.]+) %/.exec(await textOf('links-words'));
+  expect(Number(told?.[1]) / (100 * greatest)).toBeCloseTo(1, 1);
+  await expect.poll(() => changeFrom(without), kInTime).toBeGreaterThan(kMark);
+  await visits.set('solids:particles');
+  await visits.viewer.until('#view[data-links="0 0"]');
+  await expect.poll(() => changeFrom(without), kInTime).toBeLessThan(kSame);
+});
+
+it('moves between frames, and tells how much later it is', async () => {
+  await visit('dam-break', 0, 'smooth:on,liquid:particles');
+  await visits.observer.request('control.play', {});
+  await visits.viewer.untilTick(10);
+  await expect.poll(() => textOf('view-options'), kInTime).toContain('ms later');
+  await visits.observer.request('control.pause', {});
+  const { tick } = await visits.observer.request('state.query', {});
+  await visits.viewer.untilTick(tick, tick);
+  const before = await visits.viewer.stillPicture();
+  await visits.set('smooth:off,liquid:particles');
+  await expect.poll(() => changeFrom(before), kInTime).toBeLessThan(kSame);
+});
+
+it('keeps the view settings when the page is loaded again', async () => {
+  await visit('dam-break', 0);
+  const { page } = visits.viewer;
+  await page.click('#view-details > summary');
+  await page.selectOption('#view-liquid', 'particles');
+  expect(await visits.viewer.said('liquid')).toBe('particles');
+  await page.reload();
+  await visits.viewer.until('#view[data-liquid="particles"]');
+  expect(await page.inputValue('#view-liquid')).toBe('particles');
 });

@@ -3,20 +3,15 @@ import type { BodyState, Scene, Vector } from '../../web/client/index';
 import { makeBody, materialsFor } from '../../web/viewer/build/body_choice';
 import { newInterfaces, withNewMaterials } from '../../web/viewer/build/new_materials';
 import { Observer } from './observer';
-import { Server } from './server';
+import { sharedServer } from './shared';
 
 /** Materials that the page adds to a scene, on the real server, in all scenes that ship. */
-const server = new Server(['--max-scenes-per-second', '1000']);
 let observer: Observer;
 
 beforeAll(async () => {
-  await server.start();
-  observer = await Observer.join(server.url);
+  observer = await Observer.join(sharedServer.url);
 });
-afterAll(async () => {
-  observer.leave();
-  await server.kill();
-});
+afterAll(() => observer.leave());
 
 /** A place for a ball of this radius, as high as can be; undefined where there is no room. */
 function roomFor(scene: Scene, there: readonly BodyState[], radius: number): Vector | undefined {

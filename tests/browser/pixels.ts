@@ -29,11 +29,7 @@ export async function pixelsOf(viewer: Viewer): Promise<Pixels> {
 
 async function scaledDown(viewer: Viewer, address: string): Promise<Pixels> {
   const page = await viewer.blankPage();
-  try {
-    return await page.evaluate(readPixels, [address, kWidth] as const);
-  } finally {
-    await page.close();
-  }
+  return page.evaluate(readPixels, [address, kWidth] as const);
 }
 
 /** Mean red, green and blue of a region, and the standard deviation of their sum. */

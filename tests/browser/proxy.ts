@@ -3,8 +3,12 @@ import type { AddressInfo } from 'node:net';
 import { once } from 'node:events';
 import WebSocket, { WebSocketServer } from 'ws';
 
-/** What a server, or the line to it, does otherwise. */
+/** How a server differs from the real one. */
 export interface Ways {
+  /** It refuses every WebSocket. */
+  refuses?: boolean;
+  /** Runs before the script of the page's worker. */
+  worker?: string;
   /** Methods that it does not know, as one that is older. */
   unknown?: readonly string[];
 }
@@ -25,16 +29,21 @@ export class Proxy {
         (name) => [name, answer.headers.get(name) ?? ''] as const,
       );
       response.writeHead(answer.status, Object.fromEntries(headers));
-      response.end(Buffer.from(await answer.arrayBuffer()));
+      const isWorker = request.url?.includes('stream.worker') ?? false;
+      const before = Buffer.from(isWorker ? (this.ways.worker ?? '') : '');
+      response.end(Buffer.concat([before, Buffer.from(await answer.arrayBuffer())]));
     });
   });
-  private readonly sockets = new WebSocketServer({ server: this.http });
+  private readonly sockets = new WebSocketServer({ noServer: true });
 
   constructor(
     private readonly server: string,
     private readonly ways: Ways = {},
   ) {
-    this.sockets.on('connection', (page) => this.join(page));
+    this.http.on('upgrade', (request, socket, head) => {
+      if (ways.refuses) socket.end('HTTP/1.1 400 Bad Request\r\n\r\n');
+      else this.sockets.handleUpgrade(request, socket, head, (page) => this.join(page));
+    });
   }
 
   async start(): Promise<string> {

@@ -1,12 +1,11 @@
 import type { Page } from 'playwright-core';
 import { expect, it } from 'vitest';
+import { formatCount } from '../../web/viewer/panel/format';
 import type { Viewer } from './viewer';
-import { Visits } from './visits';
+import { kInTime, Visits } from './visits';
 
-/** Hands on the picture itself: mouse, pen and fingers. */
+/** Input to the picture itself: mouse, pen, fingers and keys. */
 const visits = new Visits();
-
-const kInTime = { timeout: 120_000, interval: 200 };
 
 interface Point {
   x: number;
@@ -91,20 +90,26 @@ it.each<[Device, string, string]>([
   await expect.poll(grabs, kInTime).toEqual([]);
 });
 
-it('turns and zooms by fingers on nothing', async () => {
+/** Waits until the picture differs from another one, and returns it once it stands still. */
+async function changedFrom(picture: string): Promise<string> {
+  const { viewer } = visits;
+  await expect
+    .poll(async () => viewer.difference(picture, await viewer.picture()), kInTime)
+    .toBeGreaterThan(1000);
+  return viewer.stillPicture();
+}
+
+it('turns and zooms by fingers on nothing, and turns by keys', async () => {
   await visits.visit('rigid-stack', { hasTouch: true });
   const { viewer } = visits;
   const touch = await touchesOf(viewer.page);
   const box = (await viewer.page.locator('#view').boundingBox())!;
   const corner = { x: box.x + 0.2 * box.width, y: box.y + 0.15 * box.height };
-  const before = await viewer.picture();
+  const before = await viewer.stillPicture();
   await touch('touchStart', corner);
   for (let n = 1; n <= 4; ++n) await touch('touchMove', { x: corner.x + 20 * n, y: corner.y });
   await touch('touchEnd');
-  await expect
-    .poll(async () => viewer.difference(before, await viewer.picture()), kInTime)
-    .toBeGreaterThan(3000);
-  const turned = await viewer.picture();
+  const turned = await changedFrom(before);
   const other = { x: corner.x + 40, y: corner.y };
   await touch('touchStart', corner);
   await touch('touchStart', corner, other);
@@ -112,8 +117,68 @@ it('turns and zooms by fingers on nothing', async () => {
     await touch('touchMove', corner, { x: other.x + 20 * n, y: other.y });
   }
   await touch('touchEnd');
-  await expect
-    .poll(async () => viewer.difference(turned, await viewer.picture()), kInTime)
-    .toBeGreaterThan(3000);
+  const zoomed = await changedFrom(turned);
   expect(await grabs()).toEqual([]);
+  await viewer.page.focus('#view');
+  for (let n = 0; n < 6; ++n) await viewer.page.keyboard.press('ArrowRight');
+  await changedFrom(zoomed);
+});
+
+it('holds a body by keys, pulls it, and releases it', async () => {
+  await visits.visit('rigid-stack');
+  const { observer, viewer } = visits;
+  const { page } = viewer;
+  await page.focus('#view');
+  await page.keyboard.press('b');
+  await viewer.until('#view[data-held-body]');
+  const held = Number(await viewer.said('heldBody'));
+  const target = async (): Promise<number[]> =>
+    (await viewer.said('heldTarget'))!.split(' ').map(Number);
+  const before = await target();
+  for (let n = 0; n < 8; ++n) await page.keyboard.press('ArrowUp');
+  const [x, y, z] = await target();
+  expect([x, y]).toEqual(before.slice(0, 2));
+  expect(z).toBeGreaterThan(before[2]! + 0.05);
+  await expect.poll(() => page.textContent('#summary'), kInTime).toContain('you hold');
+  await expect.poll(grabs, kInTime).toEqual([held]);
+  const height = async (): Promise<number> => {
+    const { positions } = await observer.body(held);
+    return positions.reduce((sum, place) => sum + place[2], 0) / positions.length;
+  };
+  const low = await height();
+  const lifted = async (): Promise<number> => {
+    await observer.request('control.step', { ticks: 20 });
+    return (await height()) - low;
+  };
+  await expect.poll(lifted, kInTime).toBeGreaterThan(0.02);
+  await page.keyboard.press('b'); // the next one
+  await expect.poll(async () => (await grabs())[0] !== held, kInTime).toBe(true);
+  await page.keyboard.press('Escape');
+  await viewer.until('#view:not([data-held-body])');
+  await expect.poll(grabs, kInTime).toEqual([]);
+});
+
+it('tells place, density and mass of the particle that is clicked', async () => {
+  await visits.visit('rigid-stack');
+  const { viewer, observer } = visits;
+  await viewer.clickParticle();
+  await viewer.page.waitForSelector('#inspector:has-text("Mass")');
+  const text = (await viewer.page.textContent('#inspector')) ?? '';
+  const [, name, particle] = /^(.*) · particle (\d+)/.exec(text)!;
+  const { bodies: there } = await observer.request('state.query', { bodies: [name!] });
+  const place = there[0]!.positions[Number(particle)]!;
+  const [x, y, z] = /Place([-\d.]+), ([-\d.]+), ([-\d.]+) m/.exec(text)!.slice(1).map(Number);
+  expect(Math.hypot(x! - place[0], y! - place[1], z! - place[2])).toBeLessThan(0.005);
+  const { bodies, materials } = await visits.scene();
+  const { shape, material } = bodies.find((one) => one.name === name)!;
+  const density = materials.find((one) => one.name === material)!.density!;
+  const volume =
+    shape.type === 'box'
+      ? shape.size[0] * shape.size[1] * shape.size[2]
+      : shape.type === 'sphere'
+        ? (4 / 3) * Math.PI * shape.radius ** 3
+        : NaN;
+  expect(text).toContain(`Density${formatCount(density)} kg/m³`);
+  const mass = Number(/Mass([\d.]+) kg/.exec(text)?.[1]);
+  expect(mass / (density * volume)).toBeCloseTo(1, 2);
 });

@@ -11,17 +11,24 @@ function program(): string {
   return path;
 }
 
-/** Without what is said to the tests, which is no setting of a server. */
+/** The environment without variables of the tests, which are no settings of a server. */
 function foreignEnvironment(): NodeJS.ProcessEnv {
   const all = Object.entries(process.env);
   return Object.fromEntries(all.filter(([name]) => !name.startsWith('VAT_')));
 }
 
-/** Of the servers of the tests. */
+/** The admin token of every server of the tests. */
 export const kAdminToken = 'the admin token of the browser tests';
 
+/** What serves the pages of a test file. */
+export interface Host {
+  readonly url: string;
+  start(): Promise<void>;
+  kill(): Promise<void>;
+}
+
 /** The real server, as a user starts it. */
-export class Server {
+export class Server implements Host {
   private process: ChildProcess | undefined;
   private port = 0;
 

@@ -2,16 +2,18 @@ import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { BodyState } from '../../web/client/index';
 import { Observer } from './observer';
 import { Server } from './server';
-import { Viewer } from './viewer';
+import { openPage } from './shared';
+import type { Viewer } from './viewer';
+import { kInTime } from './visits';
 
-/** One user's visit to the real server: each test goes on where the one before ended. */
+/** One user's visit to the real server: each test continues the one before. */
 const server = new Server();
 let viewer: Viewer;
 let observer: Observer;
 
 beforeAll(async () => {
   await server.start();
-  viewer = await Viewer.open(server.url);
+  viewer = await openPage(server.url, { deviceScaleFactor: 0.5 });
   observer = await Observer.join(server.url);
 });
 
@@ -22,7 +24,7 @@ afterAll(async () => {
 });
 
 /** Fewer changed pixels could be a single particle. */
-const kMovement = 1000;
+const kMovement = 250;
 
 /** Waits until the picture shows the session's present, paused state. */
 async function untilPaused(): Promise<number> {
@@ -113,7 +115,7 @@ it('pulls a body with the mouse', async () => {
   const before = await away();
   expect(before).toBeGreaterThan(0);
   await viewer.page.keyboard.press('Space');
-  await expect.poll(away, { timeout: 120_000, interval: 200 }).toBeLessThan(0.5 * before);
+  await expect.poll(away, kInTime).toBeLessThan(0.5 * before);
   await mouse.up();
   await viewer.until('#view:not([data-held-body])');
 });

@@ -11,29 +11,34 @@ import { recordPage } from './transcript';
 /** A step of one colour channel below this may come from rounding. */
 const kSeenStep = 12;
 
-/** How the browser shows the page, where that is not as usual. */
+/** How the browser shows the page. */
 export type Look = Pick<
   BrowserContextOptions,
   'viewport' | 'colorScheme' | 'hasTouch' | 'isMobile' | 'deviceScaleFactor'
 > & {
-  /** Runs in the page before its own scripts. */
-  prepare?: () => void;
+  /** Runs before the page is loaded. */
+  before?: (page: Page) => Promise<unknown>;
   /** What the page hears is not all the server's own, and no transcript of it. */
   isUnrecorded?: boolean;
 };
 
-/** The page in a browser with a profile of its own, as a user sees and works it. */
+/** Of each browser, a page of no server: outside of the viewer's content policy. */
+const blankPages = new WeakMap<Browser, Promise<Page>>();
+
+/** The viewer's page with an own profile, as a user sees and operates it. */
 export class Viewer {
-  /** What the page did wrong: errors on its console, requests that failed or left its server. */
+  /** Faults of the page: errors on its console, requests that failed or went to another host. */
   readonly problems: string[] = [];
-  /** While the server is away on purpose, connections may fail. */
+  /** While the server is stopped by a test, connections may fail. */
   serverIsAway = false;
 
   private constructor(
-    private readonly browser: Browser,
     readonly page: Page,
     private readonly url: string,
+    private readonly browser: Browser,
+    private readonly ownsBrowser: boolean,
   ) {
+    page.setDefaultTimeout(kDeadlineMs);
     page.on('console', (message) => this.noteConsole(message));
     page.on('pageerror', (error) => this.problems.push(`uncaught ${error.message}`));
     page.on('request', (request) => this.noteRequest(request));
@@ -45,20 +50,25 @@ export class Viewer {
     });
   }
 
-  static async open(url: string, { prepare, isUnrecorded, ...look }: Look = {}): Promise<Viewer> {
-    const browser = await launchChromium();
+  /** In `shared`, or in a new browser that ends with the page. */
+  static async open(
+    url: string,
+    { before, isUnrecorded, ...look }: Look = {},
+    shared?: Browser,
+  ): Promise<Viewer> {
+    const browser = shared ?? (await launchChromium());
     const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
-    page.setDefaultTimeout(kDeadlineMs);
+    const viewer = new Viewer(page, url, browser, shared === undefined);
     await page.addInitScript(addBrake);
-    if (prepare) await page.addInitScript(prepare);
-    const viewer = new Viewer(browser, page, url);
+    await before?.(page);
     if (!isUnrecorded) recordPage(page);
     await page.goto(url);
     return viewer;
   }
 
   async close(): Promise<void> {
-    await this.browser.close();
+    if (this.ownsBrowser) await this.browser.close();
+    else await this.page.context().close();
   }
 
   /** Keeps the page from drawing, as browsers do with a tab in the background, or lets it again. */
@@ -98,46 +108,57 @@ export class Viewer {
     return Number(await this.said('tick'));
   }
 
-  /** A picture of the canvas, as a data address; without the hint, which fades after a while. */
+  /** A picture of the canvas as a data URL, without the hint and the pointers of others. */
   async picture(): Promise<string> {
     await this.page.evaluate(() => {
-      const hint = document.getElementById('hint');
-      if (hint) hint.style.display = 'none';
+      for (const id of ['hint', 'cursors']) document.getElementById(id)!.style.display = 'none';
     });
     const png = await this.page.locator('#view').screenshot({ timeout: kDeadlineMs });
+    await this.page.evaluate(() =>
+      document.getElementById('cursors')!.style.removeProperty('display'),
+    );
     return `data:image/png;base64,${png.toString('base64')}`;
   }
 
-  /** A page of no server, outside of the viewer's content policy. */
-  async blankPage(): Promise<Page> {
-    return this.browser.newPage();
+  /** A picture of the canvas once two that follow each other are the same. */
+  async stillPicture(): Promise<string> {
+    for (let last = ''; ;) {
+      const picture = await this.picture();
+      if (picture === last) return picture;
+      last = picture;
+    }
   }
 
-  /** How many pixels of two pictures can be told apart. */
+  /** A page of no server; it is for short uses and stays open. */
+  blankPage(): Promise<Page> {
+    const { browser } = this;
+    const page = blankPages.get(browser) ?? browser.newPage();
+    blankPages.set(browser, page);
+    return page;
+  }
+
+  /** The number of pixels that differ visibly between two pictures. */
   async difference(first: string, second: string): Promise<number> {
     const page = await this.blankPage();
-    try {
-      return await page.evaluate(countDifferences, [first, second, kSeenStep] as const);
-    } finally {
-      await page.close();
-    }
+    return page.evaluate(countDifferences, [first, second, kSeenStep] as const);
   }
 
-  /**
-   * Looks for a point of the canvas under which there is a particle, from the top down, and leaves
-   * the pointer there.
-   */
+  /** Puts the pointer over a particle: the first that a search from the top finds. */
   async findParticle(): Promise<{ x: number; y: number }> {
-    const box = await this.page.locator('#view').boundingBox();
-    if (!box) throw new Error('the canvas is not shown');
-    for (let row = 2; row < 18; ++row) {
-      for (let column = 2; column < 18; ++column) {
-        const point = { x: box.x + (column * box.width) / 20, y: box.y + (row * box.height) / 20 };
-        await this.page.mouse.move(point.x, point.y);
-        if ((await this.said('pointer')) === 'particle') return point;
-      }
-    }
-    throw new Error('no particle is seen');
+    await this.until('#view[data-tick]');
+    const point = await this.page.evaluate(searchParticle);
+    if (!point) throw new Error('no particle is seen');
+    await this.page.mouse.move(point.x, point.y);
+    return point;
+  }
+
+  /** Clicks a particle until its numbers are shown: a click that takes long is a pull. */
+  async clickParticle(): Promise<string> {
+    const { x, y } = await this.findParticle();
+    const card = this.page.locator('#inspector');
+    do await this.page.mouse.click(x, y);
+    while (!(await card.isVisible()));
+    return (await card.textContent()) ?? '';
   }
 
   private noteConsole(message: ConsoleMessage): void {
@@ -169,6 +190,23 @@ function addBrake(): void {
     isOn = on;
     if (!on) held.splice(0).forEach((callback) => draw(callback));
   };
+}
+
+/** Runs in the browser. */
+function searchParticle(): { x: number; y: number } | undefined {
+  const view = document.getElementById('view') as HTMLCanvasElement;
+  const box = view.getBoundingClientRect();
+  for (let row = 2; row < 18; ++row) {
+    for (let column = 2; column < 18; ++column) {
+      const clientX = box.x + (column * box.width) / 20;
+      const clientY = box.y + (row * box.height) / 20;
+      view.dispatchEvent(
+        new PointerEvent('pointermove', { clientX, clientY, pointerType: 'mouse' }),
+      );
+      if (view.dataset.pointer === 'particle') return { x: clientX, y: clientY };
+    }
+  }
+  return undefined;
 }
 
 /** Runs in the browser. */

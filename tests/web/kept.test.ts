@@ -1,12 +1,11 @@
-import { describe, expect, it } from 'vitest';
+import { afterEach, describe, expect, it, vi } from 'vitest';
 import { RequestError } from '../../web/client/index';
 import { faultOfRecording, sendRecording } from '../../web/viewer/kept/recording_file';
 import { addressOf } from '../../web/viewer/stream/address';
 import { Newest } from '../../web/viewer/stream/newest';
 import type { Request } from '../../web/viewer/stream/stream';
 
-/** Lets what waits for promises go on. */
-const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve, 0));
+afterEach(() => vi.useRealTimers());
 
 describe('Newest', () => {
   it('sends one after another, and of those that came meanwhile the last', async () => {
@@ -19,12 +18,10 @@ describe('Newest', () => {
     for (const value of [1, 2, 3]) newest.put(value);
     expect(sent).toEqual([1]);
     answers.shift()!();
-    await settle();
-    expect(sent).toEqual([1, 3]);
+    await vi.waitFor(() => expect(sent).toEqual([1, 3]));
     expect(newest.isBusy).toBe(true);
     answers.shift()!();
-    await settle();
-    expect(newest.isBusy).toBe(false);
+    await vi.waitFor(() => expect(newest.isBusy).toBe(false));
     newest.put(4);
     expect(sent).toEqual([1, 3, 4]);
   });
@@ -58,7 +55,7 @@ describe('recordings from files', () => {
     const request = ((_: string, part: (typeof parts)[number]) => {
       if (parts.length === 1 && isSoon) {
         isSoon = false;
-        const data = { kind: 'rate_limited', retry_after: 0.01 } as const;
+        const data = { kind: 'rate_limited', retry_after: 1.5 } as const;
         return Promise.reject(new RequestError('rate_limited', 'too soon', 1009, data));
       }
       parts.push(part);
@@ -66,8 +63,13 @@ describe('recordings from files', () => {
       return Promise.resolve({ recording: 'x', received, whole: received === bytes.length });
     }) as unknown as Request;
     const shares: number[] = [];
-    const file = new Blob([bytes]);
-    expect(await sendRecording(file, request, (share) => shares.push(share))).toBe('x');
+    vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout'] });
+    const sending = sendRecording(new Blob([bytes]), request, (share) => shares.push(share));
+    while (vi.getTimerCount() === 0) await new Promise((resolve) => setImmediate(resolve));
+    await vi.advanceTimersByTimeAsync(1499);
+    expect(parts).toHaveLength(1);
+    await vi.advanceTimersByTimeAsync(1);
+    expect(await sending).toBe('x');
     const whole = Buffer.concat(parts.map(({ data }) => Buffer.from(data, 'base64')));
     expect(whole.equals(Buffer.from(bytes))).toBe(true);
     expect(parts.map(({ recording }) => recording)).toEqual([undefined, 'x', 'x']);

@@ -107,7 +107,7 @@ export class App {
     new Sheet();
     this.addKeys();
     this.company.people.subscribe(() => this.summary.showPeople(this.company.people));
-    watchGraphics(this.canvas, () => this.stage.invalidate());
+    watchGraphics(this.canvas, () => this.view.paint()); // its colours are lost too
     window.addEventListener('popstate', () => this.stream.go(chosenSession(location.href)));
     // Hidden pages are not drawn.
     document.addEventListener('visibilitychange', () => this.stream.watch(!document.hidden));

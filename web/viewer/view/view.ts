@@ -91,7 +91,8 @@ export class View {
     this.apply();
   }
 
-  private paint(): void {
+  /** Draws everything in the colours of the theme. */
+  paint(): void {
     const look = readTheme();
     this.world.paint(look);
     this.stage.paint(look);

@@ -1,0 +1,231 @@
+import { afterEach, expect, it } from 'vitest';
+import type { Page } from 'playwright-core';
+import { Observer } from './observer';
+import { Proxy } from './proxy';
+import type { Ways } from './proxy';
+import { kAdminToken, Server } from './server';
+import { openPage } from './shared';
+import type { Look, Viewer } from './viewer';
+import { says } from './visits';
+
+/** Servers that are full, older, stuck, stopped or closed to strangers: the page says so. */
+let server: Server;
+let proxy: Proxy | undefined;
+const pages: Viewer[] = [];
+
+afterEach(async () => {
+  for (const page of pages.splice(0)) await page.close();
+  proxy?.stop();
+  proxy = undefined;
+  await server.kill();
+});
+
+async function serve(...flags: string[]): Promise<void> {
+  server = new Server(['--scene', 'rigid-stack', ...flags]);
+  await server.start();
+}
+
+async function open(url = server.url, look: Look = {}): Promise<Viewer> {
+  const page = await openPage(url, { deviceScaleFactor: 0.5, ...look });
+  page.serverIsAway = true; // refusals appear on the browser's console
+  pages.push(page);
+  return page;
+}
+
+async function through(ways: Ways, look: Look = {}): Promise<{ page: Viewer; between: Proxy }> {
+  await serve();
+  const between = (proxy = new Proxy(server.url, ways));
+  const page = await open(await between.start(), { isUnrecorded: true, ...look });
+  return { page, between };
+}
+
+const isOpen = (page: Viewer): Promise<void> => page.until('#connection[data-state="open"]');
+const isWaiting = (page: Viewer): Promise<void> => page.until('#connection[data-state="waiting"]');
+
+it('says that an invitation is needed; viewers ask for control by what messages offer', async () => {
+  await serve('--access', 'token');
+  const stranger = await open();
+  await says(stranger, 'obstacle', 'this server lets in who has an invitation');
+  await says(stranger, 'summary', 'There is no picture yet');
+  expect(await stranger.page.isVisible('#hint')).toBe(false);
+  await stranger.close();
+  const owner = await open(`${server.url}#ticket=${encodeURIComponent(kAdminToken)}`);
+  await owner.untilTick(0);
+  await owner.page.keyboard.press('l');
+  await owner.page.waitForFunction(() =>
+    (document.getElementById('share-link') as HTMLInputElement).value.includes('invite='),
+  );
+  await says(owner, 'share-local', 'on this computer alone');
+  const guest = await open(await owner.page.inputValue('#share-link'));
+  await owner.page.keyboard.press('Escape');
+  await guest.untilTick(0);
+  await guest.page.click('#play');
+  await says(guest, 'notices', 'only who controls may do that');
+  await guest.page.click('#notices button:has-text("Ask for control")');
+  await says(owner, 'notices', 'asks for control');
+  await owner.page.click('#notices button:has-text("Give control")');
+  await says(guest, 'notices', 'You control this session now');
+  await guest.page.click('#play');
+  await guest.until('#play[data-playing="false"]');
+});
+
+it('says that the server is full, and enters once it is not', async () => {
+  await serve('--max-connections', '1');
+  const first = await open();
+  await first.untilTick(0);
+  const second = await open();
+  await says(second, 'obstacle', 'too many connections');
+  await first.close();
+  await second.untilTick(0);
+  expect(await second.page.isVisible('#obstacle')).toBe(false);
+  expect(await second.page.isVisible('#hint')).toBe(true);
+});
+
+it('says that it was removed, or goes on in another window, and comes back', async () => {
+  await serve();
+  const first = await open();
+  await first.untilTick(0);
+  const observer = await Observer.join(server.url);
+  await observer.request('access.enter', { token: kAdminToken });
+  const { session } = (await observer.request('session.list', {})).sessions[0]!;
+  await observer.request('session.join', { session }); // with the role of an admin
+  const others = (await observer.request('presence.list', {})).participants;
+  const guest = others.find(({ role, away }) => role !== 'admin' && !away);
+  await observer.request('participant.kick', { participant: guest!.participant });
+  observer.leave();
+  await says(first, 'connection-text', 'removed from the session');
+  await says(first, 'summary', 'You are not in this session any more');
+  await first.page.click('#connection-retry:has-text("Come back")');
+  await isOpen(first);
+  await says(first, 'summary', 'Plays');
+
+  const token = await first.page.evaluate(() => sessionStorage.getItem('vat.resume'));
+  const second = await open();
+  await second.untilTick(0); // it has a token of its own, which no longer comes
+  await second.page.evaluate((value) => sessionStorage.setItem('vat.resume', value ?? ''), token);
+  await second.page.reload();
+  await says(first, 'connection-text', 'goes on in another window');
+  await first.page.click('#connection-retry:has-text("Come back")');
+  await isOpen(first);
+  await says(second, 'connection-text', 'goes on in another window');
+});
+
+it('works with an older server, and says what that cannot do', async () => {
+  const { page } = await through({
+    unknown: ['scene.get', 'session.saves', 'session.stats', 'replay.open', 'scene.save'],
+  });
+  page.serverIsAway = false;
+  await page.untilTick(0);
+  await page.page.click('#play');
+  await page.until('#play[data-playing="false"]');
+  expect(await page.page.isVisible('#pour-row')).toBe(false); // only the scene tells of liquids
+  await page.page.click('#kept-details > summary');
+  await says(page, 'notices', 'This server is older than this page');
+  await says(page, 'notices', 'session.saves');
+  await page.page.click('#curves-details > summary');
+  await page.page.waitForSelector('.chart canvas');
+  await page.page.click('#play');
+  await page.until('#play[data-playing="true"]');
+  expect(page.problems).toEqual([]);
+});
+
+it('tells a server that refuses it from one that is stopped', async () => {
+  const { page } = await through({ refuses: true });
+  await says(page, 'connection-text', 'refuses vat.v1');
+  expect(await page.page.isDisabled('#play')).toBe(true);
+});
+
+/** Runs in the page's worker: its timers fire at once when another page of the server says so. */
+const kTimers = `{
+  const begin = self.setTimeout, waiting = new Map();
+  self.setTimeout = (act, ms) => {
+    const id = begin(() => waiting.delete(id) && act(), ms);
+    waiting.set(id, act);
+    return id;
+  };
+  self.clearTimeout = (id) => waiting.delete(id);
+  new BroadcastChannel('timers').onmessage = () => {
+    const all = [...waiting];
+    waiting.clear();
+    for (const [, act] of all) act();
+  };
+}`;
+
+declare global {
+  interface Window {
+    /** Sets the page's clock forward by so much [ms]. */
+    skip(time: number): void;
+  }
+}
+
+/** The page's clock goes on as `skip` tells. */
+async function controlClock(page: Page): Promise<void> {
+  await page.addInitScript(() => {
+    const now = performance.now.bind(performance);
+    let ahead = 0;
+    performance.now = () => now() + ahead;
+    window.skip = (time) => (ahead += time);
+  });
+}
+
+const fireTimers = ({ page }: Viewer): Promise<void> =>
+  page.evaluate(() => {
+    const channel = new BroadcastChannel('timers');
+    channel.postMessage('');
+    channel.close();
+  });
+
+it('says that no picture comes while the connection is stuck, and goes on after that', async () => {
+  const { page, between } = await through({ worker: kTimers }, { before: controlClock });
+  await page.untilTick(0);
+  between.freeze(true);
+  await page.page.evaluate(() => window.skip(4000));
+  await says(page, 'summary', 'No new picture');
+  // The clock is to be measured; that is not answered in time; and so on.
+  const reason = async (): Promise<string> => {
+    await fireTimers(page);
+    return (await page.page.textContent('#connection-text')) ?? '';
+  };
+  await expect.poll(reason, { timeout: 120_000, interval: 50 }).toContain('gives no answer');
+  await says(page, 'summary', 'the last picture');
+  between.freeze(false);
+  await fireTimers(page);
+  await isOpen(page);
+  await page.until('#view[data-tick]');
+});
+
+it('says that the server stops, that it is stopped, and goes on with the next', async () => {
+  await serve();
+  const page = await open();
+  await page.untilTick(0);
+  const observer = await Observer.join(server.url);
+  await observer.request('access.enter', { token: kAdminToken });
+  await observer.request('server.drain', { seconds: 1 });
+  await says(page, 'notices', 'The server stops in 1 s');
+  await isWaiting(page);
+  observer.leave();
+  await says(page, 'summary', 'the last picture');
+  await server.ended();
+  await server.start();
+  await isOpen(page);
+  await page.untilTick(0);
+});
+
+it('joins the session of its address, says when that is closed, and leads to another', async () => {
+  await serve();
+  const observer = await Observer.join(server.url);
+  const scene = 'buoyancy';
+  const { session } = await observer.request('session.create', { name: 'mine', scene });
+  const page = await open(`${server.url}?session=${session}`);
+  await page.untilScene(scene);
+  await observer.request('session.close', { session });
+  observer.leave();
+  await isWaiting(page);
+  await says(page, 'connection-text', session);
+  await page.page.click('#connection-first');
+  await isOpen(page);
+  await page.untilScene('rigid-stack');
+  await page.untilTick(0);
+  expect(new URL(page.page.url()).search).toBe('');
+  expect(await page.page.isVisible('#connection-first')).toBe(false);
+});

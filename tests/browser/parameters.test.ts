@@ -1,0 +1,133 @@
+import { expect, it } from 'vitest';
+import type { Scene } from '../../web/client/index';
+import { kInTime, unfold, Visits } from './visits';
+
+/** Constants of a scene, gravity and the vat: changed within their ranges, and restored. */
+const visits = new Visits();
+
+async function visit(scene: string): Promise<void> {
+  await visits.visit(scene);
+  await unfold(visits.viewer, 'parameters-details');
+  await visits.viewer.page.waitForSelector('#integrator:enabled');
+}
+
+async function enter(field: string, text: string): Promise<void> {
+  await visits.viewer.page.fill(field, text);
+  await visits.viewer.page.press(field, 'Enter');
+}
+
+it('changes the constants of a material, within their range, and restores them', async () => {
+  await visit('dam-break');
+  const { page } = visits.viewer;
+  const viscosity = async (): Promise<number | undefined> =>
+    (await visits.scene()).materials.find(({ liquid }) => liquid)?.liquid?.viscosity;
+  const before = (await viscosity())!;
+  const field = '#material-liquid-viscosity';
+  await enter(field, String(before + 3));
+  await expect.poll(viscosity, kInTime).toBe(before + 3);
+  await page.click('button[aria-label="Viscosity as it was"]');
+  await expect.poll(viscosity, kInTime).toBe(before);
+  await enter(field, '-1');
+  await page.waitForSelector(`.parameter:has(${field}) .fault:has-text("from 0 to")`);
+  expect(await viscosity()).toBe(before);
+  await expect.poll(() => page.inputValue(field), kInTime).toBe(String(before));
+});
+
+it('changes what happens where two materials meet, and restores it', async () => {
+  await visit('rigid-stack');
+  const { page } = visits.viewer;
+  const before = (await visits.scene()).default_interface as { stiffness: number };
+  await page.selectOption('#contact-first', 'stone');
+  await page.selectOption('#contact-second', 'vat');
+  expect(await page.inputValue('#contact-stiffness')).toBe(String(before.stiffness));
+  expect(await page.textContent('#contact-note')).toContain('As all others');
+  const told = async (): Promise<unknown> =>
+    (await visits.scene()).interfaces?.find(({ materials }) => materials.includes('stone'));
+  await enter('#contact-friction', '0.7');
+  await expect
+    .poll(told, kInTime)
+    .toMatchObject({ ...before, materials: ['stone', 'vat'], friction: 0.7 });
+  await enter('#contact-friction', '11');
+  await page.waitForSelector('.parameter:has(#contact-friction) .fault:has-text("from 0 to 10")');
+  await expect.poll(() => page.inputValue('#contact-friction'), kInTime).toBe('0.7');
+  // What only the server knows is said beside the field as well.
+  await enter('#contact-threshold', '5');
+  await page.waitForSelector('.parameter:has(#contact-threshold) .fault:has-text("0.4")');
+  await page.selectOption('#contact-law', 'projection');
+  await expect.poll(told, kInTime).toMatchObject({ law: 'projection', friction: 0.7 });
+  await page.waitForSelector('#contact-stiffness', { state: 'detached' });
+  await page.selectOption('#contact-law', 'sph');
+  await page.waitForSelector('.build-form > .fault:has-text("liquid")');
+  await expect.poll(() => page.inputValue('#contact-law'), kInTime).toBe('projection');
+  await page.click('#contact-reset');
+  await expect.poll(told, kInTime).toMatchObject(before);
+  await page.waitForSelector('#contact-stiffness');
+  await page.waitForSelector('#contact-reset', { state: 'hidden' });
+});
+
+it('changes integrator and time step, and restores them', async () => {
+  await visit('sliding-vat-solids');
+  const { page } = visits.viewer;
+  const numerics = async (): Promise<Scene['numerics']> => (await visits.scene()).numerics;
+  await page.selectOption('#integrator', 'heun');
+  await expect.poll(numerics, kInTime).toMatchObject({ integrator: 'heun', step: 0.001 });
+  await enter('#steps', '40');
+  await expect.poll(numerics, kInTime).toMatchObject({ integrator: 'heun', step: 0.0005 });
+  await page.waitForSelector('.parameter:has(#steps) small:has-text("of 0.5 ms")');
+  await enter('#steps', '2.5');
+  await page.waitForSelector('.parameter:has(#steps) .fault:has-text("whole number from 1")');
+  await visits.observer.request('control.step', { ticks: 3 });
+  await page.click('button[aria-label="Integrator as it was"]');
+  await expect.poll(numerics, kInTime).toMatchObject({ integrator: 'velocity_verlet' });
+  await page.click('button[aria-label="Steps in 20 ms as it was"]');
+  await expect.poll(numerics, kInTime).toMatchObject({ step: 0.001 });
+});
+
+it('says why an integrator is refused', async () => {
+  await visit('brick-wall');
+  const { page } = visits.viewer;
+  await page.selectOption('#integrator', 'runge_kutta_4');
+  await page.waitForSelector('.parameter:has(#integrator) .fault:has-text("projection")');
+  expect(await page.inputValue('#integrator')).toBe('velocity_verlet');
+});
+
+/** Drags from the middle of a pad to the right, by a share of its width. */
+async function drag(pad: string, share: number): Promise<void> {
+  const { page } = visits.viewer;
+  await page.locator(pad).scrollIntoViewIfNeeded();
+  const box = (await page.locator(pad).boundingBox())!;
+  const y = box.y + box.height / 2;
+  await page.mouse.move(box.x + box.width / 2, y);
+  await page.mouse.down();
+  await page.mouse.move(box.x + (0.5 + share) * box.width, y, { steps: 3 });
+}
+
+it('tilts gravity with the ball, and restores it', async () => {
+  await visit('rigid-stack');
+  const { page } = visits.viewer;
+  const gravity = async (): Promise<number[]> =>
+    (await visits.observer.request('session.join', {})).description.gravity;
+  await drag('#tilt', 0.25);
+  await page.mouse.up();
+  // Half of the way is half of 60 degrees, within the two that a pixel is.
+  await expect.poll(async () => (await gravity())[0], kInTime).toBeGreaterThan(4.6);
+  expect((await gravity())[0]).toBeLessThan(5.2);
+  await page.click('#gravity-reset');
+  await expect.poll(gravity, kInTime).toEqual([0, 0, -9.81]);
+});
+
+it('slides the vat by hand; released, it goes back', async () => {
+  await visit('dam-break');
+  const { vat } = (await visits.observer.request('session.join', {})).description;
+  await drag('#slide', 0.48);
+  /** How far the liquid is beyond the place of the vat. */
+  const offset = async (): Promise<number> => {
+    await visits.observer.request('control.step', { ticks: 50 });
+    const { bodies } = await visits.observer.request('state.query', {});
+    const { positions } = bodies.find(({ kind }) => kind === 'liquid')!;
+    return Math.max(...positions.map(([x]) => x)) - vat!.max[0];
+  };
+  await expect.poll(offset, kInTime).toBeGreaterThan(0.05);
+  await visits.viewer.page.mouse.up();
+  await expect.poll(offset, kInTime).toBeLessThan(0.01);
+});

@@ -1,0 +1,139 @@
+import { expect, it } from 'vitest';
+import { Observer } from './observer';
+import { Server } from './server';
+import { openPage } from './shared';
+import { kInTime, unfold, Visits } from './visits';
+
+/** Other people in the session, the scenes they choose together, and links. */
+const visits = new Visits(new Server(['--scene', 'rigid-stack']));
+
+it('loads a scene that is chosen by its picture', async () => {
+  await visits.visit('rigid-stack');
+  const { page } = visits.viewer;
+  await page.keyboard.press('g');
+  const card = page.locator('#gallery button[data-scene="buoyancy"]');
+  await expect
+    .poll(
+      () => card.locator('img').evaluate((image: HTMLImageElement) => image.naturalWidth),
+      kInTime,
+    )
+    .toBeGreaterThan(100);
+  await card.click();
+  await visits.viewer.untilScene('buoyancy');
+  expect(await page.isVisible('#gallery')).toBe(false);
+});
+
+it('loads a scene file that is dropped on it, and says why a file is refused', async () => {
+  await visits.visit('rigid-stack');
+  const { page } = visits.viewer;
+  const drop = (name: string, text: string): Promise<void> =>
+    page.evaluate(
+      ([file, content]) => {
+        const dataTransfer = new DataTransfer();
+        dataTransfer.items.add(new File([content], file));
+        document.body.dispatchEvent(
+          new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }),
+        );
+      },
+      [name, text] as const,
+    );
+  await drop('broken.json', '{');
+  await page.waitForSelector('#notices li[data-level="error"]:has-text("broken.json")');
+  const bad = { format: 'vat.scene/1', materials: [], bodies: [{ name: 'a' }] };
+  await drop('bad.json', JSON.stringify(bad));
+  await page.waitForSelector('#notices li:has-text("/bodies/0")');
+  await drop('dropped.json', '{"format": "vat.scene/1", "materials": [], "bodies": []}');
+  await visits.viewer.untilScene('dropped');
+  const [session] = (await visits.observer.request('session.list', {})).sessions;
+  expect(session!.scene).toBe('dropped');
+});
+
+it('shows who is here by name, where they point, and what they hold', async () => {
+  await visits.visit('rigid-stack');
+  const { observer, viewer } = visits;
+  await unfold(viewer, 'people-details');
+  await observer.request('participant.rename', { name: 'Ann' });
+  await observer.request('presence.point', { position: [0, 0, 0] });
+  await viewer.page.waitForSelector('#people li:has-text("Ann")');
+  await viewer.page.waitForSelector('#cursors > span:has-text("Ann")');
+  const { bodies } = await observer.request('state.query', {});
+  const held = bodies.find(({ kind }) => kind === 'rigid')!;
+  const { grab } = await observer.request('grab.start', {
+    body: held.body,
+    particle: 0,
+    target: held.positions[0]!,
+  });
+  await viewer.page.waitForSelector(`#people li:has-text("Ann"):has-text("holds ${held.name}")`);
+  await observer.request('grab.end', { grab });
+  // Others are told where the pointer is, until it leaves the picture.
+  const isPointing = async (): Promise<boolean> =>
+    (await observer.request('presence.list', {})).participants.some(
+      ({ name, pointer }) => name !== 'Ann' && pointer,
+    );
+  await viewer.page.hover('#view');
+  await expect.poll(isPointing, kInTime).toBe(true);
+  await viewer.page.hover('#summary');
+  await expect.poll(isPointing, kInTime).toBe(false);
+  await viewer.page.fill('#rename-name', 'Bob');
+  await viewer.page.keyboard.press('Enter');
+  await expect
+    .poll(async () => (await observer.request('presence.list', {})).participants, kInTime)
+    .toContainEqual(expect.objectContaining({ name: 'Bob', role: 'controller' }));
+});
+
+it('gives control to a viewer who asks for it', async () => {
+  // In a session of its own, whose owner lets others watch only.
+  const owner = await Observer.join(visits.server.url);
+  const { session } = await owner.request('session.create', { name: 'ours', scene: 'rigid-stack' });
+  await owner.request('session.join', { session });
+  await owner.request('session.configure', { default_role: 'viewer' });
+  const guest = await openPage(`${visits.server.url}?session=${session}`);
+  await guest.untilTick(0);
+  await unfold(guest, 'people-details');
+  await guest.page.click('#control-request');
+  await guest.page.waitForSelector('#notices li:has-text("Those in control are asked")');
+  const { participants } = await owner.request('presence.list', {});
+  const { participant } = participants.find(({ role }) => role === 'viewer')!;
+  await owner.request('control.hand_over', { participant });
+  await guest.page.waitForSelector('#people li:has-text("(you)"):has-text("controls")');
+  expect(await guest.page.isVisible('#control-request')).toBe(false);
+  expect(guest.problems).toEqual([]);
+  await guest.close();
+  owner.leave();
+});
+
+it('makes a link that opens the same view from the same place', async () => {
+  await visits.visit('rigid-stack', { view: 'axes:true' });
+  const { viewer } = visits;
+  await viewer.page.focus('#view');
+  const plain = await viewer.stillPicture();
+  for (let n = 0; n < 8; ++n) await viewer.page.keyboard.press('ArrowLeft');
+  await viewer.page.keyboard.press('l');
+  const link = await viewer.page.inputValue('#share-link');
+  await viewer.page.keyboard.press('Escape');
+  await expect
+    .poll(async () => viewer.difference(plain, await viewer.picture()), kInTime)
+    .toBeGreaterThan(1250);
+  const still = await viewer.stillPicture();
+  const different = await viewer.difference(still, plain);
+  const other = await openPage(link, { deviceScaleFactor: 0.5 });
+  await other.untilTick(0, 0);
+  expect(await other.page.isChecked('#view-axes')).toBe(true);
+  await expect
+    .poll(async () => viewer.difference(still, await other.picture()), kInTime)
+    .toBeLessThan(different / 10);
+  expect(other.problems).toEqual([]);
+  await other.close();
+});
+
+it('switches between light and dark', async () => {
+  await visits.visit('rigid-stack');
+  const { page } = visits.viewer;
+  const colour = (): Promise<string> =>
+    page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  await page.keyboard.press('t');
+  const first = await colour();
+  await page.keyboard.press('t');
+  expect(await colour()).not.toBe(first);
+  await page.keyboard.press('t'); // as the system
+});
