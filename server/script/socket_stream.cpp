@@ -64,6 +64,9 @@ void SocketStream::open(Deadline deadline) {
   if (*outcome) {
     throw std::runtime_error("no server at " + url_.authority() + ": " + outcome->message());
   }
+  // A frame's header and content are written one after the other: the second must not wait until
+  // the server has acknowledged the first.
+  transport_->socket.set_option(tcp::no_delay(true));
   if (!transport_->tls) return;
   SSL* const tls = transport_->tls->native_handle();
   expect_server(tls, url_);
