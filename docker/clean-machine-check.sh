@@ -19,6 +19,7 @@ work=$(mktemp -d -p /var/tmp)
 machine=$work/machine
 checkout="/srv/a folder/vat"
 server=
+processor=
 
 say() { printf 'clean machine: %s\n' "$*"; }
 
@@ -67,11 +68,11 @@ fetch_packages() {
     { cat "$work/packages.log" && fail "packages"; }
 }
 
-# Processor seconds of all that this script has waited for.
-processor_seconds() {
-  times >"$work/times"
-  awk 'NR == 2 {for (i = 1; i <= 2; ++i) {split($i, part, /[ms]/); sum += 60 * part[1] + part[2]}
-    printf "%.0f", sum}' "$work/times"
+# Sets `processor` to the processor seconds of all that this script has waited for.
+measure_processor() {
+  times >"$work/times" # not in a subshell, which has waited for nothing
+  processor=$(awk 'NR == 2 {for (i = 1; i <= 2; ++i) {split($i, part, /[ms]/)
+    sum += 60 * part[1] + part[2]} printf "%.0f", sum}' "$work/times")
 }
 
 make_user() {
@@ -126,17 +127,20 @@ main() {
   make_user
   fetch_packages
   say "bare Debian $(cat "$machine/etc/debian_version"), processors $cpus, as $login"
-  before=$(processor_seconds)
+  measure_processor
+  before=$processor
   serve_once
-  say "./vat serve from nothing: the page after $seconds s, $(($(processor_seconds) - before)) CPU s"
+  measure_processor
+  say "./vat serve from nothing: the page after $seconds s, $((processor - before)) CPU s"
   sed 's/^/    /' "$work/serve.log"
   serve_once
   say "./vat serve again: the page after $seconds s"
   start=$SECONDS
-  before=$(processor_seconds)
+  before=$processor
   (inside ./vat test) >"$work/test.log" 2>&1 || { cat "$work/test.log" && fail "./vat test"; }
   grep -E 'tests passed|Total Test time' "$work/test.log"
-  say "./vat test: $((SECONDS - start)) s, $(($(processor_seconds) - before)) CPU s"
+  measure_processor
+  say "./vat test: $((SECONDS - start)) s, $((processor - before)) CPU s"
   start=$EPOCHREALTIME
   (inside ./vat prepare test) >"$work/test.log" 2>&1 || { cat "$work/test.log" && fail "prepare"; }
   say "nothing to build: $(awk "BEGIN {printf \"%.1f\", $EPOCHREALTIME - $start}") s"
