@@ -230,8 +230,8 @@ std::size_t count_flattest_side(const SampledBody& body, const Quat& orientation
   return most;
 }
 
-void add_contacts(const Scene& scene, std::span<const SampledBody* const> samples,
-                  std::vector<OscillatingPart>& parts) {
+void add_contact_limits(const Scene& scene, std::span<const SampledBody* const> samples,
+                        std::vector<OscillatingPart>& parts) {
   std::vector<ContactBody> bodies;
   for (std::size_t b = 0; b < samples.size(); ++b) {
     bodies.push_back(describe(scene, scene.bodies[b], *samples[b]));

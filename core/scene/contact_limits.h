@@ -7,8 +7,8 @@
 namespace vat {
 
 /// The parts of find_oscillating_parts() that contacts make.
-void add_contacts(const Scene& scene, std::span<const SampledBody* const> samples,
-                  std::vector<OscillatingPart>& parts);
+void add_contact_limits(const Scene& scene, std::span<const SampledBody* const> samples,
+                        std::vector<OscillatingPart>& parts);
 
 /// How many of the body's particles can touch a plane at once: those within a tenth of a radius of
 /// the foremost, along the body's axes, their diagonals and its principal axes.

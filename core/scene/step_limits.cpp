@@ -297,7 +297,7 @@ std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
   for (std::size_t b = 0; b < samples.size(); ++b) {
     std::ranges::move(find_parts_of_body(scene, b, *samples[b]), std::back_inserter(parts));
   }
-  add_contacts(scene, samples, parts);
+  add_contact_limits(scene, samples, parts);
   return parts;
 }
 

@@ -144,7 +144,7 @@ Real travel_time(Real way, Real speed, Real acceleration) {
 }
 
 /// What a state says about one body's steps.
-struct Present {
+struct PresentBounds {
   const Model& model;
   const State& state;
   const StepBounds& bounds;
@@ -159,7 +159,7 @@ struct Present {
   }
 };
 
-void limit_free_travel(const Present& present, TaskRunner* runner, std::vector<Real>& steps) {
+void limit_free_travel(const PresentBounds& present, TaskRunner* runner, std::vector<Real>& steps) {
   for_blocks(runner, present.model.free_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Index>(k);
@@ -171,7 +171,7 @@ void limit_free_travel(const Present& present, TaskRunner* runner, std::vector<R
   });
 }
 
-void limit_rigid_travel(const Present& present, std::vector<Real>& steps) {
+void limit_rigid_travel(const PresentBounds& present, std::vector<Real>& steps) {
   for (std::size_t b = 0; b < present.model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = present.model.rigid_bodies[b];
     const RigidState& state = present.state.now.rigid[b];
@@ -206,7 +206,8 @@ Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& parti
 }
 
 /// Of a body's own forces: sound and viscosity, or the pressure, where viscosity is solved for.
-Oscillation liquid_bound(const Present& present, std::size_t body, std::vector<Real>& scratch) {
+Oscillation liquid_bound(const PresentBounds& present, std::size_t body,
+                         std::vector<Real>& scratch) {
   const Model& model = present.model;
   if (!model.is_incompressible) return compressed(model, model.damping.own[body]);
   const ModelBody& liquid = model.bodies[body];
@@ -215,7 +216,7 @@ Oscillation liquid_bound(const Present& present, std::size_t body, std::vector<R
   return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius), 0};
 }
 
-Real liquid_step(const Present& present, std::vector<Real>& scratch) {
+Real liquid_step(const PresentBounds& present, std::vector<Real>& scratch) {
   const Vec3 mean = mean_liquid_velocity(present.model, present.state.now);
   Real step = kInfinity;
   for (std::size_t b = 0; b < present.model.bodies.size(); ++b) {
@@ -254,7 +255,7 @@ void limit_grabs(const ForceModel& f, PresentSteps& steps) {
 
 /// How far any two particles that may touch can approach each other in a step of `longest`, and no
 /// more than in the steps that their travel allows.
-Real greatest_approach(const Present& present, Real longest) {
+Real greatest_approach(const PresentBounds& present, Real longest) {
   Real greatest = 0;
   const auto take = [&](Index body, Real speed) {
     greatest =
@@ -301,7 +302,7 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   const Model& model = f.model;
   StepContext context{model, f.controls, time, f.step, state.now, state.forces, f.work, f.runner};
   pose_rigid_bodies(context);
-  const Present present{model, state, bounds, guard};
+  const PresentBounds present{model, state, bounds, guard};
   steps.particle.resize(model.free_count);
   steps.rigid.resize(model.rigid_bodies.size());
   limit_free_travel(present, f.runner, steps.particle);

@@ -16,7 +16,7 @@ constexpr Real kStabilityMargin = 0.9;
 constexpr Real kLocalMargin = 0.5;  // kicks at several periods have resonances below the limit
 
 /// What a step's length depends on beside the state.
-struct Search {
+struct ContactBoundSearch {
   const ForceModel& force_model;
   const Configuration& at;
   Real longest;
@@ -29,7 +29,7 @@ struct Search {
 };
 
 /// 1/m of a free particle; of a rigid one 1/M + |x|^2 / I, at most that of any direction.
-void find_inverse_masses(const Search& search, std::vector<Real>& inverse_mass) {
+void find_inverse_masses(const ContactBoundSearch& search, std::vector<Real>& inverse_mass) {
   const Model& model = search.model();
   inverse_mass.assign(model.inverse_mass.begin(), model.inverse_mass.end());
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
@@ -66,7 +66,8 @@ ContactOutlook look_at(const SpringConstants& law, const Friction& friction, Rea
   return {share * law.stiffness * along, share * damping, time, normal_speed, threshold};
 }
 
-ContactOutlook look_at_pairs(const Search& search, const std::vector<Real>& inverse_mass, Index i) {
+ContactOutlook look_at_pairs(const ContactBoundSearch& search,
+                             const std::vector<Real>& inverse_mass, Index i) {
   ContactOutlook sum;
   if (inverse_mass[i] == 0) return sum;
   search.force_model.work.contacts.for_each(
@@ -103,7 +104,7 @@ Real greatest_wall_slope(const ContactLaw& law, Real reach, Real nearest) {
 }
 
 /// `inverse_mass`: of what the particle moves [1/kg].
-ContactOutlook look_at_walls(const Search& search, Real inverse_mass, Index i) {
+ContactOutlook look_at_walls(const ContactBoundSearch& search, Real inverse_mass, Index i) {
   const Model& model = search.model();
   const Vat& vat = *model.scene.vat;
   const ContactLaw& law = model.wall_laws[model.material[i]];
@@ -203,7 +204,7 @@ Mat3 cross_matrix(const Vec3& a) {
   return cross;
 }
 
-Real rigid_step(const Search& search, const std::vector<ContactOutlook>& outlooks,
+Real rigid_step(const ContactBoundSearch& search, const std::vector<ContactOutlook>& outlooks,
                 std::size_t body) {
   const RigidModel& rigid = search.model().rigid_bodies[body];
   const RigidState& now = search.at.rigid[body];
@@ -249,13 +250,14 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
                         std::vector<Real>& particle_steps, std::vector<Real>& rigid_steps) {
   const Model& model = f.model;
   if (model.contact_reach <= 0 && model.walls.empty()) return;
-  const Search search{f,
-                      at,
-                      ahead.longest,
-                      model.scene.forces.gravity ? model.scene.gravity.norm() * ahead.longest : 0,
-                      ahead.reach,
-                      model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
-                      model.scene.vat ? greatest_vat_speed(*model.scene.vat, time) : 0};
+  const ContactBoundSearch search{
+      f,
+      at,
+      ahead.longest,
+      model.scene.forces.gravity ? model.scene.gravity.norm() * ahead.longest : 0,
+      ahead.reach,
+      model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
+      model.scene.vat ? greatest_vat_speed(*model.scene.vat, time) : 0};
   // Coupled liquid meets walls without springs.
   const Index first = model.is_coupled && model.contact_reach <= 0 ? model.liquid_count : 0;
   if (first == model.particle_count) return;

@@ -14,7 +14,7 @@
 namespace vat {
 namespace {
 
-constexpr int kNiceness = 19;
+constexpr int kFillerNiceness = 19;
 
 struct Gap {
   std::uint64_t begin = 0;
@@ -59,7 +59,7 @@ MomentFiller::~MomentFiller() {
 }
 
 void MomentFiller::run(const SessionEnvironment& shared) {
-  setpriority(PRIO_PROCESS, 0, kNiceness);  // of a thread, on Linux
+  setpriority(PRIO_PROCESS, 0, kFillerNiceness);  // of a thread, on Linux
   ThreadPoolRunner runner(1);
   ServerMetrics metrics;  // these are not the ticks of a session
   ResourceBudget resources(kUnlimitedResources);

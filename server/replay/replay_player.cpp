@@ -13,7 +13,7 @@
 namespace vat {
 namespace {
 
-[[noreturn]] void fail(const std::string& what, const std::string& why) {
+[[noreturn]] void fail_replay(const std::string& what, const std::string& why) {
   throw StorageError(StorageError::Kind::corrupt, "the recording's " + what + ": " + why);
 }
 
@@ -35,22 +35,22 @@ Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
   Result<Simulation> simulation =
       Simulation::load(decompress(moment.state, most_state_bytes(environment_.limits)),
                        &environment_.runner, recording_.instructions);
-  if (!simulation) fail("state", simulation.errors().front().message);
+  if (!simulation) fail_replay("state", simulation.errors().front().message);
   return std::move(simulation).value();
 }
 
 Simulation ReplayPlayer::load_scene(std::uint64_t sequence) const {
   const auto entry = std::ranges::find(recording_.log, sequence, &LogEntry::sequence);
-  if (entry == recording_.log.end()) fail("scene", "its entry is not there");
+  if (entry == recording_.log.end()) fail_replay("scene", "its entry is not there");
   const Result<Json> params = parse_json(
       entry->params, {entry->params.size(), kMostMessageDepth, entry->params.size() + 1});
-  if (!params) fail("scene", params.errors().front().message);
+  if (!params) fail_replay("scene", params.errors().front().message);
   const auto value = params.value().find("scene");
-  if (value == params.value().end()) fail("scene", "its entry has none");
+  if (value == params.value().end()) fail_replay("scene", "its entry has none");
   const auto scene = read_client_scene(*value, environment_.catalogue);
-  if (const auto* error = std::get_if<RpcError>(&scene)) fail("scene", error->message);
+  if (const auto* error = std::get_if<RpcError>(&scene)) fail_replay("scene", error->message);
   auto simulation = make_simulation(std::get<Scene>(scene), environment_, recording_.instructions);
-  if (const auto* error = std::get_if<RpcError>(&simulation)) fail("scene", error->message);
+  if (const auto* error = std::get_if<RpcError>(&simulation)) fail_replay("scene", error->message);
   return std::get<Simulation>(std::move(simulation));
 }
 
@@ -79,11 +79,12 @@ void ReplayPlayer::go_to(SessionCore& core, const RecordedMoment& moment) {
   Simulation simulation = load_state(moment);
   const SessionMoment read = read_moment(moment.fields, simulation.snapshot());
   if (read.position != moment.position || read.sequence != moment.sequence) {
-    fail("moment", "it tells of another place than its own");
+    fail_replay("moment", "it tells of another place than its own");
   }
-  if (auto error = find_excess(simulation, environment_.limits)) fail("state", error->message);
+  if (auto error = find_excess(simulation, environment_.limits))
+    fail_replay("state", error->message);
   if (const auto excess = core.run().admit(simulation)) {
-    fail("state", limit_reached(*excess).message);
+    fail_replay("state", limit_reached(*excess).message);
   }
   core.resume(read, std::move(simulation), scene_as_loaded(read.loaded));
   find_place(core);

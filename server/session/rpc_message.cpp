@@ -27,7 +27,7 @@ Json rpc_error_to_json(const RpcError& error) {
   return {{"code", row.code}, {"message", error.message}, {"data", std::move(data)}};
 }
 
-std::string to_text(const Json& message) {
+std::string to_message_text(const Json& message) {
   // Foreign text was checked to be UTF-8 where it came in; replacing is a second line of defence.
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -175,11 +175,11 @@ std::string write_reply(const Json& id, const RpcResult& result) {
   } else {
     message["result"] = std::get<Json>(result);
   }
-  return to_text(message);
+  return to_message_text(message);
 }
 
 std::string write_event(std::string_view event, Json params) {
-  return to_text({{"jsonrpc", "2.0"}, {"method", event}, {"params", std::move(params)}});
+  return to_message_text({{"jsonrpc", "2.0"}, {"method", event}, {"params", std::move(params)}});
 }
 
 }  // namespace vat

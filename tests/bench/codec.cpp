@@ -26,7 +26,7 @@ struct CodecOptions : Options {
   bool times_web = true;  ///< the decoder in TypeScript too
 };
 
-struct Row {
+struct CodecRow {
   std::string scene;
   CodecSetting setting;
   CodecResult result;
@@ -45,7 +45,7 @@ struct DecoderRow {
 };
 
 struct Results {
-  std::vector<Row> rows;
+  std::vector<CodecRow> rows;
   std::vector<DecoderRow> decoders;
   std::vector<PeerRow> peers;
 };
@@ -94,7 +94,7 @@ std::string error_name(Real share) {
   return "1/" + short_text(share);
 }
 
-Table to_table(const std::vector<Row>& rows) {
+Table to_table(const std::vector<CodecRow>& rows) {
   const Machine machine = this_machine();
   Table table{{"case", "greatest error [spacings]", "dropped", "detail", "particles", "frames",
                "bits per particle", "float32 over that", "kbit/s", "key bits per particle",
@@ -148,7 +148,7 @@ Table to_table(const std::vector<DecoderRow>& rows) {
 
 const CodecResult* find(const Results& results, const std::string& scene,
                         const CodecSetting& setting) {
-  for (const Row& row : results.rows) {
+  for (const CodecRow& row : results.rows) {
     if (row.scene == scene && row.setting.share == setting.share &&
         row.setting.dropped == setting.dropped && row.setting.detail == setting.detail) {
       return &row.result;
@@ -213,7 +213,7 @@ std::vector<Target> targets_of(const Results& results) {
   return targets;
 }
 
-Status write(const Results& results, const std::string& folder) {
+Status write_codec_results(const Results& results, const std::string& folder) {
   const std::vector<Target> targets = targets_of(results);
   const Table table = to_table(results.rows);
   if (Status written = write_table(table, folder, "codec", "# Frames"); !written) return written;
@@ -261,7 +261,7 @@ int codec(CodecOptions options) {
     std::cerr << "codec: " << error.what() << '\n';
     return kExitFailed;
   }
-  const Status written = write(results, options.output);
+  const Status written = write_codec_results(results, options.output);
   return written ? kExitOk : fail(options.output, written.errors());
 }
 

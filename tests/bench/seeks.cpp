@@ -37,7 +37,7 @@ constexpr std::uint64_t kMost = 100;   // ticks of one call, which is answered w
 constexpr std::uint64_t kTurn = 1000;  // ticks between two commands
 constexpr double kAsked = 0.2;         // [s]
 
-struct Series {
+struct SeekSeries {
   std::uint64_t checkpoints = 0;
   std::vector<double> times;  // [s]
 };
@@ -47,7 +47,7 @@ class Seeks {
   explicit Seeks(const SeeksOptions& options)
       : options_(options), server_(start(options)), caller_(server_.port(), tally_) {}
 
-  Series run() {
+  SeekSeries run() {
     const std::string session = record();
     const Json opened = caller_.result("replay.open", {{"session", session}});
     caller_.result("session.join", {{"session", opened.at("session")}});
@@ -84,9 +84,9 @@ class Seeks {
     return session;
   }
 
-  Series measure() {
+  SeekSeries measure() {
     std::mt19937_64 random(options_.seed);
-    Series series{caller_.result("replay.info").at("checkpoints").size(), {}};
+    SeekSeries series{caller_.result("replay.info").at("checkpoints").size(), {}};
     while (series.times.size() < options_.seeks) {
       const std::uint64_t position = begin_ + random() % (end_ - begin_ + 1);
       const auto begin = steady_clock::now();
@@ -109,7 +109,7 @@ class Seeks {
   std::uint64_t end_ = 0;
 };
 
-Table to_seek_table(const Series& series, const SeeksOptions& options) {
+Table to_seek_table(const SeekSeries& series, const SeeksOptions& options) {
   const Machine machine = this_machine();
   const auto& [checkpoints, times] = series;
   const auto part = [&, &sorted = times](double of) {

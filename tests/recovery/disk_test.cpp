@@ -24,7 +24,7 @@ struct Ended {
 /// Runs a server that must not come up.
 Ended run_server(const std::string& data) {
   const std::string command =
-      std::string(VAT_PROGRAM) + " serve --port 0 --scene rigid-stack --data " + data + " 2>&1";
+      "'" VAT_PROGRAM "' serve --port 0 --scene rigid-stack --data '" + data + "' 2>&1";
   Ended ended;
   std::FILE* pipe = popen(command.c_str(), "r");
   char line[512];
@@ -52,9 +52,9 @@ TEST(Disk, DataThatCannotBeUsedEndsTheServerAtItsStart) {
 
 TEST(Disk, OneThatFillsUpRefusesCommandsAndLosesNothing) {
   const TemporaryFolder folder;
-  const std::string serve = std::string("exec ") + VAT_PROGRAM +
-                            " serve --port 0 --scene rigid-stack --log-level error --data " +
-                            folder.file("data");
+  const std::string serve = "exec '" VAT_PROGRAM
+                            "' serve --port 0 --scene rigid-stack --log-level error --data '" +
+                            folder.file("data") + "'";
   std::string hash;
   {
     // No file may grow beyond 600 kB; without the trap the system would end the program.

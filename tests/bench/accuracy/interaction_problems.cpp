@@ -63,7 +63,7 @@ Scene make_pool() {
   return scene;
 }
 
-Problem pool(TaskRunner* runner) {
+Problem pool_problem(TaskRunner* runner) {
   Problem problem{.title = "Stiff jelly that falls into a pool",
                   .error_name = "places against a fine run, in ways from the start",
                   .scene = make_pool(),
@@ -79,7 +79,7 @@ Problem pool(TaskRunner* runner) {
 }  // namespace
 
 std::vector<ProblemEntry> interaction_problems() {
-  return {{"INT-6", push}, {"INT-impact", impact}, {"pool", pool, true}};
+  return {{"INT-6", push}, {"INT-impact", impact}, {"pool", pool_problem, true}};
 }
 
 }  // namespace vat::bench

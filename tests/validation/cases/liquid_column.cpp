@@ -106,7 +106,7 @@ void check_column(Sheet& sheet, int layers) {
             pressure_error(mean, gas_pressure), reported(kWalls), run);
 }
 
-void run_column(Sheet& sheet) {
+void run_column_case(Sheet& sheet) {
   for (const int layers : {10, 20, 40}) {
     if (sheet.quick() && layers == 40) continue;
     check_column(sheet, layers);
@@ -152,7 +152,7 @@ void run_tait_column(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> liquid_column_cases() {
-  return {{"LIQ-3", "column of liquid at rest", "liquid", {"LIQ-3"}, run_column},
+  return {{"LIQ-3", "column of liquid at rest", "liquid", {"LIQ-3"}, run_column_case},
           {"LIQ-3-tait",
            "column of weakly compressible liquid at rest",
            "liquid",

@@ -117,7 +117,7 @@ void check_dam_break(Sheet& sheet, int layers) {
             fine ? within(0.03, "published target") : reported("a layer is 0.025"), run);
 }
 
-void run_dam_break(Sheet& sheet) {
+void run_dam_break_case(Sheet& sheet) {
   check_dam_break(sheet, 20);
   if (!sheet.quick()) check_dam_break(sheet, 40);
 }
@@ -149,7 +149,7 @@ void run_tait_dam_break(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> liquid_dam_break_cases() {
-  return {{"LIQ-15", "dam break", "liquid", {"LIQ-15"}, run_dam_break},
+  return {{"LIQ-15", "dam break", "liquid", {"LIQ-15"}, run_dam_break_case},
           {"LIQ-15-tait",
            "dam break of weakly compressible liquid",
            "liquid",

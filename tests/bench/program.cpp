@@ -1,0 +1,48 @@
+#include "tests/bench/program.h"
+
+#include <CLI/CLI.hpp>
+
+#include "server/cli/command.h"
+#include "tests/bench/accuracy.h"
+#include "tests/bench/codec.h"
+#include "tests/bench/compare.h"
+#include "tests/bench/document.h"
+#include "tests/bench/fanout.h"
+#include "tests/bench/instructions.h"
+#include "tests/bench/seeks.h"
+#include "tests/bench/soak.h"
+#include "tests/bench/speed.h"
+#include "tests/bench/stability.h"
+#include "tests/bench/validate.h"
+
+namespace vat::bench {
+
+int run_command(int argc, char** argv) {
+  CLI::App app{"Speed, validation, accuracy and stability of the simulation, and many viewers",
+               "vat bench"};
+  // Not require_subcommand(1): that would hide which word is not a sub-command.
+  app.require_subcommand(0, 1);
+  app.callback([&app] {
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+  });
+  int exit_code = kExitOk;
+  add_speed_command(app, exit_code);
+  add_compare_command(app, exit_code);
+  add_instructions_command(app, exit_code);
+  add_validate_command(app, exit_code);
+  add_accuracy_command(app, exit_code);
+  add_stability_command(app, exit_code);
+  add_codec_command(app, exit_code);
+  add_fanout_command(app, exit_code);
+  add_seeks_command(app, exit_code);
+  add_soak_command(app, exit_code);
+  add_document_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return exit_code;
+}
+
+}  // namespace vat::bench
