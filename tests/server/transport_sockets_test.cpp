@@ -10,6 +10,7 @@
 #include <chrono>
 #include <fstream>
 #include <future>
+#include <optional>
 
 #include "tests/server/transport_fixture.h"
 #include "tests/support/wait.h"
@@ -25,10 +26,11 @@ std::uint16_t local_port(int file) {
   return address.sin_family == AF_INET ? ntohs(address.sin_port) : 0;
 }
 
-int option(int file, int level, int name) {
+/// The value of a socket option; absent if the server has closed the socket in the meantime.
+std::optional<int> option(int file, int level, int name) {
   int value = -1;
   socklen_t size = sizeof value;
-  EXPECT_EQ(getsockopt(file, level, name, &value, &size), 0);
+  if (getsockopt(file, level, name, &value, &size) != 0) return {};
   return value;
 }
 
@@ -38,7 +40,7 @@ std::vector<int> sockets_of(std::uint16_t port, bool listening) {
   std::vector<int> files;
   for (int file = 0; file < kMostFiles; ++file) {
     if (local_port(file) != port) continue;
-    if ((option(file, SOL_SOCKET, SO_ACCEPTCONN) == 1) == listening) files.push_back(file);
+    if (option(file, SOL_SOCKET, SO_ACCEPTCONN) == (listening ? 1 : 0)) files.push_back(file);
   }
   return files;
 }
