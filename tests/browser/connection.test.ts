@@ -101,7 +101,7 @@ it('says that it was removed, or goes on in another window, and comes back', asy
 
   const token = await first.page.evaluate(() => sessionStorage.getItem('vat.resume'));
   const second = await open();
-  await second.untilTick(0); // it has a token of its own, which no longer comes
+  await second.untilTick(0); // it has a separate token, which no longer arrives
   await second.page.evaluate((value) => sessionStorage.setItem('vat.resume', value ?? ''), token);
   await second.page.reload();
   await says(first, 'connection-text', 'goes on in another window');

@@ -50,7 +50,7 @@ it('changes what happens where two materials meet, and restores it', async () =>
   await enter('#contact-friction', '11');
   await page.waitForSelector('.parameter:has(#contact-friction) .fault:has-text("from 0 to 10")');
   await expect.poll(() => page.inputValue('#contact-friction'), kInTime).toBe('0.7');
-  // What only the server knows is said beside the field as well.
+  // The page shows errors that only the server detects beside the field as well.
   await enter('#contact-threshold', '5');
   await page.waitForSelector('.parameter:has(#contact-threshold) .fault:has-text("0.4")');
   await page.selectOption('#contact-law', 'projection');

@@ -82,7 +82,7 @@ it('shows who is here by name, where they point, and what they hold', async () =
 });
 
 it('gives control to a viewer who asks for it', async () => {
-  // In a session of its own, whose owner lets others watch only.
+  // A separate session: its owner admits others as viewers only.
   const owner = await Observer.join(visits.server.url);
   const { session } = await owner.request('session.create', { name: 'ours', scene: 'rigid-stack' });
   await owner.request('session.join', { session });
