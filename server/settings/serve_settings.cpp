@@ -61,123 +61,125 @@ void add_group(std::vector<Setting>& all, const char* group, std::vector<Setting
 
 std::vector<Setting> server_group(ServeSettings& s) {
   return {
-      text_setting("host", s.host, "ADDRESS", "Address to listen on; 0.0.0.0: all of the machine",
-                   check_host),
-      number_setting<std::uint16_t>("port", s.port, 0, 65535, "Port to listen on; 0: any free one"),
-      text_setting(
-          "tls_certificate", s.tls_certificate, "FILE",
-          "Certificate in PEM, and those above it: the port then speaks TLS, https and wss"),
-      text_setting("tls_key", s.tls_key, "FILE", "Its private key, in PEM"),
+      text_setting("host", s.host, "ADDRESS",
+                   "Address to listen on; 0.0.0.0: all addresses of the machine", check_host),
+      number_setting<std::uint16_t>("port", s.port, 0, 65535,
+                                    "Port to listen on; 0: any free port"),
+      text_setting("tls_certificate", s.tls_certificate, "FILE",
+                   "Certificate chain in PEM; enables TLS on the port (https and wss)"),
+      text_setting("tls_key", s.tls_key, "FILE", "Private key of the certificate, in PEM"),
       text_setting("allow_origin", s.allow_origin, "ORIGINS",
-                   "Pages of these origins may connect too: https://a.example,https://b.example",
+                   "Other origins whose pages may connect: https://a.example,https://b.example",
                    check_origins),
       text_setting("scene", s.scene, "SCENE",
-                   "The first session's: a scene file (a path with '/' or ending in '.json') or "
-                   "the name of a scene of the catalogue"),
-      shown_as(text_setting("scenes", s.scenes_folder, "FOLDER", "Folder of the catalogue"),
+                   "Scene of the first session: a file (a path with '/' or ending in '.json') or "
+                   "the name of a catalogue scene"),
+      shown_as(text_setting("scenes", s.scenes_folder, "FOLDER", "Folder of the scene catalogue"),
                "that of the program"),
       shown_as(text_setting("web", s.web_folder, "FOLDER", "Folder of the built viewer"),
                "that of the program"),
-      number_setting<std::size_t>(
-          "threads", s.threads, 0, kMaxThreads,
-          "Threads that step sessions, and share the steps of the few; 0: one per core"),
+      number_setting<std::size_t>("threads", s.threads, 0, kMaxThreads,
+                                  "Threads that compute sessions; 0: one per core"),
       number_setting<std::size_t>(
           "endpoints", s.endpoints, 1, kMaxEndpoints,
-          "Threads that share the connections of the port; one serves about a thousand viewers"),
+          "Threads that serve connections; one thread serves about a thousand viewers"),
       text_setting("isa", s.instructions, "SET",
-                   "Instruction set: baseline, avx2, avx512, or best: the machine's",
+                   "Instruction set: baseline, avx2, avx512, or best (the best of the machine)",
                    check_instructions),
       word_setting("log_level", s.log_level, {"debug", "info", "warn", "error", "off"},
-                   "What to log"),
+                   "Lowest level of logged messages"),
       word_setting("log_format", s.log_format, {"text", "json"},
-                   "Of the log on standard error; json: one object a line"),
+                   "Format of the log on standard error; json: one object per line"),
   };
 }
 
 std::vector<Setting> access_group(ServeSettings& s) {
   return {
       word_setting("access", s.access, {"auto", "open", "token"},
-                   "Who is let in: open: everybody; token: who shows a token; auto: open on the "
-                   "machine's own addresses (127.0.0.1, ::1), token on others"),
-      text_setting("admin_token_file", s.admin_token_file, "FILE",
-                   "Whose first line is the admin's token, in place of the variable "
-                   "VAT_ADMIN_TOKEN"),
+                   "Access control: open: all clients; token: clients with a token; auto: open if "
+                   "the host is 127.0.0.1 or ::1, otherwise token"),
+      text_setting(
+          "admin_token_file", s.admin_token_file, "FILE",
+          "File whose first line is the admin token; replaces the variable VAT_ADMIN_TOKEN"),
   };
 }
 
 std::vector<Setting> connection_limits(ServerLimits& limits) {
   return {
       number_setting<std::size_t>("max_connections", limits.max_connections, 1, kMostConnections,
-                                  "WebSockets at once; the next is closed"),
-      number_setting<std::size_t>("max_connections_per_address", limits.max_connections_per_address,
-                                  1, kMostConnections,
-                                  "The same from one address: behind a proxy all have its"),
+                                  "Open WebSockets; the server closes further ones"),
+      number_setting<std::size_t>(
+          "max_connections_per_address", limits.max_connections_per_address, 1, kMostConnections,
+          "Open WebSockets from one address; behind a proxy, all clients share its address"),
       number_setting<std::size_t>("max_clients", limits.max_clients_per_session, 1,
                                   kMostConnections, "Clients of one session"),
       number_setting<std::size_t>("max_grabs", limits.max_grabs_per_client, 1, kMaxGrabs,
-                                  "Grabs of one client at once"),
+                                  "Simultaneous grabs of one client"),
       number_setting<std::size_t>("max_message_bytes", limits.max_message_bytes, 1024, kMostBytes,
-                                  "Of a message that holds neither scene nor body"),
+                                  "Size of a message without scene or body"),
       number_setting<std::size_t>("max_scene_message_bytes", limits.max_scene_message_bytes, 1024,
-                                  kMostBytes, "Of a message that does"),
+                                  kMostBytes, "Size of a message with a scene or a body"),
       number_setting<std::size_t>("max_message_depth", limits.max_message_depth, kLeastDepth,
-                                  kMostMessageDepth, "Lists and objects within each other"),
+                                  kMostMessageDepth,
+                                  "Nesting depth of lists and objects in a message"),
       number_setting<std::size_t>("max_message_values", limits.max_message_values, 1000, 10'000'000,
-                                  "Numbers, texts, lists and objects of a message"),
+                                  "Numbers, strings, lists and objects in a message"),
       number_setting<std::size_t>("max_commands_in_flight", limits.max_commands_in_flight, 1,
-                                  1'000'000, "Commands of one client that are not answered yet"),
+                                  1'000'000, "Unanswered commands of one client"),
       number_setting<std::size_t>("max_bytes_in_flight", limits.max_bytes_in_flight, 1024,
-                                  kMostBytes, "Of the messages of these commands"),
+                                  kMostBytes,
+                                  "Total size of the unanswered commands of one client"),
       number_setting<std::size_t>("max_control_queue_bytes", limits.max_control_queue_bytes,
                                   16 * 1024, kMostBytes,
-                                  "Of replies and events that a client has not taken; beyond, it "
-                                  "is closed"),
+                                  "Size of the replies and events that wait for one client; the "
+                                  "server closes a connection that exceeds it"),
       time_setting("frame_patience_seconds", limits.frame_patience, 1, kMostSeconds,
-                   "Without an acknowledgement, after which a viewer is closed"),
+                   "Time without a frame acknowledgement after which the server closes a viewer's "
+                   "connection"),
       time_setting("resume_seconds", limits.resume_time, 0, kMostSeconds,
-                   "In which a participant whose connection has ended can be resumed"),
+                   "Time after a disconnection within which a participant can resume"),
       time_setting("grab_idle_seconds", limits.grab_idle, 0.1, kMostSeconds,
-                   "Without a move, after which a grab ends"),
+                   "Time without movement after which a grab ends"),
       number_setting<std::size_t>("max_tokens", limits.max_tokens, 1, 1'000'000,
-                                  "Invitations and tickets that are good at once"),
+                                  "Valid invitations and tickets"),
       number_setting<std::size_t>("max_recording_bytes", limits.max_recording_bytes, 1024,
-                                  kMaxRecordingBytes, "Of one recording that is exported"),
+                                  kMaxRecordingBytes, "Size of one exported recording"),
       number_setting<std::size_t>("max_download_bytes", limits.max_download_bytes, 1024,
                                   std::size_t{16} << 30,
-                                  "Of all recordings that wait for somebody to fetch them"),
+                                  "Total size of exported recordings that wait for download"),
       time_setting("handshake_seconds", limits.handshake_time, 0.001, kMostSeconds,
-                   "For a whole HTTP request, or the upgrade to a WebSocket"),
+                   "Time limit of an HTTP request or a WebSocket upgrade"),
       time_setting("ping_seconds", limits.ping_interval, 0.001, kMostSeconds,
-                   "Between pings; who is silent for two of them is dropped"),
+                   "Interval of pings; the server drops a client that is silent for two intervals"),
   };
 }
 
 std::vector<Setting> rate_limits(ServerLimits& limits) {
   return {
       number_setting("max_queries_per_second", limits.max_queries_per_second, 0.01, kMostPerSecond,
-                     "Questions, and acknowledgements of frames"),
+                     "Queries and frame acknowledgements"),
       number_setting("max_controls_per_second", limits.max_controls_per_second, 0.01,
-                     kMostPerSecond, "Commands of a few numbers"),
+                     kMostPerSecond, "Control commands"),
       number_setting("max_pointer_moves_per_second", limits.max_pointer_moves_per_second, 0.01,
                      kMostPerSecond, "Commands that follow a pointer"),
       number_setting("max_scenes_per_second", limits.max_scenes_per_second, 0.01, kMostPerSecond,
                      "Messages with a scene or a body"),
       number_setting("max_message_bytes_per_second", limits.max_message_bytes_per_second, 1024,
-                     kMostBytesPerSecond, "Of all messages"),
+                     kMostBytesPerSecond, "Bytes of all messages"),
       number_setting("burst_seconds", limits.burst_seconds, 0.1, kMostSeconds,
-                     "So much of each may come at once"),
+                     "Burst size of each rate limit, as seconds at the full rate"),
       number_setting(
           "max_refusals_per_second", limits.max_refusals_per_second, 0.01, kMostPerSecond,
-          "Messages that are refused for coming too soon; beyond, the connection is closed"),
+          "Messages rejected by the rate limits; the server closes a connection that exceeds it"),
   };
 }
 
 std::vector<Setting> session_limits(ServerLimits& limits) {
   return {
       number_setting<std::size_t>("max_sessions", limits.max_sessions, 1, kMostSessions,
-                                  "Sessions at once"),
+                                  "Simultaneous sessions"),
       number_setting<std::size_t>("max_sessions_per_address", limits.max_sessions_per_address, 1,
-                                  kMostSessions, "Of them, created by clients of one address"),
+                                  kMostSessions, "Simultaneous sessions created from one address"),
       number_setting<std::size_t>("max_particles", limits.max_particles, 1, kMaxParticles,
                                   "Particles of one session"),
       number_setting<std::size_t>("max_springs", limits.max_springs, 1, kMaxSprings,
@@ -187,34 +189,36 @@ std::vector<Setting> session_limits(ServerLimits& limits) {
       number_setting<std::size_t>("max_springs_in_all", limits.max_springs_in_all, 1, kMostInAll,
                                   "Springs of all sessions"),
       number_setting<std::size_t>("max_particle_steps_per_tick", limits.max_particle_steps_per_tick,
-                                  1, 1'000'000'000,
-                                  "Particles of a session times the steps of its tick"),
+                                  1, 1'000'000'000, "Particles of a session times steps per tick"),
       time_setting("hibernate_after", limits.hibernate_after, 0, kMostAway,
-                   "Seconds without participants after which a session stands still; 0: never"),
+                   "Seconds without participants after which a session hibernates; 0: never"),
+      time_setting("expire_after", limits.expire_after, 0, kMostAway,
+                   "Seconds without participants after which a session ends, except the first "
+                   "session; 0: never"),
       time_setting(
-          "expire_after", limits.expire_after, 0, kMostAway,
-          "Seconds without participants after which a session ends, but the first; 0: never"),
-      time_setting("replay_expire_after", limits.replay_expire_after, 0.1, kMostAway,
-                   "The same of a replay, where it is less"),
+          "replay_expire_after", limits.replay_expire_after, 0.1, kMostAway,
+          "Seconds without participants after which a replay ends, if less than expire_after"),
   };
 }
 
 std::vector<Setting> saved_limits(ServerLimits& limits) {
   return {
       number_setting<std::size_t>("max_states_per_session", limits.max_states_per_session, 0,
-                                  1'000'000, "States that users have saved of one session"),
+                                  1'000'000, "Saved states of one session"),
       number_setting<std::size_t>("max_state_bytes_per_session", limits.max_state_bytes_per_session,
-                                  1024, kMostBytes, "Of these states"),
+                                  1024, kMostBytes,
+                                  "Total size of the saved states of one session"),
       number_setting<std::size_t>("max_state_bytes_in_all", limits.max_state_bytes_in_all, 1024,
-                                  kMostInAll, "Of the states of all sessions"),
+                                  kMostInAll, "Total size of the saved states of all sessions"),
       number_setting<std::size_t>("max_scenes_per_address", limits.max_scenes_per_address, 0,
-                                  1'000'000, "Scenes that users of one address have saved"),
+                                  1'000'000, "Scenes saved from one address"),
       number_setting<std::size_t>("max_scene_bytes_per_address", limits.max_scene_bytes_per_address,
-                                  1024, kMostBytes, "Of these scenes"),
+                                  1024, kMostBytes,
+                                  "Total size of the scenes saved from one address"),
       number_setting<std::size_t>("max_scenes_in_all", limits.max_scenes_in_all, 0, 1'000'000,
-                                  "Scenes that users have saved"),
+                                  "Saved scenes"),
       number_setting<std::size_t>("max_scene_bytes_in_all", limits.max_scene_bytes_in_all, 1024,
-                                  kMostBytes, "Of all of them"),
+                                  kMostBytes, "Total size of the saved scenes"),
   };
 }
 
@@ -223,19 +227,19 @@ std::vector<Setting> storage_group(ServeSettings& s) {
   constexpr std::size_t kMostBytesKept = std::size_t{1} << 40;
   return {
       text_setting("data", s.data, "FOLDER",
-                   "Where sessions are kept, so that they come back after whatever ended the "
-                   "server; none: in memory alone"),
+                   "Folder in which sessions persist; none: sessions exist in memory only"),
       time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMostSeconds,
-                   "Of computing between two checkpoints of a session: what is done again after a "
-                   "crash; more where checkpoints would take over a twentieth of the time"),
-      time_setting("drain_seconds", s.drain_time, 0, kMostSeconds,
-                   "How long clients may stay after SIGTERM, before sessions are written and the "
-                   "server ends"),
-      number_setting<std::size_t>("checkpoint_bytes", s.storage.checkpoint_bytes, kLeastBytes,
-                                  kMostBytesKept,
-                                  "Of one session's checkpoints; beyond, older ones are thinned"),
-      number_setting<std::size_t>("log_bytes", s.storage.log_bytes, kLeastBytes, kMostBytesKept,
-                                  "Of one session's commands; beyond, its past is forgotten"),
+                   "Computing time between two checkpoints of a session, which recovery repeats at "
+                   "most; longer if checkpoints would take more than 5 % of the time"),
+      time_setting(
+          "drain_seconds", s.drain_time, 0, kMostSeconds,
+          "Time between SIGTERM and the end of the server, in which clients stay connected"),
+      number_setting<std::size_t>(
+          "checkpoint_bytes", s.storage.checkpoint_bytes, kLeastBytes, kMostBytesKept,
+          "Total size of one session's checkpoints; beyond it, the server thins older ones"),
+      number_setting<std::size_t>(
+          "log_bytes", s.storage.log_bytes, kLeastBytes, kMostBytesKept,
+          "Size of one session's command log; beyond it, the server deletes the oldest part"),
   };
 }
 
@@ -254,9 +258,9 @@ std::vector<Setting> serve_settings(ServeSettings& target) {
   add_group(all, "Access", access_group(target));
   add_group(all, "Storage", storage_group(target));
   add_group(all, "Limits of connections", connection_limits(target.limits));
-  add_group(all, "Limits of messages of a connection", rate_limits(target.limits));
+  add_group(all, "Rate limits of a connection", rate_limits(target.limits));
   add_group(all, "Limits of sessions", session_limits(target.limits));
-  add_group(all, "Limits of what users save", saved_limits(target.limits));
+  add_group(all, "Limits of saved states and scenes", saved_limits(target.limits));
   return all;
 }
 

@@ -162,7 +162,7 @@ Json describe(std::span<const Setting> settings, const SettingSources& sources) 
 }
 
 std::string settings_table(std::span<const Setting> settings) {
-  std::string table = "| setting | may be | default | what it is |\n|---|---|---|---|\n";
+  std::string table = "| setting | range | default | description |\n|---|---|---|---|\n";
   std::string group;
   for (const Setting& setting : settings) {
     if (setting.group != group) {
