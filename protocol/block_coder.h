@@ -9,7 +9,7 @@
 #include "protocol/neighbourhood.h"
 #include "protocol/symbols.h"
 
-/// How the blocks of a frame are coded: PROTOCOL.md, "Blocks". A Coder is a SymbolWriter, for which
+/// How the blocks of a frame are coded: FRAMES.md, "Blocks". A Coder is a SymbolWriter, for which
 /// blocks are given, or a SymbolReader, which fills them in. Code that chooses how something is
 /// written runs for the former alone; what the latter refuses leaves anything in the block.
 namespace vat {

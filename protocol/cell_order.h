@@ -8,7 +8,7 @@
 
 namespace vat {
 
-/// Particles by the cells of a cubic grid, as PROTOCOL.md, "Order", says: the order in which what
+/// Particles by the cells of a cubic grid, as FRAMES.md, "Order", says: the order in which what
 /// has changed since a reference frame is coded. Keeps its memory.
 class CellOrder {
  public:

@@ -9,7 +9,7 @@
 #include "core/support/result.h"
 #include "protocol/grid_frame.h"
 
-/// The binary frames of PROTOCOL.md, "Frames".
+/// The binary frames of FRAMES.md.
 namespace vat {
 
 /// A client keeps that many of the last frames that it got, from the last key frame on; any two of
@@ -59,7 +59,7 @@ class FrameDecoder {
 
   /// A key frame makes the decoder forget all before it.
   ///
-  /// The frame, only if every byte is as PROTOCOL.md says: the same integers that were encoded,
+  /// The frame, only if every byte is as FRAMES.md says: the same integers that were encoded,
   /// whatever its references were. It lives until the next call. A frame that is refused changes
   /// nothing. Error codes: bad_magic, bad_version, bad_type, bad_header, bad_block, bad_check,
   /// missing_reference, truncated, extra_bytes.

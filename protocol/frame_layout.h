@@ -6,7 +6,7 @@
 
 #include "protocol/grid_frame.h"
 
-/// Sizes, offsets and codes of PROTOCOL.md, "Frames".
+/// Sizes, offsets and codes of FRAMES.md.
 namespace vat::frame_layout {
 
 inline constexpr std::uint32_t kMagic = 0x46544156;  // "VATF"

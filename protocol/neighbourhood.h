@@ -10,8 +10,8 @@
 #include "protocol/cell_order.h"
 #include "protocol/symbols.h"
 
-/// What neighbours tell of a particle: PROTOCOL.md, "Neighbours". Whole numbers only, so that every
-/// decoder finds the same.
+/// What neighbours tell of a particle: FRAMES.md, "Context of neighbouring cells". Whole numbers
+/// only, so that every decoder finds the same.
 namespace vat {
 
 using Triple = std::array<std::int32_t, 3>;

@@ -8,7 +8,7 @@
 
 namespace vat {
 
-/// The header fields of PROTOCOL.md, "Frames", that do not follow from how a frame is coded.
+/// The header fields of FRAMES.md, that do not follow from how a frame is coded.
 struct FrameHeader {
   bool playing = false;
   bool slow = false;

@@ -9,7 +9,7 @@
 
 #include "core/support/check.h"
 
-/// The entropy coder of PROTOCOL.md, "Frames": three interleaved range coders of the asymmetric
+/// The entropy coder of FRAMES.md: three interleaved range coders of the asymmetric
 /// numeral kind (J. Duda, arXiv:1311.2540), with frequencies of 12 bits and words of 16.
 namespace vat::rans {
 

@@ -6,7 +6,7 @@
 
 #include "protocol/rans.h"
 
-/// How residuals are distributed: PROTOCOL.md, "Residuals". What predictions leave is logistic in
+/// How residuals are distributed: FRAMES.md, "Residuals". What predictions leave is logistic in
 /// all scenes, whatever its scale, so that fixed tables of a few scales serve all frames.
 namespace vat::residuals {
 

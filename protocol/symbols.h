@@ -7,7 +7,7 @@
 #include "protocol/rans.h"
 #include "protocol/residual_tables.h"
 
-/// The symbols of PROTOCOL.md, "Symbols", written or read by functions of the same names, so that
+/// The symbols of FRAMES.md, "Symbols", written or read by functions of the same names, so that
 /// one piece of code says how a frame is coded in both directions.
 namespace vat {
 

@@ -1,4 +1,4 @@
-"""Why a frame is refused: a reason of the table in PROTOCOL.md, "The header"."""
+"""Why a frame is refused: a reason of the table in FRAMES.md, "Header"."""
 
 
 class BadFrame(Exception):

@@ -1,4 +1,4 @@
-"""The states of bodies that frames tell, in whole numbers: PROTOCOL.md, "Blocks", "The check"."""
+"""The states of bodies that frames tell, in whole numbers: FRAMES.md, "Blocks", "Check"."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Decodes the frames of a subscription: PROTOCOL.md, "Frames".
+"""Decodes the frames of a subscription: FRAMES.md.
 
 Written from that document alone, in its words and its order, to show that it is enough.
 """

@@ -1,4 +1,4 @@
-"""The header of a frame: PROTOCOL.md, "The header"."""
+"""The header of a frame: FRAMES.md, "Header"."""
 
 import math
 import struct

@@ -1,4 +1,4 @@
-"""What coded particles tell of those to come: PROTOCOL.md, "Order" and "Neighbours"."""
+"""What coded particles tell of those to come: FRAMES.md, "Order" and "Context of neighbouring cells"."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What changes of a body's particles: PROTOCOL.md, "Particles" and its parts."""
+"""What changes of a body's particles: FRAMES.md, "Changed particles" and its parts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The tables of PROTOCOL.md, "Residuals": how likely each residual is, by scale and place."""
+"""The tables of FRAMES.md, "Residuals": how likely each residual is, by scale and place."""
 
 STEEPNESS = (
     5689, 4784, 4023, 3383, 2844, 2392, 2011, 1691, 1422, 1196, 1006, 846,

@@ -1,4 +1,4 @@
-"""What a frame has behind its header: PROTOCOL.md, "Symbols" and "Residuals"."""
+"""What a frame has behind its header: FRAMES.md, "Symbols" and "Residuals"."""
 
 import struct
 from bisect import bisect_right

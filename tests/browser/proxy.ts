@@ -93,7 +93,7 @@ export class Proxy {
   private refusalOf(text: string): string | undefined {
     const { id, method } = JSON.parse(text) as Message;
     if (method === undefined || !this.ways.unknown?.includes(method)) return undefined;
-    const hint = 'Look the name up in the methods of server.info.';
+    const hint = 'See the methods of server.info.';
     const data = { kind: 'method_not_found', hint };
     const error = { code: -32601, message: `unknown method "${method}"`, data };
     return JSON.stringify({ jsonrpc: '2.0', id, error });

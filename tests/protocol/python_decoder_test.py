@@ -1,6 +1,8 @@
 """The frames of tests/golden decode to what stands beside them, damaged ones to their reasons."""
 
+import functools
 import json
+import re
 import sys
 import unittest
 from pathlib import Path
@@ -12,6 +14,7 @@ sys.path.insert(0, str(ROOT / "protocol" / "python"))
 from bad_frame import BadFrame
 from blocks import Block, ParticleBlock
 from decode_frame import Decoder, Frame
+from symbols import Symbols
 
 FRAMES = ROOT / "tests" / "golden" / "frames"
 KINDS = ("liquid", "deformable", "rigid", "vat")
@@ -26,6 +29,36 @@ def decoder_after(names: list[str]) -> Decoder:
     for name in names:
         decoder.decode(frame_bytes(name))
     return decoder
+
+
+class Trace:
+    """Lists the outermost symbols that decoders read: (the symbol as FRAMES.md writes it, value)."""
+
+    NAMES = {"residual_class": "class"}
+
+    def __init__(self, case: unittest.TestCase) -> None:
+        self.rows: list[tuple[str, str]] = []
+        self.depth = 0
+        for name in ("bits", "long", "flag", "whole", "signed", "factor", "residual_class",
+                     "residual"):
+            original = getattr(Symbols, name)
+            case.addCleanup(setattr, Symbols, name, original)
+            setattr(Symbols, name, self.traced(name, original))
+
+    def traced(self, name: str, original: Any) -> Any:
+        @functools.wraps(original)
+        def read(symbols: Symbols, *arguments: int) -> Any:
+            self.depth += 1
+            value = original(symbols, *arguments)
+            self.depth -= 1
+            if self.depth == 0:
+                lane = f", lane {arguments[2]}" if name == "residual" else ""
+                shown = ", ".join(map(str, arguments[:2]))
+                text = str(value).lower() if isinstance(value, bool) else str(value)
+                self.rows.append((f"{self.NAMES.get(name, name)}({shown}){lane}", text))
+            return value
+
+        return read
 
 
 def block_as_json(block: Block) -> dict[str, Any]:
@@ -95,6 +128,17 @@ class GoldenFrames(unittest.TestCase):
                     decoder.decode(damaged(case))
                 self.assertEqual(refused.exception.reason, case["error"])
                 self.assertEqual(decoder.frames, kept)
+
+    def test_read_the_symbols_of_the_documented_examples(self) -> None:
+        document = (ROOT / "protocol" / "FRAMES.md").read_text("utf-8")
+        decoder = Decoder()
+        trace = Trace(self)
+        for name in ("v2-twice", "v2-twice-one"):
+            trace.rows.clear()
+            decoder.decode(frame_bytes(name))
+            table = document.split(f"<!-- begin {name} -->")[1].split("<!-- end")[0]
+            rows = re.findall(r"^\| (\S.*?\).*?) \| (\S+) \|", table, re.MULTILINE)
+            self.assertEqual(rows, trace.rows)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ export type { Frame, FrameBlock, GridBlock, PoseBlock, VatBlock } from './frame/
 export { frameNumber } from './frame/header.js';
 export type { FrameHeader, FrameScale } from './frame/header.js';
 
-/** Decodes the frames of one connection in their order: protocol/PROTOCOL.md, "Frames". */
+/** Decodes the frames of one connection in their order: protocol/FRAMES.md. */
 export class FrameDecoder {
   private readonly ring = new FrameRing();
   private readonly symbols = new SymbolReader();

@@ -11,7 +11,7 @@ const kMostSize = 131064;
 const kMiddleOfGrid = 32768;
 export const kMostAttribute = 1 << 20;
 
-/** Particles that come: protocol/PROTOCOL.md, "Particles that come". Keeps its memory. */
+/** Particles that come: protocol/FRAMES.md, "New particles". Keeps its memory. */
 export class AddedParticles {
   /** Their places in the block, and their numbers; the first `count` count. */
   places = new Uint32Array(0);

@@ -68,7 +68,7 @@ export class BlockData {
     this.orientationBits = other.orientationBits;
   }
 
-  /** The check of protocol/PROTOCOL.md goes on from `sum` with this block. */
+  /** The check of protocol/FRAMES.md goes on from `sum` with this block. */
   addTo(sum: number): number {
     sum = mix(mix(sum, this.body), this.kind);
     if (!this.hasParticles) {

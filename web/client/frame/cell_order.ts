@@ -1,4 +1,4 @@
-/** Particles by the cells of a grid: protocol/PROTOCOL.md, "Order". Keeps its memory. */
+/** Particles by the cells of a grid: protocol/FRAMES.md, "Order". Keeps its memory. */
 export class CellOrder {
   /** Particles, cell by cell. */
   order = new Int32Array(0);

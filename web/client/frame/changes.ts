@@ -23,7 +23,7 @@ function readChance(symbols: SymbolReader): number {
   return chance;
 }
 
-/** What has changed of a body's particles: protocol/PROTOCOL.md, "Particles". Keeps its memory. */
+/** Reads the changes of particles: protocol/FRAMES.md, "Changed particles". Reuses its memory. */
 export class ParticleChanges {
   readonly added = new AddedParticles();
   private readonly cells = new CellOrder();

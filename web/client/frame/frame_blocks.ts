@@ -11,7 +11,7 @@ const kMostPlace = 2 ** 28;
 const kAfterUnchanged = 256;
 const kAfterChanged = 3584;
 
-/** Reads the blocks of a frame: protocol/PROTOCOL.md, "Blocks". */
+/** Reads the blocks of a frame: protocol/FRAMES.md, "Blocks". */
 export class FrameBlocks {
   private readonly changes: ParticleChanges;
 

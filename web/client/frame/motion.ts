@@ -8,7 +8,7 @@ const kMostCounted = 63;
 /** In place of a step that is not known. */
 const kNoStep = 1 << 30;
 
-/** Predicts positions: protocol/PROTOCOL.md, "Positions". Keeps its memory. */
+/** Predicts positions: protocol/FRAMES.md, "Positions". Keeps its memory. */
 export class Motion {
   /** Steps since the second reference, three of each particle that stays. */
   private steps = new Int32Array(0);

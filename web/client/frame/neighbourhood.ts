@@ -36,7 +36,10 @@ export interface Wanted {
   readonly span: number;
 }
 
-/** What neighbours tell of a particle: protocol/PROTOCOL.md, "Neighbours". Keeps its memory. */
+/**
+ * Predictions from neighbouring cells: protocol/FRAMES.md, "Context of neighbouring cells". Reuses
+ * its memory.
+ */
 export class Neighbourhood {
   private sums = new Int32Array(0);
   /** Of kCases what the row of a size stands for, and behind these what is read first. */

@@ -1,4 +1,4 @@
-/** How residuals are distributed: protocol/PROTOCOL.md, "Residuals". */
+/** How residuals are distributed: protocol/FRAMES.md, "Residuals". */
 
 export const kTables = 24;
 export const kClasses = 68;

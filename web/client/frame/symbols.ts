@@ -11,7 +11,7 @@ const kResidualMask = (1 << kResidualBits) - 1;
 /** So many words may be read before anybody looks whether they are there. */
 const kReadAhead = 3;
 
-/** The entropy decoder of protocol/PROTOCOL.md, "Symbols". */
+/** The entropy decoder of protocol/FRAMES.md, "Symbols". */
 export class SymbolReader {
   /** Which word is read next, and of which; behind `wordCount` there are some without meaning. */
   next = 0;
