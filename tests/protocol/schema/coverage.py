@@ -22,7 +22,7 @@ LIMITS = {
     "burst_seconds": ("script", "too-often"), "connections_per_address": ("script", "sharing"),
     "controls_per_second": "limit", "expire_after_seconds": ("script", "empty-sessions"),
     "hibernate_after_seconds": ("script", "empty-sessions"),
-    "replay_expire_after_seconds": ("script", "empty-replays"),
+    "replay_expire_after_seconds": ("script", "empty-sessions"),
     "message_bytes_per_second": ("closed", 4009), "particles_in_all": "limit",
     "pointer_moves_per_second": "limit", "queries_per_second": "limit",
     "refusals_per_second": ("closed", 4009), "scenes_per_second": "limit",
