@@ -15,9 +15,15 @@
 
 namespace vat::test {
 
+/// The server has gone.
+class Gone : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A client that waits, ten seconds at most and longer under a sanitizer, for what it is asked for;
 /// throws std::runtime_error where that does not come, and where a session has not come back as it
-/// was.
+/// was; Gone where the connection ends before a reply.
 class WaitingClient {
  public:
   explicit WaitingClient(std::uint16_t port) {
@@ -33,7 +39,9 @@ class WaitingClient {
     const std::string text = request.dump();
     if (auto* record = next_record()) record->sent(name_, text);
     client_->send_text(text);
-    return wait(id_);
+    Json reply = wait(id_);
+    if (reply.contains("closed")) throw Gone("closed");
+    return reply;
   }
   Json result(const std::string& method, const Json& params = Json::object()) {
     const Json reply = call(method, params);

@@ -51,17 +51,6 @@ TEST_F(Drain, ClientsAreToldAndNobodyNewComesAndItEndsWhenTheLastHasGone) {
   EXPECT_EQ(client.result("session.hash").at("hash"), hash);
 }
 
-TEST_F(Drain, WhoStaysIsClosedAtTheDeadline) {
-  script::ServerProcess server = start("1");
-  WaitingClient client(server.port());
-  client.result("session.join");
-  const auto begin = steady_clock::now();
-  auto status = std::async(std::launch::async, [&] { return server.stop(); });
-  EXPECT_EQ(client.wait(0).at("closed"), 1001);
-  EXPECT_GE(steady_clock::now() - begin, 1s);
-  EXPECT_EQ(status.get(), 0);
-}
-
 TEST_F(Drain, AnAdminEndsTheServerAsWell) {
   constexpr const char* kToken = "the admin token of the test";
   setenv("VAT_ADMIN_TOKEN", kToken, 1);

@@ -1,6 +1,5 @@
 #include "tests/recovery/load.h"
 
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -11,45 +10,21 @@
 namespace vat::test {
 namespace {
 
-/// The server has gone.
-class Gone : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A client that waits for each answer.
-class Caller {
- public:
-  explicit Caller(std::uint16_t port) : client_(port) {
-    if (!client_.is_connected()) throw Gone("no connection");
-  }
-
-  /// The result, or nothing where it is an error. Throws Gone.
-  std::optional<Json> call(const std::string& method, const Json& params = Json::object()) {
-    last_reply_ = client_.call(method, params);
-    if (last_reply_.contains("closed")) throw Gone("closed");
-    if (last_reply_.contains("error")) return {};
-    return last_reply_.at("result");
-  }
-  Json result(const std::string& method, const Json& params = Json::object()) {
-    auto result = call(method, params);
-    if (!result) throw std::runtime_error(method + ": " + last_reply_.dump());
-    return *std::move(result);
-  }
-
- private:
-  WaitingClient client_;
-  Json last_reply_;
-};
+/// Throws Gone where there is no connection.
+WaitingClient connect(std::uint16_t port) {
+  WaitingClient client(port);
+  if (!client.is_connected()) throw Gone("no connection");
+  return client;
+}
 
 /// One client at work.
 class Load {
  public:
   Load(std::uint16_t port, std::string session, std::uint64_t name, Told& told)
-      : caller_(port), session_(std::move(session)), name_(name), told_(told) {}
+      : client_(connect(port)), session_(std::move(session)), name_(name), told_(told) {}
 
   void run() {
-    const Json joined = caller_.result("session.join", {{"session", session_}});
+    const Json joined = client_.result("session.join", {{"session", session_}});
     body_ = joined.at("description").at("bodies").at(0).at("body");
     for (std::uint64_t round = 1;; ++round) {
       change(round);
@@ -64,7 +39,8 @@ class Load {
   }
 
   void command(const std::string& method, const Json& params) {
-    if (caller_.call(method, params)) told_.add(Answered{session_, method, params.dump()});
+    if (client_.call(method, params).contains("result"))
+      told_.add(Answered{session_, method, params.dump()});
   }
 
   void change(std::uint64_t round) {
@@ -93,11 +69,12 @@ class Load {
 
   void hold(double number) {
     const Json start{{"body", body_}, {"particle", 0}, {"target", {0.5, 0.5, number * 1e-3}}};
-    const auto grab = caller_.call("grab.start", start);
-    if (!grab) return;
+    const Json reply = client_.call("grab.start", start);
+    if (!reply.contains("result")) return;
+    const Json grab = reply.at("result").at("grab");
     told_.add(Answered{session_, "grab.start", start.dump()});
-    command("grab.move", {{"grab", grab->at("grab")}, {"target", {0.4, number * 1e-3, 0.5}}});
-    command("grab.end", {{"grab", grab->at("grab")}});
+    command("grab.move", {{"grab", grab}, {"target", {0.4, number * 1e-3, 0.5}}});
+    command("grab.end", {{"grab", grab}});
   }
 
   void add_and_remove(double number) {
@@ -108,18 +85,18 @@ class Load {
                         {"spacing", 0.1},
                         {"shape", {{"type", "sphere"}, {"radius", 0.12}}},
                         {"position", {0.5, 0.5, 0.8}}}}};
-    const auto added = caller_.call("world.add_body", params);
-    if (!added) return;
+    const Json added = client_.call("world.add_body", params);
+    if (!added.contains("result")) return;
     told_.add(Answered{session_, "world.add_body", params.dump()});
-    command("world.remove_body", {{"body", added->at("body")}});
+    command("world.remove_body", {{"body", added.at("result").at("body")}});
   }
 
   void look() {
-    const Json state = caller_.result("session.hash");
+    const Json state = client_.result("session.hash");
     told_.add(Seen{session_, state.at("position"), state.at("hash")});
   }
 
-  Caller caller_;
+  WaitingClient client_;
   const std::string session_;
   const std::uint64_t name_;
   Told& told_;
@@ -168,11 +145,11 @@ void load_session(std::uint16_t port, const std::string& session, std::uint64_t 
 }
 
 std::string create_session(std::uint16_t port, const std::string& name, const std::string& scene) {
-  return Caller(port).result("session.create", {{"name", name}, {"scene", scene}}).at("session");
+  return connect(port).result("session.create", {{"name", name}, {"scene", scene}}).at("session");
 }
 
 std::vector<std::pair<std::string, std::string>> list_sessions(std::uint16_t port) {
-  Caller caller(port);
+  WaitingClient caller = connect(port);
   std::vector<std::pair<std::string, std::string>> running;
   const auto are_all_running = [&] {
     running.clear();

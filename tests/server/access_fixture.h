@@ -12,25 +12,18 @@ namespace vat::test {
 /// has no owner.
 class AccessTest : public testing::Test {
  protected:
-  static AccessSettings without_delay() {
-    AccessSettings access;
-    access.refusal_delay = std::chrono::milliseconds(0);
-    return access;
-  }
-  explicit AccessTest(AccessSettings access = without_delay())
-      : catalogue(make_catalogue()), server(catalogue, settings(access)) {
+  explicit AccessTest(std::chrono::milliseconds refusal_delay = {})
+      : catalogue(make_catalogue()), server(catalogue, token_settings(refusal_delay)) {
     if (!server.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
     }
     admin = enter(std::string(kAdminToken));
   }
 
-  static ServerSettings settings(AccessSettings access) {
-    ServerSettings settings;
-    settings.threads = 2;
-    settings.access = access;
+  static ServerSettings token_settings(std::chrono::milliseconds refusal_delay = {}) {
+    ServerSettings settings = test_settings(unhurried_limits());
     settings.access.mode = AccessMode::token;
-    settings.access.admin = hash_of_token(kAdminToken);
+    settings.access.refusal_delay = refusal_delay;
     return settings;
   }
 

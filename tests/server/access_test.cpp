@@ -1,8 +1,15 @@
 // Who is let in. The names that begin with Owasp are items of OWASP's list for WebSockets.
 
-#include "server/access/access.h"
+#include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <set>
+
+#include "server/access/access.h"
+#include "server/access/token.h"
+#include "server/cli/serve_access.h"
 #include "tests/server/access_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vat::test::access_test {
 namespace {
@@ -14,7 +21,7 @@ constexpr std::uint16_t kNotAuthenticated = 4001;
 class Access : public AccessTest {};
 class DelayedAccess : public AccessTest {
  protected:
-  DelayedAccess() : AccessTest(AccessSettings{}) {}
+  DelayedAccess() : AccessTest(AccessSettings{}.refusal_delay) {}
 };
 class OpenAccess : public SessionTest {};
 
@@ -199,6 +206,124 @@ TEST(AccessTokens, AreBoundedAndOldOnesMakeRoom) {
   tokens.remove_session("s1", false);
   EXPECT_TRUE(issue(10s));
   EXPECT_TRUE(issue(10s));
+}
+
+std::string to_hex(const TokenHash& hash) {
+  std::string text;
+  for (const std::uint8_t byte : hash) {
+    for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
+  }
+  return text;
+}
+
+// FIPS 180-2, appendix B.1.
+TEST(Token, IsHashedBySha256) {
+  EXPECT_EQ(to_hex(hash_of_token("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Token, HashesAreTheSameOrNot) {
+  const TokenHash hash = hash_of_token("abc");
+  for (std::size_t i = 0; i < hash.size(); ++i) {
+    TokenHash other = hash;
+    EXPECT_TRUE(are_same(hash, other));
+    other[i] ^= 1;
+    EXPECT_FALSE(are_same(hash, other)) << i;
+  }
+}
+
+// All 22 characters vary: the last has 2 bits left, the others 6. With 4096 tokens the chance that
+// some value of a character is missed is below 22 * 64 * exp(-4096 / 64), about 1e-25.
+TEST(Token, IsOfRandomCharactersAndNeverTheSame) {
+  std::set<std::string> tokens;
+  std::vector<std::set<char>> seen(22);
+  for (int i = 0; i < 4096; ++i) {
+    const std::string token = make_token();
+    ASSERT_EQ(token.size(), 22u);
+    for (std::size_t c = 0; c < token.size(); ++c) seen[c].insert(token[c]);
+    tokens.insert(token);
+  }
+  EXPECT_EQ(tokens.size(), 4096u);
+  for (std::size_t c = 0; c < 21; ++c) EXPECT_EQ(seen[c].size(), 64u) << c;
+  EXPECT_EQ(seen[21].size(), 4u);
+}
+
+// Who is let in by what `vat serve` is told.
+
+constexpr const char* kVariable = "VAT_ADMIN_TOKEN";
+constexpr const char* kToken = "0123456789abcdef";  // of the least length
+
+class ServeAccessTest : public testing::Test {
+ protected:
+  ServeAccessTest() { unsetenv(kVariable); }
+  void TearDown() override { unsetenv(kVariable); }
+
+  ServeAccess made() {
+    const Result<ServeAccess> access = serve_access(settings);
+    EXPECT_TRUE(access.ok());
+    return access ? access.value() : ServeAccess{};
+  }
+  std::string refusal() {
+    const Result<ServeAccess> access = serve_access(settings);
+    EXPECT_FALSE(access.ok());
+    return access ? "" : access.errors().front().code;
+  }
+
+  const TemporaryFolder folder;
+  ServeSettings settings;
+};
+
+TEST_F(ServeAccessTest, IsOpenOnTheMachinesOwnAddressesOnly) {
+  for (const char* host : {"127.0.0.1", "127.3.2.1", "::1"}) {
+    settings.host = host;
+    EXPECT_EQ(made().settings.mode, AccessMode::open) << host;
+  }
+  for (const char* host : {"0.0.0.0", "::", "10.0.0.1"}) {
+    settings.host = host;
+    EXPECT_EQ(made().settings.mode, AccessMode::token) << host;
+  }
+  settings.access = "open";
+  EXPECT_EQ(made().settings.mode, AccessMode::open);
+  settings.host = "127.0.0.1";
+  settings.access = "token";
+  EXPECT_EQ(made().settings.mode, AccessMode::token);
+}
+
+TEST_F(ServeAccessTest, MakesAnAdminsTokenWhereOneIsNeededAndNotGiven) {
+  EXPECT_TRUE(made().made_token.empty());
+  EXPECT_FALSE(made().settings.admin);
+  settings.access = "token";
+  const ServeAccess first = made();
+  EXPECT_EQ(first.settings.admin, hash_of_token(first.made_token));
+  EXPECT_NE(first.made_token, made().made_token);
+  setenv(kVariable, kToken, 1);
+  EXPECT_TRUE(made().made_token.empty());
+  EXPECT_EQ(made().settings.admin, hash_of_token(kToken));
+  settings.access = "open";
+  EXPECT_EQ(made().settings.admin, hash_of_token(kToken)) << "an admin is one in open mode too";
+}
+
+TEST_F(ServeAccessTest, TakesTheFirstLineOfAFileBeforeTheVariable) {
+  setenv(kVariable, "another token of the admin", 1);
+  folder.write("token", std::string(kToken) + "\nnot this\n");
+  settings.admin_token_file = folder.file("token");
+  EXPECT_EQ(made().settings.admin, hash_of_token(kToken));
+}
+
+TEST_F(ServeAccessTest, RefusesWhatCannotBeReadOrGuessesWouldFind) {
+  settings.admin_token_file = folder.file("missing");
+  EXPECT_EQ(refusal(), "unreadable_file");
+  folder.write("empty", "");
+  settings.admin_token_file = folder.file("empty");
+  EXPECT_EQ(refusal(), "unreadable_file");
+  folder.write("short", "0123456789abcde\n");
+  settings.admin_token_file = folder.file("short");
+  EXPECT_EQ(refusal(), "out_of_range");
+  settings.admin_token_file.clear();
+  setenv(kVariable, "0123456789abcde", 1);
+  EXPECT_EQ(refusal(), "out_of_range");
+  setenv(kVariable, "", 1);
+  EXPECT_EQ(refusal(), "out_of_range");
 }
 
 }  // namespace

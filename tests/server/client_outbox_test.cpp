@@ -232,16 +232,6 @@ TEST_F(Outbox, TwoMessagesMayBeLongerThanTheQueue) {
 }
 
 // Joining again and again would otherwise send key frames without end.
-TEST_F(Outbox, TheQueuesBoundIsKeptToTheByte) {
-  connection->stall(true);
-  ClientOutbox other(connection, 1000 + 2 * kMessageCost);
-  other.send(make_text(600));
-  other.send(make_text(400));
-  EXPECT_FALSE(connection->close_code().has_value());
-  other.send(make_text(2));
-  EXPECT_EQ(connection->close_code(), 4008);
-}
-
 TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
   connection->stall(true);
   offer(1, 1);

@@ -18,7 +18,7 @@ class EmptySession : public SessionTest {
  protected:
   explicit EmptySession(const ServerLimits& limits = short_times()) : SessionTest(limits) {}
   static ServerLimits short_times() {
-    ServerLimits limits = unhurried();
+    ServerLimits limits = unhurried_limits();
     limits.resume_time = kResumeTime;
     limits.hibernate_after = kHibernateAfter;
     limits.expire_after = 0s;
@@ -134,7 +134,7 @@ class NeverIdle : public EmptySession {
  protected:
   NeverIdle() : EmptySession(never()) {}
   static ServerLimits never() {
-    ServerLimits limits = unhurried();
+    ServerLimits limits = unhurried_limits();
     limits.hibernate_after = limits.expire_after = 0ms;
     return limits;
   }
@@ -149,14 +149,12 @@ TEST_F(NeverIdle, PlaysOnWithNobodyInIt) {
 TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
   const TemporaryFolder folder;
   const Catalogue catalogue = make_catalogue();
-  ServerSettings settings;
-  settings.data_folder = folder.file("data");
-  settings.limits.burst_seconds = 1e9;
-  settings.limits.resume_time = kResumeTime;
-  settings.limits.hibernate_after = 1s;
-  settings.limits.expire_after = 0ms;
-  settings.limits.replay_expire_after = kExpireAfter;
-  TestServer server(catalogue, settings);
+  ServerLimits limits = unhurried_limits();
+  limits.resume_time = kResumeTime;
+  limits.hibernate_after = 1s;
+  limits.expire_after = 0ms;
+  limits.replay_expire_after = kExpireAfter;
+  TestServer server(catalogue, test_settings(limits, folder.file("data")));
   ASSERT_TRUE(server.create_session("first", to_scene(mixed_scene_text())).ok());
   TestClient client(server, 1);
   client.result("session.create", {{"name", "n"}, {"scene", "mixed"}});
@@ -173,6 +171,32 @@ TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
   server.clock().advance(1s + kExpiryCheck);
   EXPECT_EQ(client.error("session.join", {{"session", replay}}).at("code"), 1002);
   EXPECT_EQ(sessions(), 2U);
+}
+
+// Work that sessions cause without commands and ticks.
+
+class IdleSession : public SessionTest {};
+
+// With a client that watches: statuses go on.
+TEST_F(IdleSession, WakesForItsStatusesOnly) {
+  client->result("frames.subscribe");
+  client->wait_frame([](const GridFrame&) { return true; });
+  server.clock().advance(1s);  // the first frame was acknowledged, the last beat was sent
+  const std::size_t frames = client->connection->frame_count();
+  const std::size_t tasks = server.clock().tasks_run();
+  client->mark();
+  server.clock().advance(10s);
+  EXPECT_EQ(client->connection->frame_count(), frames);
+  EXPECT_EQ(client->events("session.status").size(), 20U);
+  EXPECT_LE(server.clock().tasks_run() - tasks, 20U + 1) << "and one check for expired sessions";
+}
+
+TEST_F(IdleSession, WithNobodyInItWakesForItsStatusesOnly) {
+  client->result("session.leave");
+  server.clock().advance(1s);
+  const std::size_t tasks = server.clock().tasks_run();
+  server.clock().advance(10s);
+  EXPECT_LE(server.clock().tasks_run() - tasks, 20U + 1);
 }
 
 }  // namespace

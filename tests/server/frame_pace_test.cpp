@@ -1,15 +1,21 @@
-#include "server/session/frame_pace.h"
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <utility>
 #include <vector>
 
-namespace vat::frame_pace_test {
+#include "server/session/frame_groups.h"
+#include "server/session/frame_pace.h"
+#include "server/session/frame_window.h"
+
+namespace vat::test::frame_pace_test {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
 using Seconds = std::chrono::duration<double>;
 
 using Level = std::array<unsigned, 3>;  // stride, coarseness, detail
@@ -136,5 +142,78 @@ TEST_F(FramePaceTest, TheRateGoesDownNoFurtherThanIsAllowed) {
   EXPECT_EQ(level(), (Level{1, 4, 0}));
 }
 
+class FrameWindowTest : public testing::Test {
+ protected:
+  /// A frame that is acknowledged after so long.
+  void pass(std::chrono::milliseconds delay) {
+    window.sent(++number, now);
+    now += delay;
+    EXPECT_TRUE(window.acknowledge(number, now));
+  }
+  SteadyClock::time_point now{1h};
+  std::uint32_t number = 0;
+  FrameWindow window;
+};
+
+TEST_F(FrameWindowTest, KnowsWhatIsInFlightAndSinceWhen) {
+  EXPECT_FALSE(window.waits_since());
+  const auto first = now;
+  window.sent(5, now);
+  window.sent(7, now += 10ms);
+  window.sent(8, now += 10ms);
+  EXPECT_EQ(window.in_flight(), 3U);
+  EXPECT_EQ(window.waits_since(), first);
+  EXPECT_TRUE(window.acknowledge(6, now)) << "which acknowledges 5";
+  EXPECT_EQ(window.in_flight(), 2U);
+  EXPECT_EQ(window.waits_since(), first + 10ms);
+  EXPECT_FALSE(window.acknowledge(9, now));
+  EXPECT_FALSE(window.acknowledge(0, now));
+  EXPECT_TRUE(window.acknowledge(8, now));
+  EXPECT_EQ(window.in_flight(), 0U);
+  EXPECT_TRUE(window.acknowledge(8, now)) << "again, of no effect";
+  window.clear();
+  EXPECT_FALSE(window.acknowledge(8, now)) << "of another session";
+}
+
+// The latest of those that are acknowledged together tells the way's delay.
+TEST_F(FrameWindowTest, MeasuresFromTheFrameThatIsAcknowledged) {
+  window.sent(1, now);
+  window.sent(2, now += 100ms);
+  EXPECT_TRUE(window.acknowledge(2, now + 30ms));
+  EXPECT_EQ(window.delays().count, 1U);
+  EXPECT_DOUBLE_EQ(window.delays().mean.count(), 0.03);
+  EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.03);
+}
+
+TEST_F(FrameWindowTest, TheMeanFollowsAndTheLeastStays) {
+  for (int i = 0; i < 10; ++i) pass(20ms);
+  for (int i = 0; i < 20; ++i) pass(100ms);
+  EXPECT_NEAR(window.delays().mean.count(), 0.1, 0.001);
+  EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.02);
+}
+
+// A way that has become longer is none with a queue.
+TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
+  pass(20ms);
+  for (int i = 0; i < 205; ++i) pass(100ms);
+  EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.1);
+}
+
+TEST(FrameGroups, AllWhereThereAreFew) {
+  EXPECT_THAT(choose_groups({}, 8), ElementsAre());
+  const std::vector<GroupClaim> claims = {{1, 0}, {5, 0}, {3, 9}};
+  EXPECT_THAT(choose_groups(claims, 3), ElementsAre(1, 2, 0)) << "the largest first";
+}
+
+TEST(FrameGroups, HalfForTheLargestAndHalfForWhoHasWaited) {
+  const std::vector<GroupClaim> claims = {{100, 0}, {1, 7}, {50, 0}, {2, 1}, {40, 0}, {1, 8}};
+  EXPECT_THAT(choose_groups(claims, 4), UnorderedElementsAre(0, 2, 5, 1));
+}
+
+TEST(FrameGroups, OfThoseWhoHaveWaitedAlikeTheLarger) {
+  const std::vector<GroupClaim> claims = {{9, 0}, {1, 2}, {3, 2}, {2, 2}};
+  EXPECT_THAT(choose_groups(claims, 2), UnorderedElementsAre(0, 2));
+}
+
 }  // namespace
-}  // namespace vat::frame_pace_test
+}  // namespace vat::test::frame_pace_test

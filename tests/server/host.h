@@ -8,24 +8,18 @@
 
 namespace vat::test {
 
-inline ServerLimits unhurried_limits() {
-  ServerLimits limits;
-  limits.burst_seconds = 1e9;
-  return limits;
-}
-
 /// A server on a data folder, or on none where that is empty, and a client in its session s1, which
 /// is paused at tick 0.
 class Host {
  public:
-  Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits)
-      : server(catalogue, settings(folder, limits)) {
+  Host(const Catalogue& catalogue, const std::string& folder, const ServerLimits& limits)
+      : server(catalogue, test_settings(limits, folder)) {
     begin();
   }
   /// On a clock that outlives the server.
-  Host(const Catalogue& catalogue, const std::string& folder, ServerLimits limits,
+  Host(const Catalogue& catalogue, const std::string& folder, const ServerLimits& limits,
        ManualClock& clock)
-      : server(catalogue, settings(folder, limits), clock) {
+      : server(catalogue, test_settings(limits, folder), clock) {
     begin();
   }
   std::string hash() { return client->result("session.hash").at("hash"); }
@@ -40,15 +34,6 @@ class Host {
     client.emplace(server, 1);
     client->result("session.join", {{"session", "s1"}, {"name", "Ada"}});
     client->result("control.pause");
-  }
-  static ServerSettings settings(const std::string& folder, const ServerLimits& limits) {
-    ServerSettings settings;
-    settings.limits = limits;
-    settings.threads = 2;
-    settings.data_folder = folder;
-    settings.access.refusal_delay = std::chrono::milliseconds(0);
-    settings.access.admin = hash_of_token(kAdminToken);
-    return settings;
   }
 
  public:

@@ -1,15 +1,19 @@
+// The viewer's site: paths, files and what is said about the server.
+
 #include "server/http/http_site.h"
 
-#include <atomic>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
-#include <tuple>
-#include <utility>
 
+#include "server/http/request_path.h"
 #include "tests/server/transport_fixture.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,112 +21,219 @@ namespace vat::test::http_site_test {
 
 namespace {
 
-/// The viewer's site over a real socket.
-class HttpSiteTest : public TransportTest {
- protected:
-  void serve() {
-    Result<StaticFiles> files = StaticFiles::read(folder.path() / "dist");
-    ASSERT_TRUE(files.ok());
-    http_handler = make_http_site(std::move(files).value(),
-                                  {[] { return "vat_threads 4\n"; },
-                                   [this] { return phase.load(); }, R"({"version":"1.2.3"})"});
-    start();
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(RequestPath, Decodes) {
+  EXPECT_EQ(request_path("/"), "/");
+  EXPECT_EQ(request_path("/a/b.js"), "/a/b.js");
+  EXPECT_EQ(request_path("/a%20b%2Fc%c3%A4"), "/a b/c\xc3\xa4");
+  EXPECT_EQ(request_path("/a?../b"), "/a");
+  EXPECT_EQ(request_path("/a#b"), "/a");
+  EXPECT_EQ(request_path("/%2525"), "/%25");  // once, not twice
+  EXPECT_EQ(request_path("/...a/b..c/..d"), "/...a/b..c/..d");
+}
+
+// No paths, broken escapes, ways up, and zero bytes.
+TEST(RequestPath, RefusesWhatIsNotAPath) {
+  for (const char* target : {"",
+                             "a",
+                             "*",
+                             "?",
+                             "http://x/a",
+                             "example.org:80",
+                             "%2fa",
+                             "/%",
+                             "/%2",
+                             "/%zz",
+                             "/%2g",
+                             "/a%",
+                             "/%%41",
+                             "/%+1",
+                             "/..",
+                             "/../",
+                             "/../../etc/passwd",
+                             "/a/..",
+                             "/a/../b",
+                             "/./a",
+                             "/.",
+                             "/%2e%2e/a",
+                             "/.%2E/a",
+                             "/a%2f..%2fb",
+                             "/%2e",
+                             "/a/..?x",
+                             "/..\\..\\a",
+                             "/a\\b",
+                             "/a%5c..",
+                             "/a/%2e%2e",
+                             "/a%00.html"}) {
+    EXPECT_EQ(request_path(target), std::nullopt) << target;
   }
-  void serve_viewer() {
+  EXPECT_EQ(request_path(std::string("/a\0b", 4)), std::nullopt);
+}
+
+/// A viewer, beside a file that is none of it.
+class HttpSite : public testing::Test {
+ protected:
+  HttpSite() {
     folder.write("secret.txt", "secret");
     folder.write("dist/index.html", "<title>vat</title>");
-    folder.write("dist/assets/index-1a2b3c.js", "let x;");
+    folder.write("dist/assets/index-1a2b3c.js", std::string("x\0\r\n", 4));
+    folder.write("dist/assets/deep/a b.js", "");
     folder.write("dist/favicon.svg", "<svg/>");
-    std::filesystem::create_symlink(folder.path() / "secret.txt", folder.path() / "dist/link.txt");
-    serve();
+    folder.write("dist/.env", "secret");
+    folder.write("dist/.git/config", "secret");
+    fs::create_symlink(folder.path() / "secret.txt", folder.path() / "dist/link.txt");
+    fs::create_directory_symlink(folder.path(), folder.path() / "dist/linked");
+    fs::create_symlink(folder.path() / "nowhere", folder.path() / "dist/broken.txt");
+    site = make_site(folder.path() / "dist");
+  }
+  HttpHandler make_site(const fs::path& dist) {
+    Result<StaticFiles> files = StaticFiles::read(dist);
+    EXPECT_TRUE(files.ok());
+    return make_http_site(
+        std::move(files).value(),
+        {[] { return "vat_threads 4\n"; }, [this] { return phase; }, R"({"version":"1.2.3"})"});
   }
 
-  TemporaryFolder folder;
-  SharedPhase phase = ServerPhase::ready;
+  const TemporaryFolder folder;
+  ServerPhase phase = ServerPhase::ready;
+  HttpHandler site;
 };
 
-TEST_F(HttpSiteTest, TheRootIsTheIndex) {
-  serve_viewer();
-  for (const char* target : {"/", "/index.html", "/?session=1", "/#top"}) {
-    const HttpReply reply = http(port, "GET", target);
-    EXPECT_EQ(reply.status, 200) << target;
-    EXPECT_EQ(reply.body, "<title>vat</title>");
-    EXPECT_EQ(reply.header("Content-Type"), "text/html; charset=utf-8");
-    EXPECT_EQ(reply.header("Cache-Control"), "no-cache");
+std::string header(const HttpResponse& response, const std::string& name) {
+  for (const auto& [key, value] : response.headers) {
+    if (key == name) return value;
   }
+  return "";
 }
 
-TEST_F(HttpSiteTest, OnlyHashedFilesAreKeptForEver) {
-  serve_viewer();
-  const HttpReply script = http(port, "GET", "/assets/index-1a2b3c.js");
-  EXPECT_EQ(script.body, "let x;");
-  EXPECT_EQ(script.header("Content-Type"), "text/javascript; charset=utf-8");
-  EXPECT_EQ(script.header("Cache-Control"), "public, max-age=31536000, immutable");
-  EXPECT_EQ(http(port, "GET", "/favicon.svg").header("Cache-Control"), "no-cache");
-  EXPECT_EQ(http(port, "GET", "/assets/index-old.js").header("Cache-Control"), "no-store");
-}
-
-TEST_F(HttpSiteTest, HeadIsGetWithoutTheBody) {
-  serve_viewer();
-  const HttpReply get = http(port, "GET", "/");
-  const HttpReply head = http(port, "HEAD", "/");
-  EXPECT_EQ(head.head, get.head);
-  EXPECT_EQ(head.body, "");
-}
-
-TEST_F(HttpSiteTest, OtherMethodsAreRefused) {
-  serve_viewer();
-  for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "PATCH", "get"}) {
-    const HttpReply reply = http(port, method, "/");
-    EXPECT_EQ(reply.status, 405) << method;
-    EXPECT_EQ(reply.header("Allow"), "GET, HEAD");
-    EXPECT_EQ(reply.body.find("<title>"), std::string::npos);
-  }
-}
-
-TEST_F(HttpSiteTest, NoPathLeadsOutOfTheFolder) {
-  serve_viewer();
-  for (const char* target :
-       {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/assets/../../secret.txt",
-        "/assets/..%5c..%5csecret.txt", "/%252e%252e/secret.txt", "/..%00/secret.txt",
-        "//etc/passwd", "/index.html%00.js", "/link.txt", "/%c0%ae%c0%ae/secret.txt",
-        "../secret.txt", "/./../secret.txt", "/assets/", "/assets", "/.", "/~root"}) {
-    const HttpReply reply = http(port, "GET", target);
-    EXPECT_TRUE(reply.status == 400 || reply.status == 404) << target << ' ' << reply.status;
-    EXPECT_EQ(reply.body.find("secret"), std::string::npos) << target;
-  }
-  const std::string absolute = folder.path().string() + "/secret.txt";
-  EXPECT_EQ(http(port, "GET", absolute).status, 404);
-}
-
-TEST_F(HttpSiteTest, EveryAnswerHasTheSecurityHeaders) {
-  serve_viewer();
-  for (const char* target :
-       {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/%zz"}) {
-    const HttpReply reply = http(port, "GET", target);
-    EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff") << target;
-    EXPECT_EQ(reply.header("Referrer-Policy"), "no-referrer") << target;
-    const std::string policy = reply.header("Content-Security-Policy");
-    for (const char* part :
-         {"default-src 'self'", "worker-src 'self' blob:", "connect-src 'self' ws: wss:",
-          "style-src 'self' 'unsafe-inline'", "img-src 'self' data: blob:"}) {
-      EXPECT_NE(policy.find(part), std::string::npos) << target << ' ' << policy;
+TEST_F(HttpSite, AnswersByThePath) {
+  const std::string for_ever = "public, max-age=31536000, immutable";
+  const std::string script(std::string("x\0\r\n", 4));
+  struct Case {
+    std::vector<const char*> targets;
+    int status;
+    std::string type, cache, body;
+  };
+  for (const Case& expected :
+       {Case{{"/", "/index.html", "/?session=1", "/#top"},
+             200,
+             "text/html; charset=utf-8",
+             "no-cache",
+             "<title>vat</title>"},
+        Case{{"/assets/index-1a2b3c.js"}, 200, "text/javascript; charset=utf-8", for_ever, script},
+        Case{{"/assets/deep/a%20b.js"}, 200, "text/javascript; charset=utf-8", for_ever, ""},
+        Case{{"/favicon.svg"}, 200, "image/svg+xml", "no-cache", "<svg/>"},
+        Case{{"/healthz"}, 200, "application/json", "no-store", "{\"status\":\"ok\"}\n"},
+        Case{{"/version"}, 200, "application/json", "no-store", "{\"version\":\"1.2.3\"}\n"},
+        Case{{"/metrics"},
+             200,
+             "text/plain; version=0.0.4; charset=utf-8",
+             "no-store",
+             "vat_threads 4\n"}}) {
+    for (const char* target : expected.targets) {
+      SCOPED_TRACE(target);
+      const HttpResponse reply = site("GET", target);
+      EXPECT_EQ(reply.status, expected.status);
+      EXPECT_EQ(reply.content_type, expected.type);
+      EXPECT_EQ(header(reply, "Cache-Control"), expected.cache);
+      EXPECT_EQ(reply.body, expected.body);
+      EXPECT_EQ(site("HEAD", target).status, expected.status);
     }
   }
 }
 
-TEST_F(HttpSiteTest, Health) {
-  serve();
-  const HttpReply reply = http(port, "GET", "/healthz");
-  EXPECT_EQ(reply.status, 200);
-  EXPECT_EQ(reply.header("Content-Type"), "application/json");
-  EXPECT_EQ(reply.header("Cache-Control"), "no-store");
-  EXPECT_EQ(reply.body, "{\"status\":\"ok\"}\n");
+TEST_F(HttpSite, OtherMethodsAreRefused) {
+  for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "PATCH", "get"}) {
+    const HttpResponse reply = site(method, "/");
+    EXPECT_EQ(reply.status, 405) << method;
+    EXPECT_EQ(header(reply, "Allow"), "GET, HEAD");
+    EXPECT_EQ(reply.body.find("<title>"), std::string::npos);
+  }
 }
 
-// What the image asks, by its own words.
-TEST_F(HttpSiteTest, TheHealthCheckOfTheImagePasses) {
-  serve();
+TEST_F(HttpSite, NoPathLeadsOutOfTheFolderOrToHiddenFilesAndLinks) {
+  const std::string absolute = folder.path().string() + "/secret.txt";
+  for (const char* target :
+       {"/../secret.txt", "/..%2fsecret.txt", "/%252e%252e/secret.txt", "/index.html%00.js",
+        "//index.html", "/INDEX.HTML", "//etc/passwd", "/link.txt", "/linked/secret.txt",
+        "/broken.txt", "/.env", "/.git/config", "/assets/", "/assets", "/assets/index-old.js",
+        "/~root", absolute.c_str()}) {
+    const HttpResponse reply = site("GET", target);
+    EXPECT_TRUE(reply.status == 400 || reply.status == 404) << target << ' ' << reply.status;
+    EXPECT_EQ(reply.body.find("secret"), std::string::npos) << target;
+    EXPECT_EQ(header(reply, "Cache-Control"), "no-store") << target;
+  }
+}
+
+TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
+  for (const char* target :
+       {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/%zz"}) {
+    const HttpResponse reply = site("GET", target);
+    EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;
+    EXPECT_EQ(header(reply, "Referrer-Policy"), "no-referrer") << target;
+    for (const char* part :
+         {"default-src 'self'", "worker-src 'self' blob:", "connect-src 'self' ws: wss:",
+          "style-src 'self' 'unsafe-inline'", "img-src 'self' data: blob:"}) {
+      EXPECT_THAT(header(reply, "Content-Security-Policy"), HasSubstr(part)) << target;
+    }
+  }
+}
+
+TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
+  const std::map<ServerPhase, std::string> phases = {{ServerPhase::starting, "starting"},
+                                                     {ServerPhase::recovering, "recovering"},
+                                                     {ServerPhase::ready, "ready"},
+                                                     {ServerPhase::draining, "draining"}};
+  for (const auto& [now, name] : phases) {
+    phase = now;
+    const HttpResponse reply = site("GET", "/readyz");
+    EXPECT_EQ(reply.status, now == ServerPhase::ready ? 200 : 503) << name;
+    EXPECT_EQ(reply.body, "{\"status\":\"" + name + "\"}\n");
+    EXPECT_EQ(site("GET", "/healthz").status, 200) << name;
+  }
+}
+
+TEST_F(HttpSite, WithoutAViewerTheRootSaysHowToBuildIt) {
+  const HttpHandler empty = make_site(folder.path() / "none");
+  EXPECT_EQ(empty("GET", "/").status, 503);
+  EXPECT_THAT(empty("GET", "/").body, HasSubstr("./vat serve"));
+  EXPECT_EQ(empty("GET", "/assets/x.js").status, 404);
+}
+
+TEST_F(HttpSite, AFileInPlaceOfTheFolderIsAnError) {
+  const Result<StaticFiles> files = StaticFiles::read(folder.path() / "secret.txt");
+  ASSERT_FALSE(files.ok());
+  EXPECT_THAT(files.errors().front().message, HasSubstr("secret.txt"));
+}
+
+TEST(StaticFiles, LimitsHold) {
+  TemporaryFolder folder;
+  folder.write("a", "12345");
+  folder.write("b", "12345");
+  EXPECT_TRUE(StaticFiles::read(folder.path(), {2, 10}).ok());
+  EXPECT_FALSE(StaticFiles::read(folder.path(), {1, 10}).ok());
+  EXPECT_FALSE(StaticFiles::read(folder.path(), {2, 9}).ok());
+}
+
+TEST(StaticFiles, ContentTypes) {
+  EXPECT_EQ(content_type_of("a.min.js"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(content_type_of("a.css"), "text/css; charset=utf-8");
+  EXPECT_EQ(content_type_of("a.png"), "image/png");
+  EXPECT_EQ(content_type_of("a.json"), "application/json");
+  EXPECT_EQ(content_type_of("a.js.map"), "application/json");
+  EXPECT_EQ(content_type_of("a.wasm"), "application/wasm");
+  EXPECT_EQ(content_type_of("LICENSE"), "application/octet-stream");
+}
+
+class ServedSite : public TransportTest {};
+
+// The command of the image, over a real socket.
+TEST_F(ServedSite, PassesTheHealthCheckOfTheImage) {
+  http_handler = make_http_site(StaticFiles::read("/none").value(),
+                                {[] { return ""; }, [] { return ServerPhase::ready; }, "{}"});
+  start();
   std::ifstream file(VAT_SOURCE_DIR "/docker/Dockerfile");
   std::ostringstream text;
   text << file.rdbuf();
@@ -137,44 +248,6 @@ TEST_F(HttpSiteTest, TheHealthCheckOfTheImagePasses) {
   EXPECT_EQ(ask(port), 0) << command;
   transport->stop();
   EXPECT_NE(ask(port), 0);
-}
-
-TEST_F(HttpSiteTest, ReadyIsWhoTakesNewSessions) {
-  serve();
-  for (const auto& [now, status, name] : {std::tuple(ServerPhase::starting, 503, "starting"),
-                                          std::tuple(ServerPhase::recovering, 503, "recovering"),
-                                          std::tuple(ServerPhase::ready, 200, "ready"),
-                                          std::tuple(ServerPhase::draining, 503, "draining")}) {
-    phase = now;
-    const HttpReply reply = http(port, "GET", "/readyz");
-    EXPECT_EQ(reply.status, status) << name;
-    EXPECT_EQ(reply.body, std::string("{\"status\":\"") + name + "\"}\n");
-    EXPECT_EQ(http(port, "GET", "/healthz").status, 200) << name;
-  }
-}
-
-TEST_F(HttpSiteTest, TheVersionIsJson) {
-  serve();
-  const HttpReply reply = http(port, "GET", "/version");
-  EXPECT_EQ(reply.header("Content-Type"), "application/json");
-  EXPECT_EQ(reply.body, "{\"version\":\"1.2.3\"}\n");
-}
-
-TEST_F(HttpSiteTest, Metrics) {
-  serve();
-  const HttpReply reply = http(port, "GET", "/metrics");
-  EXPECT_EQ(reply.status, 200);
-  EXPECT_EQ(reply.header("Content-Type"), "text/plain; version=0.0.4; charset=utf-8");
-  EXPECT_EQ(reply.header("Cache-Control"), "no-store");
-  EXPECT_EQ(reply.body, "vat_threads 4\n");
-}
-
-TEST_F(HttpSiteTest, WithoutAViewerTheRootSaysHowToBuildIt) {
-  serve();
-  const HttpReply reply = http(port, "GET", "/");
-  EXPECT_EQ(reply.status, 503);
-  EXPECT_NE(reply.body.find("./vat serve"), std::string::npos);
-  EXPECT_EQ(http(port, "GET", "/assets/x.js").status, 404);
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ class ReplayTest : public testing::Test {
     step(4);
     client_->error("grab.start", {{"body", 77}, {"particle", 0}, {"target", {0, 0, 0}}});
     edit();
-    client_->result("world.remove_body", {{"body", 3}});
+    remove_and_bring_back();
+    client_->result("world.remove_body", {{"body", 4}});
     add("new", 0.3);
     step(6);
     add("newer", 0.7);
@@ -60,6 +61,17 @@ class ReplayTest : public testing::Test {
     step(3);
     other.result("session.leave");
     step(7);
+  }
+  /// The ball comes back as body 4, in the motion that it had.
+  void remove_and_bring_back() {
+    const Json ball = client_->result("state.query", {{"bodies", {"ball"}}}).at("bodies").at(0);
+    Json motion;
+    for (const char* member : {"center_of_mass", "orientation", "velocity", "angular_velocity"}) {
+      motion[member] = ball.at(member);
+    }
+    const Json body = client_->result("scene.get").at("scene").at("bodies").at(2);
+    client_->result("world.remove_body", {{"body", 3}});
+    client_->result("world.add_body", {{"body", body}, {"state", motion}});
   }
   /// What a scene's editor does.
   void edit() {
@@ -122,11 +134,8 @@ class ReplayTest : public testing::Test {
 
  private:
   ServerSettings settings(const ServerLimits& limits, const StorageLimits& storage) const {
-    ServerSettings settings;
-    settings.limits = limits;
+    ServerSettings settings = test_settings(limits, folder_.file("data"));
     settings.storage = storage;
-    settings.threads = 2;
-    settings.data_folder = folder_.file("data");
     return settings;
   }
 
@@ -175,45 +184,6 @@ TEST_P(SeekTest, LeadsToTheSameStatesFromAnywhere) {
 
 INSTANTIATE_TEST_SUITE_P(Moments, SeekTest, testing::Bool(),
                          [](const auto& own) { return own.param ? "OfItsOwn" : "OfTheRecording"; });
-
-TEST_F(ReplayTest, KeepsMomentsWithinItsMemory) {
-  live();
-  const Recording recording = record();
-  Replay replay(recording, environment_);
-  constexpr std::size_t kBytes = 40'000;
-  replay.player.set_keeping({std::chrono::seconds(0), kBytes});
-  replay.player.play_to(replay.core, recording.end, kGoOn);
-  EXPECT_GT(replay.player.kept().count(), 0U);
-  EXPECT_LE(replay.player.kept().bytes(), kBytes);
-}
-
-TEST_F(ReplayTest, SaysWhereItLeadsElsewhere) {
-  live();
-  Recording recording = record();
-  const auto gravity = std::ranges::find(recording.log, "world.set_gravity", &LogEntry::method);
-  ASSERT_NE(gravity, recording.log.end());
-  const std::uint64_t at = gravity->position + 3;
-  Replay before(recording, environment_);
-  std::vector<RecordedHash> hashes;
-  for (const std::uint64_t position : {at - 1, at}) {
-    before.player.play_to(before.core, position, kGoOn);
-    hashes.push_back(
-        {position, before.core.sequence(), before.core.run().simulation().state_hash()});
-  }
-  recording.hashes = hashes;
-  recording.moments.clear();
-  Replay same(recording, environment_);
-  same.player.play_to(same.core, recording.end, kGoOn);
-  gravity->params = R"({"gravity":[1,0,-5.000001]})";
-  Replay replay(recording, environment_);
-  try {
-    replay.player.play_to(replay.core, recording.end, kGoOn);
-    ADD_FAILURE() << "nothing was noticed";
-  } catch (const Diverged& difference) {
-    EXPECT_NE(std::string(difference.what()).find("at tick 7 "), std::string::npos)
-        << difference.what();
-  }
-}
 
 TEST_F(ReplayTest, PassesOverAHashOfAPlaceThatThereIsNot) {
   live();
@@ -318,7 +288,6 @@ TEST_F(ReplayTest, GoesToNoMomentBeyondTheLimits) {
 }
 
 TEST_F(ReplayTest, TellsNothingThatLetsAnybodyIn) {
-  const std::string token = client_->result("session.join").at("resume");
   live();
   const Recording recording = record();
   ASSERT_FALSE(recording.moments.empty());
@@ -331,15 +300,14 @@ TEST_F(ReplayTest, TellsNothingThatLetsAnybodyIn) {
   }
 }
 
-ServerLimits small_recordings() {
-  ServerLimits limits;
-  limits.max_recording_bytes = 1024;  // a state of the scene has more
-  return limits;
-}
-
 class LimitedRecordings : public ReplayTest {
  protected:
-  LimitedRecordings() : ReplayTest(small_recordings()) {}
+  LimitedRecordings() : ReplayTest(limits()) {}
+  static ServerLimits limits() {
+    ServerLimits limits;
+    limits.max_recording_bytes = 1024;  // a state of the scene has more
+    return limits;
+  }
 };
 
 TEST_F(LimitedRecordings, AreRefusedBeyondTheirSize) {
@@ -380,12 +348,7 @@ TEST_F(LongRecordings, CountTheHashOfEachTick) {
 /// none.
 class ShortenedLog : public ReplayTest, public testing::WithParamInterface<bool> {
  protected:
-  ShortenedLog() : ReplayTest(unhurried(), short_logs()) {}
-  static ServerLimits unhurried() {
-    ServerLimits limits;
-    limits.burst_seconds = 1e9;
-    return limits;
-  }
+  ShortenedLog() : ReplayTest(unhurried_limits(), short_logs()) {}
   static StorageLimits short_logs() {
     StorageLimits limits;
     limits.log_bytes = GetParam() ? 12'000 : 1000;  // the scene takes 1500
@@ -430,15 +393,14 @@ INSTANTIATE_TEST_SUITE_P(Logs, ShortenedLog, testing::Bool(), [](const auto& goe
 
 constexpr std::size_t kDownloadBytes = 200'000;
 
-ServerLimits few_downloads() {
-  ServerLimits limits;
-  limits.max_download_bytes = kDownloadBytes;
-  return limits;
-}
-
 class LimitedDownloads : public ReplayTest {
  protected:
-  LimitedDownloads() : ReplayTest(few_downloads()) {}
+  LimitedDownloads() : ReplayTest(limits()) {}
+  static ServerLimits limits() {
+    ServerLimits limits;
+    limits.max_download_bytes = kDownloadBytes;
+    return limits;
+  }
 };
 
 TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {

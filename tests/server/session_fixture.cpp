@@ -10,15 +10,6 @@
 namespace vat::test {
 namespace {
 
-ServerSettings make_settings(const ServerLimits& limits) {
-  ServerSettings settings;
-  settings.limits = limits;
-  settings.version = "1.2.3";
-  settings.threads = 2;
-  settings.access.admin = hash_of_token(kAdminToken);
-  return settings;
-}
-
 Json make_request(std::string_view method, const Json& params) {
   Json request{{"jsonrpc", "2.0"}, {"method", method}};
   if (!params.is_null()) request["params"] = params;
@@ -73,6 +64,23 @@ Scene to_scene(const std::string& text) {
     return Error{"no_mesh", "", "there are no meshes"};
   };
   return read_scene_text(text, no_meshes).value();
+}
+
+ServerLimits unhurried_limits() {
+  ServerLimits limits;
+  limits.burst_seconds = 1e9;
+  return limits;
+}
+
+ServerSettings test_settings(const ServerLimits& limits, const std::string& data_folder) {
+  ServerSettings settings;
+  settings.limits = limits;
+  settings.version = "1.2.3";
+  settings.threads = 2;
+  settings.data_folder = data_folder;
+  settings.access.refusal_delay = std::chrono::milliseconds(0);
+  settings.access.admin = hash_of_token(kAdminToken);
+  return settings;
 }
 
 TestServer::TestServer(const Catalogue& catalogue, ServerSettings settings)
@@ -186,7 +194,7 @@ std::vector<Json> TestClient::events(std::string_view event) const {
 }
 
 SessionTest::SessionTest(const ServerLimits& limits)
-    : catalogue(make_catalogue()), server(catalogue, make_settings(limits)) {
+    : catalogue(make_catalogue()), server(catalogue, test_settings(limits)) {
   if (!server.create_session("first", to_scene(mixed_scene_text()))) {
     throw std::runtime_error("the first session was refused");
   }
@@ -224,6 +232,12 @@ void advance_ticks(Simulation& simulation, std::uint64_t ticks) {
       throw std::runtime_error("the simulation is unstable");
     }
   }
+}
+
+std::vector<std::uint8_t> bytes_that_say(std::uint32_t size) {
+  std::vector<std::uint8_t> frame{0x28, 0xb5, 0x2f, 0xfd, 0xa0};  // the size in four bytes
+  for (int byte = 0; byte < 4; ++byte) frame.push_back(static_cast<std::uint8_t>(size >> 8 * byte));
+  return frame;
 }
 
 std::string hash_of(const Simulation& simulation) {

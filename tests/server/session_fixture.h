@@ -26,6 +26,11 @@ Scene to_scene(const std::string& text);
 
 inline constexpr std::string_view kAdminToken = "the admin token of the tests";
 
+/// Clients may send as fast as they like.
+ServerLimits unhurried_limits();
+/// Two threads, and no delay where a token is refused. `data_folder`: empty for none.
+ServerSettings test_settings(const ServerLimits& limits, const std::string& data_folder = "");
+
 /// Base class, so that the clock outlives the server.
 struct OwnClock {
   ManualClock own_clock;
@@ -100,12 +105,7 @@ class TestClient {
 class SessionTest : public testing::Test {
  protected:
   /// Clients may send as fast as they like, unless the test has limits of its own.
-  explicit SessionTest(const ServerLimits& limits = unhurried());
-  static ServerLimits unhurried() {
-    ServerLimits limits;
-    limits.burst_seconds = 1e9;
-    return limits;
-  }
+  explicit SessionTest(const ServerLimits& limits = unhurried_limits());
 
   /// Connects a further client.
   std::unique_ptr<TestClient> connect();
@@ -127,6 +127,8 @@ class SessionTest : public testing::Test {
 
 /// Steps a simulation by ticks, as a session does.
 void advance_ticks(Simulation& simulation, std::uint64_t ticks);
+/// The beginning of a zstd frame that says how many bytes it holds, and holds none.
+std::vector<std::uint8_t> bytes_that_say(std::uint32_t size);
 /// As in a reply to session.hash.
 std::string hash_of(const Simulation& simulation);
 

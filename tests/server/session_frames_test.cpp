@@ -1,50 +1,49 @@
 // Frames and events: who gets which, how old, and at whose cost.
 
-#include <cmath>
+#include <gtest/gtest.h>
 
+#include <boost/asio/post.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <future>
+
+#include "protocol/scene_json.h"
+#include "server/session/frame_feed.h"
+#include "server/session/session_core.h"
+#include "tests/server/fake_connection.h"
 #include "tests/server/session_fixture.h"
+#include "tests/support/lone_environment.h"
+#include "tests/support/manual_clock.h"
 
 namespace vat::test::session_frames_test {
 namespace {
 
-class SessionFrames : public SessionTest {
- protected:
-  /// Frames once those of the present state have gone to all: those of one state go out one client
-  /// after the other, so that a later subscriber's is the last.
-  std::vector<GridFrame> frames(TestClient& reader) {
-    const auto last = join();
-    last->result("frames.subscribe");
-    last->wait_frame([](const GridFrame&) { return true; });
-    return reader.connection->frames();
-  }
-};
+class SessionFrames : public SessionTest {};
 
-TEST_F(SessionFrames, ASubscriberGetsThePresentStateAtOnce) {
-  client->result("control.step", {{"ticks", 2}});
-  client->result("frames.subscribe");
+TEST_F(SessionFrames, AreWhatTheSubscriptionAsksFor) {
+  client->result("control.step", {{"ticks", 5}});
+  client->result("frames.subscribe", {{"every", 5},
+                                      {"max_error", 1e-3},
+                                      {"detail", 2},
+                                      {"region", {{"min", {0, 0, 0}}, {"max", {1, 1, 0.5}}}},
+                                      {"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});
   const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
-  EXPECT_EQ(frame.header.tick, 2u);
-  EXPECT_EQ(frame.header.number, 1u);
-  EXPECT_DOUBLE_EQ(frame.header.time, 0.04);
-  EXPECT_EQ(frame.header.epoch, 2u);
-  ASSERT_EQ(frame.blocks.size(), 4u);
-  EXPECT_EQ(frame.blocks[0].kind, GridBlock::Kind::vat);
-  EXPECT_EQ(frame.blocks[3].body, 3u);
-}
-
-TEST_F(SessionFrames, AnErrorBoundIsKept) {
-  client->result("frames.subscribe", {{"max_error", 1e-3}});
-  const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(frame.header.tick, 5U) << "the present state comes at once";
+  EXPECT_EQ(frame.header.number, 1U);
+  EXPECT_EQ(frame.header.epoch, 2U);
+  EXPECT_DOUBLE_EQ(frame.header.time, 0.1);
   EXPECT_DOUBLE_EQ(frame.scale.grid.quantum, 2e-3);
-  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
-  const Json& positions = state.at("bodies").at(0).at("positions");
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double sent = frame.scale.grid.origin[axis] +
-                          frame.scale.grid.quantum * frame.blocks[1].positions[3 * i + axis];
-      EXPECT_NEAR(sent, positions[i][axis].get<double>(), 1e-3 * (1 + 1e-9));
-    }
-  }
+  EXPECT_EQ(frame.detail, 2);
+  EXPECT_TRUE(frame.has_region);
+  EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{2e-3, 1, 0, 0}));
+  ASSERT_EQ(frame.blocks.size(), 4U);
+  EXPECT_EQ(frame.blocks[0].kind, GridBlock::Kind::vat);
+  const std::size_t particles = frame.blocks[1].particle_count();
+  EXPECT_EQ(frame.blocks[1].attributes[0].size(), particles);
+  EXPECT_EQ(frame.blocks[1].attributes[1].size(), particles);
+  client->result("control.step", {{"ticks", 3}});
+  client->result("control.step", {{"ticks", 2}});
+  EXPECT_EQ(client->wait_frame([](const GridFrame& f) { return f.header.tick > 5; }).header.tick,
+            10U);
 }
 
 // The fixture's deformable cube and its pool have particles at 0.1 m.
@@ -77,24 +76,6 @@ TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
   EXPECT_LT(quantum({{"max_error", 0}}), usual / 10);
 }
 
-TEST_F(SessionFrames, AttributesComeWhereTheyAreAskedFor) {
-  client->result("control.step", {{"ticks", 5}});
-  client->result("frames.subscribe", {{"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});
-  const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
-  EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{2e-3, 1, 0, 0}));
-  const GridBlock& pool = frame.blocks.at(1);
-  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
-  const Json& velocities = state.at("bodies").at(0).at("velocities");
-  ASSERT_EQ(pool.attributes[0].size(), velocities.size());
-  for (std::size_t i = 0; i < velocities.size(); ++i) {
-    const double speed = std::hypot(velocities[i][0].get<double>(), velocities[i][1].get<double>(),
-                                    velocities[i][2].get<double>());
-    EXPECT_NEAR(2e-3 * pool.attributes[0][i], speed, 1e-3 + 1e-7) << "and a float's rounding";
-  }
-  EXPECT_EQ(pool.attributes[1].size(), velocities.size());
-  EXPECT_TRUE(pool.attributes[2].empty());
-}
-
 // What nothing touches falls: with the acceleration of gravity over each tick.
 TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
   client->result("world.set_gravity", {{"gravity", {0, 0, -5}}});
@@ -118,49 +99,6 @@ TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
   EXPECT_NEAR(cube_at(4), 1, 1.1e-3);
 }
 
-TEST_F(SessionFrames, OnlyTheParticlesThatAreAskedForCome) {
-  client->result("frames.subscribe", {{"detail", 1}});
-  const GridFrame few = client->wait_frame([](const GridFrame&) { return true; });
-  EXPECT_EQ(few.detail, 1);
-  const GridBlock& pool = few.blocks.at(1);
-  ASSERT_GT(pool.particle_count(), 0U);
-  for (std::size_t i = 0; i < pool.particle_count(); ++i)
-    EXPECT_LE(detail_layer(pool.number(i)), 1);
-  client->result("frames.subscribe",
-                 {{"region", {{"min", {0, 0, 0}}, {"max", {0.45, 0.45, 0.23}}}}});
-  const GridFrame part = client->wait_frame([](const GridFrame& f) { return f.has_region; });
-  const Json state = client->result("state.query", {{"bodies", {"pool"}}});
-  std::size_t inside = 0;
-  for (const Json& p : state.at("bodies").at(0).at("positions")) {
-    inside += p[0] <= 0.45 && p[1] <= 0.45 && p[2] <= 0.23 ? 1 : 0;
-  }
-  EXPECT_EQ(part.blocks.at(1).particle_count(), inside);
-  EXPECT_EQ(part.blocks.at(3).kind, GridBlock::Kind::rigid)
-      << "bodies of one pose are always there";
-}
-
-TEST_F(SessionFrames, OnlyEachSoManiethTickIsSent) {
-  const auto other = join();
-  client->result("frames.subscribe", {{"every", 5}});
-  other->result("frames.subscribe", {{"every", 1}});
-  other->wait_frame([](const GridFrame&) { return true; });
-  std::vector<std::uint64_t> ticks;
-  std::size_t all = 0;
-  for (int i = 0; i < 20; ++i) {
-    const std::uint64_t tick = client->result("control.step").at("tick");
-    other->wait_frame([&](const GridFrame& frame) { return frame.header.tick == tick; });
-    ++all;
-    for (const GridFrame& frame : frames(*client)) {
-      if (ticks.empty() || frame.header.tick > ticks.back()) {
-        ticks.push_back(frame.header.tick);
-        client->notify("frames.ack", {{"number", frame.header.number}});
-      }
-    }
-  }
-  EXPECT_EQ(ticks, (std::vector<std::uint64_t>{0, 5, 10, 15, 20}));
-  EXPECT_EQ(all, 20u);
-}
-
 TEST_F(SessionFrames, NothingIsEncodedForNobody) {
   client->result("control.step", {{"ticks", 20}});
   EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 0\n"), std::string::npos);
@@ -174,30 +112,12 @@ TEST_F(SessionFrames, AnUnsubscribedClientGetsNone) {
   client->wait_frame([](const GridFrame&) { return true; });
   client->result("frames.unsubscribe");
   client->result("control.step", {{"ticks", 5}});
-  EXPECT_EQ(frames(*client).size(), 1u);
+  const auto other = join();  // a later subscriber's frame of a state is the last
+  other->result("frames.subscribe");
+  other->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(client->connection->frames().size(), 1u);
   client->result("frames.subscribe");
   client->wait_frame([](const GridFrame& f) { return f.header.tick == 5; });
-}
-
-TEST_F(SessionFrames, ASlowClientGetsTheNewestAndHindersNobody) {
-  const auto slow = join();
-  slow->result("frames.subscribe");
-  client->result("frames.subscribe");
-  client->wait_frame([](const GridFrame&) { return true; });
-  frames(*slow);  // it has the first, too
-  for (int i = 1; i <= 100; ++i) {
-    const std::uint64_t tick = client->result("control.step").at("tick");
-    client->wait_frame([&](const GridFrame& f) { return f.header.tick == tick; });
-  }
-  ASSERT_EQ(frames(*slow).size(), 3u) << "the window";
-  slow->notify("frames.ack", {{"number", 3}});
-  slow->connection->wait_frames(4);
-  const std::vector<GridFrame> all = frames(*slow);
-  ASSERT_EQ(all.size(), 4u);
-  EXPECT_EQ(all.back().header.tick, 100u);
-  // The first three are those of ticks 0, 1 and 2; 3 to 99 went, and the numbers tell.
-  EXPECT_EQ(all[2].header.number, 3u);
-  EXPECT_EQ(all.back().header.number, 101u);
 }
 
 TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
@@ -213,24 +133,6 @@ TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
   }
   client->result("session.leave");
   EXPECT_EQ(client->result("frames.ack", {{"number", 1}}), Json::object());
-}
-
-TEST_F(SessionFrames, AClientThatReadsNothingIsClosedAndTheOthersGoOn) {
-  const auto dead = join();
-  dead->result("frames.subscribe");
-  dead->connection->stall(true);
-  const std::string title(4000, 't');
-  Json scene = Json::parse(mixed_scene_text());
-  scene["title"] = title;
-  for (int i = 0; i < 400 && !dead->connection->close_code(); ++i) {
-    client->result("scene.load", {{"scene", scene}});  // a description for all
-  }
-  dead->wait_closed();
-  EXPECT_EQ(dead->connection->close_code(), 4008);
-  EXPECT_LE(dead->connection->queued(), std::size_t{2} << 20) << "control queue and three frames";
-  dead->disconnect();
-  EXPECT_EQ(client->result("control.step", {{"ticks", 2}}).at("tick"), 2);
-  EXPECT_FALSE(client->connection->close_code().has_value());
 }
 
 TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
@@ -249,15 +151,6 @@ TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
       EXPECT_EQ(all[f].header.epoch, description.at("epoch"));
     }
   }
-}
-
-TEST_F(SessionFrames, ManyChangesAtOnceMakeFewDescriptions) {
-  std::vector<int> ids;
-  for (int i = 0; i < 40; ++i) ids.push_back(client->send("control.reset"));
-  client->wait_reply(ids.back());
-  client->result("session.hash");
-  client->wait_event("session.description", [](const Json& d) { return d.at("epoch") == 42; });
-  EXPECT_LE(client->events("session.description").size(), 40u);
 }
 
 TEST_F(SessionFrames, StatusesComeWithoutChangesToo) {
@@ -292,6 +185,152 @@ TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
   server.clock().advance(std::chrono::milliseconds(1000));
   EXPECT_EQ(silent->connection->close_code(), 4008);
   EXPECT_FALSE(client->connection->close_code().has_value());
+}
+
+class SessionCoreTest : public testing::Test {
+ protected:
+  std::shared_ptr<FakeConnection> subscribe() {
+    const auto connection = std::make_shared<FakeConnection>(viewers_.size() + 1);
+    const auto outbox = std::make_shared<ClientOutbox>(connection);
+    viewers_.emplace_back(connection, outbox);
+    core.join(outbox, outbox->join(), {}, now);
+    core.subscribe(*core.participants().find_client(connection->id()), {}, now);
+    core.announce();
+    wait();
+    return connection;
+  }
+  /// Everybody acknowledges what comes.
+  void tick() {
+    ASSERT_TRUE(core.tick(now, true));
+    core.publish_tick();
+    wait();
+    for (const auto& [connection, outbox] : viewers_) {
+      ASSERT_TRUE(outbox->acknowledge(connection->frames().back().header.number, now));
+    }
+  }
+  /// Until the frame threads have done what was posted to them.
+  void wait() {
+    std::promise<void> done;
+    boost::asio::post(environment.shared.frame_threads, [&] { done.set_value(); });
+    done.get_future().wait();
+  }
+  bool counted(const std::string& sample) const {
+    return environment.shared.metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
+  }
+
+  const LoneEnvironment environment;
+  const SteadyClock::time_point now = environment.clock.now();
+  SessionCore core{
+      "s1", {"one"}, Simulation::create(to_scene(mixed_scene_text())).value(), environment.shared};
+
+ private:
+  std::vector<std::pair<std::shared_ptr<FakeConnection>, std::shared_ptr<ClientOutbox>>> viewers_;
+};
+
+// The second frame of each builds on one frame, those after it on two, as everybody's.
+TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
+  const auto first = subscribe();
+  tick();
+  tick();
+  tick();
+  EXPECT_TRUE(counted("vat_frames_encoded_total 3"));
+  const auto second = subscribe();
+  const auto third = subscribe();
+  EXPECT_TRUE(second->frames().empty()) << "it comes with the next tick";
+  tick();
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2")) << "one for both";
+  EXPECT_TRUE(counted("vat_frames_encoded_total 5"));
+  for (const auto& connection : {first, second, third}) {
+    ASSERT_FALSE(connection->frames().empty());
+    EXPECT_EQ(connection->frames().back().header.tick, 4U);
+  }
+}
+
+TEST_F(SessionCoreTest, WhoComesWhileItPausesGetsAFrameAtOnce) {
+  core.set_playing(false);
+  EXPECT_EQ(subscribe()->frames().size(), 1U);
+}
+
+constexpr std::uint32_t kEpoch = 1;
+
+PublishedState make_state(std::uint64_t tick, bool has_speeds) {
+  PublishedState state;
+  state.header.epoch = kEpoch;
+  state.header.tick = tick;
+  state.bodies.resize(1);
+  state.bodies[0].id = 1;
+  state.bodies[0].positions = {{0.1, 0.2, 0.3}};
+  if (has_speeds) state.bodies[0].attributes[0] = {2.0F};
+  return state;
+}
+
+/// Keeps the pool's only thread from all other work.
+class Block {
+ public:
+  explicit Block(boost::asio::thread_pool& pool) {
+    boost::asio::post(pool, [released = released_.get_future().share()] { released.wait(); });
+  }
+  void release() { released_.set_value(); }
+
+ private:
+  std::promise<void> released_;
+};
+
+// A state that waits was published for those who were there before.
+TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
+  boost::asio::thread_pool pool(1);
+  ServerMetrics metrics;
+  const ManualClock clock;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
+  const auto connection = std::make_shared<FakeConnection>(1);
+  const auto outbox = std::make_shared<ClientOutbox>(connection);
+  const std::uint64_t membership = outbox->join();
+  outbox->start_epoch(membership, kEpoch);
+  Subscription wish;
+  wish.attribute_errors[0] = 0.01;
+
+  Block block(pool);
+  PublishedState state = make_state(7, false);
+  feed->publish(state);
+  EXPECT_TRUE(feed->add(outbox, outbox->subscribe(membership, feed, clock.now()), wish))
+      << "a further state should be published";
+  block.release();
+  std::promise<void> done;
+  boost::asio::post(pool, [&] { done.set_value(); });
+  done.get_future().wait();
+  EXPECT_TRUE(connection->frames().empty());
+
+  state = make_state(8, true);
+  feed->publish(state);
+  pool.join();
+  ASSERT_EQ(connection->frames().size(), 1U);
+  EXPECT_EQ(connection->frames()[0].header.tick, 8U);
+}
+
+// One that is filled, one that waits, one that is taken out of the mail and one that is shown: from
+// the fifth on a tick finds the memory that an earlier one has used.
+TEST(FrameFeed, FourStatesGoRound) {
+  constexpr std::size_t kParticles = 1000;
+  boost::asio::thread_pool pool(1);
+  ServerMetrics metrics;
+  const ManualClock clock;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
+  PublishedState state;
+  for (std::uint64_t tick = 1; tick <= 100; ++tick) {
+    if (tick > 4) {
+      ASSERT_EQ(state.bodies.size(), 1U);
+      ASSERT_GE(state.bodies[0].positions.capacity(), kParticles);
+    }
+    state.header = {.epoch = kEpoch, .tick = tick};
+    state.bodies.resize(1);
+    state.bodies[0].positions.assign(kParticles, Vec3(0, 0, 1e-3 * static_cast<double>(tick)));
+    feed->publish(state);
+    if (tick % 3 == 0) continue;  // the next one takes its place where it still waits
+    std::promise<void> done;
+    boost::asio::post(pool, [&] { done.set_value(); });
+    done.get_future().wait();
+  }
+  pool.join();
 }
 
 }  // namespace

@@ -11,7 +11,6 @@ using namespace std::chrono_literals;
 
 class SessionLifecycle : public SessionTest {
  protected:
-  using SessionTest::SessionTest;
   void SetUp() override { client->result("access.enter", {{"token", kAdminToken}}); }
 
   std::string create(const std::string& name, const Json& scene = "mixed") {
@@ -182,19 +181,6 @@ TEST_F(SessionLifecycle, ClosingTellsAllWhoAreInIt) {
   first->result("session.join", {{"session", "s1"}});
 }
 
-TEST_F(SessionLifecycle, ClosingEndsTheEventsAndTheFramesOfTheSession) {
-  create("second");
-  const auto guest = join("s2");
-  guest->result("frames.subscribe");
-  guest->wait_frame([](const GridFrame&) { return true; });
-  client->result("session.close", {{"session", "s2"}});
-  guest->wait_event("session.closed");
-  const std::vector<Json> texts = guest->connection->texts();
-  EXPECT_EQ(texts.back().at("method"), "session.closed");
-  guest->result("server.info");
-  EXPECT_EQ(guest->connection->texts().size(), texts.size() + 1);
-}
-
 TEST_F(SessionLifecycle, ClosingAnswersWhatWaitsForAStep) {
   const auto guest = join();
   // So many ticks that the close comes before their end.
@@ -272,91 +258,6 @@ TEST_F(SessionLifecycle, TheServersOwnSessionNamesTheErrorsOfItsScene) {
   const Result<SessionId> session = server.create_session("n", scene);
   ASSERT_FALSE(session);
   EXPECT_EQ(session.errors().front().path, "/scene/bodies/1/material");
-}
-
-ServerLimits small_limits() {
-  ServerLimits limits;
-  limits.max_connections = 4;
-  limits.max_sessions = 2;
-  limits.max_clients_per_session = 2;
-  limits.max_particles = 150;
-  limits.max_particle_steps_per_tick = 1500;
-  limits.max_grabs_per_client = 2;
-  limits.max_commands_in_flight = 4;
-  return limits;
-}
-
-class SmallServer : public SessionLifecycle {
- protected:
-  SmallServer() : SessionLifecycle(small_limits()) {}
-
-  void expect_limit(const Json& error, const std::string& limit, std::size_t maximum) {
-    EXPECT_EQ(error.at("code"), 1005) << error;
-    EXPECT_EQ(error.at("data").at("kind"), "limit_reached");
-    EXPECT_EQ(error.at("data").at("limit"), limit);
-    EXPECT_EQ(error.at("data").at("maximum"), maximum);
-  }
-};
-
-TEST_F(SmallServer, HasAtMostSoManyConnections) {
-  std::vector<std::unique_ptr<TestClient>> clients;
-  for (int i = 0; i < 3; ++i) clients.push_back(connect());
-  const auto refused = connect();
-  EXPECT_EQ(refused->connection->close_code(), 1013);
-  clients.back()->disconnect();
-  EXPECT_FALSE(connect()->connection->close_code().has_value()) << "there is room again";
-}
-
-TEST_F(SmallServer, HasAtMostSoManySessions) {
-  create("second");
-  const Json params = {{"name", "third"}, {"scene", "mixed"}};
-  expect_limit(client->error("session.create", params), "sessions", 2);
-  client->result("session.close", {{"session", "s2"}});
-  EXPECT_EQ(create("third"), "s3");
-}
-
-TEST_F(SmallServer, HasAtMostSoManyClientsInASession) {
-  const auto second = join();
-  const auto third = connect();
-  expect_limit(third->error("session.join"), "clients_per_session", 2);
-  EXPECT_EQ(third->error("session.hash").at("code"), 1001);
-  second->result("session.join");  // it is in already
-  second->disconnect();
-  third->result("session.join");
-}
-
-TEST_F(SmallServer, HasAtMostSoManyParticlesInASession) {
-  const std::string before = hash();
-  Json scene = Json::parse(mixed_scene_text());
-  scene["bodies"][0]["spacing"] = 0.05;
-  expect_limit(client->error("scene.load", {{"scene", scene}}), "particles", 150);
-  expect_limit(client->error("session.create", {{"name", "n"}, {"scene", scene}}), "particles",
-               150);
-  Json body = scene["bodies"][1];
-  body["name"] = "more";
-  body["spacing"] = 0.03;
-  expect_limit(client->error("world.add_body", {{"body", body}}), "particles", 150);
-  EXPECT_EQ(hash(), before);
-  EXPECT_EQ(client->result("session.join").at("description").at("epoch"), 2);
-  client->result("control.step", {{"ticks", 3}});
-}
-
-TEST_F(SmallServer, HasAtMostSoMuchWorkInATick) {
-  Json scene = Json::parse(mixed_scene_text());
-  scene["numerics"]["step"] = 0.001;
-  expect_limit(client->error("scene.load", {{"scene", scene}}), "particle_steps_per_tick", 1500);
-}
-
-TEST_F(SmallServer, HasAtMostSoManyCommandsOfAClientInFlight) {
-  std::vector<int> ids{client->send("control.step", {{"ticks", 1000}})};
-  for (int i = 0; i < 4; ++i) ids.push_back(client->send("session.hash"));
-  expect_limit(client->wait_reply(ids.back()).at("error"), "commands_in_flight", 4);
-  const auto other = join();
-  other->result("control.pause");  // ends the step, and is not counted for the first client
-  for (std::size_t i = 0; i + 1 < ids.size(); ++i) {
-    EXPECT_TRUE(client->wait_reply(ids[i]).contains("result"));
-  }
-  client->result("session.hash");
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ class Life {
  public:
   Life(const Catalogue& catalogue, const std::string& folder, ManualClock& clock,
        ServerLimits limits = {}, StorageLimits storage = {})
-      : server_(catalogue, settings(folder, limits, storage), clock), recovered(server_.recover()) {
+      : server_(catalogue, with_storage(test_settings(limits, folder), storage), clock),
+        recovered(server_.recover()) {
     if (recovered == 0 && !server_.create_session("first", to_scene(mixed_scene_text()))) {
       throw std::runtime_error("the first session was refused");
     }
@@ -39,12 +40,7 @@ class Life {
   void flush() { server_.flush(); }
 
  private:
-  static ServerSettings settings(const std::string& folder, const ServerLimits& limits,
-                                 const StorageLimits& storage) {
-    ServerSettings settings;
-    settings.limits = limits;
-    settings.threads = 2;
-    settings.data_folder = folder;
+  static ServerSettings with_storage(ServerSettings settings, const StorageLimits& storage) {
     settings.storage = storage;
     return settings;
   }
@@ -301,8 +297,7 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
   life.reset();
   execute("DELETE FROM checkpoints", "/checkpoints.db");
   execute("DELETE FROM log WHERE sequence = 1");
-  ServerSettings settings;
-  settings.data_folder = data;
+  const ServerSettings settings = test_settings({}, data);
   {
     TestServer server(catalogue, settings);
     EXPECT_EQ(server.recover(), 1U);
@@ -332,9 +327,7 @@ TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
   client().result("control.step", {{"ticks", 1000}});
   life.reset();
   execute("DELETE FROM checkpoints", "/checkpoints.db");  // all ticks are to be run again
-  ServerSettings settings;
-  settings.data_folder = data;
-  TestServer server(catalogue, settings);
+  TestServer server(catalogue, test_settings({}, data));
   EXPECT_EQ(server.recover(), 1U);
   EXPECT_FALSE(server.is_ready());
   TestClient visitor(server, 1);
@@ -380,18 +373,6 @@ TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
   EXPECT_EQ(after.at("settings").at("name"), "hers");
   const int move = client().send("grab.move", {{"grab", 1}, {"target", {0.5, 0.4, 0.9}}});
   EXPECT_TRUE(client().wait_reply_at_tick(move).contains("result"));
-}
-
-TEST_F(SessionRecoveryTest, WhatCannotBeLoggedIsRefusedAndChangesNothing) {
-  begin();
-  client().result("control.pause");
-  const std::string before = life->hash();
-  Database other(data + "/vat.db", Database::Mode::create);
-  other.execute("DROP TABLE log");
-  const Json error = client().error("world.set_gravity", {{"gravity", {0, 0, 0}}});
-  EXPECT_EQ(error.at("code"), 1010);
-  EXPECT_EQ(error.at("data").at("kind"), "storage_failed");
-  EXPECT_EQ(life->hash(), before);
 }
 
 }  // namespace

@@ -196,11 +196,15 @@ TEST_F(Restart, WhoIsLetIntoOneSessionOpensNoRecording) {
   EXPECT_EQ(error.at("data").at("kind"), "not_allowed");
 }
 
-TEST_F(Restart, FailuresToWriteAreCounted) {
+TEST_F(Restart, WhatCannotBeLoggedIsRefusedCountedAndChangesNothing) {
+  const std::string before = host->hash();
   EXPECT_THAT(host->server.metrics(), HasSubstr("\nvat_storage_failures_total 0\n"));
   Database other(folder + "/vat.db", Database::Mode::create);
   other.execute("DROP TABLE log");
-  host->client->error("world.set_gravity", {{"gravity", {0, 0, 0}}});
+  const Json error = host->client->error("world.set_gravity", {{"gravity", {0, 0, 0}}});
+  EXPECT_EQ(error.at("code"), 1010);
+  EXPECT_EQ(error.at("data").at("kind"), "storage_failed");
+  EXPECT_EQ(host->hash(), before);
   EXPECT_THAT(host->server.metrics(), HasSubstr("\nvat_storage_failures_total 1\n"));
 }
 

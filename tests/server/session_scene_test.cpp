@@ -89,10 +89,7 @@ class SceneGetLimits : public testing::Test {
  protected:
   /// What scene.get says under such limits, and then what scene.load of it does.
   Json error_of_get(const ServerLimits& limits) {
-    ServerSettings settings;
-    settings.limits = limits;
-    settings.limits.burst_seconds = 1e9;
-    TestServer server(catalogue, settings);
+    TestServer server(catalogue, test_settings(limits));
     EXPECT_TRUE(server.create_session("first", to_scene(mixed_scene_text())));
     TestClient client(server, 1);
     client.result("session.join");
@@ -110,7 +107,7 @@ TEST_F(SceneGetLimits, WhatIsGivenFitsIntoAMessage) {
   const std::size_t bytes = write_scene(to_scene(mixed_scene_text())).dump().size();
   const std::size_t least = refused_up_to(
       [&](std::size_t most) {
-        ServerLimits limits;
+        ServerLimits limits = unhurried_limits();
         limits.max_scene_message_bytes = most;
         const Json error = error_of_get(limits);
         if (!error.is_null()) {
@@ -125,7 +122,7 @@ TEST_F(SceneGetLimits, WhatIsGivenFitsIntoAMessage) {
 }
 
 TEST_F(SceneGetLimits, ValuesAreCountedAsThoseOfAMessage) {
-  ServerLimits limits;
+  ServerLimits limits = unhurried_limits();
   limits.max_message_values = 50;
   const Json error = error_of_get(limits);
   EXPECT_EQ(error.at("limit"), "message_values");

@@ -1,12 +1,28 @@
-#include "server/session/tick_clock.h"
-
 #include <gtest/gtest.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "server/clock.h"
+#include "server/session/deferred_tasks.h"
+#include "server/session/tick_clock.h"
+#include "server/session/tick_profile.h"
+#include "server/stage_clock.h"
+#include "server/thread_time.h"
+#include "tests/support/manual_clock.h"
+#include "tests/support/shaken_vat.h"
 
 namespace vat::test::tick_clock_test {
 namespace {
 
-using std::chrono::milliseconds;
+using Clock = StageClock::Clock;
 using Time = SteadyClock::time_point;
+using namespace std::chrono_literals;
+using std::chrono::milliseconds;
 
 constexpr milliseconds kPeriod{20};
 const Time kStart{std::chrono::hours(1)};
@@ -109,6 +125,212 @@ TEST(RateMeter, DoesNotCallTheFirstTicksSlow) {
   EXPECT_FALSE(meter.slower_than(1));
   meter.tick_done(kStart + milliseconds(800), 0.02);
   EXPECT_TRUE(meter.slower_than(1));
+}
+
+constexpr std::uint64_t kStages = 10;  // a tick of these tests
+
+class TickProfileTest : public testing::Test {
+ protected:
+  /// True where the tick was looked at.
+  bool tick(StageClock::Clock::duration time) {
+    StageObserver* observer = profile.next_observer();
+    for (std::uint64_t s = 0; s < kStages && observer != nullptr; ++s) {
+      observer->stage_begins("stage");
+    }
+    if (observer != nullptr) observer->stages_end();
+    AdvanceReport report;
+    report.steps = 3;
+    report.undone_steps = 1;
+    profile.tick_done(time, report, metrics);
+    return observer != nullptr;
+  }
+  /// Of `count` ticks, how many were looked at.
+  int looks(int count, StageClock::Clock::duration time) {
+    int looked_at = 0;
+    for (int i = 0; i < count; ++i) looked_at += tick(time) ? 1 : 0;
+    return looked_at;
+  }
+
+  TickProfile profile;
+  ServerMetrics metrics;
+};
+
+TEST_F(TickProfileTest, CountsEveryTick) {
+  looks(4, 10us);
+  tick(30us);
+  const TickProfile::Totals& totals = profile.totals();
+  EXPECT_EQ(totals.ticks, 5U);
+  EXPECT_EQ(totals.substeps, 15U);
+  EXPECT_EQ(totals.undone_substeps, 5U);
+  EXPECT_EQ(totals.time, 70us);
+  EXPECT_EQ(totals.longest_tick, 30us);
+  EXPECT_NE(metrics.to_text({}).find("vat_tick_duration_seconds_count 5\n"), std::string::npos);
+}
+
+// 10 stages at 40 ns are half a percent of 80 us.
+TEST_F(TickProfileTest, LooksAtEveryLongTick) {
+  EXPECT_EQ(looks(100, 81us), 100);
+  ASSERT_EQ(profile.totals().stages.size(), 1U);
+  EXPECT_EQ(profile.totals().stages[0].calls, 100 * kStages);
+}
+
+TEST_F(TickProfileTest, LooksAtSomeShortTicksThatStandForTheOthers) {
+  tick(8100ns);
+  EXPECT_EQ(looks(100, 8100ns), 10);
+  EXPECT_EQ(profile.totals().stages[0].calls, 101 * kStages);
+  EXPECT_NE(metrics.to_text({}).find("vat_stage_calls_total{stage=\"stage\"} 1010\n"),
+            std::string::npos);
+}
+
+TEST_F(TickProfileTest, LooksAtTheShortestTicksNowAndThen) {
+  tick(1ns);
+  EXPECT_EQ(looks(1000, 1ns), 10);
+}
+
+TEST_F(TickProfileTest, LooksMoreOftenWhereTicksGrowLonger) {
+  looks(50, 1us);
+  looks(100, 1ms);  // one look at least
+  EXPECT_EQ(looks(10, 1ms), 10);
+}
+
+/// The time that a stage clock of these tests reads.
+Clock::time_point test_time;
+Clock::time_point read_test_time() {
+  return test_time;
+}
+
+TEST(StageClock, ChargesEachStageUntilTheNext) {
+  const std::string copy = "first";  // the same name at another address
+  StageClock clock(read_test_time);
+  clock.stage_begins("first");
+  test_time += 20ms;
+  clock.stage_begins("second");
+  test_time += 1ms;
+  clock.stage_begins(copy);
+  test_time += 10ms;
+  clock.stages_end();
+  test_time += 500ms;  // between calls: no stage's
+  clock.stage_begins("second");
+  test_time += 2ms;
+  clock.stages_end();
+
+  ASSERT_EQ(clock.stages().size(), 2U);
+  EXPECT_EQ(clock.stages()[0].name, "first");
+  EXPECT_EQ(clock.stages()[0].calls, 2U);
+  EXPECT_EQ(clock.stages()[0].time, 30ms);
+  EXPECT_EQ(clock.stages()[1].name, "second");
+  EXPECT_EQ(clock.stages()[1].calls, 2U);
+  EXPECT_EQ(clock.stages()[1].time, 3ms);
+}
+
+Clock::time_point processor_time() {
+  return Clock::time_point(std::chrono::duration_cast<Clock::duration>(thread_time()));
+}
+
+// All of a call is charged to some stage, with each control of the step. Processor time of the
+// thread: other work on the machine takes none of it.
+TEST(StageClock, NothingOfAStepIsLeftOut) {
+  for (const StepControl control :
+       {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
+    Scene scene = test::make_shaken_vat(IntegratorId::velocity_verlet);
+    scene.numerics.control = control;
+    Simulation simulation = test::make_simulation(scene);
+    StageClock clock(processor_time);
+    simulation.set_observer(&clock);
+    const Clock::time_point begin = processor_time();
+    simulation.advance(100);
+    const std::chrono::duration<double> whole = processor_time() - begin;
+    double charged = 0;
+    for (const StageClock::Stage& stage : clock.stages()) charged += stage.seconds();
+    EXPECT_LE(charged, whole.count()) << to_string(control);
+    EXPECT_GE(charged, 0.98 * whole.count()) << to_string(control);
+  }
+}
+
+// The context ends when no timer is waiting any more.
+TEST(SystemClock, TimersRunTheirTaskOnceAndInTime) {
+  boost::asio::io_context io;
+  SystemClock clock;
+  const auto timer = clock.make_timer(io.get_executor());
+  const auto due = clock.now() + 5ms;
+  int runs = 0;
+  timer->start(due, [&] {
+    ++runs;
+    EXPECT_GE(clock.now(), due);
+  });
+  io.run();
+  EXPECT_EQ(runs, 1);
+}
+
+TEST(SystemClock, AStartReplacesTheTaskAndACancelDropsIt) {
+  boost::asio::io_context io;
+  SystemClock clock;
+  const auto timer = clock.make_timer(io.get_executor());
+  const auto other = clock.make_timer(io.get_executor());
+  std::string runs;
+  timer->start(clock.now() + 24h, [&] { runs += "a"; });
+  timer->start(clock.now(), [&] { runs += "b"; });
+  other->start(clock.now() + 24h, [&] { runs += "c"; });
+  other->cancel();
+  io.run();
+  EXPECT_EQ(runs, "b");
+}
+
+TEST(SystemClock, WallTimeIsThatOfTheSystem) {
+  const auto seconds = [] {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
+  };
+  const double before = seconds();
+  const double told = SystemClock().wall_time();
+  EXPECT_LE(before, told);
+  EXPECT_LE(told, seconds());
+}
+
+class DeferredTasksTest : public testing::Test {
+ protected:
+  ~DeferredTasksTest() override {
+    tasks->stop();
+    pool.join();
+  }
+  void add(SteadyClock::duration after, const std::string& name) {
+    tasks->add(clock.now() + after, [this, name] { runs += name; });
+  }
+
+  ManualClock clock;
+  boost::asio::thread_pool pool{2};
+  const std::shared_ptr<DeferredTasks> tasks = std::make_shared<DeferredTasks>(pool, clock);
+  std::string runs;
+};
+
+TEST_F(DeferredTasksTest, RunInTheOrderOfTheirTimes) {
+  add(20ms, "c");
+  add(10ms, "a");
+  add(10ms, "b");
+  add(30ms, "d");
+  clock.advance(9ms);
+  EXPECT_EQ(runs, "");
+  clock.advance(1ms);
+  EXPECT_EQ(runs, "ab");
+  clock.advance(1h);
+  EXPECT_EQ(runs, "abcd");
+}
+
+TEST_F(DeferredTasksTest, ATaskThatThrowsHoldsUpNoOther) {
+  tasks->add(clock.now() + 1ms, [] { throw std::runtime_error("a fault"); });
+  add(1ms, "a");
+  add(2ms, "b");
+  clock.advance(2ms);
+  EXPECT_EQ(runs, "ab");
+}
+
+TEST_F(DeferredTasksTest, NoneRunsAfterTheStop) {
+  add(10ms, "a");
+  tasks->stop();
+  add(10ms, "b");
+  clock.advance(1h);
+  EXPECT_EQ(runs, "");
+  EXPECT_EQ(clock.waiting(), 0U);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Cases of RFC 6455 in the order of Autobahn's groups, as far as they are the server's: framing,
-// pings, reserved bits and opcodes, fragmentation, UTF-8, closing. Larger messages and limits are
-// in transport_message_test.cpp.
+// pings, reserved bits and opcodes, fragmentation, UTF-8, closing. Limits are in
+// transport_message_test.cpp.
 
 #include "tests/server/transport_fixture.h"
 
@@ -40,7 +40,7 @@ std::string close_frame(int code, const std::string& reason = "") {
 
 // 1: frames of every size, text and binary; the bounds of the three lengths.
 TEST_F(WebSocketConformance, Framing) {
-  for (const std::size_t size : {0, 1, 125, 126, 127, 128, 65535, 65536}) {
+  for (const std::size_t size : {0, 1, 125, 126, 127, 128, 65535, 65536, 1000000}) {
     for (const int opcode : {kText, kBinary}) {
       EXPECT_EQ(echoed(client_frame(opcode, std::string(size, '*'))), std::string(size, '*'));
     }
@@ -133,6 +133,7 @@ TEST_F(WebSocketConformance, BadUtf8) {
     EXPECT_EQ(closed_by(client_frame(kText, text)), 1007) << testing::PrintToString(text);
     EXPECT_EQ(closed_by(client_frame(kText, "ok", false) + client_frame(0, text)), 1007);
   }
+  EXPECT_EQ(recorder.read([this] { return recorder.received.size(); }), 0U);
   EXPECT_EQ(echoed(client_frame(kBinary, "\xff")), "\xff");
 }
 

@@ -9,9 +9,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,9 +34,8 @@ class Recorder : public ConnectionHandler {
   void opened(std::shared_ptr<Connection> connection) override {
     change([&] {
       const ConnectionId id = connection->id();
-      order_ok &= last_opened < id;
-      last_opened = id;
-      connections.emplace(id, std::move(connection));
+      threads[id] = std::this_thread::get_id();
+      order_ok &= connections.emplace(id, std::move(connection)).second;
     });
   }
   void text_received(ConnectionId id, std::string_view message) override {
@@ -45,7 +46,7 @@ class Recorder : public ConnectionHandler {
     receive(id, false, message);
   }
   void closed(ConnectionId id) override {
-    change([&] { order_ok &= connections.count(id) == 1 && ended.insert({id, true}).second; });
+    change([&] { order_ok &= is_known(id) && ended.insert(id).second; });
   }
 
   /// False where `condition` (read under the lock) does not come true in time.
@@ -71,10 +72,11 @@ class Recorder : public ConnectionHandler {
 
   bool echo = false;
   std::map<ConnectionId, std::shared_ptr<Connection>> connections;
-  std::map<ConnectionId, bool> ended;
+  std::map<ConnectionId, std::thread::id> threads;  ///< on which each was opened
+  std::set<ConnectionId> ended;
   std::vector<Received> received;
-  ConnectionId last_opened = 0;
-  bool order_ok = true;  ///< opened, then messages, then closed, each connection once
+  /// Opened, then messages, then closed: each connection once, and on one thread.
+  bool order_ok = true;
 
  private:
   template <class Change>
@@ -85,10 +87,13 @@ class Recorder : public ConnectionHandler {
     }
     changed_.notify_all();
   }
+  bool is_known(ConnectionId id) const {
+    return connections.contains(id) && threads.at(id) == std::this_thread::get_id();
+  }
   void receive(ConnectionId id, bool text, std::string_view message) {
     std::shared_ptr<Connection> sender;
     change([&] {
-      order_ok &= connections.count(id) == 1 && ended.count(id) == 0;
+      order_ok &= is_known(id) && !ended.contains(id);
       received.push_back({id, text, std::string(message)});
       if (echo && order_ok) sender = connections.at(id);
     });

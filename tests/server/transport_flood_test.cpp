@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <iostream>
 #include <thread>
 
 #include "tests/server/transport_fixture.h"
@@ -50,11 +49,8 @@ class TransportFloodTest : public TransportTest {
     attack();
     attacked = true;
     other.join();
-    std::ranges::sort(delays);
-    std::cout << "memory +" << (most - before) / 1e6 << " MB; another's message and back: median "
-              << 1e3 * delays[delays.size() / 2] << " ms, worst " << 1e3 * delays.back() << " ms\n";
     EXPECT_LT(most - before, kMostMemory);
-    EXPECT_LT(delays.back(), kMostDelay);
+    EXPECT_LT(std::ranges::max(delays), kMostDelay);
   }
   /// Writes until the peer ends it; what was written.
   static std::size_t write_until_closed(RawClient& client, const std::string& bytes,
@@ -71,14 +67,16 @@ class TransportFloodTest : public TransportTest {
   }
 };
 
-// Slowloris: a byte of a header now and then, on many connections.
-TEST_F(TransportFloodTest, DripsOfHeaders) {
+// Slowloris: a byte of a header or of a body now and then, on many connections.
+TEST_F(TransportFloodTest, DripsOfHeadersAndBodies) {
   settings.handshake_timeout = milliseconds(1000);
   withstand([&] {
     std::vector<std::unique_ptr<RawClient>> drips;
     for (int i = 0; i < 200; ++i) {
       drips.push_back(std::make_unique<RawClient>(port));
-      drips.back()->write("GET /ws HTTP/1.1\r\nHost: x\r\nX-Header: ");
+      drips.back()->write(i % 2 == 0
+                              ? "GET /ws HTTP/1.1\r\nHost: x\r\nX-Header: "
+                              : "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000\r\n\r\n");
     }
     const auto are_cut_off = [&] {
       pause(milliseconds(100));
@@ -87,23 +85,6 @@ TEST_F(TransportFloodTest, DripsOfHeaders) {
     };
     EXPECT_TRUE(wait_until(are_cut_off))
         << "cut off once their time was over, however much they still sent";
-  });
-}
-
-TEST_F(TransportFloodTest, DripsOfBodies) {
-  settings.handshake_timeout = milliseconds(1000);
-  withstand([&] {
-    std::vector<std::unique_ptr<RawClient>> drips;
-    for (int i = 0; i < 100; ++i) {
-      drips.push_back(std::make_unique<RawClient>(port));
-      drips.back()->write("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000\r\n\r\n");
-    }
-    const auto are_cut_off = [&] {
-      pause(milliseconds(100));
-      std::erase_if(drips, [](const auto& d) { return write_until_closed(*d, "x", 1) == 0; });
-      return drips.empty();
-    };
-    EXPECT_TRUE(wait_until(are_cut_off));
   });
 }
 
@@ -122,7 +103,6 @@ TEST_F(TransportFloodTest, HandshakesAsFastAsTheyCome) {
   withstand([&] {
     constexpr int kThreads = 4;
     constexpr int kEach = 500;
-    const auto begin = steady_clock::now();
     std::vector<std::thread> attackers;
     for (int t = 0; t < kThreads; ++t) {
       attackers.emplace_back([&] {
@@ -130,22 +110,17 @@ TEST_F(TransportFloodTest, HandshakesAsFastAsTheyCome) {
       });
     }
     for (std::thread& attacker : attackers) attacker.join();
-    const Seconds time = steady_clock::now() - begin;
-    std::cout << kThreads * kEach / time.count() << " handshakes a second\n";
   });
 }
 
 TEST_F(TransportFloodTest, ConnectionsThatSayNothingAsFastAsTheyCome) {
   settings.max_connections_per_address = 32;
   withstand([&] {
-    const auto begin = steady_clock::now();
     std::vector<std::unique_ptr<RawClient>> open;
     for (int i = 0; i < 3000; ++i) {
       open.push_back(std::make_unique<RawClient>(port));
       if (open.size() > 200) open.erase(open.begin());
     }
-    const Seconds time = steady_clock::now() - begin;
-    std::cout << 3000 / time.count() << " connections a second\n";
   });
 }
 

@@ -1,10 +1,10 @@
 #include <atomic>
 #include <thread>
 
+#include "server/net/ws_upgrade.h"
 #include "tests/server/transport_fixture.h"
 
 namespace vat::test::transport_http_test {
-
 namespace {
 
 class TransportHttpTest : public TransportTest {};
@@ -89,15 +89,102 @@ TEST_F(TransportHttpTest, MalformedRequestsGetAnError) {
   EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\n\r\n"), 200);
 }
 
-TEST_F(TransportHttpTest, ServesRequestsBesideWebSockets) {
-  recorder.echo = true;
-  start();
-  WsClient socket(port);
-  EXPECT_EQ(http(port, "GET", "/page").body, "/page");
-  socket.send_text("still here");
-  EXPECT_EQ(socket.read_message().payload, "still here");
+class TransportUpgradeTest : public TransportTest {
+ protected:
+  TransportUpgradeTest() { start(); }
+  std::string origin(const std::string& value) {
+    return upgrade_headers() + "Origin: " + value + "\r\n";
+  }
+  std::string host() const { return "127.0.0.1:" + std::to_string(port); }
+};
+
+TEST_F(TransportUpgradeTest, GrantsTheSubprotocol) {
+  const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers());
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
+  // The answer to this key that RFC 6455, section 1.3 prints.
+  EXPECT_EQ(reply.header("Sec-WebSocket-Accept"), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+  EXPECT_TRUE(recorder.wait_closed(1));
+}
+
+TEST_F(TransportUpgradeTest, PicksTheSubprotocolFromSeveral) {
+  const HttpReply reply = try_upgrade(port, "/ws?name=x", upgrade_headers("vat.v2, vat.v1"));
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
+}
+
+TEST_F(TransportUpgradeTest, RefusesAnotherSubprotocolOrNone) {
+  for (const char* subprotocol : {"", "vat.v2", "VAT.V1", "vat.v10"}) {
+    const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers(subprotocol));
+    EXPECT_EQ(reply.status, 400) << subprotocol;
+    EXPECT_NE(reply.body.find("vat.v1"), std::string::npos) << reply.body;
+  }
+}
+
+TEST_F(TransportUpgradeTest, RefusesOtherPaths) {
+  for (const char* target : {"/", "/ws/", "/WS", "/wss", "/x/ws", "//ws", "/%77s", "/?/ws"}) {
+    EXPECT_EQ(try_upgrade(port, target, upgrade_headers()).status, 400) << target;
+  }
+}
+
+TEST_F(TransportUpgradeTest, RefusesOtherVersions) {
+  for (const char* version : {"7", "8", "12", "14", "-1", "thirteen"}) {
+    EXPECT_EQ(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
+  }
+  // The library takes these for a draft of 2010 and answers without asking.
+  for (const char* version : {"", "0"}) {
+    EXPECT_GE(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
+  }
+}
+
+TEST_F(TransportUpgradeTest, AdmitsPagesOfThisServerOnly) {
+  EXPECT_EQ(try_upgrade(port, "/ws", origin("http://" + host())).status, 101);
+  EXPECT_EQ(try_upgrade(port, "/ws", origin("https://" + host())).status, 101);
+  const std::vector<std::string> foreign_origins{"http://example.org",
+                                                 "null",
+                                                 "http://127.0.0.1",
+                                                 "http://localhost:" + std::to_string(port),
+                                                 "http://" + host() + ".example.org",
+                                                 "http://" + host() + "0",
+                                                 host(),
+                                                 "http://example.org/http://" + host()};
+  for (const std::string& foreign : foreign_origins) {
+    EXPECT_EQ(try_upgrade(port, "/ws", origin(foreign)).status, 403) << foreign;
+  }
+}
+
+// By their whole names, whatever the case of their letters.
+TEST(TransportOrigins, ThoseOfTheListAreAdmitted) {
+  const std::vector<std::string> allowed{"https://example.org", "http://b.example:8443"};
+  const std::vector<std::string> offered{"vat.v1"};
+  const auto refused = [&](const char* origin) {
+    return refuse_upgrade({"/ws", "host:80", origin, "13", offered}, allowed).has_value();
+  };
+  for (const char* good : {"https://example.org", "https://EXAMPLE.org", "http://b.example:8443",
+                           "http://host:80", ""}) {
+    EXPECT_FALSE(refused(good)) << good;
+  }
+  for (const char* foreign :
+       {"http://example.org", "https://example.org:8443", "https://a.example.org",
+        "https://example.org.evil", "https://b.example:8443", "null", "https://", "*"}) {
+    EXPECT_TRUE(refused(foreign)) << foreign;
+  }
+}
+
+TEST_F(TransportUpgradeTest, NeverCompresses) {
+  const HttpReply reply = try_upgrade(
+      port, "/ws", upgrade_headers() + "Sec-WebSocket-Extensions: permessage-deflate\r\n");
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Extensions"), "");
+}
+
+TEST_F(TransportUpgradeTest, ARefusedClientIsNotAnnounced) {
+  try_upgrade(port, "/ws", upgrade_headers(""));
+  try_upgrade(port, "/", upgrade_headers());
+  WsClient good(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  EXPECT_EQ(recorder.connections.size(), 1u);
 }
 
 }  // namespace
-
 }  // namespace vat::test::transport_http_test

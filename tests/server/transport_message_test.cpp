@@ -34,31 +34,6 @@ TEST_F(TransportMessageTest, EchoesInOrder) {
   }
 }
 
-TEST_F(TransportMessageTest, PutsFragmentsTogether) {
-  recorder.echo = true;
-  start();
-  WsClient client(port);
-  client.raw().write(client_frame(2, "a", false) + client_frame(9, "ping") +
-                     client_frame(0, "", false) + client_frame(0, "b", true));
-  const auto pong = client.read_frame();
-  ASSERT_TRUE(pong);
-  EXPECT_EQ(pong->opcode, 10);
-  EXPECT_EQ(pong->payload, "ping");
-  EXPECT_EQ(client.read_message().payload, "ab");
-}
-
-TEST_F(TransportMessageTest, CarriesEveryFrameSize) {
-  recorder.echo = true;
-  start();
-  WsClient client(port);
-  for (const std::size_t size : {0, 1, 125, 126, 65535, 65536, 1000000}) {
-    std::string bytes(size, '\0');
-    for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<char>(i);
-    client.send_binary(bytes);
-    EXPECT_TRUE(client.read_message().payload == bytes) << size;
-  }
-}
-
 TEST_F(TransportMessageTest, AMessageOfTheGreatestSizePassesAndAByteMoreCloses) {
   settings.max_message_bytes = 1000;
   recorder.echo = true;
@@ -89,52 +64,6 @@ TEST_F(TransportMessageTest, TheCloseFrameReachesAPeerInTheMiddleOfALargeMessage
     client.send_binary(std::string(8 * 1024 * 1024, 'x'));
     ASSERT_EQ(client.read_close(), 1009);
   }
-}
-
-TEST_F(TransportMessageTest, TextThatIsNotUtf8Closes) {
-  start();
-  for (const char* text : {"\xff", "\xc0\x80", "\xed\xa0\x80", "ab\xe2\x82"}) {
-    WsClient client(port);
-    client.send_text(text);
-    EXPECT_EQ(client.read_close(), 1007);
-  }
-  EXPECT_EQ(messages_received(), 0u);
-}
-
-TEST_F(TransportMessageTest, ProtocolErrorsClose) {
-  start();
-  for (const std::string& bytes :
-       {std::string("\x81\x02hi"),  // not masked
-        client_frame(3, "reserved opcode"), client_frame(0, "nothing to continue"),
-        client_frame(9, std::string(126, 'x')),  // a control frame that is too long
-        client_frame(9, "in two", false),        // a control frame in fragments
-        client_frame(1, "a", false) + client_frame(1, "b"),
-        std::string("\xf1\x80", 2) + "\1\2\3\4",     // reserved bits
-        std::string("\xc1\x80", 2) + "\1\2\3\4"}) {  // that of permessage-deflate alone
-    WsClient client(port);
-    client.raw().write(bytes);
-    EXPECT_EQ(client.read_close(), 1002) << testing::PrintToString(bytes);
-  }
-  EXPECT_EQ(messages_received(), 0u);
-}
-
-TEST_F(TransportMessageTest, OneConnectionTooManyIsClosedWith1013) {
-  settings.max_connections = 2;
-  recorder.echo = true;
-  start();
-  WsClient first(port);
-  auto second = std::make_unique<WsClient>(port);
-  ASSERT_TRUE(recorder.wait_opened(2));
-  WsClient third(port);
-  third.send_text("let me in");
-  EXPECT_EQ(third.read_close(), 1013);
-  second.reset();
-  ASSERT_TRUE(recorder.wait_closed(1));
-  WsClient fourth(port);
-  fourth.send_text("now");
-  EXPECT_EQ(fourth.read_message().payload, "now");
-  EXPECT_EQ(messages_received(), 1u);
-  EXPECT_EQ(recorder.connections.size(), 3u);
 }
 
 TEST_F(TransportMessageTest, SendsFromManyThreadsKeepEachThreadsOrder) {
@@ -254,14 +183,6 @@ TEST_F(TransportMessageTest, AReasonTooLongForACloseFrameIsCutAtACharacter) {
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->opcode, 8);
   EXPECT_EQ(frame->payload, std::string("\x0f\xa0") + reason.substr(0, 122));
-}
-
-TEST_F(TransportMessageTest, AnswersTheClosingHandshakeOfThePeer) {
-  start();
-  WsClient client(port);
-  client.raw().write(client_frame(8, std::string("\x03\xe8") + "bye"));
-  EXPECT_EQ(client.read_close(), 1000);
-  EXPECT_TRUE(recorder.wait_closed(1));
 }
 
 TEST_F(TransportMessageTest, AConnectionMayOutliveTheTransport) {
