@@ -71,12 +71,6 @@ TEST(BenchSpeedFigures, NeighboursOfALattice) {
 }
 
 #if VAT_HAS_SYSTEM_ALLOCATOR
-TEST(BenchSpeedFigures, HeapGrowsByWhatIsAllocated) {
-  const std::size_t before = heap_in_use();
-  const std::vector<char> block(10'000'000);
-  EXPECT_NEAR(static_cast<double>(heap_in_use() - before), 1e7, 1e5);
-}
-
 // At least positions and velocities, and what diagnostics keep beside that; without the snapshot,
 // of which a second simulation of the same size tells the size.
 TEST(BenchSpeedFigures, MemoryIsThatOfTheSimulation) {

@@ -61,6 +61,8 @@ TEST(ExactOutput, Csv) {
   const TemporaryFolder folder;
   run_program(folder, "run.csv");
   const Table table = read_csv(folder.file("run.csv"));
+  EXPECT_THAT(table.columns, testing::ElementsAre("time", "body", "kind", "particle", "x", "y", "z",
+                                                  "vx", "vy", "vz", "density", "pressure"));
   std::size_t row = 0;
   at_each_output([&](const Simulation& simulation, std::size_t) {
     ASSERT_LE(row + simulation.particle_count(), table.rows.size());
@@ -70,9 +72,12 @@ TEST(ExactOutput, Csv) {
           liquid ? simulation.liquid_fields(body.id).value() : LiquidFields{};
       for (std::size_t i = 0; i < body.positions.size(); ++i, ++row) {
         expect_row(table, row, simulation, body, i);
-        if (!liquid) continue;
-        ASSERT_EQ(table.number(row, "density"), fields.density[i]);
-        ASSERT_EQ(table.number(row, "pressure"), fields.pressure[i]);
+        if (liquid) {
+          ASSERT_EQ(table.number(row, "density"), fields.density[i]);
+          ASSERT_EQ(table.number(row, "pressure"), fields.pressure[i]);
+        } else {
+          ASSERT_EQ(table.text(row, "density") + table.text(row, "pressure"), "");
+        }
       }
     }
   });
@@ -109,6 +114,9 @@ TEST(ExactOutput, Vtk) {
     std::size_t p = 0;
     double number = 0;
     for (const BodyView& body : simulation.bodies()) {
+      const bool liquid = body.kind == BodyKind::liquid;
+      const LiquidFields fields =
+          liquid ? simulation.liquid_fields(body.id).value() : LiquidFields{};
       for (std::size_t i = 0; i < body.positions.size(); ++i, ++p) {
         const std::array<double, 6> motion = motion_of(body, i);
         for (std::size_t c = 0; c < 3; ++c) {
@@ -117,6 +125,9 @@ TEST(ExactOutput, Vtk) {
         }
         ASSERT_EQ(file.body[p], number);
         ASSERT_EQ(file.radius[p], body.radii[i]);
+        ASSERT_EQ(file.kind[p], static_cast<double>(body.kind));
+        ASSERT_EQ(file.density[p], liquid ? fields.density[i] : 0);
+        ASSERT_EQ(file.pressure[p], liquid ? fields.pressure[i] : 0);
       }
       ++number;
     }
@@ -139,6 +150,10 @@ TEST(ExactOutput, PlyInSinglePrecision) {
         ASSERT_EQ(vertices[p].values[6], static_cast<float>(body.radii[i]));
       }
     }
+    EXPECT_THAT(vertices.front().colour,
+                testing::Not(testing::ElementsAreArray(vertices.back().colour)));
+    EXPECT_EQ(vertices.front().body, 0U);
+    EXPECT_EQ(vertices.back().body, 2U);
   });
 }
 
@@ -169,6 +184,9 @@ TEST(ExactOutput, Diagnostics) {
   run_program(folder, "run.npy");
   const Table table = read_csv(folder.file("d.csv"));
   ASSERT_EQ(table.rows.size(), kOutputs);
+  EXPECT_EQ(table.columns[12], "pool.mass");
+  EXPECT_THAT(table.columns, testing::Not(testing::Contains("pool.qw")));
+  EXPECT_EQ(table.number(0, "guard_events"), 0);
   at_each_output([&](const Simulation& simulation, std::size_t row) {
     const Diagnostics d = simulation.diagnostics();
     EXPECT_EQ(table.number(row, "time"), d.time);

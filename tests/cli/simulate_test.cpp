@@ -1,11 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <map>
-
-#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
 
+#include "core/limits.h"
+#include "server/cli/simulate_schedule.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 
@@ -30,13 +33,6 @@ std::string hash_of(const std::string& scene, const std::vector<std::string>& op
 
 std::string hash_of(const std::vector<std::string>& options) {
   return hash_of(test_scene("mixed"), options);
-}
-
-TEST(Simulate, HashDoesNotDependOnThreads) {
-  const std::string one = hash_of({"--until", "0.2", "--threads", "1"});
-  EXPECT_EQ(hash_of({"--until", "0.2", "--threads", "2"}), one);
-  EXPECT_EQ(hash_of({"--until", "0.2", "--threads", "4"}), one);
-  EXPECT_NE(hash_of({"--until", "0.22"}), one);
 }
 
 // The first moments of the scenes as they are shipped.
@@ -74,28 +70,6 @@ TEST(Simulate, HashDependsOnStepAndIntegrator) {
   EXPECT_NE(hash_of({"--until", "0.1", "--accuracy", "0.05"}), scene);
 }
 
-// Two masses m on a spring: the distance is l + a cos(w t) with w^2 = 2 k / m. Velocity Verlet's
-// phase error is (w dt)^3 / 24 a step, that is t w (w dt)^2 / 24 at t.
-TEST(Simulate, SpringSwingsAtItsFrequency) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file("pair.csv");
-  const ProgramResult result =
-      run_vat({"simulate", test_scene("pair"), "--until", "1", "--every", "0.1", "--output", file});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv(file);
-  ASSERT_EQ(table.rows.size(), 2u * 11u);
-  const double w = std::sqrt(200);
-  const double dt = 1e-3;
-  for (std::size_t row = 0; row < table.rows.size(); row += 2) {
-    const double time = table.number(row, "time");
-    const std::size_t output = row / 2;
-    EXPECT_NEAR(time, 0.1 * static_cast<double>(output), 1e-12);
-    const double distance = table.number(row + 1, "x") - table.number(row, "x");
-    const double bound = 0.1 * (time * w + 1) * w * w * dt * dt / 12;
-    EXPECT_NEAR(distance, 1 + 0.1 * std::cos(w * time), bound) << "t = " << time;
-  }
-}
-
 TEST(Simulate, OutputsAtEveryMultipleAndTheEnd) {
   const TemporaryFolder folder;
   const std::string file = folder.file("d.csv");
@@ -112,29 +86,18 @@ TEST(Simulate, OutputsAtEveryMultipleAndTheEnd) {
   EXPECT_THAT(lines_of(result.err), ElementsAre(HasSubstr("0.1 s simulated in 100 steps")));
 }
 
-TEST(Simulate, ShortensTheStepToFitTheOutputInterval) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file("d.csv");
-  const ProgramResult result = run_vat({"simulate", test_scene("pair"), "--until", "0.006",
-                                        "--every", "0.0015", "--diagnostics", file});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("the step is 0.00075 s instead of 0.001 s"));
-  EXPECT_THAT(result.err, HasSubstr("in 8 steps"));
-  EXPECT_EQ(read_csv(file).rows.size(), 5u);
-}
-
-TEST(Simulate, ShortensTheStepToMeetTheEnd) {
-  const ProgramResult result =
-      run_vat({"simulate", test_scene("pair"), "--dt", "0.003", "--until", "0.05"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("the step is 0.0025 s instead of 0.003 s"));
-  EXPECT_THAT(lines_of(result.err).back(), StartsWith("0.05 s simulated in 20 steps"));
-}
-
-TEST(Simulate, RoundsAnOddEndToWholeSteps) {
-  const ProgramResult result = run_vat({"simulate", test_scene("pair"), "--until", "0.0100007"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("the run ends at 0.01 s instead of 0.0100007 s"));
+TEST(Simulate, TellsWhereItDepartsFromTheOptions) {
+  using Words = std::vector<std::string>;
+  const std::pair<Words, const char*> cases[] = {
+      {{"--until", "0.006", "--every", "0.0015"}, "the step is 0.00075 s instead of 0.001 s"},
+      {{"--until", "0.0100007"}, "the run ends at 0.01 s instead of 0.0100007 s"}};
+  for (const auto& [options, notice] : cases) {
+    Words words = {"simulate", test_scene("pair")};
+    words.insert(words.end(), options.begin(), options.end());
+    const ProgramResult result = run_vat(words);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.err, HasSubstr(notice));
+  }
 }
 
 TEST(Simulate, WarnsOfTheIntegratorInUse) {
@@ -200,6 +163,93 @@ TEST(Simulate, GuardFailureNamesBodyAndKeepsThePartialFile) {
                            "'wild', at t = [0-9.e-]+ s with a step of .*"));
   EXPECT_THAT(folder.names(), ElementsAre("d.csv.part", "run.csv.part"));
   EXPECT_EQ(read_csv(folder.file("run.csv.part")).rows.size() % 3, 0u);
+}
+
+TEST(Schedule, KeepsAStepThatDividesTheInterval) {
+  for (const Real step : {1e-3, 1.0 / 3000, 0.0001, 0.007}) {
+    for (const int count : {1, 3, 10, 12345}) {
+      const Schedule schedule = make_schedule(step, step * count, step * count * 2);
+      EXPECT_EQ(schedule.step, step);
+      EXPECT_EQ(schedule.steps_per_output, static_cast<std::uint64_t>(count));
+      EXPECT_EQ(schedule.output_count(), 3u);
+      EXPECT_TRUE(schedule.notices.empty());
+    }
+  }
+}
+
+TEST(Schedule, NeverLengthensTheStep) {
+  for (const Real every : {0.00999, 0.0101, 0.5, 0.0005, 1e-6}) {
+    const Schedule schedule = make_schedule(1e-3, every, 0);
+    EXPECT_LE(schedule.step, 1e-3) << every;
+    EXPECT_DOUBLE_EQ(schedule.step * static_cast<Real>(schedule.steps_per_output), every);
+  }
+}
+
+TEST(Schedule, ShortensTheStepUntilItMeetsTheEndToo) {
+  struct Case {
+    Real every, until, step;
+  };
+  for (const Case& c : {Case{0.3, 1, 0.1 / 100}, Case{0.02, 0.0505, 0.0005},
+                        Case{0.007, 0.01, 0.001}, Case{0.0104, 0.02, 0.0008}}) {
+    const Schedule schedule = make_schedule(1e-3, c.every, c.until);
+    EXPECT_DOUBLE_EQ(schedule.step, c.step) << c.every << ' ' << c.until;
+    EXPECT_DOUBLE_EQ(schedule.step * static_cast<Real>(schedule.total_steps), c.until);
+  }
+}
+
+TEST(Schedule, CountsTheOutputAtTheEndOnce) {
+  EXPECT_EQ(make_schedule(0.1, 0.2, 0).output_count(), 1u);
+  EXPECT_EQ(make_schedule(0.1, 0.2, 0.1).output_count(), 2u);
+  EXPECT_EQ(make_schedule(0.1, 0.2, 0.2).output_count(), 2u);
+  EXPECT_EQ(make_schedule(0.1, 0.2, 0.5).output_count(), 4u);
+}
+
+TEST(Schedule, TickStaysWhereItIsAWholeNumberOfSteps) {
+  const Numerics scene{.step = 1e-3, .tick = 0.02};
+  EXPECT_EQ(with_step(scene, 1e-3).tick, 0.02);
+  EXPECT_EQ(with_step(scene, 2e-3).tick, 0.02);
+  EXPECT_DOUBLE_EQ(with_step(scene, 3e-3).tick, 0.021);
+  EXPECT_DOUBLE_EQ(with_step(scene, 0.1).tick, 0.1);
+  const Numerics shortest = with_step(scene, kMinStep);
+  EXPECT_DOUBLE_EQ(shortest.tick, kMinStep * kMaxStepsPerTick);
+}
+
+// The plan of every catalogue scene against tests/golden/plans: a change that adds work to a scene
+// that does not need it is seen in review. VAT_UPDATE_GOLDEN=1 rewrites the files.
+
+namespace fs = std::filesystem;
+
+const fs::path kScenes = VAT_SOURCE_DIR "/protocol/scenes";
+const fs::path kPlans = VAT_SOURCE_DIR "/tests/golden/plans";
+
+std::set<std::string> stems(const fs::path& folder, const std::string& ending) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ending) names.insert(entry.path().stem().string());
+  }
+  return names;
+}
+
+bool update_golden() {
+  const char* value = std::getenv("VAT_UPDATE_GOLDEN");
+  return value != nullptr && std::string(value) == "1";
+}
+
+TEST(Plan, CatalogueScenesKeepTheirPlans) {
+  const std::set<std::string> scenes = stems(kScenes, ".json");
+  ASSERT_FALSE(scenes.empty());
+  for (const std::string& scene : scenes) {
+    const ProgramResult result = run_vat({"simulate", scene, "--plan", "--scenes", kScenes});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const fs::path golden = kPlans / (scene + ".txt");
+    if (update_golden()) {
+      std::ofstream(golden) << result.out;
+    } else {
+      ASSERT_TRUE(fs::exists(golden)) << golden << " is missing: run with VAT_UPDATE_GOLDEN=1";
+      EXPECT_EQ(result.out, read_file(golden)) << scene;
+    }
+  }
+  EXPECT_EQ(stems(kPlans, ".txt"), scenes) << "a plan without a scene";
 }
 
 }  // namespace

@@ -1,0 +1,159 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "protocol/frame_codec.h"
+#include "tests/bench/fanout/frame_facts.h"
+#include "tests/bench/fanout/segments.h"
+#include "tests/bench/soak/trend.h"
+#include "tests/cli/program.h"
+#include "tests/cli/readers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::bench_server_test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Beside the decoder: the load reads the header by itself.
+TEST(BenchFanout, ReadsWhatTheHeaderSays) {
+  GridFrame frame;
+  frame.header.number = 77;
+  frame.header.published = 1.7e9 + 0.25;
+  frame.header.tick = 5;
+  frame.scale.grid.quantum = 1;
+  const bench::FrameFacts facts = bench::frame_facts(text_of(encode_key_frame(frame)));
+  EXPECT_EQ(facts.number, 77U);
+  EXPECT_TRUE(facts.is_key);
+  EXPECT_EQ(facts.published, 1.7e9 + 0.25);
+  EXPECT_THROW(bench::frame_facts("VATF"), std::runtime_error);
+}
+
+// Where all segments are alike, every draw gives the same. An odd one is missing in 0.9^10, a
+// third, of the draws: the interval has both ratios.
+TEST(BenchFanout, RatiosOfQuantilesHaveAnIntervalByWholeSegments) {
+  const bench::Segments ones(10, {1, 2, 3, 4, 5});
+  bench::Segments twos(10, {2, 4, 6, 8, 10});
+  EXPECT_EQ(bench::pooled_quantile(ones, 0.5), 3);
+  const bench::QuantileRatio alike = bench::quantile_ratio(ones, twos, 0.5);
+  EXPECT_EQ(alike.value, 2);
+  EXPECT_EQ(alike.low, 2);
+  EXPECT_EQ(alike.high, 2);
+  twos[3] = {100, 100, 100, 100, 100};
+  const bench::QuantileRatio odd = bench::quantile_ratio(ones, twos, 0.99);
+  EXPECT_EQ(odd.value, 100.0 / 5);
+  EXPECT_EQ(odd.low, 2);
+  EXPECT_EQ(odd.high, 20);
+  EXPECT_TRUE(std::isnan(bench::quantile_ratio(bench::Segments(4, {1}), ones, 0.5).low));
+}
+
+// One viewer at the scene's rate: what the machine does beside that only makes it less.
+TEST(BenchFanout, CountsTheFramesOfAViewer) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"fanout", "--quick", "--case", "viewers-1", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv((folder.path() / "fanout.csv").string());
+  ASSERT_EQ(table.rows.size(), 1U);
+  const double rate = table.number(0, "frames per second");
+  EXPECT_GT(rate, 0);
+  EXPECT_LE(rate, 31) << "30 ticks a second, and one that may lie on the edge of each second";
+  EXPECT_GT(table.number(0, "frame bytes"), 0);
+  EXPECT_GT(table.number(0, "age 99 % [ms]"), 0);
+}
+
+TEST(BenchSeeks, GoesToMomentsOfARecording) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_bench({"seeks", "--ticks", "150", "--seeks", "5", "--scene",
+                                          "water-drop", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv((folder.path() / "seeks.csv").string());
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.number(0, "ticks"), 150);
+  EXPECT_EQ(table.number(0, "seeks"), 5);
+  EXPECT_GT(table.number(0, "checkpoints"), 0);
+  EXPECT_GT(table.number(0, "median [ms]"), 0);
+  EXPECT_LE(table.number(0, "median [ms]"), table.number(0, "99 % [ms]"));
+  EXPECT_LE(table.number(0, "99 % [ms]"), table.number(0, "longest [ms]"));
+  EXPECT_EQ(table.number(0, "within") == 5, table.number(0, "longest [ms]") <= 200);
+}
+
+TEST(BenchSeeks, SaysWhatTheServerRefuses) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"seeks", "--scene", "gone", "--output", folder.path().string()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, testing::HasSubstr("gone"));
+}
+
+// A line's growth is found as it is; of values beside one, by least squares: with the places -1.5,
+// -0.5, 0.5 and 1.5 it is (6 * -0.5 + 6 * 1.5) / 5 a step.
+TEST(BenchSoak, FindsTheGrowthOfALine) {
+  EXPECT_NEAR(bench::find_growth({5, 5.5, 6, 6.5, 7}), 2, 1e-12);
+  EXPECT_NEAR(bench::find_growth({0, 6, 0, 6}), 3 * 6.0 / 5, 1e-12);
+  EXPECT_THROW(bench::find_growth({1}), std::invalid_argument);
+}
+
+// What is beyond a twentieth is a leak; the first rest does not count.
+TEST(BenchSoak, TellsLeaksFromSwings) {
+  EXPECT_TRUE(bench::is_flat({10, 40, 41, 40, 41, 40}, 0.05));
+  EXPECT_TRUE(bench::is_flat({10, 40, 40.4, 40.8, 41.2, 41.6}, 0.05)) << "less than matters";
+  EXPECT_FALSE(bench::is_flat({10, 40, 40.6, 41.2, 41.8, 42.4}, 0.05));
+  EXPECT_THROW(bench::is_flat({40, 40}, 0.05), std::invalid_argument);
+}
+
+// What takes ten minutes by hand, see tests/bench/README.md, for a little while.
+TEST(BenchSoak, ServerOutlivesClientsOfAllManners) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"soak", "--seconds", "15", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const Table table = read_csv((folder.path() / "soak.csv").string());
+  for (const char* manner : {"joins", "answered", "frames", "rubbish", "flood", "stalls"}) {
+    EXPECT_GT(table.number(0, manner), 20) << manner << '\n' << result.out;
+  }
+}
+
+// On smaller and shorter runs than those for which they are meant: sizes do not depend on what else
+// the machine does, times do.
+TEST(BenchCodec, FramesAreAsSmallAsTheyMustBe) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"codec", "--quick", "--case", "dam-break-30k", "--case", "pool-settled", "--case",
+                 "pool-asleep", "--case", "figure-2", "--case", "figure-2-asleep", "--no-web",
+                 "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table targets = read_csv((folder.path() / "targets.csv").string());
+  std::size_t sizes = 0;
+  for (std::size_t row = 0; row < targets.rows.size(); ++row) {
+    const std::string what = targets.text(row, "target");
+    if (what.find("decode [") != std::string::npos) continue;
+    if (what.find("encode [") != std::string::npos) continue;
+    ++sizes;
+    EXPECT_EQ(targets.text(row, "passed"), "true") << what << targets.text(row, "measured");
+  }
+  EXPECT_EQ(sizes, 8U);
+}
+
+// Half a quantum, and the rounding of origin + quantum * steps.
+TEST(BenchCodec, TheErrorHoldsOnEveryFrame) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_bench(
+      {"codec", "--quick", "--case", "figure-2", "--no-web", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv((folder.path() / "codec.csv").string());
+  ASSERT_EQ(table.rows.size(), 8U);
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_LE(table.number(row, "greatest error found [allowed]"), 1 + 1e-9);
+    EXPECT_GT(table.number(row, "greatest error found [allowed]"), 0.5);
+  }
+  EXPECT_THAT(result.out, HasSubstr("16 bits, zstd"));
+}
+
+}  // namespace
+}  // namespace vat::test::bench_server_test
