@@ -87,7 +87,7 @@ it.each([
   await page.selectOption('#add-kind', kind);
   await page.selectOption('#add-shape', shape);
   await page.selectOption('#add-material', material);
-  expect(await page.textContent('#add-material option:checked')).toContain('new in this scene');
+  expect(await page.textContent('#add-material option:checked')).toContain('(new)');
   await page.click('#add-place:enabled');
   await place('ArrowRight', 'Enter');
   await expect.poll(count, kInTime).toBe(before + 1);
@@ -120,7 +120,7 @@ it('places by keys, and nothing where there is a body already', async () => {
   await page.waitForSelector(`#bodies li:nth-child(${before + 1})`);
   await page.click('#add-place');
   await place('ArrowLeft', 'Enter');
-  await page.waitForSelector('#notices li:has-text("There is something already")');
+  await page.waitForSelector('#notices li:has-text("The position is occupied")');
   expect(await count()).toBe(before + 1);
 });
 
@@ -239,7 +239,7 @@ it('moves a body to where it has room and not into others, and undoes it', async
   await viewer.page.click(move);
   // 7 or 8 steps of 4 % of 1.2 m: into the ball.
   await place(...Array<string>(7).fill('ArrowDown'), 'Enter');
-  await viewer.page.waitForSelector('#notices li:has-text("There is something already")');
+  await viewer.page.waitForSelector('#notices li:has-text("The position is occupied")');
   expect(await height()).toBeGreaterThan(1.1);
   await viewer.page.keyboard.press('Escape');
   await viewer.page.click('#undo:enabled');

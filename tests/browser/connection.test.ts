@@ -45,8 +45,8 @@ const isWaiting = (page: Viewer): Promise<void> => page.until('#connection[data-
 it('says that an invitation is needed; viewers ask for control by what messages offer', async () => {
   await serve('--access', 'token');
   const stranger = await open();
-  await says(stranger, 'obstacle', 'this server lets in who has an invitation');
-  await says(stranger, 'summary', 'There is no picture yet');
+  await says(stranger, 'obstacle', 'this server needs an invitation');
+  await says(stranger, 'summary', 'No frame has arrived');
   expect(await stranger.page.isVisible('#hint')).toBe(false);
   await stranger.close();
   const owner = await open(`${server.url}#ticket=${encodeURIComponent(kAdminToken)}`);
@@ -55,16 +55,16 @@ it('says that an invitation is needed; viewers ask for control by what messages 
   await owner.page.waitForFunction(() =>
     (document.getElementById('share-link') as HTMLInputElement).value.includes('invite='),
   );
-  await says(owner, 'share-local', 'on this computer alone');
+  await says(owner, 'share-local', 'on this computer only');
   const guest = await open(await owner.page.inputValue('#share-link'));
   await owner.page.keyboard.press('Escape');
   await guest.untilTick(0);
   await guest.page.click('#play');
-  await says(guest, 'notices', 'only who controls may do that');
+  await says(guest, 'notices', 'Viewers cannot do this');
   await guest.page.click('#notices button:has-text("Ask for control")');
   await says(owner, 'notices', 'asks for control');
   await owner.page.click('#notices button:has-text("Give control")');
-  await says(guest, 'notices', 'You control this session now');
+  await says(guest, 'notices', 'You are a controller now');
   await guest.page.click('#play');
   await guest.until('#play[data-playing="false"]');
 });
@@ -81,7 +81,7 @@ it('says that the server is full, and enters once it is not', async () => {
   expect(await second.page.isVisible('#hint')).toBe(true);
 });
 
-it('says that it was removed, or goes on in another window, and comes back', async () => {
+it('says that it was removed, or continues in another window, and comes back', async () => {
   await serve();
   const first = await open();
   await first.untilTick(0);
@@ -94,7 +94,7 @@ it('says that it was removed, or goes on in another window, and comes back', asy
   await observer.request('participant.kick', { participant: guest!.participant });
   observer.leave();
   await says(first, 'connection-text', 'removed from the session');
-  await says(first, 'summary', 'You are not in this session any more');
+  await says(first, 'summary', 'You have left this session');
   await first.page.click('#connection-retry:has-text("Come back")');
   await isOpen(first);
   await says(first, 'summary', 'Plays');
@@ -104,10 +104,10 @@ it('says that it was removed, or goes on in another window, and comes back', asy
   await second.untilTick(0); // it has a separate token, which no longer arrives
   await second.page.evaluate((value) => sessionStorage.setItem('vat.resume', value ?? ''), token);
   await second.page.reload();
-  await says(first, 'connection-text', 'goes on in another window');
+  await says(first, 'connection-text', 'continues in another window');
   await first.page.click('#connection-retry:has-text("Come back")');
   await isOpen(first);
-  await says(second, 'connection-text', 'goes on in another window');
+  await says(second, 'connection-text', 'continues in another window');
 });
 
 it('works with an older server, and says what that cannot do', async () => {
@@ -120,7 +120,7 @@ it('works with an older server, and says what that cannot do', async () => {
   await page.until('#play[data-playing="false"]');
   expect(await page.page.isVisible('#pour-row')).toBe(false); // only the scene tells of liquids
   await page.page.click('#kept-details > summary');
-  await says(page, 'notices', 'This server is older than this page');
+  await says(page, 'notices', 'This server is older than the page');
   await says(page, 'notices', 'session.saves');
   await page.page.click('#curves-details > summary');
   await page.page.waitForSelector('.chart canvas');
@@ -131,7 +131,7 @@ it('works with an older server, and says what that cannot do', async () => {
 
 it('tells a server that refuses it from one that is stopped', async () => {
   const { page } = await through({ refuses: true });
-  await says(page, 'connection-text', 'refuses vat.v1');
+  await says(page, 'connection-text', 'does not support vat.v1');
   expect(await page.page.isDisabled('#play')).toBe(true);
 });
 
@@ -180,14 +180,14 @@ it('says that no picture comes while the connection is stuck, and goes on after 
   await page.untilTick(0);
   between.freeze(true);
   await page.page.evaluate(() => window.skip(4000));
-  await says(page, 'summary', 'No new picture');
+  await says(page, 'summary', 'No new frame');
   // The clock is to be measured; that is not answered in time; and so on.
   const reason = async (): Promise<string> => {
     await fireTimers(page);
     return (await page.page.textContent('#connection-text')) ?? '';
   };
-  await expect.poll(reason, { timeout: 120_000, interval: 50 }).toContain('gives no answer');
-  await says(page, 'summary', 'the last picture');
+  await expect.poll(reason, { timeout: 120_000, interval: 50 }).toContain('does not answer');
+  await says(page, 'summary', 'the last frame');
   between.freeze(false);
   await fireTimers(page);
   await isOpen(page);
@@ -201,10 +201,10 @@ it('says that the server stops, that it is stopped, and goes on with the next', 
   const observer = await Observer.join(server.url);
   await observer.request('access.enter', { token: kAdminToken });
   await observer.request('server.drain', { seconds: 1 });
-  await says(page, 'notices', 'The server stops in 1 s');
+  await says(page, 'notices', 'The server stops within 1 s');
   await isWaiting(page);
   observer.leave();
-  await says(page, 'summary', 'the last picture');
+  await says(page, 'summary', 'the last frame');
   await server.ended();
   await server.start();
   await isOpen(page);

@@ -69,7 +69,7 @@ it('draws energies, momentum and density that the server measures', async () => 
   expect(diagnostics!.kinetic_energy).toBeGreaterThan(0);
   const titles = await viewer.page.locator('.curve figcaption b').allTextContents();
   expect(titles).toEqual(
-    expect.arrayContaining(['Energy', 'Momentum', 'Liquid denser than at rest']),
+    expect.arrayContaining(['Energy', 'Momentum', 'Density error of liquids']),
   );
   const text = await viewer.page.getAttribute('.chart', 'aria-label');
   expect(text).toMatch(/motion [\d.e]+ J/);

@@ -25,7 +25,7 @@ it('changes the constants of a material, within their range, and restores them',
   const field = '#material-liquid-viscosity';
   await enter(field, String(before + 3));
   await expect.poll(viscosity, kInTime).toBe(before + 3);
-  await page.click('button[aria-label="Viscosity as it was"]');
+  await page.click('button[aria-label="Reset Viscosity"]');
   await expect.poll(viscosity, kInTime).toBe(before);
   await enter(field, '-1');
   await page.waitForSelector(`.parameter:has(${field}) .fault:has-text("from 0 to")`);
@@ -40,7 +40,7 @@ it('changes what happens where two materials meet, and restores it', async () =>
   await page.selectOption('#contact-first', 'stone');
   await page.selectOption('#contact-second', 'vat');
   expect(await page.inputValue('#contact-stiffness')).toBe(String(before.stiffness));
-  expect(await page.textContent('#contact-note')).toContain('As all others');
+  expect(await page.textContent('#contact-note')).toContain('The default of this scene');
   const told = async (): Promise<unknown> =>
     (await visits.scene()).interfaces?.find(({ materials }) => materials.includes('stone'));
   await enter('#contact-friction', '0.7');
@@ -77,9 +77,9 @@ it('changes integrator and time step, and restores them', async () => {
   await enter('#steps', '2.5');
   await page.waitForSelector('.parameter:has(#steps) .fault:has-text("whole number from 1")');
   await visits.observer.request('control.step', { ticks: 3 });
-  await page.click('button[aria-label="Integrator as it was"]');
+  await page.click('button[aria-label="Reset Integrator"]');
   await expect.poll(numerics, kInTime).toMatchObject({ integrator: 'velocity_verlet' });
-  await page.click('button[aria-label="Steps in 20 ms as it was"]');
+  await page.click('button[aria-label="Reset Steps in 20 ms"]');
   await expect.poll(numerics, kInTime).toMatchObject({ step: 0.001 });
 });
 

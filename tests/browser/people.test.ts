@@ -91,7 +91,7 @@ it('gives control to a viewer who asks for it', async () => {
   await guest.untilTick(0);
   await unfold(guest, 'people-details');
   await guest.page.click('#control-request');
-  await guest.page.waitForSelector('#notices li:has-text("Those in control are asked")');
+  await guest.page.waitForSelector('#notices li:has-text("Your request was sent")');
   const { participants } = await owner.request('presence.list', {});
   const { participant } = participants.find(({ role }) => role === 'viewer')!;
   await owner.request('control.hand_over', { participant });

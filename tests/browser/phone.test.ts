@@ -35,7 +35,7 @@ it('tilts gravity as the device is tilted, relative to how it was held first', a
   await unfold(visits.viewer, 'parameters-details');
   await page.click('#gravity-device');
   // This machine has no sensor.
-  await says(visits.viewer, 'notices', 'does not tell how it is held');
+  await says(visits.viewer, 'notices', 'does not report its orientation');
   // At once, before the page gives up waiting for a sensor.
   await page.evaluate(async () => {
     const button = document.getElementById('gravity-device') as HTMLButtonElement;

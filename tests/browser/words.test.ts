@@ -64,8 +64,8 @@ it('says where a replay differs from its recording, and how to go on', async () 
   await page.page.waitForSelector('#replay:not([hidden])');
   await page.page.focus('#replay-position');
   await page.page.keyboard.press('End');
-  await says(page, 'replay-words', 'what is computed here is not what was recorded');
-  await says(page, 'replay-words', 'the time line leads to any other place');
+  await says(page, 'replay-words', 'the replay differs from the recording');
+  await says(page, 'replay-words', 'the time line leads to all other positions');
   expect(await page.page.isVisible('#replay-mark')).toBe(true);
   await page.page.keyboard.press('Home');
   await page.until('#replay-words[data-diverged="false"]');
@@ -75,7 +75,7 @@ it('says that a server without a folder records nothing, and how it would', asyn
   const page = await open();
   await page.until('#connection[data-state="open"]');
   await page.page.click('#kept-details > summary');
-  await says(page, 'recording-note', 'records nothing: start it with --data');
+  await says(page, 'recording-note', 'does not record sessions. To record, start it with --data');
   expect(await page.page.isDisabled('#recording-watch')).toBe(true);
 });
 
@@ -124,7 +124,7 @@ it('says that a session was not restored as it was, and goes on after a reset', 
     alter(join(data, 'checkpoints.db'), 'DELETE FROM checkpoints');
     alter(join(data, 'vat.db'), 'UPDATE sessions SET hash = hash + 1');
     await server.start();
-    await says(page, 'notices', 'did not come back as it was, and stands still');
+    await says(page, 'notices', 'differs from its log and is paused');
     await page.page.click('#reset');
     await page.untilTick(0, 0);
     await page.page.click('#play');

@@ -151,7 +151,7 @@ describe('states', () => {
 });
 
 describe('a line that does not open', () => {
-  const refused = 'the server refuses vat.v1; it may have changed, reload the page';
+  const refused = 'the server does not support vat.v1; reload the page';
 
   async function breakWithProbe(probe: () => Promise<boolean>): Promise<void> {
     connection = new Connection(
@@ -286,7 +286,7 @@ describe('messages', () => {
     ['a list', '[]', 'a text message that is not a JSON object'],
     ['an unknown event', '{"method":"x.y"}', 'an unknown event "x.y"'],
     ['a refusal without id', '{"id":null,"error":{"code":-32700,"message":"no JSON"}}', 'no JSON'],
-    ['a stray reply', '{"id":null,"result":1}', 'a reply that belongs to no request'],
+    ['a stray reply', '{"id":null,"result":1}', 'a reply without a request'],
     ['other data', 5, 'a message that is neither text nor bytes'],
   ])('reports %s and goes on', (_, data, fault) => {
     const socket = openLine();

@@ -60,7 +60,7 @@ describe('what ticks are spent on', () => {
   it('is said in words, and whether it is enough', () => {
     const profile = profileBetween(undefined, stats(10, 0.1, { find_pairs: 0.09, kick: 0.01 }))!;
     expect(profileInWords(profile, 0.02, 1)).toBe(
-      'A tick takes 10 ms of the 20 ms that it may take, so it keeps up. Most goes into finding neighbours: 90 %.',
+      'A tick takes 10 ms of the 20 ms that it may take, so the speed is reached. The largest part is finding neighbours: 90 %.',
     );
     expect(profileInWords(profile, 0.02, 4)).toContain('runs 2.0 times slower than set');
   });

@@ -52,9 +52,9 @@ it.each([
 
 it.each([
   [{ stride: 1, detail: 3 }, undefined],
-  [{ stride: 4, detail: 3 }, '1 picture in 4'],
+  [{ stride: 4, detail: 3 }, '1 frame in 4'],
   [{ stride: 1, detail: 2 }, '½ of the particles'],
-  [{ stride: 4, detail: 0 }, '1 picture in 4, ⅛ of the particles'],
+  [{ stride: 4, detail: 0 }, '1 frame in 4, ⅛ of the particles'],
 ])('what frames lack, in words: %o', (header, words) => {
   expect(lossInWords(header)).toBe(words);
 });
@@ -90,7 +90,7 @@ describe('what the guard did', () => {
 
   it('names body, time and remedy', () => {
     expect(describeGuard(guard, description)).toBe(
-      'At 0.80 s particle 17 of “pool” moved too fast; the step was repeated with smaller ones.',
+      'At 0.80 s particle 17 of “pool” moved too fast. The step was repeated in smaller parts.',
     );
   });
 

@@ -111,10 +111,10 @@ describe('the state in words', () => {
   it.each([
     [{ slow: true, factor: 0.42 }, 'slow motion, at about 0.4 ×'],
     [{ role: 'viewer' }, 'ask for control'],
-    [{ silentSeconds: 4 }, 'No new picture'],
-    [{ isConnected: false }, 'goes on by itself'],
+    [{ silentSeconds: 4 }, 'No new frame'],
+    [{ isConnected: false }, 'continues when the server answers'],
     [{ isConnected: false, isEnded: true }, 'Come back'],
-    [{ isConnected: false, hasPicture: false }, 'no picture yet'],
+    [{ isConnected: false, hasPicture: false }, 'No frame has arrived'],
   ])('%o is told', (change, words) => expect(summarise({ ...state, ...change })).toContain(words));
 
   it('does not miss pictures while it is paused', () => {
@@ -166,29 +166,25 @@ describe('what the server refuses, in words', () => {
     [
       'busy',
       { holder: { participant: 1, name: 'Ada' } },
-      'Method.name: reason. Wait until Ada lets go, or take another body.',
+      'Method.name: reason. Wait until Ada releases it, or use another body.',
     ],
     [
       'rate_limited',
       { retry_after: 1.2 },
-      'Method.name: reason. That was too much at once: try again in 2 s.',
+      'Method.name: reason. Too many requests. Try again in 2 s.',
     ],
+    ['limit_reached', {}, 'Method.name: reason. Request less, or remove something, and try again.'],
     [
-      'limit_reached',
+      'timed_out',
       {},
-      'Method.name: reason. Ask for less, or remove something first, and try again.',
+      'The server did not answer. The server is busy, or the connection is slow. Try again.',
     ],
-    ['timed_out', {}, 'The server has not answered. It is busy, or the line is slow: try again.'],
     [
       'not_allowed',
       { role: 'viewer', least_role: 'controller' },
-      'You watch here, and only who controls may do that.',
+      'Viewers cannot do this. It needs control.',
     ],
-    [
-      'not_allowed',
-      { role: 'controller', least_role: 'owner' },
-      'Only the owner may do that here.',
-    ],
+    ['not_allowed', { role: 'controller', least_role: 'owner' }, 'This needs the role owner.'],
     ['not_allowed', {}, 'Method.name: reason.'],
     ['invalid_params', {}, 'Method.name: reason.'],
   ])('%s says what to do', (kind, data, words) => expect(refused(kind, data)).toBe(words));

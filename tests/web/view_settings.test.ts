@@ -110,7 +110,7 @@ describe('the style of liquids', () => {
       expect(style).toBe('splats');
       expect(words).toMatch(/cannot draw/);
     }
-    expect(decideStyle('fluid', processor, false, 1000).words).toMatch(/processor/);
+    expect(decideStyle('fluid', processor, false, 1000).words).toMatch(/without a graphics card/);
   });
 });
 

@@ -42,7 +42,7 @@ export function defaultRetryDelayMs(attempt: number): number {
   return Math.min(500 * 2 ** (attempt - 1), 8000) * (1 + Math.random() / 4);
 }
 
-const kRefused = `the server refuses ${kSubprotocol}; it may have changed, reload the page`;
+const kRefused = `the server does not support ${kSubprotocol}; reload the page`;
 
 /** A line to the server that comes back by itself when it breaks. */
 export class Connection {
@@ -169,7 +169,7 @@ export class Connection {
   /** Replies that come after their time-out are stray too, and not worth a word. */
   private reportStrayReply({ id, error }: Reply): void {
     if (typeof id !== 'number') {
-      this.handlers.onFault?.(error?.message ?? 'a reply that belongs to no request');
+      this.handlers.onFault?.(error?.message ?? 'a reply without a request');
     }
   }
 

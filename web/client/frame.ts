@@ -57,7 +57,7 @@ export class FrameDecoder {
     else this.blocks.readKey(frame);
     this.symbols.end();
     if (frame.check() !== header.check) {
-      throw new FrameError('bad_check', 'the frame is not the one that was encoded');
+      throw new FrameError('bad_check', 'the check differs');
     }
     this.ring.keep(isKey);
     this.countDropped(number, header.stride);

@@ -51,7 +51,7 @@ export interface SessionOptions extends ConnectionOptions {
   errorInRadii?: number;
 }
 
-const kSilent = 'the server gives no answer: it is busy, or the line is slow';
+const kSilent = 'the server does not answer; it is busy, or the connection is slow';
 
 /** One client in a session: joins, subscribes, and does so again after a break. */
 export class Session {
@@ -196,8 +196,7 @@ export class Session {
     if (access === 'token' && this.resume !== undefined && (await this.isGood(this.resume))) return;
     if (token !== undefined && (await this.isGood(token))) return;
     if (access !== 'token') return;
-    const words =
-      'this server lets in who has an invitation: open the link that you were given, or ask for one';
+    const words = 'this server needs an invitation; open your invitation link, or ask for one';
     throw new RequestError('not_authenticated', words);
   }
 
@@ -255,7 +254,7 @@ export class Session {
     const number = frameNumber(bytes);
     if (number !== undefined) this.acknowledge(number); // or it would wait for that
     if (wasWaiting && error.code === 'missing_reference') return; // the key frame is on its way
-    const words = `a frame that cannot be read (${error.code}): ${error.message}`;
+    const words = `an invalid frame (${error.code}): ${error.message}`;
     this.handlers.onFault?.(words);
     if (wasWaiting) this.connection.restart(words);
     else this.subscribeAgain();

@@ -19,15 +19,15 @@ export interface SocketClose {
 /** The close codes of PROTOCOL.md, and the one of a broken line, in words. */
 const kCloseReasons: Readonly<Record<number, string>> = {
   1001: 'the server stops',
-  1002: 'the server saw a protocol error',
+  1002: 'the server received an invalid message',
   1006: 'the server cannot be reached',
   1009: 'a message was too large',
   1013: 'the server has too many connections',
-  4001: 'no token that is good was shown in time',
+  4001: 'no valid token was sent in time',
   4003: 'removed from the session',
   4008: 'this client is too slow',
   4009: 'this client sends too much',
-  4010: 'who was here goes on in another window',
+  4010: 'this participant continues in another window',
 };
 
 /** Codes after which the same client is not wanted back. */

@@ -142,7 +142,7 @@ export class App {
       case 'broken':
         showObstacle(
           'page',
-          'A part of this page has failed, or was not loaded. Reload the page; if that does not help, tell who runs the server.',
+          'A part of this page failed or was not loaded. Reload the page. If this does not help, inform the operator of the server.',
         );
         break;
       case 'fault':
@@ -227,7 +227,7 @@ export class App {
     const act = (words: string, key: string, action: () => void): void =>
       keys.add({ keys: [key], sign: key.toUpperCase(), words, act: action });
     act('share this session', 'l', () => this.company.share.open());
-    act('light, dark, or as the system', 't', () => theme.next());
+    act('switch between light, dark and system theme', 't', () => theme.next());
     new KeyGrab(
       keys,
       this.grabber,

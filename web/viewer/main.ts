@@ -7,7 +7,7 @@ try {
 } catch (error) {
   showObstacle(
     'page',
-    'This page cannot draw: it needs a browser with WebGL 2 switched on. Switch it on in the browser’s settings, or open the page in another browser.',
+    'This page needs a browser with WebGL 2. Enable it in the settings of the browser, or use another browser.',
   );
   element('connection', HTMLElement).hidden = true;
   throw error;

@@ -33,7 +33,7 @@ export class AddedParticles {
     if (this.count === 0) return;
     const chances = symbols.bits(12);
     const order = symbols.bits(5);
-    if (chances === 0) badBlock('its numbers have no chances');
+    if (chances === 0) badBlock('its numbers have the probability 0');
     let next = 0;
     for (let i = 0; i < this.count; ++i) {
       if (!symbols.flag(chances)) next += 1 + readGap(symbols, order);

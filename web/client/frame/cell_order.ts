@@ -60,7 +60,7 @@ export class CellOrder {
       begin = (begin + particles) | 0;
     }
     this.cellCount = cell;
-    if (begin !== count) throw new Error('particles lost');
+    if (begin !== count) throw new Error('particles are missing');
   }
 
   private fillCells(count: number): void {

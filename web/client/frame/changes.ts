@@ -19,7 +19,7 @@ export function readFactor(symbols: SymbolReader): number {
 
 function readChance(symbols: SymbolReader): number {
   const chance = symbols.bits(12);
-  if (chance === 0) badBlock('nothing has a chance to go');
+  if (chance === 0) badBlock('its removals have the probability 0');
   return chance;
 }
 
@@ -105,7 +105,7 @@ export class ParticleChanges {
         numbers[place++] = added.numbers[next++]!;
       }
       if (next < added.count && added.numbers[next] === number) {
-        badBlock('what comes is there already');
+        badBlock('a new particle exists already');
       }
       newPlaces[i] = place;
       numbers[place++] = number;

@@ -38,7 +38,8 @@ export class SymbolReader {
       const low = this.word();
       this.states[lane] = low | (this.word() << 16);
     }
-    for (const state of this.states) if (state < kLeastState) badBlock('its states are none');
+    for (const state of this.states)
+      if (state < kLeastState) badBlock('its states are out of range');
   }
 
   /** Whether there can be so many things that take a bit or more each. */
@@ -53,7 +54,7 @@ export class SymbolReader {
       throw new FrameError('extra_bytes', `${left} bytes after the last symbol`);
     }
     for (const state of this.states) {
-      if (state !== kLeastState) badBlock('its symbols end where no encoder began');
+      if (state !== kLeastState) badBlock('its final states are wrong');
     }
   }
 
@@ -114,7 +115,7 @@ export class SymbolReader {
 
   residualClass(): number {
     const index = this.bits(7);
-    if (index >= kClasses) badBlock('it has a class that there is not');
+    if (index >= kClasses) badBlock('its class is above 67');
     return index;
   }
 

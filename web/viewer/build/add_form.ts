@@ -49,7 +49,7 @@ export class AddForm {
     private readonly fail: (words: string) => void,
   ) {
     this.file.hidden = true;
-    this.placeButton = makeButton('Place it in the picture', () => {
+    this.placeButton = makeButton('Place it in the view', () => {
       const { choice } = this;
       if (choice) place(choice);
     });
@@ -107,8 +107,7 @@ export class AddForm {
     const chosen = this.material.value;
     const kind = this.kind.value as BodyKindName;
     const names = this.scene ? materialsFor(this.scene, kind).map(({ name }) => name) : [];
-    const words = (name: string): string =>
-      this.known.has(name) ? name : `${name} (new in this scene)`;
+    const words = (name: string): string => (this.known.has(name) ? name : `${name} (new)`);
     this.material.replaceChildren(...names.map((name) => new Option(words(name), name)));
     if (names.includes(chosen)) this.material.value = chosen;
     this.write();

@@ -73,7 +73,7 @@ export class BodyEdits {
   async remake(id: number, name: string, material: string): Promise<void> {
     const before = await this.record(id, name);
     if (!before) {
-      return this.desk.fail(`The scene does not tell how “${name}” was made.`);
+      return this.desk.fail(`The scene does not contain the shape of “${name}”.`);
     }
     const after: BodyRecord = { ...before, body: { ...before.body, material } };
     const living: Living = { id };
@@ -118,7 +118,10 @@ export class BodyEdits {
     const [now] = state?.bodies ?? [];
     if (!scene || !made || !now) return undefined;
     const { record, isWhole } = recordOf(scene, made, now);
-    if (!isWhole) this.desk.say(`“${name}” is so large that it comes back in its first shape.`);
+    if (!isWhole)
+      this.desk.say(
+        `“${name}” is too large to keep its deformation. It returns in its initial shape.`,
+      );
     return record;
   }
 }

@@ -56,7 +56,7 @@ export class Builder {
       view.stage,
       view.world,
       () => this.showPlacing(false),
-      () => desk.say('There is something already: put it where it is blue.'),
+      () => desk.say('The position is occupied. Choose a position where the body is blue.'),
     );
     this.undoButton.id = 'undo';
     this.redoButton.id = 'redo';
@@ -116,7 +116,7 @@ export class Builder {
 
   private async add(choice: BodyChoice, { x, y, z }: Vector3): Promise<void> {
     const scene = await this.document.get();
-    if (!scene) return this.desk.fail('The server does not tell what the scene is made of.');
+    if (!scene) return this.desk.fail('The server does not report the materials of the scene.');
     const taken = new Set([
       ...scene.bodies.map(({ name }) => name),
       ...(this.description?.bodies ?? []).map(({ name }) => name),
@@ -133,7 +133,7 @@ export class Builder {
     this.placing(isPlacing);
     this.hint.hidden = !isPlacing;
     this.hint.textContent = isPlacing
-      ? 'Click where it is to be, or move it by the arrows and press Enter; Esc leaves it.'
+      ? 'Click the position, or move the body with the arrow keys and press Enter. Esc cancels.'
       : '';
     if (isPlacing) element('view', HTMLCanvasElement).focus();
   }

@@ -5,8 +5,8 @@ export type Law = NonNullable<SceneInterface['law']>;
 
 export const kLaws: Readonly<Record<Law, string>> = {
   penalty: 'springs and friction',
-  projection: 'no overlap, friction',
-  lennard_jones: 'a layer that sticks',
+  projection: 'no overlap, with friction',
+  lennard_jones: 'adhesive layer',
   sph: 'the liquid’s pressure',
 };
 
@@ -26,13 +26,13 @@ const field = (name: string, label: string, unit: string, min: number, max: numb
 
 const kStiffness = field('stiffness', 'Stiffness', 'N/m', 0, 1e12);
 const kDamping = { ...field('damping', 'Damping', 'N s/m', 0, 1e12), usual: 0 };
-const kFriction = { ...field('friction', 'Friction', 'Coulomb’s coefficient', 0, 10), usual: 0 };
+const kFriction = { ...field('friction', 'Friction', 'Coulomb coefficient', 0, 10), usual: 0 };
 const kThreshold = {
-  ...field('threshold', 'Threshold', 'm, nearer than which they push', 1e-6, 1e6),
+  ...field('threshold', 'Threshold', 'm, distance below which they push', 1e-6, 1e6),
   otherwise: 'by radii',
 };
 const kReach = { ...field('reach', 'Reach', 'thresholds', 1.1, 4), usual: 2 };
-const kRestitution = field('restitution', 'Restitution', 'speed after over before', 0, 1);
+const kRestitution = field('restitution', 'Restitution', 'separation speed / approach speed', 0, 1);
 const kAngle = { ...field('contact_angle', 'Contact angle', 'degrees', 30, 150), usual: 90 };
 
 /** The constants of an interface, as SCENE.md has them. */

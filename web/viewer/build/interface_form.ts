@@ -33,17 +33,17 @@ export class InterfaceForm implements ParameterForm {
 
   constructor(private readonly change: Change<'world.set_interface'>) {
     for (const [value, words] of Object.entries(kLaws)) this.law.add(new Option(words, value));
-    this.reset = makeButton('All as it was', () => void this.goBack());
+    this.reset = makeButton('Reset all', () => void this.goBack());
     this.reset.id = 'contact-reset';
     for (const picker of [this.first, this.second]) {
       picker.addEventListener('change', () => this.write());
     }
     this.law.addEventListener('change', () => void this.setLaw(this.law.value as Law));
-    const label = make('label', { htmlFor: 'contact-law' }, 'Pushed apart by');
+    const label = make('label', { htmlFor: 'contact-law' }, 'Law');
     this.element = make(
       'div',
       { className: 'build-form' },
-      make('h3', {}, 'Where two meet'),
+      make('h3', {}, 'Interface'),
       make('div', { className: 'row' }, this.first, this.second),
       make('div', { className: 'row' }, label, this.law),
       this.fault,
@@ -145,9 +145,9 @@ function isAlike(scene: Scene, a: SceneInterface, b: SceneInterface): boolean {
 function noteOf(scene: Scene, [a, b]: [string, string], now: SceneInterface): string {
   const isLiquid = (name: string): boolean =>
     scene.materials.some((material) => material.name === name && material.liquid);
-  if (a === b && isLiquid(a)) return 'Bodies of one liquid are one: nothing parts them.';
+  if (a === b && isLiquid(a)) return 'Bodies of one liquid have no interface.';
   if (ownInterface(scene, [a, b])) return '';
-  return now.law === 'sph' ? 'As liquids meet others here.' : 'As all others meet in this scene.';
+  return now.law === 'sph' ? 'The default of liquids in this scene.' : 'The default of this scene.';
 }
 
 /** What is chosen stays, where it is still there. */

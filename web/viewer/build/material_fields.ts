@@ -39,7 +39,7 @@ const kFields: readonly MaterialField[] = [
     },
   ]),
   { path: ['bulk_modulus'], label: 'Bulk modulus', unit: 'Pa', min: 0, max: 1e12 },
-  { path: ['tearing_strain'], label: 'Tears at a strain of', unit: '', min: 1e-6, max: 1e6 },
+  { path: ['tearing_strain'], label: 'Tearing strain', unit: '', min: 1e-6, max: 1e6 },
 ];
 
 /** The constants that this material has. */

@@ -21,14 +21,14 @@ export async function readMesh(file: File): Promise<MeshShape | { fault: string 
   const { mergeCorners, parseCorners } = await import('./mesh_parser'); // few need it
   const corners = parseCorners(await file.arrayBuffer(), /\.stl$/i.test(name));
   if (corners.length < 3 || !corners.flat().every(Number.isFinite)) {
-    return { fault: `“${name}” has no triangles: it must be an .obj or .stl file.` };
+    return { fault: `“${name}” contains no triangles. The file must be .obj or .stl.` };
   }
   const fitted = fit(corners);
   if (!fitted) return { fault: `“${name}” is a single point.` };
   const { vertices, triangles } = mergeCorners(fitted, kTolerance);
   if (4 * (vertices.length + triangles.length) > kMostValues) {
     const most = Math.floor(kMostValues / 6); // closed surfaces have half as many vertices
-    return { fault: `“${name}” has too many triangles; about ${most} can be sent.` };
+    return { fault: `“${name}” has too many triangles. About ${most} are possible.` };
   }
   return { name: name.slice(0, 64), vertices, triangles, volume: meshVolume(vertices, triangles) };
 }

@@ -38,7 +38,7 @@ export class Pour {
   ) {
     const { drop } = this;
     drop.id = 'pour';
-    drop.title = 'Lets a drop of the liquid fall in; hold it for more';
+    drop.title = 'Pours a drop of liquid; hold for more';
     drop.addEventListener('pointerdown', ({ button }) => button === 0 && this.begin());
     for (const type of ['pointerup', 'pointercancel', 'pointerleave', 'blur'] as const) {
       drop.addEventListener(type, () => this.end());
@@ -139,7 +139,7 @@ export class Pour {
     const place = placeFor(this.world, radius + spacing / 2);
     if (!place) {
       this.end();
-      return this.desk.say('There is no room at the top: pour once there is.');
+      return this.desk.say('There is no room at the top. Pour again later.');
     }
     this.isBusy = this.isAwaited = true;
     const body = this.dropAt(place, example, radius);

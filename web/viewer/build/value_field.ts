@@ -35,7 +35,7 @@ export class ValueField {
     [this.input.min, this.input.max] = [String(min), String(max)];
     this.input.title = `From ${min} to ${max}`;
     this.input.addEventListener('change', () => void this.change());
-    this.reset = makeButton('↺', () => void this.apply(this.initial), `${label} as it was`);
+    this.reset = makeButton('↺', () => void this.apply(this.initial), `Reset ${label}`);
     this.unit.textContent = unit;
     const words = make('label', { htmlFor: id }, label, this.unit);
     const { input, reset, fault } = this;
@@ -70,7 +70,7 @@ export class ValueField {
     input.blur(); // so that the keys play and pause again
     if (isGood) return this.apply(value);
     const kind = spec.isWhole ? 'whole number' : 'number';
-    this.refuse(`It must be a ${kind} from ${spec.min} to ${spec.max}.`);
+    this.refuse(`The value must be a ${kind} from ${spec.min} to ${spec.max}.`);
   }
 
   private async apply(value: number | undefined): Promise<void> {

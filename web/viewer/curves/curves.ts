@@ -108,7 +108,7 @@ export class Curves {
       this.charts = kCharts.map((plan) => new Chart(plan));
       this.place.append(...this.charts.map((chart) => chart.element));
     } catch {
-      const words = 'The curves could not be fetched from the server; open this section again.';
+      const words = 'The server did not send the curves. Open this section again.';
       this.place.append(make('p', { className: 'soft' }, words));
     } finally {
       this.isLoading = false;

@@ -26,7 +26,7 @@ export interface ChartPlan {
 export const kCharts: readonly ChartPlan[] = [
   {
     title: 'Energy',
-    explanation: 'Of all bodies, by kind; that of gravity is about the origin.',
+    explanation: 'Of all bodies, by kind. The origin has zero gravitational energy.',
     series: [
       { name: 'kinetic', label: 'motion', colour: '#3f87d9' },
       { name: 'gravitational', label: 'gravity', colour: '#e08a3c' },
@@ -37,13 +37,13 @@ export const kCharts: readonly ChartPlan[] = [
   },
   {
     title: 'Momentum',
-    explanation: 'How strong that of all bodies together is.',
+    explanation: 'Magnitude of the sum over all bodies.',
     series: [{ name: 'momentum', label: 'momentum', colour: '#a86cc9' }],
     format: (value) => `${formatQuantity(value)} kg m/s`,
   },
   {
-    title: 'Liquid denser than at rest',
-    explanation: 'By how much, on average and where it is most: less is more accurate.',
+    title: 'Density error of liquids',
+    explanation: 'Mean and maximum relative excess over the rest density.',
     series: [
       { name: 'density', label: 'mean', colour: '#3f87d9' },
       { name: 'densest', label: 'most', colour: '#d4577a' },
@@ -52,13 +52,13 @@ export const kCharts: readonly ChartPlan[] = [
   },
   {
     title: 'Simulated seconds per second',
-    explanation: 'As fast as set, unless the server cannot keep up.',
+    explanation: 'Equals the set speed, unless the server is too slow.',
     series: [{ name: 'rate', label: 'rate', colour: '#3f87d9' }],
     format: formatFactor,
   },
   {
-    title: 'Age of the picture',
-    explanation: 'From the server’s publishing a state to its being drawn here.',
+    title: 'Age of the frame',
+    explanation: 'Time from the publication of a state to its display.',
     series: [{ name: 'age', label: 'age', colour: '#d4577a' }],
     format: formatMilliseconds,
   },

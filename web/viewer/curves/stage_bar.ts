@@ -17,14 +17,14 @@ export class StageBar {
 
   constructor() {
     this.element = make('figure', { className: 'curve' });
-    const title = make('figcaption', {}, make('b', {}, 'Where the time goes'));
+    const title = make('figcaption', {}, make('b', {}, 'Computing time'));
     this.element.append(title, this.words, this.bar, this.list);
     this.show(undefined, 1, 1);
   }
 
   show(profile: TickProfile | undefined, tickSeconds: number, speed: number): void {
     if (!profile) {
-      this.words.textContent = 'It stands still: what a tick takes is seen while it plays.';
+      this.words.textContent = 'The session is paused. Computing times appear while it plays.';
       return;
     }
     this.words.textContent = profileInWords(profile, tickSeconds, speed);

@@ -14,14 +14,14 @@ const kGroups: Readonly<Record<string, readonly string[]>> = {
     'cohesion',
     'adhesion',
   ],
-  'keeping liquids dense': [
+  'pressure of liquids': [
     'recall_pressure',
     'project_velocities',
     'correct_density',
     'cell_pressure',
     'cell_forces',
   ],
-  'liquids against bodies': ['solid_pressure', 'liquid_forces_on_solids'],
+  'liquids and bodies': ['solid_pressure', 'liquid_forces_on_solids'],
   'contacts and walls': ['find_contacts', 'contacts', 'project_contacts', 'walls', 'hold_inside'],
   'springs of deformable bodies': [
     'springs',
@@ -42,7 +42,7 @@ const kGroups: Readonly<Record<string, readonly string[]>> = {
     'sleep',
     'change_bodies',
   ],
-  'watching that nothing breaks': ['guard', 'keep_state'],
+  'checks of each step': ['guard', 'keep_state'],
 };
 
 const kOther = 'other work';
@@ -102,10 +102,12 @@ export function profileInWords(
   const allowed = tickSeconds / speed;
   const milliseconds = (value: number): string => `${(1000 * value).toPrecision(2)} ms`;
   const [first] = parts;
-  const most = first ? ` Most goes into ${first.words}: ${Math.round(100 * first.share)} %.` : '';
+  const most = first
+    ? ` The largest part is ${first.words}: ${Math.round(100 * first.share)} %.`
+    : '';
   const enough = seconds <= allowed;
   const verdict = enough
-    ? 'so it keeps up.'
+    ? 'so the speed is reached.'
     : `so it runs ${(seconds / allowed).toPrecision(2)} times slower than set: fewer particles or a lower speed help.`;
   return `A tick takes ${milliseconds(seconds)} of the ${milliseconds(allowed)} that it may take, ${verdict}${most}`;
 }

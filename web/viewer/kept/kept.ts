@@ -56,6 +56,6 @@ export class Kept {
     this.note.hidden = storage !== 'memory';
     this.recordings.showServer(storage !== 'memory');
     this.note.textContent =
-      'This server keeps all this in memory: it is gone when the server ends. Download what you want to have.';
+      'This server has no data folder. All of this is lost when the server ends. Download important items.';
   }
 }

@@ -12,7 +12,7 @@ const kMostBytes = 256 * 1024 * 1024;
 /** Why a file is no recording, in words; undefined where it may be one: the server looks closer. */
 export function faultOfRecording(name: string, size: number): string | undefined {
   if (size === 0) return `“${name}” is empty.`;
-  if (size > kMostBytes) return `“${name}” is too large: a recording has at most 256 MiB.`;
+  if (size > kMostBytes) return `“${name}” is too large. A recording has at most 256 MiB.`;
   return undefined;
 }
 
@@ -33,7 +33,7 @@ export async function sendRecording(
     recording = answer.recording;
     tell(answer.received / file.size);
   }
-  if (recording === undefined) throw new Error('an empty file is no recording');
+  if (recording === undefined) throw new Error('the file is empty');
   return recording;
 }
 

@@ -64,8 +64,8 @@ export class Recordings {
   private write(): void {
     this.exporter.disabled = this.watcher.disabled = !this.isLive || !this.records;
     this.note.textContent = this.records
-      ? 'All that happens here is recorded by itself.'
-      : 'This server records nothing: start it with --data and a folder to have recordings of what happens here.';
+      ? 'The server records this session.'
+      : 'This server does not record sessions. To record, start it with --data FOLDER.';
   }
 
   private async export(): Promise<void> {

@@ -8,8 +8,8 @@ import { SceneKeys } from './scene_keys';
 export class SavedScenes {
   readonly list = new NamedList(
     'own-scenes',
-    'Scenes for everybody',
-    { use: 'Load', none: 'None yet: save the scene that was loaded here under a name.' },
+    'Shared scenes',
+    { use: 'Load', none: 'No scenes. Enter a name to save the loaded scene.' },
     (name) => void this.save(name),
   );
   private readonly keys = new SceneKeys();

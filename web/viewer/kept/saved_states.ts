@@ -7,8 +7,8 @@ import { NamedList, whenInWords } from './named_list';
 export class SavedStates {
   readonly list = new NamedList(
     'states',
-    'Moments of this session',
-    { use: 'Go back', none: 'None yet: save one, and go back to it whenever you like.' },
+    'Saved states of this session',
+    { use: 'Go back', none: 'No states. Save one to return to it later.' },
     (name) => void this.save(name),
   );
 

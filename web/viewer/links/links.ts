@@ -99,15 +99,15 @@ export class Links {
       ...(settings.springs && newest
         ? [
             springs === 0
-              ? 'There are no springs here.'
-              : `Springs: red are stretched, blue are pressed, by up to ${formatQuantity(100 * strain)} %.`,
+              ? 'This scene has no springs.'
+              : `Springs: red are stretched, blue are compressed, by up to ${formatQuantity(100 * strain)} %.`,
           ]
         : []),
       ...(settings.contacts && newest
         ? [
             contacts === 0
-              ? 'Nothing touches now; liquids meet bodies by pressure, without contacts.'
-              : `Contacts: the redder, the harder they push, up to ${formatQuantity(force)} N.`,
+              ? 'There are no contacts. Liquids act on bodies by pressure, without contacts.'
+              : `Contacts: red for the largest forces, up to ${formatQuantity(force)} N.`,
           ]
         : []),
     ];

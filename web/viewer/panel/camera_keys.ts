@@ -23,7 +23,7 @@ export function addCameraKeys(keys: Keys, camera: Camera, home: () => void): voi
   keys.add({
     keys: Object.keys(kTurns),
     sign: '← ↑ ↓ →',
-    words: 'turn the view, where the picture has the focus',
+    words: 'turn the view, if it has the focus',
     repeats: true,
     on: camera.canvas,
     act: (key) => {
@@ -38,5 +38,5 @@ export function addCameraKeys(keys: Keys, camera: Camera, home: () => void): voi
     repeats: true,
     act: (key) => (camera.pose = turned(camera.pose, 0, 0, key === '-' ? 1 / kZoom : kZoom)),
   });
-  keys.add({ keys: ['f'], sign: 'F', words: 'see the whole scene', act: home });
+  keys.add({ keys: ['f'], sign: 'F', words: 'show the whole scene', act: home });
 }

@@ -62,11 +62,11 @@ export class ConnectionLine {
     if (this.hasPicture) return;
     window.clearTimeout(this.absence);
     if (state.name === 'waiting') {
-      showObstacle('server', `${words(state)}. This page tries again by itself.`);
+      showObstacle('server', `${words(state)}. The page reconnects automatically.`);
     } else if (isEnded(state)) {
       showObstacle('server', `${words(state)}.`);
     } else {
-      const say = (): void => showObstacle('server', 'Waiting for the first picture …');
+      const say = (): void => showObstacle('server', 'Waiting for the first frame …');
       this.absence = window.setTimeout(say, kSoonMs);
     }
   }

@@ -51,16 +51,12 @@ export class DeviceTilt {
 
   private async begin(): Promise<void> {
     if (!('DeviceOrientationEvent' in window)) {
-      return this.fail(
-        'Browsers tell how a device is held to secure pages only: open it by https.',
-      );
+      return this.fail('Device orientation needs a secure page. Open the page with https.');
     }
     const { requestPermission } = DeviceOrientationEvent as Asking;
     const answer = (await requestPermission?.().catch(() => 'denied')) ?? 'granted';
     if (answer !== 'granted') {
-      return this.fail(
-        'The browser does not tell the page how the device is held: allow it there.',
-      );
+      return this.fail('The browser blocks the device orientation. Allow it in the browser.');
     }
     this.isOn = true;
     this.start = undefined;
@@ -68,7 +64,7 @@ export class DeviceTilt {
     window.addEventListener('deviceorientation', this.listener);
     this.silence = window.setTimeout(() => {
       this.stop();
-      this.fail('This device does not tell how it is held.');
+      this.fail('This device does not report its orientation.');
     }, kSilenceMs);
   }
 

@@ -9,18 +9,17 @@ const kMostFaults = 3;
  */
 const kAdvice: Readonly<Record<string, string>> = {
   disconnected: 'Try again once the page is connected.',
-  internal_error:
-    'The fault is the server’s; nothing was changed. Try something else, or tell who runs it.',
-  limit_reached: 'Ask for less, or remove something first, and try again.',
-  no_such_body: 'It may have been removed meanwhile.',
+  internal_error: 'The server has failed. Nothing was changed. Inform the operator of the server.',
+  limit_reached: 'Request less, or remove something, and try again.',
+  no_such_body: 'It may have been removed.',
   no_such_scene: 'Choose another one.',
-  no_such_session: 'It may have ended.',
-  not_authenticated: 'Open the link that you were given, or ask for a new one.',
+  no_such_session: 'The session may have ended.',
+  not_authenticated: 'Open your invitation link, or ask for a new one.',
   not_recovered:
-    'One that is recovering comes soon; who runs the server can tell of one that is lost.',
+    'Wait while the session is recovering. If it is lost, inform the operator of the server.',
   storage_failed:
-    'Nothing was changed: free space on the server’s disk, or ask who runs it, and try again.',
-  timed_out: 'It is busy, or the line is slow: try again.',
+    'Nothing was changed. Free space on the server’s disk, or inform its operator, and try again.',
+  timed_out: 'The server is busy, or the connection is slow. Try again.',
 };
 
 /** What the server refused, in words, and what to do. */
@@ -44,22 +43,22 @@ export function needsControl({ kind, data }: RequestError): boolean {
 function whatHappened(error: RequestError): string {
   const { kind, message, data } = error;
   if (kind === 'method_not_found') {
-    return `This server is older than this page and cannot do that: ${message}`;
+    return `This server is older than the page and does not support this: ${message}`;
   }
-  if (kind === 'timed_out') return 'The server has not answered';
-  if (needsControl(error)) return 'You watch here, and only who controls may do that';
+  if (kind === 'timed_out') return 'The server did not answer';
+  if (needsControl(error)) return 'Viewers cannot do this. It needs control';
   if (kind === 'not_allowed' && data?.least_role !== undefined) {
-    return `Only the ${data.least_role} may do that here`;
+    return `This needs the role ${data.least_role}`;
   }
   return message;
 }
 
 function adviceFor({ kind, data }: RequestError): string | undefined {
   if (kind === 'busy' && data?.holder !== undefined) {
-    return `Wait until ${data.holder.name} lets go, or take another body.`;
+    return `Wait until ${data.holder.name} releases it, or use another body.`;
   }
   if (kind === 'rate_limited' && data?.retry_after !== undefined) {
-    return `That was too much at once: try again in ${Math.max(1, Math.ceil(data.retry_after))} s.`;
+    return `Too many requests. Try again in ${Math.max(1, Math.ceil(data.retry_after))} s.`;
   }
   return undefined;
 }

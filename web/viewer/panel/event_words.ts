@@ -20,12 +20,12 @@ export function eventInWords(
     case 'server.draining':
       return {
         level: 'warning',
-        text: `The server stops in ${Math.ceil(params.seconds)} s at the latest; this page comes back by itself once it runs again.`,
+        text: `The server stops within ${Math.ceil(params.seconds)} s. The page reconnects when the server runs again.`,
       };
     case 'session.diverged':
       return {
         level: 'error',
-        text: `The session did not come back as it was, and stands still: ${params.reason}. Reset it, or choose a scene.`,
+        text: `The restored session differs from its log and is paused: ${params.reason}. Reset it, or choose a scene.`,
       };
     case 'grab.ended': // the marker is gone once the grab is
     case 'session.description': // comes as a report of its own

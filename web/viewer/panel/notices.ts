@@ -55,7 +55,7 @@ export class Notices {
 }
 
 const kCauses: Readonly<Record<GuardEvent['cause'], string>> = {
-  non_finite: 'got a position or velocity that is not a number',
+  non_finite: 'has a position or velocity that is not a number',
   outside_domain: 'left the domain',
   too_fast: 'moved too fast',
   too_many_pairs: 'was crushed',
@@ -67,6 +67,6 @@ export function describeGuard(guard: GuardEvent, description?: SessionDescriptio
   const name = body ? `“${body.name}”` : `body ${guard.body}`;
   const what = `At ${formatSeconds(guard.time)} particle ${guard.particle} of ${name} ${kCauses[guard.cause]}`;
   return guard.recovered
-    ? `${what}; the step was repeated with smaller ones.`
-    : `${what}. The session has paused at the last good state; reset it to go on.`;
+    ? `${what}. The step was repeated in smaller parts.`
+    : `${what}. The session has paused at the last valid state. Reset it to continue.`;
 }

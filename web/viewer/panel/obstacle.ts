@@ -22,7 +22,7 @@ export function watchGraphics(canvas: HTMLCanvasElement, redraw: () => void): vo
   canvas.addEventListener('webglcontextlost', () =>
     showObstacle(
       'graphics',
-      'The browser has stopped the drawing. It goes on when the browser allows it; if it does not, reload the page.',
+      'The browser has stopped the graphics. They continue when the browser allows it. Otherwise reload the page.',
     ),
   );
   canvas.addEventListener('webglcontextrestored', () => {

@@ -20,7 +20,7 @@ export function lossInWords({
   detail,
 }: Pick<FrameHeader, 'stride' | 'detail'>): string | undefined {
   if (stride === 1 && kSigns[detail] === undefined) return undefined;
-  const parts = stride === 1 ? [] : [`1 picture in ${stride}`];
+  const parts = stride === 1 ? [] : [`1 frame in ${stride}`];
   const part = kSigns[detail];
   if (part !== undefined) parts.push(`${part} of the particles`);
   return parts.join(', ');

@@ -10,13 +10,13 @@ export function readScene(text: string, file: string): { scene: Scene } | { faul
   try {
     value = JSON.parse(text);
   } catch {
-    return { fault: `“${file}” is not JSON: a scene file is one JSON object.` };
+    return { fault: `“${file}” is not JSON. A scene file is one JSON object.` };
   }
   const isScene =
     typeof value === 'object' &&
     value !== null &&
     (value as { format?: unknown }).format === 'vat.scene/1';
-  if (!isScene) return { fault: `“${file}” is not a scene: its format must be "vat.scene/1".` };
+  if (!isScene) return { fault: `“${file}” is not a scene. Its format must be "vat.scene/1".` };
   const scene = value as Scene;
   return { scene: { ...scene, name: scene.name ?? file.replace(/\.json$/i, '').slice(0, 48) } };
 }
@@ -66,7 +66,7 @@ export class SceneFile {
   private async take(file: File | undefined): Promise<void> {
     if (!file) return;
     if (file.size > kMostBytes) {
-      this.actions.refuse(`“${file.name}” is too large: a scene has at most 4 MiB.`);
+      this.actions.refuse(`“${file.name}” is too large. A scene has at most 4 MiB.`);
       return;
     }
     const read = readScene(await file.text(), file.name);

@@ -58,7 +58,7 @@ export class Scenes {
     this.showStranger(entry ? undefined : title);
     this.picker.value = entry?.name ?? '';
     document.title = `${title} – vat`;
-    this.text.textContent = entry?.description ?? 'A scene from outside of the catalogue.';
+    this.text.textContent = entry?.description ?? 'A scene that is not in the catalogue.';
     this.explainColours(description);
   }
 

@@ -33,28 +33,29 @@ export function summarise(state: State): string {
   const parts = [state.playing ? playing(state) : 'Paused'];
   parts.push(state.scene);
   if (state.people > 1) parts.push(`${state.people} people here`);
-  if (state.held !== undefined) parts.push(`you hold ${state.held}: arrows pull it, Esc lets go`);
+  if (state.held !== undefined)
+    parts.push(`you hold ${state.held}: arrow keys pull it, Esc releases it`);
   if (state.role === 'viewer') parts.push('you watch: ask for control under People');
   const text = `${parts.join(' · ')}.`;
   if (state.playing && state.silentSeconds > kSilent) {
-    return `${text} No new picture for some seconds: the server is busy, or the line is slow.`;
+    return `${text} No new frame for some seconds. The server is busy, or the connection is slow.`;
   }
   return text;
 }
 
 function absent({ isEnded, hasPicture }: State): string {
-  if (!hasPicture) return 'There is no picture yet.';
-  const what = 'What you see is the last picture.';
+  if (!hasPicture) return 'No frame has arrived.';
+  const what = 'This is the last frame.';
   return isEnded
-    ? `${what} You are not in this session any more: “Come back” asks to be let in again.`
-    : `${what} It goes on by itself once the server answers.`;
+    ? `${what} You have left this session. “Come back” joins it again.`
+    : `${what} It continues when the server answers.`;
 }
 
 function playing({ speed, slow, factor }: State): string {
   const wanted = speed === 1 ? 'in real time' : `at ${formatFactor(speed)}`;
   if (!slow || factor > kNearly * speed) return `Plays ${wanted}`;
   // In steps of a tenth: a text that is read out must not change all the time.
-  return `Plays in slow motion, at about ${factor.toFixed(1)} ×: the server cannot go faster`;
+  return `Plays in slow motion, at about ${factor.toFixed(1)} ×. The server cannot compute faster`;
 }
 
 /** Whether only the pace is another, which is so all the time where a server is too slow. */

@@ -6,7 +6,7 @@ const kKey = 'vat.theme';
 const kNext: Readonly<Record<Choice, Choice>> = { system: 'dark', dark: 'light', light: 'system' };
 const kSigns: Readonly<Record<Choice, string>> = { system: '◐', dark: '☾', light: '☀' };
 const kWords: Readonly<Record<Choice, string>> = {
-  system: 'as the system',
+  system: 'system',
   dark: 'dark',
   light: 'light',
 };

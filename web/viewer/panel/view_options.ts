@@ -10,7 +10,7 @@ type Words = { readonly [N in ChoiceName]: Readonly<Record<Choice<N>, string>> }
 
 const kWords: Words = {
   liquid: {
-    auto: 'best for this machine',
+    auto: 'automatic',
     fluid: 'clear liquid',
     surface: 'surface',
     splats: 'soft splats',
@@ -27,7 +27,7 @@ const kWords: Words = {
   },
   map: { viridis: 'viridis', cividis: 'cividis', turbo: 'turbo', 'blue-red': 'blue to red' },
   clip: { off: 'nothing', x: 'along x', y: 'along y', z: 'along z' },
-  smooth: { auto: 'best for this machine', on: 'between frames', off: 'frame by frame' },
+  smooth: { auto: 'automatic', on: 'between frames', off: 'frame by frame' },
 };
 
 /** Between two looks at the delay, which changes all the time [ms]. */
@@ -54,7 +54,7 @@ export class ViewOptions {
       this.only(isOfNumbers, this.range()),
       this.choice('clip', 'Cut away'),
       this.only(isClipped, this.slider('clipAt', 'Cut at')),
-      this.only(isClipped, this.toggle('clipOther', 'The other side')),
+      this.only(isClipped, this.toggle('clipOther', 'Opposite side')),
       this.toggle('arrows', 'Velocity arrows'),
       this.toggle('axes', 'Axes of rigid bodies'),
       this.toggle('cells', 'Cells'),
@@ -77,7 +77,7 @@ export class ViewOptions {
 
   private showDelay(): void {
     const { delaySeconds } = this.view;
-    const text = `Shown ${formatMilliseconds(delaySeconds)} later, so that it moves evenly.`;
+    const text = `Shown with a delay of ${formatMilliseconds(delaySeconds)}, for even motion.`;
     write(this.delay, delaySeconds > 0 ? text : undefined);
   }
 
@@ -129,7 +129,7 @@ export class ViewOptions {
     });
     group.append(fields[0]!, '–', fields[1]!);
     const whole = row('Range', group);
-    whole.title = 'Values at the ends of the colours; empty: the least and greatest that there are';
+    whole.title = 'Values at the ends of the colour map; empty: minimum and maximum';
     return whole;
   }
 

@@ -55,7 +55,7 @@ export class Company {
   }
 
   askForControl(): void {
-    this.call('control.request', {}, 'Those in control are asked.');
+    this.call('control.request', {}, 'Your request was sent.');
   }
 
   /** Owners keep what they may do; others watch from then on. */
@@ -79,7 +79,8 @@ function changeInWords(
   after: RoleName | undefined,
 ): string | undefined {
   if (before === undefined || after === undefined || before === after) return undefined;
-  if (after === 'viewer') return 'You watch now: ask for control under People.';
-  if (before === 'viewer') return 'You control this session now.';
-  return after === 'owner' ? 'This session is yours now.' : undefined;
+  if (after === 'viewer')
+    return 'You are a viewer now. To change the scene, ask for control under People.';
+  if (before === 'viewer') return 'You are a controller now.';
+  return after === 'owner' ? 'You are the owner of this session now.' : undefined;
 }

@@ -101,7 +101,7 @@ export class PeopleList {
     const { people, actions } = this;
     if (people.isOwner && role !== 'admin') {
       const picker = document.createElement('select');
-      picker.ariaLabel = `What ${name} may do`;
+      picker.ariaLabel = `Role of ${name}`;
       picker.add(new Option('watches', 'viewer'));
       picker.add(new Option('controls', 'controller'));
       picker.add(new Option('owns the session', 'owner'));

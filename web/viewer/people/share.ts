@@ -76,7 +76,7 @@ export class Share {
   private inWords(): string {
     const { isOwner, settings } = this.people;
     const mayChange = !isOwner && settings?.default_role === 'controller';
-    return `Who opens this link sees the same session, live${mayChange ? ', and may change it too' : ''}.`;
+    return `This link opens the same session${mayChange ? ', with permission to change it' : ''}.`;
   }
 
   /** Owners invite; the link of others gives what the session gives to all. */
@@ -105,7 +105,7 @@ export class Share {
       this.copied.textContent = 'Copied.';
     } catch {
       // Browsers allow it to secure pages only.
-      this.copied.textContent = 'This browser does not let the page copy: press Ctrl+C.';
+      this.copied.textContent = 'The browser does not allow the page to copy. Press Ctrl+C.';
     }
   }
 }

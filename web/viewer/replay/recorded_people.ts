@@ -6,7 +6,7 @@ import type { Stage } from '../view/stage';
 
 /** Who took part when it was recorded: what they held, and where they drew it to. */
 export class RecordedCompany {
-  readonly list = make('ul', { id: 'replay-people', ariaLabel: 'Who took part then' });
+  readonly list = make('ul', { id: 'replay-people', ariaLabel: 'Recorded participants' });
   private readonly labels: Labels;
   private people: RecordedPeople = [];
 

@@ -74,7 +74,7 @@ export class ReplayBar {
     else if (!this.replay) return;
     else if (event === 'replay.people') this.company.show(params.people);
     else if (event === 'replay.diverged') this.showDivergence(params);
-    else if (event === 'replay.ended') this.words.textContent = 'This is the end of the recording.';
+    else if (event === 'replay.ended') this.words.textContent = 'The recording has ended.';
   }
 
   /** A frame of this tick is shown. */
@@ -115,6 +115,6 @@ export class ReplayBar {
     this.timeline.showDivergence(divergence?.position);
     if (!divergence) return;
     const at = formatSeconds((divergence.position - replay.begin) * tickSeconds);
-    words.textContent = `At ${at} what is computed here is not what was recorded: ${divergence.reason}. It has paused there; play goes on from what was computed, and the time line leads to any other place.`;
+    words.textContent = `At ${at}, the replay differs from the recording: ${divergence.reason}. It is paused there. Play continues from the computed state, and the time line leads to all other positions.`;
   }
 }

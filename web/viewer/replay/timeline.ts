@@ -16,7 +16,7 @@ export class Timeline {
     id: 'replay-position',
     min: '0',
     step: '1',
-    ariaLabel: 'Place in the recording',
+    ariaLabel: 'Position in the recording',
   });
   private readonly text = make('output', { id: 'replay-time' });
   private readonly mark = make('i', { id: 'replay-mark', hidden: true });

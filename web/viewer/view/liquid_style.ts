@@ -25,21 +25,24 @@ export function decideStyle(
 ): StyleDecision {
   const wantsFluid = chosen === 'auto' || chosen === 'fluid';
   if (wantsFluid && !graphics.drawsToFloats) {
-    return { style: 'splats', words: 'Splats: these graphics cannot draw a clear liquid.' };
+    return { style: 'splats', words: 'Splats: the graphics hardware cannot draw a clear liquid.' };
   }
   if (chosen === 'fluid' && graphics.isSoftware) {
-    return { style: 'fluid', words: 'Slow: the processor draws here, not a graphics card.' };
+    return { style: 'fluid', words: 'Slow: the browser draws without a graphics card.' };
   }
   if (chosen === 'surface' && particles > kMostInSurface) {
-    const words = `Splats: a surface is for liquids of up to ${kMostInSurface} particles.`;
+    const words = `Splats: surfaces are limited to ${kMostInSurface} particles.`;
     return { style: 'splats', words };
   }
   if (chosen !== 'auto') return { style: chosen, words: undefined };
   if (graphics.isSoftware) {
-    return { style: 'splats', words: 'Splats: the processor draws here, not a graphics card.' };
+    return { style: 'splats', words: 'Splats: the browser draws without a graphics card.' };
   }
   if (isSlow) {
-    return { style: 'splats', words: 'Splats: a clear liquid took these graphics too long.' };
+    return {
+      style: 'splats',
+      words: 'Splats: the graphics hardware is too slow for a clear liquid.',
+    };
   }
   return { style: 'fluid', words: undefined };
 }

@@ -76,8 +76,10 @@ export class Marks {
     const seconds = Number(this.uniforms.seconds.value.toPrecision(1));
     const centimetres = Number((100 * this.support).toPrecision(2));
     return [
-      ...(arrows ? [`Arrows point to where a particle would be in ${seconds} s.`] : []),
-      ...(cells ? [`Cells are ${centimetres} cm wide: as far as particles feel each other.`] : []),
+      ...(arrows ? [`Arrows show the distance that a particle moves in ${seconds} s.`] : []),
+      ...(cells
+        ? [`Cells are ${centimetres} cm wide, the interaction distance of particles.`]
+        : []),
     ];
   }
 
