@@ -121,7 +121,7 @@ TEST(BenchSoak, ServerOutlivesClientsOfAllManners) {
 
 // On smaller and shorter runs than those for which they are meant: sizes do not depend on what else
 // the machine does, times do.
-TEST(BenchCodec, FramesAreAsSmallAsTheyMustBe) {
+TEST(BenchCodec, FramesAreAsSmallAsTheyMustBeAndKeepTheirError) {
   const TemporaryFolder folder;
   const ProgramResult result =
       run_bench({"codec", "--quick", "--case", "dam-break-30k", "--case", "pool-settled", "--case",
@@ -138,20 +138,16 @@ TEST(BenchCodec, FramesAreAsSmallAsTheyMustBe) {
     EXPECT_EQ(targets.text(row, "passed"), "true") << what << targets.text(row, "measured");
   }
   EXPECT_EQ(sizes, 8U);
-}
-
-// Half a quantum, and the rounding of origin + quantum * steps.
-TEST(BenchCodec, TheErrorHoldsOnEveryFrame) {
-  const TemporaryFolder folder;
-  const ProgramResult result = run_bench(
-      {"codec", "--quick", "--case", "figure-2", "--no-web", "--output", folder.path().string()});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
   const Table table = read_csv((folder.path() / "codec.csv").string());
-  ASSERT_EQ(table.rows.size(), 8U);
+  std::size_t rows = 0;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    if (table.text(row, "case") != "figure-2") continue;
+    ++rows;
+    // Half a quantum, and the rounding of origin + quantum * steps.
     EXPECT_LE(table.number(row, "greatest error found [allowed]"), 1 + 1e-9);
     EXPECT_GT(table.number(row, "greatest error found [allowed]"), 0.5);
   }
+  EXPECT_EQ(rows, 8U);
   EXPECT_THAT(result.out, HasSubstr("16 bits, zstd"));
 }
 
