@@ -302,12 +302,8 @@ TEST_F(ReplayTest, TellsNothingThatLetsAnybodyIn) {
 
 class LimitedRecordings : public ReplayTest {
  protected:
-  LimitedRecordings() : ReplayTest(limits()) {}
-  static ServerLimits limits() {
-    ServerLimits limits;
-    limits.max_recording_bytes = 1024;  // a state of the scene has more
-    return limits;
-  }
+  LimitedRecordings()  // a state of the scene has more
+      : ReplayTest(limits_with(&ServerLimits::max_recording_bytes, 1024)) {}
 };
 
 TEST_F(LimitedRecordings, AreRefusedBeyondTheirSize) {
@@ -322,11 +318,8 @@ constexpr std::size_t kFewBytes = 45'000;
 
 class LongRecordings : public ReplayTest {
  protected:
-  LongRecordings() : ReplayTest(few_bytes(), rare_checkpoints()) {}
-  static ServerLimits few_bytes() {
-    ServerLimits limits;
-    limits.max_recording_bytes = kFewBytes;
-    return limits;
+  LongRecordings()
+      : ReplayTest(limits_with(&ServerLimits::max_recording_bytes, kFewBytes), rare_checkpoints()) {
   }
   static StorageLimits rare_checkpoints() {
     StorageLimits limits;
@@ -395,12 +388,7 @@ constexpr std::size_t kDownloadBytes = 200'000;
 
 class LimitedDownloads : public ReplayTest {
  protected:
-  LimitedDownloads() : ReplayTest(limits()) {}
-  static ServerLimits limits() {
-    ServerLimits limits;
-    limits.max_download_bytes = kDownloadBytes;
-    return limits;
-  }
+  LimitedDownloads() : ReplayTest(limits_with(&ServerLimits::max_download_bytes, kDownloadBytes)) {}
 };
 
 TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "protocol/scene_json.h"
 #include "server/session/pointer_commands.h"
 #include "tests/server/session_fixture.h"
 
@@ -23,23 +25,88 @@ class SessionCommands : public SessionTest {
   }
 };
 
-TEST_F(SessionCommands, OfAPausedSessionTakeEffectBetweenItsSteps) {
-  EXPECT_EQ(tick_of("control.step", {{"ticks", 3}}), 3u);
-  EXPECT_EQ(tick_of("world.set_gravity", {{"gravity", {1, 0, -5}}}), 3u);
-  EXPECT_EQ(tick_of("control.step", {{"ticks", 2}}), 5u);
-  EXPECT_EQ(tick_of("world.apply_force", {{"body", 3}, {"force", {20, 0, 0}}, {"duration", 0.05}}),
-            5u);
-  EXPECT_EQ(tick_of("world.remove_body", {{"body", 2}}), 5u);
-  EXPECT_EQ(tick_of("control.step", {{"ticks", 4}}), 9u);
+/// A command, and the same for a simulation.
+struct Command {
+  const char* method;
+  Json params;
+  std::function<Status(Simulation&)> apply;
+};
 
-  advance_ticks(reference, 3);
-  ASSERT_TRUE(reference.set_gravity(Vec3(1, 0, -5)));
-  advance_ticks(reference, 2);
-  ASSERT_TRUE(reference.apply_force(3, Vec3(20, 0, 0), 0.05));
-  ASSERT_TRUE(reference.remove_body(2));
-  advance_ticks(reference, 4);
-  EXPECT_EQ(hash(), hash_of(reference));
+InterfaceDescription wood_on_vat() {
+  InterfaceDescription interface;
+  interface.materials = {"wood", "vat"};
+  interface.constants.stiffness = 5000;
+  return interface;
+}
+
+// The ball is thrown at a wall, so that its interface with the vat acts.
+TEST_F(SessionCommands, OfAPausedSessionTakeEffectBetweenItsSteps) {
+  const std::string fresh = hash();
+  EXPECT_EQ(fresh, hash_of(reference));
+  Json rubber = client->result("scene.get").at("scene").at("materials").at(1);
+  rubber["springs"]["structural"]["stiffness"] = 900;
+  const std::vector<Command> commands = {
+      {"world.set_gravity",
+       {{"gravity", {1, 0, -5}}},
+       [](Simulation& s) {
+         return s.set_gravity({1, 0, -5});
+       }},
+      {"world.apply_force",
+       {{"body", 3}, {"force", {20, 0, 0}}, {"duration", 0.05}},
+       [](Simulation& s) {
+         return s.apply_force(3, {20, 0, 0}, 0.05);
+       }},
+      {"world.move_body",
+       {{"body", 3},
+        {"position", {0.83, 0.7, 0.6}},
+        {"orientation", {0.6, 0.8, 0, 0}},
+        {"velocity", {2, 0, 0}}},
+       [](Simulation& s) {
+         return s.move_body(3, {{0.83, 0.7, 0.6}, Quat(0.6, 0.8, 0, 0), Vec3(2, 0, 0)});
+       }},
+      {"world.set_interface",
+       {{"interface", {{"materials", {"wood", "vat"}}, {"stiffness", 5000}}}},
+       [](Simulation& s) { return s.set_interface(wood_on_vat()); }},
+      {"world.move_body",
+       {{"body", 1}, {"position", {0.4, 0.45, 0.25}}},
+       [](Simulation& s) {
+         return s.move_body(1, {{0.4, 0.45, 0.25}, {}, {}});
+       }},
+      {"world.set_material",
+       {{"material", rubber}},
+       [&](Simulation& s) { return s.set_material(read_material(rubber, "/material").value()); }},
+      {"world.move_vat",
+       {{"offset", {0.3, 0, 0}}},
+       [](Simulation& s) {
+         return s.move_vat({0.3, 0, 0});
+       }},
+      {"world.set_numerics",
+       {{"integrator", "runge_kutta_4"}},
+       [](Simulation& s) { return s.set_numerics(IntegratorId::runge_kutta_4, 0.002); }},
+      {"world.set_numerics",
+       {{"integrator", "heun"}, {"step", 0.001}},
+       [](Simulation& s) { return s.set_numerics(IntegratorId::heun, 0.001); }},
+      {"world.melt_body",
+       {{"body", 2}, {"material", "water"}},
+       [](Simulation& s) { return s.melt_body(2, "water"); }},
+      {"world.remove_body", {{"body", 3}}, [](Simulation& s) { return s.remove_body(3); }},
+  };
+  constexpr int kTicks = 3;
+  std::uint64_t now = 0;
+  for (const Command& command : commands) {
+    SCOPED_TRACE(std::string(command.method) + command.params.dump());
+    EXPECT_EQ(tick_of(command.method, command.params), now);
+    EXPECT_EQ(tick_of("control.step", {{"ticks", kTicks}}), now += kTicks);
+    ASSERT_TRUE(command.apply(reference).ok());
+    advance_ticks(reference, kTicks);
+    ASSERT_EQ(hash(), hash_of(reference));
+  }
   EXPECT_EQ(client->result("session.hash").at("time"), reference.time());
+  const Json numerics = client->result("scene.get", {{"current", true}}).at("scene").at("numerics");
+  EXPECT_EQ(numerics.at("integrator"), "heun");
+  EXPECT_EQ(numerics.at("step"), 0.001);
+  client->result("control.reset");
+  EXPECT_EQ(hash(), fresh);
 }
 
 TEST_F(SessionCommands, OfAPlayingSessionTakeEffectAtTheTickOfTheirReply) {
@@ -117,11 +184,6 @@ TEST_F(SessionCommands, ABodyMeltsWithANewEpoch) {
   EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
   EXPECT_EQ(description.at("bodies").at(1).at("kind"), "liquid");
   EXPECT_EQ(client->error("grab.end", {{"grab", 1}}).at("code"), -32602);
-  client->result("control.step", {{"ticks", 3}});
-  advance_ticks(reference, 3);
-  ASSERT_TRUE(reference.melt_body(2, "water"));
-  advance_ticks(reference, 3);
-  EXPECT_EQ(hash(), hash_of(reference));
 }
 
 // The frame of the tick in which a body melts comes after the description that it belongs to.
@@ -191,21 +253,6 @@ TEST_F(SessionCommands, WhatMayFlowInCountsForTheLimits) {
   const Json error = client->error("scene.load", {{"scene", scene_with_nozzle(200'000)}});
   EXPECT_EQ(error.at("code"), 1005);
   EXPECT_EQ(error.at("data").at("limit"), "particles");
-}
-
-TEST_F(SessionCommands, GravityAndInterfacesAreOfTheSceneFromThenOn) {
-  client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
-  EXPECT_EQ(client->wait_event("session.description").at("gravity"), Json({0, 0, -1}));
-  client->result("world.set_interface",
-                 {{"interface", {{"materials", {"wood", "vat"}}, {"stiffness", 5000}}}});
-  client->result("control.step", {{"ticks", 40}});
-  InterfaceDescription interface;
-  interface.materials = {"wood", "vat"};
-  interface.constants.stiffness = 5000;
-  ASSERT_TRUE(reference.set_gravity(Vec3(0, 0, -1)));
-  ASSERT_TRUE(reference.set_interface(interface));
-  advance_ticks(reference, 40);
-  EXPECT_EQ(hash(), hash_of(reference));
 }
 
 const MethodRules* rules_of(std::string_view method) {

@@ -159,6 +159,11 @@ Json TestClient::error(std::string_view method, const Json& params) {
   return reply.value("error", Json());
 }
 
+std::uint64_t TestClient::grab(BodyId body) {
+  return result("grab.start", {{"body", body}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}})
+      .at("grab");
+}
+
 Json TestClient::wait_event(std::string_view event, const std::function<bool(const Json&)>& fits) {
   const auto fits_text = [&](const Json& text) {
     return text.value("method", "") == event && (!fits || fits(text.at("params")));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "server/session/session_server.h"
@@ -28,6 +29,13 @@ inline constexpr std::string_view kAdminToken = "the admin token of the tests";
 
 /// Clients may send as fast as they like.
 ServerLimits unhurried_limits();
+/// The default limits, except for one.
+template <class Value>
+ServerLimits limits_with(Value ServerLimits::*limit, std::type_identity_t<Value> value) {
+  ServerLimits limits;
+  limits.*limit = value;
+  return limits;
+}
 /// Two threads, and no delay where a token is refused. `data_folder`: empty for none.
 ServerSettings test_settings(const ServerLimits& limits, const std::string& data_folder = "");
 
@@ -78,6 +86,9 @@ class TestClient {
   Json call(std::string_view method, const Json& params = nullptr);
   Json result(std::string_view method, const Json& params = nullptr);
   Json error(std::string_view method, const Json& params = nullptr);
+
+  /// Holds a body at its first particle; the grab's id.
+  std::uint64_t grab(BodyId body);
 
   /// The params of the first event since mark() that fits. Advances the clock until it comes.
   Json wait_event(std::string_view event, const std::function<bool(const Json&)>& fits = {});

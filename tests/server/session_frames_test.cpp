@@ -165,12 +165,8 @@ TEST_F(SessionFrames, StatusesComeWithoutChangesToo) {
 
 class SessionPatience : public SessionTest {
  protected:
-  static ServerLimits limits() {
-    ServerLimits limits;
-    limits.frame_patience = std::chrono::seconds(1);
-    return limits;
-  }
-  SessionPatience() : SessionTest(limits()) {}
+  SessionPatience()
+      : SessionTest(limits_with(&ServerLimits::frame_patience, std::chrono::seconds(1))) {}
 };
 
 // Also where nothing moves: a frame was sent, and nobody knows whether it came.

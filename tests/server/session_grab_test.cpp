@@ -10,10 +10,6 @@ constexpr BodyId kBall = 3;
 
 class SessionGrabs : public SessionTest {
  protected:
-  std::uint64_t start(TestClient& owner, BodyId body = kBall) {
-    return owner.result("grab.start", {{"body", body}, {"particle", 0}, {"target", kTarget}})
-        .at("grab");
-  }
   /// Height of the ball's centre of mass.
   double height() {
     const Json state = client->result("state.query", {{"bodies", {"ball"}}});
@@ -27,7 +23,7 @@ class SessionGrabs : public SessionTest {
 };
 
 TEST_F(SessionGrabs, HoldMoveAndEnd) {
-  const std::uint64_t grab = start(*client);
+  const std::uint64_t grab = client->grab(kBall);
   client->result("control.step", {{"ticks", 50}});
   const double held = height();
   client->result("grab.move", {{"grab", grab}, {"target", {0.5, 0.5, 0.7}}});
@@ -72,7 +68,7 @@ TEST_F(SessionGrabs, NameAParticleByItsNumber) {
 
 TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
   const auto other = join();
-  const std::uint64_t grab = start(*client);
+  const std::uint64_t grab = client->grab(kBall);
   const std::string before = hash();
   const Json moved = other->error("grab.move", {{"grab", grab}, {"target", {0, 0, 0}}});
   EXPECT_EQ(moved.at("code"), 1006);
@@ -84,33 +80,21 @@ TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
 
 TEST_F(SessionGrabs, HaveIdsOfTheirOwn) {
   const auto other = join();
-  EXPECT_NE(start(*client), start(*other, 2));
-}
-
-TEST_F(SessionGrabs, StayWhileTheirClientIsAway) {
-  auto other = join();
-  const std::uint64_t grab = start(*other);
-  client->result("control.step", {{"ticks", 5}});
-  other->disconnect();
-  client->result("control.step", {{"ticks", 5}});
-  ASSERT_TRUE(reference.grab_start(1, kBall, 0, target));
-  advance_ticks(reference, 10);
-  EXPECT_EQ(hash(), hash_of(reference));
-  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), 1006);
+  EXPECT_NE(client->grab(kBall), other->grab(2));
 }
 
 TEST_F(SessionGrabs, EndWhenTheirClientLeavesOrJoinsAnotherSession) {
   const auto other = join();
-  const std::uint64_t first = start(*other);
+  const std::uint64_t first = other->grab(kBall);
   other->result("session.leave");
   other->result("session.join");
   EXPECT_EQ(other->error("grab.end", {{"grab", first}}).at("code"), -32602);
-  const std::uint64_t second = start(*other);
+  const std::uint64_t second = other->grab(kBall);
   other->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
   other->result("session.join", {{"session", "s2"}});
   EXPECT_EQ(client->error("grab.end", {{"grab", second}}).at("code"), -32602) << "nobody has it";
   other->result("session.join", {{"session", "s1"}});
-  const std::uint64_t third = start(*other);
+  const std::uint64_t third = other->grab(kBall);
   other->result("session.join", {{"session", "s1"}});
   EXPECT_EQ(other->error("grab.end", {{"grab", third}}).at("code"), -32602)
       << "joining again is a fresh start";
@@ -120,27 +104,27 @@ TEST_F(SessionGrabs, EndWhenTheirClientLeavesOrJoinsAnotherSession) {
 }
 
 TEST_F(SessionGrabs, EndWithTheirBodyOrScene) {
-  const std::uint64_t cube = start(*client, 2);
-  const std::uint64_t ball = start(*client);
+  const std::uint64_t cube = client->grab(2);
+  const std::uint64_t ball = client->grab(kBall);
   client->result("world.remove_body", {{"body", 2}});
   EXPECT_EQ(client->error("grab.end", {{"grab", cube}}).at("code"), -32602);
   client->result("grab.move", {{"grab", ball}, {"target", {0.5, 0.5, 0.5}}});
   client->result("control.reset");
   EXPECT_EQ(client->error("grab.end", {{"grab", ball}}).at("code"), -32602);
-  const std::uint64_t again = start(*client);
+  const std::uint64_t again = client->grab(kBall);
   client->result("scene.load", {{"scene", "mixed"}});
   EXPECT_EQ(client->error("grab.end", {{"grab", again}}).at("code"), -32602);
   client->result("control.step", {{"ticks", 3}});
 }
 
 TEST_F(SessionGrabs, OfAClientAreAtMostTen) {
-  for (int i = 0; i < 10; ++i) start(*client);
+  for (int i = 0; i < 10; ++i) client->grab(kBall);
   const Json error =
       client->error("grab.start", {{"body", kBall}, {"particle", 0}, {"target", kTarget}});
   EXPECT_EQ(error.at("data").at("limit"), "grabs_per_client");
   EXPECT_EQ(error.at("data").at("maximum"), 10);
   const auto other = join();
-  start(*other, 2);
+  other->grab(2);
 }
 
 // A body for each client: one is held by one client at a time.
@@ -163,7 +147,7 @@ TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
       clients.push_back(join());
       body = add_ball(static_cast<double>(i));
     }
-    start(*clients.back(), body);
+    clients.back()->grab(body);
   }
   const BodyId free = add_ball(-10);
   const auto params = Json{{"body", free}, {"particle", 0}, {"target", kTarget}};
@@ -171,7 +155,7 @@ TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
   EXPECT_EQ(error.at("data").at("limit"), "grabs_per_session");
   EXPECT_EQ(error.at("data").at("maximum"), kMaxGrabs);
   clients.front()->result("session.leave");
-  start(*client, free);
+  client->grab(free);
 }
 
 TEST_F(SessionGrabs, ForcesOfASessionAreBoundedToo) {

@@ -158,12 +158,8 @@ TEST_F(SharedBudget, ARemovedBodyLeavesRoomForAReset) {
 
 class FewParticles : public SessionTest {
  protected:
-  FewParticles() : SessionTest(few_particles()) {}
-  static ServerLimits few_particles() {
-    ServerLimits limits;
-    limits.max_particles = mixed().greatest_particle_count();
-    return limits;
-  }
+  FewParticles()
+      : SessionTest(limits_with(&ServerLimits::max_particles, mixed().greatest_particle_count())) {}
 };
 
 TEST_F(FewParticles, AreThoseOfABodyThatIsAddedToo) {

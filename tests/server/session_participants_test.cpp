@@ -9,28 +9,12 @@ namespace {
 
 constexpr std::uint16_t kReplaced = 4010;
 
-ServerLimits short_absences() {
-  ServerLimits limits;
-  limits.resume_time = std::chrono::milliseconds(1);  // they end at the next status
-  return limits;
-}
-
-ServerLimits few_clients() {
-  ServerLimits limits;
-  limits.max_clients_per_session = 2;
-  return limits;
-}
-
 class SessionParticipants : public SessionTest {
  protected:
   using SessionTest::SessionTest;
 
   static Json resume_params(const Json& joined) {
     return {{"session", joined.at("session")}, {"resume", joined.at("resume")}};
-  }
-  static std::uint64_t grab_ball(TestClient& owner) {
-    const Json params = {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}};
-    return owner.result("grab.start", params).at("grab");
   }
   void wait_for_clients(int count) {
     client->wait_event("session.status", [&](const Json& s) { return s.at("clients") == count; });
@@ -39,12 +23,14 @@ class SessionParticipants : public SessionTest {
 
 class AwayForAMoment : public SessionParticipants {
  protected:
-  AwayForAMoment() : SessionParticipants(short_absences()) {}
+  AwayForAMoment()  // absences end at the next status
+      : SessionParticipants(limits_with(&ServerLimits::resume_time, std::chrono::milliseconds(1))) {
+  }
 };
 
 class FewParticipants : public SessionParticipants {
  protected:
-  FewParticipants() : SessionParticipants(few_clients()) {}
+  FewParticipants() : SessionParticipants(limits_with(&ServerLimits::max_clients_per_session, 2)) {}
 };
 
 TEST_F(SessionParticipants, AreToldWhoTheyAre) {
@@ -90,7 +76,7 @@ TEST_F(SessionParticipants, HaveNamesThatCanBeShown) {
 TEST_F(SessionParticipants, AreResumedWithAllThatTheyHad) {
   auto guest = connect();
   const Json joined = guest->result("session.join", {{"name", "Eve"}});
-  const std::uint64_t grab = grab_ball(*guest);
+  const std::uint64_t grab = guest->grab(3);
   guest->result("frames.subscribe", {{"max_error", 0.01}});
   guest->wait_frame([](const GridFrame&) { return true; });
   guest->disconnect();
@@ -111,7 +97,7 @@ TEST_F(SessionParticipants, AreResumedWithAllThatTheyHad) {
 TEST_F(SessionParticipants, CanBeTakenOverFromAConnectionThatIsStillOpen) {
   const auto old = connect();
   const Json joined = old->result("session.join");
-  const std::uint64_t grab = grab_ball(*old);
+  const std::uint64_t grab = old->grab(3);
   const auto next = connect();
   EXPECT_EQ(next->result("session.join", resume_params(joined)).at("participant"),
             joined.at("participant"));
@@ -130,7 +116,7 @@ TEST_F(SessionParticipants, CanBeTakenOverFromAConnectionThatIsStillOpen) {
 TEST_F(SessionParticipants, StayTheSameOnTheirOwnConnectionToo) {
   const auto guest = connect();
   const Json joined = guest->result("session.join");
-  const std::uint64_t grab = grab_ball(*guest);
+  const std::uint64_t grab = guest->grab(3);
   EXPECT_EQ(guest->result("session.join", resume_params(joined)).at("resumed"), true);
   guest->result("grab.end", {{"grab", grab}});
   EXPECT_EQ(guest->connection->close_code(), std::nullopt);
@@ -165,7 +151,7 @@ TEST_F(SessionParticipants, ATokenIsOfOneSession) {
 TEST_F(AwayForAMoment, LeaveAndLetGoOfWhatTheyHeld) {
   auto guest = connect();
   const Json joined = guest->result("session.join");
-  const std::uint64_t grab = grab_ball(*guest);
+  const std::uint64_t grab = guest->grab(3);
   EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), 1006);
   guest->disconnect();
   client->mark();

@@ -18,10 +18,6 @@ class SessionPeople : public AccessTest {
     viewer_number_ = joined.at("participant");
     viewer_resume_ = joined.at("resume");
   }
-  static std::uint64_t grab_ball(TestClient& client) {
-    const Json params = {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}};
-    return client.result("grab.start", params).at("grab");
-  }
   static Json role_of_params(std::uint64_t number, const std::string& role) {
     return {{"participant", number}, {"role", role}};
   }
@@ -42,7 +38,7 @@ TEST_F(SessionPeople, AnOwnerGivesAndTakesRoles) {
 }
 
 TEST_F(SessionPeople, WhoLosesControlLetsGo) {
-  const std::uint64_t grab = grab_ball(*controller_);
+  const std::uint64_t grab = controller_->grab(3);
   EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), 1006) << "it is another's";
   owner_->result("participant.set_role", role_of_params(controller_number_, "viewer"));
   EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "nobody has it";
@@ -81,7 +77,7 @@ TEST_F(SessionPeople, ControlIsAskedForAndHandedOver) {
   for (TestClient* client : {owner_.get(), controller_.get()}) {
     EXPECT_EQ(client->wait_event("control.requested").at("participant"), viewer_number_);
   }
-  const std::uint64_t grab = grab_ball(*controller_);
+  const std::uint64_t grab = controller_->grab(3);
   controller_->result("control.hand_over", {{"participant", viewer_number_}});
   viewer_->result("control.pause");
   EXPECT_TRUE(viewer_->events("control.requested").empty()) << "a viewer cannot give it";
@@ -97,7 +93,7 @@ TEST_F(SessionPeople, AnOwnerKeepsWhatItHandsOver) {
 }
 
 TEST_F(SessionPeople, WhoIsKickedIsGoneAndItsTokenWithIt) {
-  const std::uint64_t grab = grab_ball(*controller_);
+  const std::uint64_t grab = controller_->grab(3);
   owner_->result("participant.kick", {{"participant", controller_number_}, {"reason", "enough"}});
   controller_->wait_closed();
   EXPECT_EQ(controller_->connection->close_code(), kKicked);

@@ -21,10 +21,6 @@ class Presence : public SessionTest {
  protected:
   using SessionTest::SessionTest;
 
-  static std::uint64_t grab(TestClient& client, BodyId body) {
-    const Json params = {{"body", body}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}};
-    return client.result("grab.start", params).at("grab");
-  }
   /// Waits until `client` is told of this participant as `fits` wants it.
   static Json wait_for(TestClient& client, std::uint64_t number,
                        const std::function<bool(const Json&)>& fits) {
@@ -77,9 +73,9 @@ TEST_F(Presence, TellsNamesRolesAndWhatIsHeld) {
   const std::uint64_t number = guest->result("session.join").at("participant");
   guest->result("participant.rename", {{"name", "Bob"}});
   wait_for(*client, number, [](const Json& entry) { return entry.at("name") == "Bob"; });
-  const std::uint64_t first = grab(*guest, kBall);
-  grab(*guest, kBall);
-  grab(*guest, kCube);
+  const std::uint64_t first = guest->grab(kBall);
+  guest->grab(kBall);
+  guest->grab(kCube);
   wait_for(*client, number, [](const Json& entry) {
     return entry.at("grabs") == Json({kCube, kBall});
   });
@@ -141,25 +137,25 @@ TEST_F(Presence, TellsOfAHundredAtMost) {
 TEST_F(Presence, ABodyIsHeldByOneAtATime) {
   const auto guest = connect();
   guest->result("session.join", {{"name", "Ada"}});
-  const std::uint64_t first = grab(*guest, kBall);
-  const std::uint64_t second = grab(*guest, kBall);
+  const std::uint64_t first = guest->grab(kBall);
+  const std::uint64_t second = guest->grab(kBall);
   const Json params = {{"body", kBall}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}};
   const Json error = client->error("grab.start", params);
   EXPECT_EQ(error.at("code"), 1008);
   EXPECT_EQ(error.at("data").at("kind"), "busy");
   EXPECT_EQ(error.at("data").at("holder"), Json({{"participant", 2}, {"name", "Ada"}}));
-  grab(*client, kCube);
+  client->grab(kCube);
   guest->result("grab.end", {{"grab", first}});
   EXPECT_EQ(client->error("grab.start", params).at("code"), 1008) << "by another finger";
   guest->result("grab.end", {{"grab", second}});
-  grab(*client, kBall);
+  client->grab(kBall);
 }
 
 TEST_F(IdleGrabs, EndAndThoseThatMoveDoNot) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
-  const std::uint64_t idle = grab(*guest, kCube);
-  const std::uint64_t used = grab(*guest, kBall);
+  const std::uint64_t idle = guest->grab(kCube);
+  const std::uint64_t used = guest->grab(kBall);
   server.clock().advance(9500ms);
   EXPECT_TRUE(client->events("grab.ended").empty());
   guest->result("grab.move", {{"grab", used}, {"target", {0.5, 0.5, 0.8}}});
@@ -171,19 +167,19 @@ TEST_F(IdleGrabs, EndAndThoseThatMoveDoNot) {
   server.clock().advance(8s);
   EXPECT_EQ(client->events("grab.ended").size(), 1u);
   EXPECT_EQ(guest->error("grab.end", {{"grab", idle}}).at("code"), -32602);
-  grab(*client, kCube);
+  client->grab(kCube);
   guest->result("grab.end", {{"grab", used}});
 }
 
 TEST_F(IdleGrabs, EndWhileTheirParticipantIsAway) {
   const auto guest = connect();
   guest->result("session.join");
-  const std::uint64_t held = grab(*guest, kBall);
+  const std::uint64_t held = guest->grab(kBall);
   guest->disconnect();
   server.clock().advance(10500ms);
   ASSERT_EQ(client->events("grab.ended").size(), 1u);
   EXPECT_EQ(client->events("grab.ended")[0].at("grab"), held);
-  grab(*client, kBall);
+  client->grab(kBall);
 }
 
 }  // namespace

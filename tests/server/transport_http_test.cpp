@@ -92,14 +92,10 @@ TEST_F(TransportHttpTest, MalformedRequestsGetAnError) {
 class TransportUpgradeTest : public TransportTest {
  protected:
   TransportUpgradeTest() { start(); }
-  std::string origin(const std::string& value) {
-    return upgrade_headers() + "Origin: " + value + "\r\n";
-  }
-  std::string host() const { return "127.0.0.1:" + std::to_string(port); }
 };
 
 TEST_F(TransportUpgradeTest, GrantsTheSubprotocol) {
-  const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers());
+  const HttpReply reply = try_upgrade(port, "/ws?name=x", upgrade_headers("vat.v2, vat.v1"));
   EXPECT_EQ(reply.status, 101);
   EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
   // The answer to this key that RFC 6455, section 1.3 prints.
@@ -107,67 +103,62 @@ TEST_F(TransportUpgradeTest, GrantsTheSubprotocol) {
   EXPECT_TRUE(recorder.wait_closed(1));
 }
 
-TEST_F(TransportUpgradeTest, PicksTheSubprotocolFromSeveral) {
-  const HttpReply reply = try_upgrade(port, "/ws?name=x", upgrade_headers("vat.v2, vat.v1"));
-  EXPECT_EQ(reply.status, 101);
-  EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
-}
-
-TEST_F(TransportUpgradeTest, RefusesAnotherSubprotocolOrNone) {
-  for (const char* subprotocol : {"", "vat.v2", "VAT.V1", "vat.v10"}) {
-    const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers(subprotocol));
-    EXPECT_EQ(reply.status, 400) << subprotocol;
-    EXPECT_NE(reply.body.find("vat.v1"), std::string::npos) << reply.body;
-  }
-}
-
-TEST_F(TransportUpgradeTest, RefusesOtherPaths) {
-  for (const char* target : {"/", "/ws/", "/WS", "/wss", "/x/ws", "//ws", "/%77s", "/?/ws"}) {
-    EXPECT_EQ(try_upgrade(port, target, upgrade_headers()).status, 400) << target;
-  }
-}
-
-TEST_F(TransportUpgradeTest, RefusesOtherVersions) {
-  for (const char* version : {"7", "8", "12", "14", "-1", "thirteen"}) {
-    EXPECT_EQ(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
-  }
-  // The library takes these for a draft of 2010 and answers without asking.
+// The library takes these for a draft of 2010 and answers without asking.
+TEST_F(TransportUpgradeTest, RefusesVersionsThatTheLibraryAccepts) {
   for (const char* version : {"", "0"}) {
     EXPECT_GE(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
   }
 }
 
 TEST_F(TransportUpgradeTest, AdmitsPagesOfThisServerOnly) {
-  EXPECT_EQ(try_upgrade(port, "/ws", origin("http://" + host())).status, 101);
-  EXPECT_EQ(try_upgrade(port, "/ws", origin("https://" + host())).status, 101);
-  const std::vector<std::string> foreign_origins{"http://example.org",
-                                                 "null",
-                                                 "http://127.0.0.1",
-                                                 "http://localhost:" + std::to_string(port),
-                                                 "http://" + host() + ".example.org",
-                                                 "http://" + host() + "0",
-                                                 host(),
-                                                 "http://example.org/http://" + host()};
-  for (const std::string& foreign : foreign_origins) {
-    EXPECT_EQ(try_upgrade(port, "/ws", origin(foreign)).status, 403) << foreign;
+  const std::string host = "127.0.0.1:" + std::to_string(port);
+  for (const auto& [origin, status] :
+       {std::pair("http://" + host, 101), std::pair("https://" + host, 101),
+        std::pair(std::string("http://127.0.0.1"), 403), std::pair("http://" + host + "0", 403)}) {
+    const std::string headers = upgrade_headers() + "Origin: " + origin + "\r\n";
+    EXPECT_EQ(try_upgrade(port, "/ws", headers).status, status) << origin;
   }
 }
 
-// By their whole names, whatever the case of their letters.
-TEST(TransportOrigins, ThoseOfTheListAreAdmitted) {
+/// The status of a refusal, or 101.
+int status_of(const UpgradeRequest& request) {
   const std::vector<std::string> allowed{"https://example.org", "http://b.example:8443"};
-  const std::vector<std::string> offered{"vat.v1"};
-  const auto refused = [&](const char* origin) {
-    return refuse_upgrade({"/ws", "host:80", origin, "13", offered}, allowed).has_value();
-  };
+  const auto refusal = refuse_upgrade(request, allowed);
+  return refusal ? refusal->status : 101;
+}
+
+const std::vector<std::string> kOffered{"vat.v1"};
+
+TEST(UpgradeRules, RefuseOtherPathsVersionsAndSubprotocols) {
+  for (const char* target : {"/ws", "/ws?name=x"}) {
+    EXPECT_EQ(status_of({target, "host:80", "", "13", kOffered}), 101) << target;
+  }
+  for (const char* target : {"/", "/ws/", "/WS", "/wss", "/x/ws", "//ws", "/%77s", "/?/ws"}) {
+    EXPECT_EQ(status_of({target, "host:80", "", "13", kOffered}), 400) << target;
+  }
+  for (const char* version : {"7", "8", "12", "14", "-1", "thirteen"}) {
+    EXPECT_EQ(status_of({"/ws", "host:80", "", version, kOffered}), 400) << version;
+  }
+  for (const char* other : {"", "vat.v2", "VAT.V1", "vat.v10"}) {
+    const std::vector<std::string> offered{other};
+    EXPECT_EQ(status_of({"/ws", "host:80", "", "13", offered}), 400) << other;
+  }
+  const std::vector<std::string> several{"vat.v2", "vat.v1"};
+  EXPECT_EQ(status_of({"/ws", "host:80", "", "13", several}), 101);
+}
+
+// Origins are compared by their whole names, whatever the case of their letters.
+TEST(UpgradeRules, RefuseOtherOrigins) {
   for (const char* good : {"https://example.org", "https://EXAMPLE.org", "http://b.example:8443",
-                           "http://host:80", ""}) {
-    EXPECT_FALSE(refused(good)) << good;
+                           "http://host:80", "https://host:80", ""}) {
+    EXPECT_EQ(status_of({"/ws", "host:80", good, "13", kOffered}), 101) << good;
   }
   for (const char* foreign :
        {"http://example.org", "https://example.org:8443", "https://a.example.org",
-        "https://example.org.evil", "https://b.example:8443", "null", "https://", "*"}) {
-    EXPECT_TRUE(refused(foreign)) << foreign;
+        "https://example.org.evil", "https://b.example:8443", "null", "https://", "*",
+        "http://host", "http://host:80.example.org", "http://host:800", "host:80",
+        "http://example.org/http://host:80"}) {
+    EXPECT_EQ(status_of({"/ws", "host:80", foreign, "13", kOffered}), 403) << foreign;
   }
 }
 
@@ -179,8 +170,10 @@ TEST_F(TransportUpgradeTest, NeverCompresses) {
 }
 
 TEST_F(TransportUpgradeTest, ARefusedClientIsNotAnnounced) {
-  try_upgrade(port, "/ws", upgrade_headers(""));
-  try_upgrade(port, "/", upgrade_headers());
+  const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers("vat.v2"));
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_NE(reply.body.find("vat.v1"), std::string::npos) << reply.body;
+  EXPECT_EQ(try_upgrade(port, "/", upgrade_headers()).status, 400);
   WsClient good(port);
   ASSERT_TRUE(recorder.wait_opened(1));
   EXPECT_EQ(recorder.connections.size(), 1u);
