@@ -3,8 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/mixed_scenes.h"
-#include "tests/support/same_bits.h"
+#include "tests/support/scenes.h"
 
 // What adaptive step control reaches, and at what cost.
 
@@ -180,31 +179,6 @@ TEST(AdaptiveStep, LetsNoProjectilePassAThinWall) {
     EXPECT_EQ(report.undone_steps, 0U) << to_string(integrator);
     EXPECT_LT(velocity_of(simulation, 1).x(), -45) << to_string(integrator);
     EXPECT_LT(report.least_step, 1e-3);
-  }
-}
-
-/// Bodies of all kinds that fall on one another, with the nominal step too long for each of them.
-Scene make_crowd(IntegratorId integrator) {
-  Scene scene = make_two_material_scene(integrator, 5e-3, 1);
-  scene.gravity = {0, 0, -kGravity};
-  scene.vat = Vat{Vec3(-0.25, -0.25, -0.21), Vec3(1, 1, 1.3), true, SlideMotion{{1, 0, 0}, 0.2, 2}};
-  int n = 0;
-  for (const BodyKind kind : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
-    scene.bodies.push_back(make_block("body" + std::to_string(n), kind, n % 2 == 0 ? "a" : "b", 7,
-                                      Vec3(0.02, 0.03, 0.4 * n), {0.3, 0.1, n == 0 ? 0 : -1.0}));
-    ++n;
-  }
-  return make_adaptive(scene, 1e-2);
-}
-
-TEST(AdaptiveStep, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
-  for (const IntegratorId integrator : {IntegratorId::velocity_verlet, IntegratorId::heun}) {
-    SCOPED_TRACE(to_string(integrator));
-    const Scene scene = make_crowd(integrator);
-    const AdvanceReport report = make_simulation(scene).advance(6);
-    EXPECT_EQ(report.undone_steps, 0U);
-    EXPECT_GT(report.steps, 6U);
-    expect_same_bits(scene, 6, 4);
   }
 }
 

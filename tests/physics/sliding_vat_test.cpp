@@ -91,15 +91,5 @@ TEST(SlidingVat, ObservedOrderIsThatOfEachMethod) {
   }
 }
 
-TEST(SlidingVat, OffsetIsThatOfTheScene) {
-  Simulation simulation =
-      make_simulation(make_pressed_particle(BodyKind::rigid, IntegratorId::velocity_verlet));
-  EXPECT_EQ(simulation.vat_offset(), Vec3::Zero());
-  advance_to(simulation, kPeriod / 2);
-  EXPECT_LT((simulation.vat_offset() - Vec3(kStroke, 0, 0)).norm(), 1e-15);
-  advance_to(simulation, kPeriod);
-  EXPECT_LT(simulation.vat_offset().norm(), 1e-15);
-}
-
 }  // namespace
 }  // namespace vat::sliding_vat_test

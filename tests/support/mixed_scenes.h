@@ -35,6 +35,26 @@ inline BodyDescription make_block(std::string name, BodyKind kind, std::string m
   return body;
 }
 
+/// Two blocks of 27 particles that fly towards each other, off centre, and turn.
+inline Scene make_collision(BodyKind first, BodyKind second, IntegratorId integrator, Real step) {
+  Scene scene = make_two_material_scene(integrator, step);
+  scene.bodies = {make_block("first", first, "a", 3, {-0.09, 0.01, 0.02}, {1, 0.4, 0}),
+                  make_block("second", second, "b", 3, {0.09, 0, 0}, {-1, 0, 0.3})};
+  return scene;
+}
+
+/// A body of each kind, 343 particles each, in contact with the floor of a sliding vat and with one
+/// another.
+inline Scene make_crowd(IntegratorId integrator, Real step) {
+  Scene scene = make_two_material_scene(integrator, step, 1);
+  scene.gravity = {0, 0, -9.81};
+  scene.vat = Vat{{-0.25, -0.25, -0.16}, {1, 1, 1.3}, true, SlideMotion{{1, 0, 0}, 0.2, 2}};
+  scene.bodies = {make_block("pool", BodyKind::liquid, "a", 7, {0, 0, 0}, {0.3, 0.1, 0}),
+                  make_block("jelly", BodyKind::deformable, "b", 7, {0.02, 0, 0.33}, {0, 0, -1}),
+                  make_block("crate", BodyKind::rigid, "a", 7, {0, 0.03, 0.66}, {0, 0, -1})};
+  return scene;
+}
+
 /// Liquids of two densities, a deformable and a rigid body, all in contact.
 inline Scene make_wet_mixture(IntegratorId integrator, PressureSolver solver) {
   Scene scene = make_two_material_scene(integrator, 1e-3, 5);

@@ -44,6 +44,14 @@ inline BodyDescription make_marble(std::string name, const Vec3& center) {
   return marble;
 }
 
+/// A stack that sleeps until a marble falls on it after 1.06 s, and another crate that sleeps on.
+inline Scene make_struck_stack() {
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("low", 0.0), make_marble("marble", {0.03, 0.02, 6}),
+                  make_crate("high", {0.02, 0, kCrateRest + kCrateEdge}), make_crate("far", 5.0)};
+  return scene;
+}
+
 inline constexpr Real kPoolSupport = 0.2;    ///< radius of the liquid's kernel [m]
 inline constexpr Real kPebbleRelease = 5;    ///< [s]
 inline constexpr Real kPebbleSplash = 5.75;  ///< the pebble is in the liquid [s]

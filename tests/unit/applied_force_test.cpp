@@ -76,29 +76,6 @@ Scene make_collision(IntegratorId integrator) {
   return scene;
 }
 
-// Contacts act between the two, and gravity gives M g t.
-TEST(AppliedForce, GivesItsImpulseWhileOtherForcesAct) {
-  constexpr std::uint32_t kSteps = 20;
-  for (const IntegratorId integrator : kIntegrators) {
-    for (const Duration& duration : kDurations) {
-      Simulation simulation = make_simulation(make_collision(integrator));
-      simulation.advance(5);
-      const Vec3 before = total_momentum(simulation);
-      const BodyId id = simulation.bodies()[0].id;
-      ASSERT_TRUE(simulation.apply_force(id, kForce, duration.in_steps * kStep).ok());
-      const Vec3 other = simulation.diagnostics().bodies[1].linear_momentum;
-      ASSERT_TRUE(simulation.advance(kSteps).events.empty());
-      const Real mass = 54 * 0.125;
-      const Vec3 expected = before + duration.in_steps * kStep * kForce +
-                            mass * kSteps * kStep * simulation.scene().gravity;
-      EXPECT_LT((total_momentum(simulation) - expected).norm(), kRoundOff)
-          << to_string(integrator) << " " << duration.in_steps;
-      EXPECT_GT((simulation.diagnostics().bodies[1].linear_momentum - other).x(), 0.1)
-          << "the bodies do not touch";
-    }
-  }
-}
-
 TEST(AppliedForce, OverlappingForcesEachGiveTheirImpulse) {
   for (const IntegratorId integrator : kIntegrators) {
     Simulation simulation = make_simulation(make_moving_block(integrator, BodyKind::rigid));

@@ -9,6 +9,7 @@
 #include "core/kernels/lattice_sum.h"
 #include "core/scene/step_limits.h"
 #include "tests/support/force_probe.h"
+#include "tests/support/quadrature.h"
 #include "tests/support/scenes.h"
 
 namespace vat::cohesion_test {
@@ -19,15 +20,6 @@ using namespace test;
 constexpr Real kSpacing = 0.05;
 constexpr Real kSupport = 3 * kSpacing;
 constexpr Real kSigma = 0.5;
-
-/// The midpoint rule.
-template <class F>
-Real integral(Real from, Real to, F&& f) {
-  constexpr int kCount = 20000;
-  Real sum = 0;
-  for (int n = 0; n < kCount; ++n) sum += f(from + (n + 0.5) * (to - from) / kCount);
-  return sum * (to - from) / kCount;
-}
 
 TEST(CohesionKernel, NeitherPullsNorPressesOnALattice) {
   for (const int dimensions : {2, 3}) {
@@ -47,7 +39,7 @@ TEST(CohesionKernel, NeitherPullsNorPressesOnALattice) {
 TEST(CohesionKernel, MakesTheSurfaceTensionOfKirkwoodAndBuff) {
   for (const int dimensions : {2, 3}) {
     const CohesionKernel kernel(kSupport, kSpacing / 8, dimensions);
-    const Real sum = integral(0, kernel.reach(), [&](Real r) {
+    const Real sum = integrate(0, kernel.reach(), [&](Real r) {
       const Real force = -r * kernel.slope_over_r(r);
       return dimensions == 3 ? std::numbers::pi / 8 * std::pow(r, 4) * force
                              : std::pow(r, 3) * force / 3;
@@ -115,10 +107,7 @@ TEST(Cohesion, OfTwoParticlesIsTheKernels) {
 TEST(Cohesion, PullsASolidAsItIsPulled) {
   for (const Real angle : {40.0, 90.0, 130.0}) {
     Scene scene = make_wet_scene(3);
-    InterfaceDescription interface;
-    interface.materials = {"stone", "water"};
-    interface.contact_angle = angle;
-    scene.interfaces = {interface};
+    scene.interfaces = {{{"stone", "water"}, {}, {}, angle}};
     const Real r = 1.3 * kSupport;
     BodyDescription stone = make_body("stone", BodyKind::deformable, "stone",
                                       make_particles({{r, 0, 0}}, 1), kSpacing / 2);

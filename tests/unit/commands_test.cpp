@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/limits.h"
+#include "tests/support/errors.h"
 #include "tests/support/shaken_vat.h"
 
 // Commands take effect at the time they are given, and one that fails changes nothing.
@@ -21,18 +22,6 @@ Scene make_block_of(BodyKind kind) {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
   scene.bodies = {make_block("block", kind, "a", 3, {1, 2, 3}, {1, 0, 0})};
   return scene;
-}
-
-/// "code path", one line an error.
-template <class Outcome>
-std::string errors_of(const Outcome& outcome) {
-  if (outcome.ok()) return "";
-  std::string text;
-  for (const Error& error : outcome.errors()) {
-    EXPECT_FALSE(error.message.empty());
-    text += (text.empty() ? "" : "\n") + error.code + " " + error.path;
-  }
-  return text;
 }
 
 TEST(SetGravity, ActsFromThePresentTime) {
@@ -75,16 +64,6 @@ TEST(ApplyForce, GivesForceTimesDurationAndNoSpin) {
         before.angular_momentum - before.center_of_mass.cross(before.linear_momentum);
     EXPECT_LT((spin - spin_before).norm(), 1e-11) << to_string(kind);
   }
-}
-
-TEST(ApplyForce, ForcesAddUp) {
-  Simulation simulation = make_simulation(make_block_of(BodyKind::rigid));
-  const BodyDiagnostics before = simulation.diagnostics().bodies[0];
-  ASSERT_TRUE(simulation.apply_force(before.id, {2, 0, 0}, 1).ok());
-  ASSERT_TRUE(simulation.apply_force(before.id, {0, 3, 0}, 1).ok());
-  simulation.advance(100);
-  const Vec3 gain = simulation.diagnostics().bodies[0].linear_momentum - before.linear_momentum;
-  EXPECT_LT((gain - Vec3(0.2, 0.3, 0)).norm(), 1e-12);
 }
 
 TEST(ApplyForce, RefusesBadValues) {

@@ -6,6 +6,7 @@
 
 #include "core/limits.h"
 #include "tests/support/edited_scene.h"
+#include "tests/support/errors.h"
 #include "tests/support/saved_bits.h"
 
 namespace vat::edit_commands_test {
@@ -101,9 +102,7 @@ TEST_F(MoveBody, KeepsWhatIsHeld) {
 TEST_F(MoveBody, RefusesWhatCannotBeAndChangesNothing) {
   const std::uint64_t hash = simulation.state_hash();
   const auto error = [&](BodyId body, const BodyPlacement& place) {
-    const Status status = simulation.move_body(body, place);
-    EXPECT_EQ(simulation.state_hash(), hash);
-    return status ? "none" : status.errors()[0].code + ' ' + status.errors()[0].path;
+    return errors_of(simulation.move_body(body, place));
   };
   EXPECT_EQ(error(99, {}), "no_such_body /body");
   EXPECT_EQ(error(id(2), {{0.5, 0.5, 0.05}, {}, {}}), "outside_vat /position");
@@ -113,6 +112,7 @@ TEST_F(MoveBody, RefusesWhatCannotBeAndChangesNothing) {
   EXPECT_EQ(error(id(2), {{0.5, 0.5, 0.5}, Quat(0, 0, 0, 0), {}}), "out_of_range /orientation");
   EXPECT_EQ(error(id(2), {{0.5, 0.5, 0.5}, {}, Vec3(2 * kMaxSpeed, 0, 0)}),
             "out_of_range /velocity");
+  EXPECT_EQ(simulation.state_hash(), hash);
 }
 
 TEST(MoveBodyInThePlane, StaysInIt) {
@@ -139,12 +139,8 @@ class SetMaterial : public testing::Test {
     }
     throw std::runtime_error("no such material");
   }
-  std::string error(const Material& changed) {
-    const std::uint64_t hash = simulation.state_hash();
-    const Status status = simulation.set_material(changed);
-    EXPECT_EQ(simulation.state_hash(), hash);
-    return status ? "none" : status.errors()[0].code + ' ' + status.errors()[0].path;
-  }
+  std::string error(const Material& changed) { return errors_of(simulation.set_material(changed)); }
+
   Simulation simulation = make_simulation(sampled_scene());
 };
 
@@ -244,6 +240,7 @@ TEST_F(SetMaterial, MassesThatWereGivenStay) {
 }
 
 TEST_F(SetMaterial, RefusesWhatIsWrongByItsPlace) {
+  const std::uint64_t hash = simulation.state_hash();
   Material changed = material("water");
   changed.density = -1;
   EXPECT_EQ(error(changed), "out_of_range /material/density");
@@ -257,6 +254,7 @@ TEST_F(SetMaterial, RefusesWhatIsWrongByItsPlace) {
   changed.springs->shear->stiffness = std::nan("");
   EXPECT_EQ(error(changed), "out_of_range /material/springs/shear/stiffness");
   EXPECT_EQ(error(make_material("vat")), "reserved_name /material/name");
+  EXPECT_EQ(simulation.state_hash(), hash);
 }
 
 TEST(SetMaterialOfAnEmitter, KeepsItsSupportRadius) {

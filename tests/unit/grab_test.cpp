@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/limits.h"
+#include "tests/support/errors.h"
 #include "tests/support/shaken_vat.h"
 
 namespace vat::grab_test {
@@ -134,24 +135,20 @@ TEST(Grab, FollowsItsBodyWhenAnotherIsRemoved) {
 }
 
 TEST(Grab, RefusesBadValues) {
-  const auto code_and_path = [](const Status& status) {
-    return status.ok() ? "" : status.errors()[0].code + " " + status.errors()[0].path;
-  };
   Simulation simulation = make_block_of(BodyKind::rigid);
   const BodyId id = simulation.bodies()[0].id;
-  EXPECT_EQ(code_and_path(simulation.grab_start(kHand, id + 1, 0, {})), "no_such_body /body");
-  EXPECT_EQ(code_and_path(simulation.grab_start(kHand, id, 27, Vec3::Zero())),
+  EXPECT_EQ(errors_of(simulation.grab_start(kHand, id + 1, 0, {})), "no_such_body /body");
+  EXPECT_EQ(errors_of(simulation.grab_start(kHand, id, 27, Vec3::Zero())),
             "out_of_range /particle");
-  EXPECT_EQ(code_and_path(simulation.grab_start(kHand, id, 0, {0, kNan, 0})),
-            "out_of_range /target");
-  EXPECT_EQ(code_and_path(simulation.grab_move(kHand, Vec3::Zero())), "no_such_grab /grab");
-  EXPECT_EQ(code_and_path(simulation.grab_end(kHand)), "no_such_grab /grab");
+  EXPECT_EQ(errors_of(simulation.grab_start(kHand, id, 0, {0, kNan, 0})), "out_of_range /target");
+  EXPECT_EQ(errors_of(simulation.grab_move(kHand, Vec3::Zero())), "no_such_grab /grab");
+  EXPECT_EQ(errors_of(simulation.grab_end(kHand)), "no_such_grab /grab");
   for (std::uint64_t n = 0; n < kMaxGrabs; ++n) {
     ASSERT_TRUE(simulation.grab_start(n, id, 0, Vec3::Zero()).ok());
   }
-  EXPECT_EQ(code_and_path(simulation.grab_start(kMaxGrabs, id, 0, Vec3::Zero())), "limit_reached ");
-  EXPECT_EQ(code_and_path(simulation.grab_start(0, id, 1, Vec3::Zero())), "");
-  EXPECT_EQ(code_and_path(simulation.grab_move(0, {kNan, 0, 0})), "out_of_range /target");
+  EXPECT_EQ(errors_of(simulation.grab_start(kMaxGrabs, id, 0, Vec3::Zero())), "limit_reached ");
+  EXPECT_EQ(errors_of(simulation.grab_start(0, id, 1, Vec3::Zero())), "");
+  EXPECT_EQ(errors_of(simulation.grab_move(0, {kNan, 0, 0})), "out_of_range /target");
 }
 
 }  // namespace

@@ -131,16 +131,6 @@ TEST(GuardRun, OfACallThatFailsAfterManyEventsTheLastIsNotRecovered) {
   EXPECT_EQ(simulation.state_hash(), start);
 }
 
-TEST(GuardRun, OfACallThatFailsTheStepsBeforeAreRecovered) {
-  Simulation simulation = make_simulation(make_flight(397.5));
-  const AdvanceReport report = simulation.advance(20);  // the third reaches 400.5 m/s
-  EXPECT_TRUE(report.failed);
-  ASSERT_EQ(report.events.size(), 2 * 3U + 4U);
-  for (std::size_t e = 0; e < report.events.size(); ++e) {
-    EXPECT_EQ(report.events[e].recovered, e < 6) << e;
-  }
-}
-
 /// A ball of 0.1 m at 1 m/s, and two grains of `radius` at rest.
 Scene make_ball_and_grains(Real radius) {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);

@@ -2,6 +2,8 @@
 
 #include "core/scene/step_limits.h"
 #include "core/scene/validate.h"
+#include "tests/support/edited_scene.h"
+#include "tests/support/errors.h"
 #include "tests/support/scenes.h"
 
 // Deformable bodies that become liquid.
@@ -35,11 +37,6 @@ Scene make_melting_scene(PressureSolver solver) {
                 make_particles(make_lattice(5, 5, 1, kSpacing), 0.5), kSpacing / 2);
   scene.bodies = {plate, jelly};
   return scene;
-}
-
-template <class T>
-std::vector<T> copy_of(std::span<const T> values) {
-  return {values.begin(), values.end()};
 }
 
 class Melts : public testing::TestWithParam<PressureSolver> {};
@@ -139,20 +136,14 @@ TEST(Melting, RefusesWhatCannotMelt) {
   Simulation simulation = make_simulation(make_melting_scene(PressureSolver::tait));
   const BodyId jelly = *simulation.find_body("jelly");
   const std::uint64_t hash = simulation.state_hash();
-  const auto error = [&](BodyId body, const char* material) {
-    const Status status = simulation.melt_body(body, material);
-    EXPECT_FALSE(status.ok());
-    const Error& first = status.errors().at(0);
-    EXPECT_FALSE(first.message.empty());
-    return first.code + ' ' + first.path;
-  };
-  EXPECT_EQ(error(77, "water"), "no_such_body /body");
-  EXPECT_EQ(error(*simulation.find_body("plate"), "water"), "not_allowed /body");
-  EXPECT_EQ(error(jelly, "steam"), "unknown_name /material");
-  EXPECT_EQ(error(jelly, "wood"), "not_liquid /material");
+  EXPECT_EQ(errors_of(simulation.melt_body(77, "water")), "no_such_body /body");
+  EXPECT_EQ(errors_of(simulation.melt_body(*simulation.find_body("plate"), "water")),
+            "not_allowed /body");
+  EXPECT_EQ(errors_of(simulation.melt_body(jelly, "steam")), "unknown_name /material");
+  EXPECT_EQ(errors_of(simulation.melt_body(jelly, "wood")), "not_liquid /material");
   EXPECT_EQ(simulation.state_hash(), hash);
   ASSERT_TRUE(simulation.melt_body(jelly, "water").ok());
-  EXPECT_EQ(error(jelly, "water"), "not_allowed /body");
+  EXPECT_EQ(errors_of(simulation.melt_body(jelly, "water")), "not_allowed /body");
 }
 
 TEST(Melting, LimitsStepsByTheLiquidToBe) {

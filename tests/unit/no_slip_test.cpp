@@ -10,28 +10,13 @@
 #include "core/kernels/poly6.h"
 #include "core/kernels/viscosity_kernel.h"
 #include "tests/support/force_probe.h"
+#include "tests/support/quadrature.h"
 #include "tests/support/scenes.h"
 
 namespace vat::no_slip_test {
 namespace {
 
 using namespace test;
-
-/// Integral of f(r) over r from d to h by composite Gauss-Legendre of three points, in the square
-/// root of r - d: the angle that a sphere of radius r cuts from the half space starts as one.
-Real integrate(Real d, Real h, const std::function<Real(Real)>& f) {
-  constexpr int kPieces = 2000;
-  const Real offset = std::sqrt(3.0 / 5);
-  const Real half = 0.5 / kPieces;
-  const auto at = [&](Real t) { return f(d + (h - d) * t * t) * 2 * (h - d) * t; };
-  Real sum = 0;
-  for (int piece = 0; piece < kPieces; ++piece) {
-    const Real middle = (2 * piece + 1) * half;
-    sum += half / 9 *
-           (5 * at(middle - offset * half) + 8 * at(middle) + 5 * at(middle + offset * half));
-  }
-  return sum;
-}
 
 /// Integral of w(r) over the part of a sphere of radius r, or a circle, that is beyond a distance d
 /// along the normal.

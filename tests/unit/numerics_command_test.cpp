@@ -6,16 +6,13 @@
 
 #include "core/limits.h"
 #include "tests/support/edited_scene.h"
+#include "tests/support/errors.h"
 #include "tests/support/saved_bits.h"
 
 namespace vat::numerics_command_test {
 namespace {
 
 using namespace test;
-
-std::string error_of(const Status& status) {
-  return status ? "none" : status.errors()[0].code + ' ' + status.errors()[0].path;
-}
 
 /// With ticks of 20 steps.
 Scene ticked_scene() {
@@ -29,9 +26,7 @@ void run_ticks(Simulation& simulation, int ticks) {
 }
 
 TEST(SetNumerics, OfASceneAtItsStartAreAsThoughItHadThem) {
-  for (const IntegratorId integrator :
-       {IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::velocity_verlet,
-        IntegratorId::heun, IntegratorId::runge_kutta_4}) {
+  for (const IntegratorId integrator : kIntegrators) {
     Simulation simulation = make_simulation(ticked_scene());
     const Real step = simulation.scene().numerics.tick / 16;
     ASSERT_TRUE(simulation.set_numerics(integrator, step).ok());
@@ -139,13 +134,13 @@ TEST(SetNumerics, AreRefusedByTheirPlaceAndChangeNothing) {
   const std::uint64_t hash = simulation.state_hash();
   const auto verlet = IntegratorId::velocity_verlet;
   for (const Real wrong : {0.0, -step, 0.7 * step, 0.03, std::nan(""), kMinStep / 2}) {
-    EXPECT_EQ(error_of(simulation.set_numerics(verlet, wrong)), "out_of_range /step") << wrong;
+    EXPECT_EQ(errors_of(simulation.set_numerics(verlet, wrong)), "out_of_range /step") << wrong;
   }
   EXPECT_EQ(simulation.state_hash(), hash);
   EXPECT_TRUE(simulation.set_numerics(verlet, step).ok());
   EXPECT_EQ(simulation.state_hash(), hash);
   simulation.advance(1);
-  EXPECT_EQ(error_of(simulation.set_numerics(verlet, step / 2)), "not_allowed /step");
+  EXPECT_EQ(errors_of(simulation.set_numerics(verlet, step / 2)), "not_allowed /step");
   EXPECT_TRUE(simulation.set_numerics(IntegratorId::heun, step).ok()) << "at any time";
 }
 
@@ -160,7 +155,7 @@ TEST(SetNumerics, AreThoseThatTheSceneCanHave) {
   for (const Scene& scene : {projecting, implicit, local}) {
     Simulation simulation = make_simulation(scene);
     const std::uint64_t hash = simulation.state_hash();
-    EXPECT_EQ(error_of(simulation.set_numerics(IntegratorId::heun, simulation.step_size())),
+    EXPECT_EQ(errors_of(simulation.set_numerics(IntegratorId::heun, simulation.step_size())),
               "not_allowed /integrator");
     EXPECT_EQ(simulation.state_hash(), hash);
   }
@@ -170,7 +165,7 @@ TEST(SetNumerics, OfASceneWithEmittersKeepTheStep) {
   Simulation simulation = make_simulation(scene_with_tap(ticked_scene()));
   run_ticks(simulation, 3);
   const Real step = simulation.step_size();
-  EXPECT_EQ(error_of(simulation.set_numerics(IntegratorId::velocity_verlet, step / 2)),
+  EXPECT_EQ(errors_of(simulation.set_numerics(IntegratorId::velocity_verlet, step / 2)),
             "not_allowed /step");
   EXPECT_TRUE(simulation.set_numerics(IntegratorId::symplectic_euler, step).ok());
   expect_goes_on(simulation, 5);

@@ -166,33 +166,36 @@ Real softened(const Pair& pair) {
 
 class PairSumsOf : public testing::TestWithParam<KernelId> {
  protected:
+  /// Expects of a sum in every table the terms of all pairs.
+  template <class Term>
+  static void expect(PairSums::Function PairSums::*function, const Pairs& pairs, bool mixed,
+                     std::size_t entries, Term&& term) {
+    const Expected expected = add_up(pairs, GetParam(), entries, term);
+    for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
+      expect_sums(pairs, table.*function, mixed, expected, epsilon);
+    });
+  }
+
   const Pairs pairs_;
 };
 INSTANTIATE_TEST_SUITE_P(Kernels, PairSumsOf,
                          testing::Values(KernelId::wendland_c2, KernelId::cubic_spline));
 
 TEST_P(PairSumsOf, DensityIsThatOfAllSources) {
-  const Expected expected = add_up(pairs_, GetParam(), 1, [&](const Pair& p, auto add) {
-    add(0, pairs_.places[p.j].weight * p.w);
-  });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.density, false, expected, epsilon);
-  });
+  expect(&PairSums::density, pairs_, false, 1,
+         [&](const Pair& p, auto add) { add(0, pairs_.places[p.j].weight * p.w); });
 }
 
 TEST_P(PairSumsOf, PressureActsAlongPairs) {
-  const Expected expected = add_up(pairs_, GetParam(), 3, [&](const Pair& p, auto add) {
+  expect(&PairSums::pressure, pairs_, false, 3, [&](const Pair& p, auto add) {
     const Real both = pairs_.motions[p.i].pressure + pairs_.motions[p.j].pressure;
     for (int a = 0; a < 3; ++a) add(a, -pairs_.places[p.j].weight * both * p.g * p.x[a]);
-  });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.pressure, false, expected, epsilon);
   });
 }
 
 TEST_P(PairSumsOf, ForceHasViscosityOfAllButImagesInWalls) {
   for (const bool mixed : {false, true}) {
-    const Expected expected = add_up(pairs_, GetParam(), 3, [&](const Pair& p, auto add) {
+    expect(&PairSums::force, pairs_, mixed, 3, [&](const Pair& p, auto add) {
       const PairViscosity& other = pairs_.viscosities[p.j];
       const Real own = mixed ? pairs_.target_viscosities[p.i] : 0.8;
       const Real plain = p.j < kMirrored ? own : 0;
@@ -201,9 +204,6 @@ TEST_P(PairSumsOf, ForceHasViscosityOfAllButImagesInWalls) {
       const Real force = mu * p.v.dot(p.x) / softened(p) - both;
       for (int a = 0; a < 3; ++a) add(a, pairs_.places[p.j].weight * force * p.g * p.x[a]);
     });
-    for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-      expect_sums(pairs_, table.force, mixed, expected, epsilon);
-    });
   }
 }
 
@@ -211,7 +211,7 @@ TEST_P(PairSumsOf, DragIsThatOfImagesInWalls) {
   for (const bool mixed : {false, true}) {
     Pairs pairs = pairs_;
     for (Index j = 0; mixed && j < kMirrored; ++j) pairs.viscosities[j].share = 0;
-    const Expected expected = add_up(pairs, GetParam(), 3, [&](const Pair& p, auto add) {
+    expect(&PairSums::drag, pairs, mixed, 3, [&](const Pair& p, auto add) {
       if (p.j < kMirrored) return;
       const PairViscosity& other = pairs.viscosities[p.j];
       const Real own = mixed ? pairs.target_viscosities[p.i] : 0.8;
@@ -220,64 +220,46 @@ TEST_P(PairSumsOf, DragIsThatOfImagesInWalls) {
       const Real strength = pairs.places[p.j].weight * part * mu * p.g / softened(p);
       for (int a = 0; a < 3; ++a) add(a, strength * p.x[a] * p.x[a] * p.v[a]);
     });
-    for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-      expect_sums(pairs, table.drag, mixed, expected, epsilon);
-    });
   }
 }
 
 TEST_P(PairSumsOf, GradientIsThatOfWeights) {
-  const Expected expected = add_up(pairs_, GetParam(), 3, [&](const Pair& p, auto add) {
+  expect(&PairSums::gradient, pairs_, false, 3, [&](const Pair& p, auto add) {
     for (int a = 0; a < 3; ++a) add(a, pairs_.places[p.j].weight * p.g * p.x[a]);
-  });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.gradient, false, expected, epsilon);
   });
 }
 
 TEST_P(PairSumsOf, DivergenceIsThatOfMotions) {
-  const Expected expected = add_up(pairs_, GetParam(), 1, [&](const Pair& p, auto add) {
+  expect(&PairSums::divergence, pairs_, false, 1, [&](const Pair& p, auto add) {
     const PairMotion& m = pairs_.motions[p.j];
     add(0, p.g * Vec3(m.vx, m.vy, m.vz).dot(p.x));
-  });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.divergence, false, expected, epsilon);
   });
 }
 
 TEST_P(PairSumsOf, VolumeHasDensityWithItsSlopes) {
-  const Expected expected = add_up(pairs_, GetParam(), kVolumeSums, [&](const Pair& p, auto add) {
+  expect(&PairSums::volume, pairs_, false, kVolumeSums, [&](const Pair& p, auto add) {
     const Real weight = pairs_.places[p.j].weight;
     add(0, weight * p.w);
     for (int a = 0; a < 3; ++a) add(1 + a, weight * p.g * p.x[a]);
     add(4, weight * p.g * p.g * p.q * p.q);
   });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.volume, false, expected, epsilon);
-  });
 }
 
 TEST_P(PairSumsOf, ResponseHasGradientsAndTheirSquares) {
-  const Expected expected = add_up(pairs_, GetParam(), kResponseSums, [&](const Pair& p, auto add) {
+  expect(&PairSums::response, pairs_, false, kResponseSums, [&](const Pair& p, auto add) {
     const Real weight = pairs_.places[p.j].weight;
     for (int a = 0; a < 3; ++a) add(a, weight * p.g * p.x[a]);
     add(3, weight * pairs_.motions[p.j].pressure * p.g * p.g * p.q * p.q);
     add(4, weight * pairs_.motions[p.j].vx * p.g * p.q);
   });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.response, false, expected, epsilon);
-  });
 }
 
 TEST_P(PairSumsOf, MeanHasWeightsAndMoments) {
-  const Expected expected = add_up(pairs_, GetParam(), kMeanSums, [&](const Pair& p, auto add) {
+  expect(&PairSums::mean, pairs_, false, kMeanSums, [&](const Pair& p, auto add) {
     const Real weight = pairs_.places[p.j].weight * p.w;
     for (int a = 0; a < 3; ++a) add(a, weight * pairs_.motions[p.j].vx * p.x[a]);
     add(3, weight);
     add(4, weight * pairs_.motions[p.j].pressure);
-  });
-  for_each_table(GetParam(), [&](const PairSums& table, Real epsilon) {
-    expect_sums(pairs_, table.mean, false, expected, epsilon);
   });
 }
 

@@ -1,20 +1,22 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "core/forces/pair_direction.h"
+#include "core/rigid/mass_properties.h"
+#include "tests/support/errors.h"
+#include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-/// Scenes of two dimensions stay in their plane, and periodic ones keep periods that are long
-/// enough, whatever users do.
+/// Scenes of two dimensions: their densities and discs, and that they stay in their plane. Periodic
+/// scenes refuse bodies that are too large for the period.
 namespace vat::plane_test {
 namespace {
 
 BodyDescription sampled(const char* name, BodyKind kind, const char* material, Shape shape,
                         const Vec3& position) {
-  BodyDescription body;
-  body.name = name;
-  body.kind = kind;
-  body.material = material;
-  body.shape = std::move(shape);
-  body.spacing = 0.05;
+  BodyDescription body{name, kind, material, std::move(shape), 0.05};
   body.position = position;
   return body;
 }
@@ -43,11 +45,73 @@ Scene plane_scene(IntegratorId integrator) {
   return scene;
 }
 
+TEST(PlaneModel, LiquidHasTheDensityOfAnEndlessLattice) {
+  for (const Real support : {1.5, 2.0, 3.0, 4.0}) {
+    Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+    scene.dimensions = 2;
+    scene.materials = {test::make_liquid("water", 1000, {1, 1, support})};
+    scene.bodies = {test::make_body("water", BodyKind::liquid, "water",
+                                    test::make_particles(test::make_lattice(8, 1, 8, 1), 1000),
+                                    0.5)};
+    scene.periodic = Periodicity{Vec3::Constant(-4), Vec3::Constant(4), {true, false, true}};
+    const test::ForceProbe probe(scene);
+    Real expected = 0;
+    for (int x = -4; x <= 4; ++x) {
+      for (int z = -4; z <= 4; ++z) {
+        const Real rest = support * support - x * x - z * z;
+        if (rest > 0) expected += 4 / std::numbers::pi * std::pow(rest, 3) / std::pow(support, 8);
+      }
+    }
+    for (const Real density : probe.work().density) {
+      EXPECT_NEAR(density, 1000 * expected, 1e-10);
+    }
+  }
+}
+
+TEST(PlaneModel, ParticlesInOnePlacePartWithinIt) {
+  for (Index i = 0; i < 50; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const Vec3 n = coincident_direction(i, j, 2);
+      EXPECT_EQ(n.y(), 0);
+      EXPECT_NEAR(n.norm(), 1, 1e-15);
+      EXPECT_EQ(n, Vec3(-coincident_direction(j, i, 2)));
+    }
+  }
+}
+
+TEST(PlaneModel, RigidBodiesAreOfDiscs) {
+  SampledBody sample;
+  sample.positions = {{-1, 0, 0}, {3, 0, 0}};
+  sample.masses = {3, 1};
+  sample.radii = {0.5, 0.2};
+  const MassProperties p = plane_mass_properties(sample);
+  EXPECT_EQ(p.mass, 4);
+  EXPECT_EQ(p.center_of_mass, Vec3::Zero());
+  EXPECT_NEAR(p.inertia(1, 1), 3 * 1 + 1 * 9 + 0.5 * (3 * 0.25 + 1 * 0.04), 1e-14);
+  EXPECT_EQ(p.inertia, Mat3(p.inertia(1, 1) * Mat3::Identity()));
+}
+
+TEST(PlaneModel, DiscHasTheAngularMomentumOfOne) {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.dimensions = 2;
+  scene.materials = {test::make_material("solid")};
+  scene.bodies = {
+      test::make_body("disc", BodyKind::rigid, "solid", test::make_particles({{0, 0, 0}}, 2), 0.5)};
+  scene.bodies[0].angular_velocity = {0, 3, 0};
+  const Simulation simulation = test::make_simulation(scene);
+  EXPECT_NEAR(simulation.diagnostics().bodies[0].angular_momentum.y(), 0.5 * 2 * 0.25 * 3, 1e-14);
+}
+
 class Plane : public testing::TestWithParam<IntegratorId> {};
 
 TEST_P(Plane, IsNeverLeft) {
   Scene scene = plane_scene(GetParam());
   if (GetParam() == IntegratorId::explicit_euler) scene.numerics.step = scene.numerics.tick = 1e-4;
+  scene.bodies.push_back(test::make_body("twins", BodyKind::liquid, "water",
+                                         test::make_particles({Vec3::Zero(), Vec3::Zero()}, 1),
+                                         0.025));
+  scene.bodies.back().position = {0.2, 0, 0.8};  // two particles in one place
+  EXPECT_EQ(test::ForceProbe(scene).model().walls, (std::vector<int>{0, 1, 4, 5}));
   Simulation simulation = test::make_simulation(scene);
   ASSERT_TRUE(simulation.grab_start(1, simulation.bodies()[1].id, 0, {0.5, 0.3, 0.5}));
   ASSERT_TRUE(simulation.apply_force(simulation.bodies()[2].id, {1, 0, 1}, 0.1));
@@ -69,24 +133,19 @@ TEST_P(Plane, IsNeverLeft) {
 INSTANTIATE_TEST_SUITE_P(Integrators, Plane, testing::ValuesIn(test::kIntegrators),
                          [](const auto& integrator) { return to_string(integrator.param); });
 
-template <class T>
-std::string first_error(const Result<T>& result) {
-  return result.ok() ? "" : result.errors()[0].code + ' ' + result.errors()[0].path;
-}
-
 TEST(PlaneCommands, ThatWouldLeaveItAreRefused) {
   Simulation simulation = test::make_simulation(plane_scene(IntegratorId::velocity_verlet));
   const std::uint64_t before = simulation.state_hash();
-  EXPECT_EQ(first_error(simulation.set_gravity({0, 1, 0})), "off_plane /gravity");
-  EXPECT_EQ(first_error(simulation.apply_force(simulation.bodies()[0].id, {0, 1, 0}, 1)),
+  EXPECT_EQ(test::errors_of(simulation.set_gravity({0, 1, 0})), "off_plane /gravity");
+  EXPECT_EQ(test::errors_of(simulation.apply_force(simulation.bodies()[0].id, {0, 1, 0}, 1)),
             "off_plane /force");
   BodyDescription body =
       sampled("new", BodyKind::rigid, "wood", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0.1, 0.8});
-  EXPECT_EQ(first_error(simulation.add_body(body)), "off_plane /body/position");
+  EXPECT_EQ(test::errors_of(simulation.add_body(body)), "off_plane /body/position");
   EXPECT_EQ(simulation.state_hash(), before);
   body.position.y() = 0;
-  EXPECT_EQ(first_error(simulation.add_body(body)), "");
-  EXPECT_EQ(first_error(simulation.set_gravity({1, 0, 0})), "");
+  EXPECT_EQ(test::errors_of(simulation.add_body(body)), "");
+  EXPECT_EQ(test::errors_of(simulation.set_gravity({1, 0, 0})), "");
 }
 
 /// A period of 0.5 m along x, and a ball of radius 0.1 m in particles of 0.025 m.
@@ -103,22 +162,22 @@ TEST(PeriodCommands, ThatReachTooFarAreRefused) {
   Simulation simulation = test::make_simulation(narrow_scene());
   const BodyDescription small =
       sampled("small", BodyKind::rigid, "wood", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0, 1});
-  ASSERT_EQ(first_error(simulation.add_body(small)), "");
+  ASSERT_EQ(test::errors_of(simulation.add_body(small)), "");
   BodyDescription large = small;
   large.name = "large";
   large.position.z() = 2;
   large.radius = 0.2;
   large.spacing = 0.1;
-  EXPECT_EQ(first_error(simulation.add_body(large)), "");  // 0.2 + 0.025 m are below 0.25 m
+  EXPECT_EQ(test::errors_of(simulation.add_body(large)), "");  // 0.2 + 0.025 m are below 0.25 m
   large.name = "larger";
   large.radius = 0.23;
-  EXPECT_EQ(first_error(simulation.add_body(large)), "out_of_range /body");
+  EXPECT_EQ(test::errors_of(simulation.add_body(large)), "out_of_range /body");
   BodyDescription oil =
       sampled("oil", BodyKind::liquid, "oil", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0, 3});
-  EXPECT_EQ(first_error(simulation.add_body(oil)), "out_of_range /body");
-  EXPECT_EQ(first_error(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.26})),
+  EXPECT_EQ(test::errors_of(simulation.add_body(oil)), "out_of_range /body");
+  EXPECT_EQ(test::errors_of(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.26})),
             "out_of_range /interface");
-  EXPECT_EQ(first_error(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.24})), "");
+  EXPECT_EQ(test::errors_of(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.24})), "");
 }
 
 }  // namespace

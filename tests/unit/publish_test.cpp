@@ -17,12 +17,8 @@ Simulation make_falling() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.001);
   scene.materials = {make_liquid("water", 1000, {.stiffness = 100, .support_radius = 0.2}),
                      make_material("wood", 600)};
-  BodyDescription water;
-  water.name = "water";
-  water.kind = BodyKind::liquid;
-  water.material = "water";
-  water.spacing = 0.1;
-  water.shape = BoxShape{{0.5, 0.5, 0.5}, {0.4, 0.4, 0.4}};
+  BodyDescription water{"water", BodyKind::liquid, "water",
+                        BoxShape{{0.5, 0.5, 0.5}, {0.4, 0.4, 0.4}}, 0.1};
   water.velocity = {3, 0, 4};
   BodyDescription ball = make_body("ball", BodyKind::rigid, "wood",
                                    make_particles(make_lattice(3, 3, 3, 0.1), 0.1), 0.05);

@@ -6,6 +6,7 @@
 
 #include "core/limits.h"
 #include "tests/support/edited_scene.h"
+#include "tests/support/errors.h"
 #include "tests/support/saved_bits.h"
 
 namespace vat::restore_command_test {
@@ -102,9 +103,9 @@ TEST_F(RestoredBody, IsRefusedByWhatIsWrongAndChangesNothing) {
   const auto [crate, turning] = take(0);
   const std::uint64_t hash = simulation.state_hash();
   const auto error = [&](const BodyDescription& description, const BodyMotion& motion) {
-    const Result<BodyId> id = simulation.add_body(description, motion);
+    const std::string text = errors_of(simulation.add_body(description, motion));
     EXPECT_EQ(simulation.state_hash(), hash);
-    return id ? "none" : id.errors()[0].code + ' ' + id.errors()[0].path;
+    return text;
   };
   BodyMotion motion = bent;
   motion.positions.pop_back();

@@ -134,27 +134,6 @@ Quat rotate_for_a_second(const Vec3& angular_momentum, int steps) {
   return q;
 }
 
-// About a principal axis the rate is constant, and every part of a step turns about that axis.
-TEST(Rigid, FreeRotationAboutAPrincipalAxisIsExact) {
-  const Quat about_x(Eigen::AngleAxis<Real>(2, Vec3::UnitX()));
-  EXPECT_LT(rotate_for_a_second({4, 0, 0}, 3).angularDistance(about_x), 1e-14);
-  const Quat about_z(Eigen::AngleAxis<Real>(1, Vec3::UnitZ()));
-  EXPECT_LT(rotate_for_a_second({0, 0, 4}, 3).angularDistance(about_z), 1e-14);
-}
-
-// One step of 10 s: the turns about z and about L commute, whatever their angles.
-TEST(Rigid, FreeRotationOfASymmetricBodyIsExact) {
-  RigidModel rigid = make_unequal_body();
-  rigid.inverse_moments = {1, 1, 0.5};
-  rigid.splitting = {0, 1, 2};
-  const Vec3 angular_momentum(1, -2, 4);  // a rate of 2 about z
-  const Quat expected =
-      Quat(Eigen::AngleAxis<Real>(10 * angular_momentum.norm(), angular_momentum.normalized())) *
-      Quat(Eigen::AngleAxis<Real>(-10 * 2, Vec3::UnitZ()));
-  const Quat turned = rotate_freely(rigid, Quat::Identity(), angular_momentum, 10);
-  EXPECT_LT(turned.angularDistance(expected), 1e-13);
-}
-
 // Back through the same turns in the opposite order.
 TEST(Rigid, FreeRotationIsReversible) {
   const RigidModel rigid = make_unequal_body();

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/saved/greatest_size.h"
 #include "protocol/scene_json.h"
 #include "tests/support/saved_bits.h"
 
@@ -23,6 +24,8 @@ TEST(SavedCatalogue, GoesOnFromItsBytes) {
     expect_goes_on(simulation, 3);
     simulation.advance(7 * simulation.steps_per_tick() + 1);
     expect_goes_on(simulation, 3);
+    EXPECT_LE(simulation.snapshot().to_bytes().size(),
+              greatest_saved_size(simulation.greatest_particle_count(), simulation.spring_count()));
   }
 }
 

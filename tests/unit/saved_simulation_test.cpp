@@ -83,14 +83,6 @@ TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
   EXPECT_GT(undone, 0U);
 }
 
-/// A stack that sleeps until a marble falls on it after 1.06 s, and another crate that sleeps on.
-Scene make_struck_stack() {
-  Scene scene = make_resting_scene();
-  scene.bodies = {make_crate("low", 0.0), make_marble("marble", {0.03, 0.02, 6}),
-                  make_crate("high", {0.02, 0, kCrateRest + kCrateEdge}), make_crate("far", 5.0)};
-  return scene;
-}
-
 TEST(SavedSimulation, HoldsWhatSleeps) {
   Simulation simulation = make_simulation(make_struck_stack());
   simulation.advance(60);  // contacts, and looks at what may come to rest
@@ -134,12 +126,8 @@ TEST(SavedSimulation, HoldsAMomentOfAFlowAndOfMelting) {
   scene.gravity = {0, 0, -10};
   scene.materials = {make_liquid("water", 1000, {.stiffness = 100, .support_radius = 0.125}),
                      make_material("ice", 900)};
-  BodyDescription pool;
-  pool.name = "pool";
-  pool.kind = BodyKind::liquid;
-  pool.material = "water";
-  pool.spacing = 0.05;
-  pool.shape = BoxShape{{0.5, 0.5, 0.03}, {0.2, 0.2, 0.05}};
+  BodyDescription pool{"pool", BodyKind::liquid, "water",
+                       BoxShape{{0.5, 0.5, 0.03}, {0.2, 0.2, 0.05}}, 0.05};
   BodyDescription ice = make_body("ice", BodyKind::deformable, "ice",
                                   make_particles(make_lattice(3, 3, 3, 0.05), 0.1), 0.025);
   ice.springs = join_near(make_lattice(3, 3, 3, 0.05), 0.06, {500, 1});

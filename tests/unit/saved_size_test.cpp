@@ -68,19 +68,5 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SavedSize,
                                          std::pair("liquid", "incompressible"),
                                          std::pair("deformable", "tait")));
 
-TEST(SavedSizes, OfTheCatalogueAreBelowTheGreatest) {
-  for (const auto& file : std::filesystem::directory_iterator(VAT_SOURCE_DIR "/protocol/scenes")) {
-    if (file.path().extension() != ".json") continue;
-    SCOPED_TRACE(file.path().stem().string());
-    const Result<Scene> scene = read_scene_file(file.path().string());
-    ASSERT_TRUE(scene.ok()) << scene.errors().front().path << scene.errors().front().message;
-    const Result<Simulation> simulation = Simulation::create(scene.value());
-    ASSERT_TRUE(simulation.ok()) << simulation.errors().front().message;
-    EXPECT_LE(simulation.value().snapshot().to_bytes().size(),
-              greatest_saved_size(simulation.value().greatest_particle_count(),
-                                  simulation.value().spring_count()));
-  }
-}
-
 }  // namespace
 }  // namespace vat::saved_size_test

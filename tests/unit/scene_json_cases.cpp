@@ -1,6 +1,6 @@
 #include "tests/unit/scene_json_cases.h"
 
-#include "core/support/check.h"
+#include "core/saved/scene_fields.h"
 
 namespace vat::scene_cases {
 
@@ -122,12 +122,7 @@ std::vector<Material> full_materials() {
 
 BodyDescription body(const char* name, BodyKind kind, const char* material, Shape shape,
                      Real spacing, const Vec3& position) {
-  BodyDescription result;
-  result.name = name;
-  result.kind = kind;
-  result.material = material;
-  result.shape = std::move(shape);
-  result.spacing = spacing;
+  BodyDescription result{name, kind, material, std::move(shape), spacing};
   result.position = position;
   return result;
 }
@@ -241,6 +236,13 @@ Result<std::string> full_meshes(const std::string& name) {
 
 Result<std::string> no_meshes(const std::string& name) {
   return Error{"no_such_file", "", name + ": is not there"};
+}
+
+std::vector<std::uint8_t> bits_of(const Scene& scene) {
+  std::vector<std::uint8_t> bytes;
+  SavingArchive archive(bytes);
+  archive(scene);
+  return bytes;
 }
 
 std::string lines(const Errors& errors) {

@@ -21,8 +21,8 @@ Result<std::string> full_meshes(const std::string& name);
 /// A source without files.
 Result<std::string> no_meshes(const std::string& name);
 
-/// All of the scene as text, reals by their bits: equal texts, equal scenes.
-std::string bits_of(const Scene& scene);
+/// All fields of the scene as they are saved: equal bytes, equal scenes.
+std::vector<std::uint8_t> bits_of(const Scene& scene);
 
 /// "code path" of every error, one a line; "" where there is none.
 std::string lines(const Errors& errors);

@@ -29,22 +29,6 @@ BodyDescription make_newcomer() {
   return make_block("newcomer", BodyKind::liquid, "b", 3, {0.05, 0, 0.6}, Vec3::Zero());
 }
 
-TEST(Snapshot, GoesOnWithTheSameBits) {
-  for (const IntegratorId integrator : kIntegrators) {
-    Simulation simulation = make_busy(integrator);
-    hash_after(simulation, kSteps);
-    const Snapshot snapshot = simulation.snapshot();
-    const std::uint64_t there = simulation.state_hash();
-    const std::uint64_t later = hash_after(simulation, kSteps);
-    EXPECT_NE(later, there);
-    for (int n = 0; n < 2; ++n) {
-      simulation.restore(snapshot);
-      EXPECT_EQ(simulation.state_hash(), there) << to_string(integrator);
-      EXPECT_EQ(hash_after(simulation, kSteps), later) << to_string(integrator);
-    }
-  }
-}
-
 TEST(Snapshot, TakingOneChangesNothing) {
   Simulation watched = make_busy();
   Simulation alone = make_busy();

@@ -235,19 +235,5 @@ TEST(SpringChanges, AreUndoneWithTheStep) {
   EXPECT_TRUE(report.failed);
 }
 
-TEST(SpringChanges, AreCheckedAtTheirPlaces) {
-  Scene scene = make_oscillator(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials[0].plasticity = Plasticity{-1, -1, -1, 1};
-  scene.materials[0].tearing_strain = 0;
-  std::string paths;
-  for (const Error& error : find_errors(scene)) paths += error.path + '\n';
-  EXPECT_EQ(paths,
-            "/materials/0/tearing_strain\n"
-            "/materials/0/plasticity/yield_strain\n"
-            "/materials/0/plasticity/hardening\n"
-            "/materials/0/plasticity/relaxation_time\n"
-            "/materials/0/plasticity/max_strain\n");
-}
-
 }  // namespace
 }  // namespace vat::spring_changes_test

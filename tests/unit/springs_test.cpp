@@ -47,12 +47,6 @@ TEST(Springs, OfNoLengthStillPushOppositeWays) {
   EXPECT_EQ(probe.force(0, 0), Vec3(-probe.force(0, 1)));
 }
 
-TEST(Springs, OnOnePairAddUp) {
-  const ForceProbe probe(
-      make_spring_scene({{0, 0, 0}, {2, 0, 0}}, {{0, 1, {40, 0}, 1.0}, {1, 0, {2, 0}, 1.0}}));
-  EXPECT_NEAR(probe.force(0, 0).x(), 42, 1e-12);
-}
-
 TEST(Springs, SumAsBruteForceDoesAndCancel) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<Real> unit(-1, 1);
@@ -78,12 +72,6 @@ TEST(Springs, SumAsBruteForceDoesAndCancel) {
     sum += probe.force(0, i);
   }
   EXPECT_LT(sum.norm(), 1e-11);
-}
-
-TEST(Springs, AreCountedOnce) {
-  const Simulation simulation = test::make_simulation(make_spring_scene(
-      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, {40, 0}, {}}, {1, 2, {40, 0}, {}}}));
-  EXPECT_EQ(simulation.spring_count(), 2U);
 }
 
 TEST(Springs, DoNotMoveFixedParticles) {

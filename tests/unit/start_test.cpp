@@ -17,12 +17,7 @@ Material water() {
 }
 
 BodyDescription block(BodyKind kind, Shape shape) {
-  BodyDescription body;
-  body.name = "block";
-  body.kind = kind;
-  body.material = "water";
-  body.shape = std::move(shape);
-  body.spacing = 0.1;
+  BodyDescription body{"block", kind, "water", std::move(shape), 0.1};
   return body;
 }
 

@@ -30,14 +30,19 @@ BodyDescription body_of(const char* name, BodyKind kind, const char* material) {
                    0.05);
 }
 
-std::vector<std::string> stages_of(const Scene& scene) {
+/// The names of the plan's stages, one after the other.
+std::string stages_of(const Scene& scene) {
   const test::ForceProbe probe(scene);
-  std::vector<std::string> names;
-  for (const Stage& stage : probe.model().plan.stages) names.emplace_back(stage.name);
+  std::string names;
+  for (const Stage& stage : probe.model().plan.stages) {
+    names += (names.empty() ? "" : " ") + std::string(stage.name);
+  }
   return names;
 }
 
 const BodyDescription kPool = body_of("pool", BodyKind::liquid, "water");
+const BodyDescription kFilm = body_of("film", BodyKind::liquid, "oil");
+const BodyDescription kSecondPool = body_of("second", BodyKind::liquid, "water");
 const BodyDescription kBall = body_of("ball", BodyKind::rigid, "solid");
 const BodyDescription kDust = body_of("dust", BodyKind::deformable, "solid");
 
@@ -48,90 +53,48 @@ BodyDescription make_spring_body() {
   return body;
 }
 
-TEST(StepPlan, OfNothingSetsForcesOnly) {
-  EXPECT_THAT(stages_of(scene_of({})), ElementsAre("external_forces"));
-}
+constexpr const char* kLiquid = "external_forces sort_liquid liquid_density liquid_pressure ";
 
-TEST(StepPlan, OfOneLiquidHasNoContacts) {
-  EXPECT_THAT(stages_of(scene_of({kPool})),
-              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
-                          "liquid_forces_inviscid"));
-}
-
-TEST(StepPlan, HasViscosityOnlyWhereALiquidOfTheSceneHasIt) {
-  EXPECT_THAT(stages_of(scene_of({kPool}, 1)),
-              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
-                          "liquid_forces"));
+TEST(StepPlan, HasTheStagesThatTheBodiesNeed) {
+  const std::string liquid = kLiquid + std::string("liquid_forces_inviscid");
+  EXPECT_EQ(stages_of(scene_of({})), "external_forces");
+  EXPECT_EQ(stages_of(scene_of({kPool})), liquid);
+  EXPECT_EQ(stages_of(scene_of({kPool, kSecondPool})), liquid);
+  EXPECT_EQ(stages_of(scene_of({kPool, kFilm})), liquid + " find_contacts contacts");
+  EXPECT_EQ(stages_of(scene_of({kPool}, 1)), kLiquid + std::string("liquid_forces"));
+  EXPECT_EQ(stages_of(scene_of({kDust})), "external_forces");
+  EXPECT_EQ(stages_of(scene_of({make_spring_body()})), "external_forces springs");
+  EXPECT_EQ(stages_of(scene_of({kBall})), "pose_rigid_bodies external_forces gather_rigid_forces");
   Scene scene = scene_of({kPool});
   scene.materials[1].liquid->viscosity = 1;  // of a material that no body has
-  EXPECT_THAT(stages_of(scene), ::testing::Contains("liquid_forces_inviscid"));
-}
-
-TEST(StepPlan, OfTwoBodiesOfOneLiquidHasNoContacts) {
-  BodyDescription second = kPool;
-  second.name = "second";
-  EXPECT_THAT(stages_of(scene_of({kPool, second})),
-              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
-                          "liquid_forces_inviscid"));
-}
-
-TEST(StepPlan, OfTwoLiquidsHasContacts) {
-  EXPECT_THAT(stages_of(scene_of({kPool, body_of("film", BodyKind::liquid, "oil")})),
-              ElementsAre("external_forces", "sort_liquid", "liquid_density", "liquid_pressure",
-                          "liquid_forces_inviscid", "find_contacts", "contacts"));
-}
-
-TEST(StepPlan, OfOneDeformableBodyHasItsSpringsOnly) {
-  EXPECT_THAT(stages_of(scene_of({kDust})), ElementsAre("external_forces"));
-  EXPECT_THAT(stages_of(scene_of({make_spring_body()})), ElementsAre("external_forces", "springs"));
-}
-
-TEST(StepPlan, OfSelfContactHasContacts) {
-  Scene scene = scene_of({make_spring_body()});
+  EXPECT_EQ(stages_of(scene), liquid);
+  scene = scene_of({make_spring_body()});
   scene.materials[2].self_contact = SpringConstants{100, 0};
-  EXPECT_THAT(stages_of(scene),
-              ElementsAre("external_forces", "find_contacts", "contacts", "springs"));
+  EXPECT_EQ(stages_of(scene), "external_forces find_contacts contacts springs");
 }
 
-TEST(StepPlan, OfOneRigidBodyPosesAndGathers) {
-  EXPECT_THAT(stages_of(scene_of({kBall})),
-              ElementsAre("pose_rigid_bodies", "external_forces", "gather_rigid_forces"));
-}
-
-TEST(StepPlan, HasWallsOnlyWithAVat) {
-  Scene scene = scene_of({kDust});
-  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
-  EXPECT_THAT(stages_of(scene), ElementsAre("external_forces", "walls"));
-}
-
-TEST(StepPlan, OfRestitutionFindsHowContactsShareWhatTheyPush) {
-  Scene scene = scene_of({make_spring_body(), kBall});
-  scene.default_interface = {.stiffness = 100, .restitution = 0.5};
-  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
-  EXPECT_THAT(stages_of(scene),
-              ElementsAre("pose_rigid_bodies", "external_forces", "find_contacts", "find_yieldings",
-                          "contacts", "springs", "walls", "gather_rigid_forces"));
+TEST(StepPlan, HasTheStagesOfWallsAndLaws) {
+  const auto in_vat = [](const std::vector<BodyDescription>& bodies,
+                         const InterfaceConstants& law = {}, Real viscosity = 0) {
+    Scene scene = scene_of(bodies, viscosity);
+    scene.default_interface = law;
+    scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
+    return scene;
+  };
+  const std::vector<BodyDescription> solids = {make_spring_body(), kBall};
+  EXPECT_EQ(stages_of(in_vat({kDust})), "external_forces walls");
+  Scene scene = in_vat(solids, {.stiffness = 100, .restitution = 0.5});
+  EXPECT_EQ(stages_of(scene),
+            "pose_rigid_bodies external_forces find_contacts find_yieldings contacts springs walls "
+            "gather_rigid_forces");
   scene.forces.contacts = false;
-  EXPECT_THAT(stages_of(scene),
-              ElementsAre("pose_rigid_bodies", "external_forces", "find_yieldings", "springs",
-                          "walls", "gather_rigid_forces"));
-}
-
-TEST(StepPlan, OfProjectionsHasNoForcesOfContact) {
-  Scene scene = scene_of({make_spring_body(), kBall});
-  scene.default_interface = {.law = InterfaceLaw::projection};
-  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
-  EXPECT_THAT(stages_of(scene), ElementsAre("pose_rigid_bodies", "external_forces", "find_contacts",
-                                            "springs", "gather_rigid_forces"));
-}
-
-TEST(StepPlan, OfEverythingIsInOrder) {
-  Scene scene = scene_of({kPool, make_spring_body(), kBall}, 1);
-  scene.vat = Vat{Vec3::Constant(-1), Vec3::Constant(1), true, {}};
-  EXPECT_THAT(stages_of(scene),
-              ElementsAre("pose_rigid_bodies", "external_forces", "sort_liquid", "liquid_density",
-                          "liquid_pressure", "liquid_forces", "find_contacts", "contacts",
-                          "springs", "walls", "gather_rigid_forces"));
+  EXPECT_EQ(stages_of(scene),
+            "pose_rigid_bodies external_forces find_yieldings springs walls gather_rigid_forces");
+  EXPECT_EQ(stages_of(in_vat(solids, {.law = InterfaceLaw::projection})),
+            "pose_rigid_bodies external_forces find_contacts springs gather_rigid_forces");
+  EXPECT_EQ(stages_of(in_vat({kPool, make_spring_body(), kBall}, {}, 1)),
+            "pose_rigid_bodies " + std::string(kLiquid) +
+                "liquid_forces find_contacts contacts springs walls gather_rigid_forces");
 }
 
 TEST(StepPlan, AsTextNamesStagesAndColumns) {

@@ -115,10 +115,7 @@ TEST(SurfaceTension, WallsAreMirrors) {
 Scene make_layer(Real contact_angle) {
   Scene scene = make_wet_scene(2);
   scene.vat = Vat{{-2, -1, 0}, {2, 1, 2}, false, {}};
-  InterfaceDescription interface;
-  interface.materials = {"water", kVatMaterial};
-  interface.contact_angle = contact_angle;
-  scene.interfaces = {interface};
+  scene.interfaces = {{{"water", kVatMaterial}, {}, {}, contact_angle}};
   std::vector<Vec3> points = make_lattice(30, 1, 20, kSpacing);
   for (Vec3& p : points) p += Vec3(-15 * kSpacing, 0, 10 * kSpacing);
   scene.bodies = {make_water(points, 2)};

@@ -109,17 +109,6 @@ TEST(UniformGrid, SurvivesWhateverPositionsComeIn) {
   }
 }
 
-TEST(UniformGrid, HoldsEachPointOnceInOneRun) {
-  const std::vector<Vec3> points = make_random_points(2000, -1, 1, 11);
-  UniformGrid grid;
-  grid.build(points, 0.15);
-  std::vector<int> seen(points.size());
-  grid.for_each_run(Vec3::Zero(), 10, [&](Index begin, Index end) {
-    for (Index slot = begin; slot < end; ++slot) ++seen[grid.order()[slot]];
-  });
-  EXPECT_TRUE(std::ranges::all_of(seen, [](int n) { return n == 1; }));
-}
-
 // A search touches the cells within the radius and no others, or it is brute force in disguise.
 TEST(UniformGrid, LooksAtFewPointsBeyondTheRadius) {
   const std::vector<Vec3> points = make_random_points(8000, 0, 2, 12);  // 1 per cell of 0.1

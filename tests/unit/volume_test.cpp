@@ -79,12 +79,8 @@ Scene make_block(const Mat3& stretch, int dimensions = 3) {
   scene.dimensions = dimensions;
   scene.materials = {test::make_material("jelly")};
   scene.materials[0].bulk_modulus = 1000;
-  BodyDescription block;
-  block.name = "block";
-  block.kind = BodyKind::deformable;
-  block.material = "jelly";
-  block.shape = BoxShape{{0, 0, 0}, {0.3, dimensions == 3 ? 0.4 : 0.1, 0.5}};
-  block.spacing = 0.1;
+  BodyDescription block{"block", BodyKind::deformable, "jelly",
+                        BoxShape{{0, 0, 0}, {0.3, dimensions == 3 ? 0.4 : 0.1, 0.5}}, 0.1};
   block.displacement_field = VectorField{Vec3::Zero(), stretch - Mat3::Identity(), {}};
   scene.bodies = {block};
   return scene;

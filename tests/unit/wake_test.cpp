@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "tests/support/commands.h"
 #include "tests/support/resting_scenes.h"
 
 // What wakes bodies that sleep.
@@ -163,50 +164,26 @@ TEST(Wake, ByLiquidThatGoesDownADrain) {
   EXPECT_NEAR(position_of(simulation, 1, 13).z(), kCrateRest, 1e-9);
 }
 
-struct Command {
-  const char* name;
-  std::function<Status(Simulation&)> give;
-};
-
-BodyId first_of(const Simulation& simulation) {
-  return simulation.bodies()[0].id;
-}
+using Commands = std::map<std::string, Command>;
 
 TEST(Wake, ByEveryCommandThatMayMoveSomething) {
-  const Command commands[] = {
-      {"gravity",
-       [](Simulation& s) {
-         return s.set_gravity({0, 0, -5});
-       }},
+  const Commands commands = {
+      {"gravity", set_gravity({0, 0, -5})},
       {"interface",
-       [](Simulation& s) {
-         return s.set_interface(
-             {{"wood", "wood"}, {.friction = 0.1, .law = InterfaceLaw::projection}, {}});
-       }},
-      {"add",
-       [](Simulation& s) {
-         return s.add_body(make_crate("new", {0, 9, kCrateRest})).ok() ? Status{}
-                                                                       : Error{"failed", "", ""};
-       }},
-      {"remove", [](Simulation& s) { return s.remove_body(s.find_body("two").value()); }},
-      {"force",
-       [](Simulation& s) {
-         return s.apply_force(first_of(s), {1, 0, 0}, 0.1);
-       }},
-      {"grab",
-       [](Simulation& s) {
-         return s.grab_start(1, first_of(s), 0, {0, 0, 1});
-       }},
-  };
-  for (const Command& command : commands) {
+       set_interface({{"wood", "wood"}, {.friction = 0.1, .law = InterfaceLaw::projection}, {}})},
+      {"add", add_body(make_crate("new", {0, 9, kCrateRest}))},
+      {"remove", remove_body("two")},
+      {"force", apply_force("one", {1, 0, 0}, 0.1)},
+      {"grab", grab(1, "one", 0, {0, 0, 1})}};
+  for (const auto& [name, command] : commands) {
     Simulation simulation = make_sleeping(make_two_crates(), "one");
-    ASSERT_TRUE(command.give(simulation).ok()) << command.name;
-    EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 0U) << command.name;
-    EXPECT_FALSE(is_asleep(simulation, "one")) << command.name;
-    EXPECT_GT(simulation.advance(4).steps, 0U) << command.name;
+    ASSERT_TRUE(command(simulation).ok()) << name;
+    EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 0U) << name;
+    EXPECT_FALSE(is_asleep(simulation, "one")) << name;
+    EXPECT_GT(simulation.advance(4).steps, 0U) << name;
     // Not at the next look, whatever had been slow before.
     simulation.advance(4);
-    EXPECT_FALSE(is_asleep(simulation, "one")) << command.name;
+    EXPECT_FALSE(is_asleep(simulation, "one")) << name;
   }
 }
 
@@ -234,43 +211,23 @@ TEST(Wake, ByAGrabItFollowsIt) {
 }
 
 TEST(Wake, NotByCommandsThatFail) {
-  const Command commands[] = {
-      {"gravity",
-       [](Simulation& s) {
-         return s.set_gravity({0, 0, 1e9});
-       }},
-      {"interface",
-       [](Simulation& s) {
-         return s.set_interface({{"wood", "iron"}, {}, {}});
-       }},
-      {"add",
-       [](Simulation& s) {
-         return s.add_body(make_crate("one", {0, 9, kCrateRest})).ok() ? Status{}
-                                                                       : Error{"failed", "", ""};
-       }},
-      {"remove", [](Simulation& s) { return s.remove_body(99); }},
-      {"melt", [](Simulation& s) { return s.melt_body(first_of(s), "wood"); }},
+  const Commands commands = {
+      {"gravity", set_gravity({0, 0, 1e9})},
+      {"interface", set_interface({{"wood", "iron"}, {}, {}})},
+      {"add", add_body(make_crate("one", {0, 9, kCrateRest}))},
+      {"remove", remove_body("absent")},
+      {"melt", [](Simulation& s) { return s.melt_body(id_of(s, "one"), "wood"); }},
       {"emitter", [](Simulation& s) { return s.set_emitter("tap", true); }},
-      {"force",
-       [](Simulation& s) {
-         return s.apply_force(first_of(s), {1, 0, 0}, -1);
-       }},
-      {"grab",
-       [](Simulation& s) {
-         return s.grab_start(1, first_of(s), 99, {0, 0, 1});
-       }},
-      {"move",
-       [](Simulation& s) {
-         return s.grab_move(1, {0, 0, 1});
-       }},
-      {"end", [](Simulation& s) { return s.grab_end(1); }},
-  };
+      {"force", apply_force("one", {1, 0, 0}, -1)},
+      {"grab", grab(1, "one", 99, {0, 0, 1})},
+      {"move", move_grab(1, {0, 0, 1})},
+      {"end", end_grab(1)}};
   Simulation simulation = make_sleeping(make_two_crates(), "one");
   const std::uint64_t before = simulation.state_hash();
-  for (const Command& command : commands) {
-    ASSERT_FALSE(command.give(simulation).ok()) << command.name;
-    EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 2U) << command.name;
-    EXPECT_EQ(simulation.state_hash(), before) << command.name;
+  for (const auto& [name, command] : commands) {
+    ASSERT_FALSE(command(simulation).ok()) << name;
+    EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 2U) << name;
+    EXPECT_EQ(simulation.state_hash(), before) << name;
   }
 }
 
