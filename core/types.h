@@ -16,5 +16,6 @@ using Index = std::uint32_t;
 
 /// Identifies a body for the life of a simulation; never used again after the body is removed.
 using BodyId = std::uint32_t;
+inline constexpr Index kNoParticle = ~Index{0};  ///< in place of an index
 
 }  // namespace vat

@@ -70,7 +70,7 @@ struct ServerLimits {
 };
 
 /// Of max_message_depth: what was logged under another setting is still read.
-inline constexpr std::size_t kMostMessageDepth = 64;
+inline constexpr std::size_t kMaxMessageDepth = 64;
 
 /// Fixed by PROTOCOL.md.
 inline constexpr std::size_t kMaxTicksPerStep = 1000;

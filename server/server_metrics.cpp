@@ -42,7 +42,7 @@ void append_counter(std::string& text, const char* name, const char* help, std::
   append_sample(text, name, "", value);
 }
 
-void append_present(std::string& text, const ServerMetrics::Present& now) {
+void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_head(text, "vat_build_info", "gauge", "Version, and instruction set of all sessions.");
   append_sample(
       text, "vat_build_info",
@@ -132,7 +132,7 @@ void ServerMetrics::add_close(std::uint16_t code) {
   ++closes_[is_ours ? code : 0];
 }
 
-std::string ServerMetrics::to_text(const Present& present) const {
+std::string ServerMetrics::to_text(const Gauges& present) const {
   std::string text;
   append_present(text, present);
   const std::lock_guard lock(mutex_);

@@ -44,7 +44,7 @@ class ServerMetrics {
   void add_close(std::uint16_t code);
 
   /// What is so now.
-  struct Present {
+  struct Gauges {
     std::string version;
     InstructionSet instructions = InstructionSet::baseline;
     std::size_t threads = 0;
@@ -58,7 +58,7 @@ class ServerMetrics {
     StorageCounts storage;
   };
   /// All of it in the text format, version 0.0.4.
-  std::string to_text(const Present& present) const;
+  std::string to_text(const Gauges& present) const;
 
  private:
   struct TickBound {

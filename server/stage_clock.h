@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 
 namespace vat {
 

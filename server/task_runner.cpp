@@ -191,7 +191,8 @@ bool ThreadPoolRunner::should_wake(Clock::duration elapsed, std::size_t done,
 }
 
 std::size_t ThreadPoolRunner::helper_limit() const {
-  const std::size_t others = std::max<std::size_t>(1, guests_.load(std::memory_order_relaxed));
+  const std::size_t others =
+      std::max<std::size_t>(1, reservations_.load(std::memory_order_relaxed));
   return others < thread_count_ ? thread_count_ - others : 0;
 }
 

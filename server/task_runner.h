@@ -47,12 +47,12 @@ class ThreadPoolRunner final : public TaskRunner {
   /// While it lives, a thread of another pool has work of its own. Helpers beyond thread_count()
   /// less the guests stop at the end of their blocks, so that no more threads than that run for
   /// long: work of its own first, help second.
-  class Guest {
+  class HelperReservation {
    public:
-    explicit Guest(ThreadPoolRunner& host) : host_(host) { ++host_.guests_; }
-    ~Guest() { --host_.guests_; }
-    Guest(const Guest&) = delete;
-    Guest& operator=(const Guest&) = delete;
+    explicit HelperReservation(ThreadPoolRunner& host) : host_(host) { ++host_.reservations_; }
+    ~HelperReservation() { --host_.reservations_; }
+    HelperReservation(const HelperReservation&) = delete;
+    HelperReservation& operator=(const HelperReservation&) = delete;
 
    private:
     ThreadPoolRunner& host_;
@@ -78,7 +78,7 @@ class ThreadPoolRunner final : public TaskRunner {
   alignas(64) std::atomic<std::uint32_t> calls_ = 0;
   alignas(64) std::atomic<std::uint32_t> sleepers_ = 0;  // helpers
   std::atomic<std::uint32_t> busy_ = 0;                  // helpers at work
-  std::atomic<std::uint32_t> guests_ = 0;
+  std::atomic<std::uint32_t> reservations_ = 0;
   std::atomic<bool> stopping_ = false;
   std::vector<std::thread> helpers_;
 };

@@ -47,7 +47,7 @@ Real HalfSpace::drag(Real d) const {
   const Real q = std::max(Real{0}, d / h_);
   if (q >= 1) return 0;
   const Real integral = std::max(Real{0}, dimensions_ == 3 ? drag_of_space(q) : drag_of_plane(q));
-  return integral / (h_ * h_ * std::max(q, kLeastDistance));
+  return integral / (h_ * h_ * std::max(q, kMinDistance));
 }
 
 }  // namespace vat

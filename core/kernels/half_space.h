@@ -18,13 +18,13 @@ class HalfSpace {
 
   /// Integral of s/d times the Laplacian of the viscosity kernel, s the distance from the particle
   /// along the wall's normal [1/m^2]: for a liquid whose velocity goes on beyond the wall on the
-  /// straight line from the particle's to the wall's. Nearer than kLeastDistance it grows no more.
+  /// straight line from the particle's to the wall's. Nearer than kMinDistance it grows no more.
   Real drag(Real d) const;
 
   /// Of the support radius. The drag grows as 1/d, and with it the rate at which a velocity decays;
   /// here that is one and a half times what all its neighbours do to a particle deep in the liquid.
   /// A liquid at rest stays further away: half a spacing, with at most five spacings to a support.
-  static constexpr Real kLeastDistance = 0.1;
+  static constexpr Real kMinDistance = 0.1;
 
  private:
   Real h_;

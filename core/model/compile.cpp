@@ -9,14 +9,14 @@
 #include <span>
 #include <utility>
 
-#include "core/forces/cohesion.h"
-#include "core/forces/vat_motion.h"
+#include "core/laws/cohesion.h"
+#include "core/laws/vat_motion.h"
 #include "core/model/contacts.h"
 #include "core/model/limited_springs.h"
 #include "core/model/surface_tension.h"
-#include "core/rigid/mass_properties.h"
-#include "core/scene/step_limits.h"
-#include "core/scene/volumes.h"
+#include "core/numerics/step_limits.h"
+#include "core/sampling/mass_properties.h"
+#include "core/sampling/volumes.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -349,7 +349,7 @@ Real central_viscosity_of(const Material& material, int dimensions) {
                                                        liquid.support_radius / 2;
 }
 
-/// See core/forces/cohesion.h.
+/// See core/laws/cohesion.h.
 Real tensile_strength_of(const Scene& scene, const LiquidConstants& liquid) {
   if (scene.surface_model != SurfaceModel::cohesion) return 0;
   return kTensileShare / 2 *
@@ -389,9 +389,9 @@ void forget_samples(Model& model) {
   }
 }
 
-std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
-                               std::vector<std::shared_ptr<const SampledBody>> samples,
-                               const Model* whole) {
+std::shared_ptr<Model> compile_model(Scene scene, const std::vector<BodyId>& ids,
+                                     std::vector<std::shared_ptr<const SampledBody>> samples,
+                                     const Model* whole) {
   VAT_CHECK(ids.size() == scene.bodies.size() && samples.size() == scene.bodies.size());
   auto model = std::make_shared<Model>();
   model->scene = std::move(scene);
@@ -421,7 +421,6 @@ std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
   add_rigid_bodies(*model);
   compile_contacts(*model);
   model->damping = find_damping(*model);
-  model->plan = make_step_plan(*model);
   return model;
 }
 

@@ -10,17 +10,17 @@ namespace vat {
 /// The first nominal step that begins at a time [s] or after it; `step` is their length [s].
 std::uint64_t first_step_from(Real time, Real step);
 
-/// Compiles a scene without errors. `ids` and `samples` have one entry per body of the scene; a
-/// null sample is made here. Where the bodies are some of those of a model `whole`, given its
-/// materials, their liquids have the constants that they have there.
-std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
-                               std::vector<std::shared_ptr<const SampledBody>> samples,
-                               const Model* whole = nullptr);
+/// Compiles a scene without errors, without its plan. `ids` and `samples` have one entry per body
+/// of the scene; a null sample is made here. Where the bodies are some of those of a model `whole`,
+/// given its materials, their liquids have the constants that they have there.
+std::shared_ptr<Model> compile_model(Scene scene, const std::vector<BodyId>& ids,
+                                     std::vector<std::shared_ptr<const SampledBody>> samples,
+                                     const Model* whole = nullptr);
 
-/// What compile() makes of the model's scene with one of its bodies beginning elsewhere, and moving
-/// otherwise, than its description has it; from the samples of the others, and at no more cost than
-/// that of the body itself and a copy. Bodies whose particles are not those of their description
-/// keep them.
+/// What compile_model() makes of the model's scene with one of its bodies beginning elsewhere, and
+/// moving otherwise, than its description has it; from the samples of the others, and at no more
+/// cost than that of the body itself and a copy. Bodies whose particles are not those of their
+/// description keep them.
 std::shared_ptr<Model> with_moved_body(const Model& model, std::size_t body, BodyDescription moved);
 
 /// Lets go the samples of liquids that their descriptions can give again; for when the state at

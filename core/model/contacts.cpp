@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "core/forces/restitution.h"
+#include "core/laws/contact_damping.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/scene/interface_table.h"
 

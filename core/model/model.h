@@ -14,11 +14,11 @@
 #include "core/kernels/spiky.h"
 #include "core/kernels/viscosity_kernel.h"
 #include "core/neighbours/periodic_box.h"
-#include "core/scene/nozzle.h"
-#include "core/scene/sampling.h"
+#include "core/numerics/stable_step.h"
+#include "core/sampling/nozzle.h"
+#include "core/sampling/sampling.h"
 #include "core/scene/scene.h"
-#include "core/scene/stable_step.h"
-#include "core/step/step_plan.h"
+#include "core/stage/plan.h"
 #include "core/support/shared_array.h"
 #include "core/types.h"
 
@@ -79,7 +79,7 @@ struct ContactLaw {
   Real friction = 0;          ///< coefficient mu
   Real damping_ratio = 0;     ///< of what has a restitution, in place of damping
   Real layer = 0;             ///< how far a layer reaches beyond the threshold, in thresholds
-  bool is_projected = false;  ///< see core/projection/projection.h
+  bool is_projected = false;  ///< see core/contact/projection/projection.h
   Real restitution = 0;       ///< of a projection
 
   /// The distance from a wall below which a particle is in contact [m].
@@ -147,7 +147,7 @@ struct Model {
   std::vector<ModelBody> bodies;  ///< in the scene's order
 
   PeriodicBox periodic;
-  /// The vat's walls, by the numbers of core/forces/vat_motion.h: those that the scene has, and of
+  /// The vat's walls, by the numbers of core/laws/vat_motion.h: those that the scene has, and of
   /// them those that are no_slip.
   std::vector<int> walls;
   std::vector<int> no_slip_walls;
@@ -184,7 +184,7 @@ struct Model {
   // By colour: none of [limited_begin[c], limited_begin[c + 1]) shares a particle with another.
   SharedArray<LimitedSpring> limited_springs;
   SharedArray<Index> limited_begin;
-  bool springs_change = false;  ///< some may flow or tear, see core/forces/spring_changes.h
+  bool springs_change = false;  ///< some may flow or tear, see core/solid/spring_changes.h
 
   std::vector<ContactLaw> contact_laws;                       ///< materials x materials
   std::vector<ContactLaw> wall_laws;                          ///< by material
@@ -201,7 +201,7 @@ struct Model {
   bool has_self_contact = false;
   bool has_surface_tension = false;  ///< some liquid body has, by its curvature
   std::vector<Real> wall_cosines;    ///< by material, of the contact angle; the same
-  // Of liquids that attract themselves, see core/forces/cohesion.h.
+  // Of liquids that attract themselves, see core/liquid/surface/cohesion.h.
   std::optional<CohesionKernel> cohesion;  ///< where some liquid body does
   std::vector<Real> cohesions;             ///< A by material [Pa]
   /// Shares of materials, row by row, in what solids of others pull, the walls last in each.

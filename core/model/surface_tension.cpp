@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/forces/cohesion.h"
+#include "core/laws/cohesion.h"
 #include "core/scene/interface_table.h"
 
 namespace vat {

@@ -5,11 +5,11 @@
 #include <functional>
 #include <string>
 
-#include "core/forces/vat_motion.h"
+#include "core/laws/vat_motion.h"
 #include "core/limits.h"
 #include "core/scene/lookup.h"
-#include "core/scene/validate.h"
 #include "core/sleep/islands.h"
+#include "core/validation/validate.h"
 
 namespace vat {
 namespace {

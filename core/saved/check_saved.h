@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "core/model/model.h"
+#include "core/numerics/stable_step.h"
+#include "core/sampling/sampling.h"
 #include "core/saved/archive.h"
-#include "core/scene/sampling.h"
-#include "core/scene/stable_step.h"
+#include "core/state/controls.h"
 #include "core/state/state.h"
-#include "core/step/controls.h"
 #include "core/support/result.h"
 
 /// Whether what was read can be gone on with: bytes that say nothing of what they are damaged by

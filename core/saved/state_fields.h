@@ -1,10 +1,10 @@
 #pragma once
 
+#include "core/numerics/stable_step.h"
+#include "core/sampling/sampling.h"
 #include "core/saved/archive.h"
-#include "core/scene/sampling.h"
-#include "core/scene/stable_step.h"
+#include "core/state/controls.h"
 #include "core/state/state.h"
-#include "core/step/controls.h"
 
 /// The fields of a state and of what users hold, for archives.
 namespace vat {
@@ -46,10 +46,10 @@ void describe(Archive& archive, Of<Archive, Configuration>& v) {
   auto& [position, velocity, rigid, contacts, springs, pressure] = v;
   archive(position, velocity, rigid, contacts, springs, pressure);
 }
-/// Not `rub_torque`, which nothing reads after the evaluation that wrote it.
+/// Not `friction_torque`, which nothing reads after the evaluation that wrote it.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Forces>& v) {
-  auto& [particle, rigid_force, rigid_torque, rub_torque, transport] = v;
+  auto& [particle, rigid_force, rigid_torque, friction_torque, transport] = v;
   archive(particle, rigid_force, rigid_torque, transport);
 }
 template <class Archive>

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "core/kernels/kernel_id.h"
-#include "core/pairs/pair_precision.h"
+#include "core/scene/pair_precision.h"
 #include "core/types.h"
 
-/// A scene as plain values: what a user writes. Nothing here is checked; see core/scene/validate.h
-/// for the ranges and core/model/compile.h for what a scene becomes. SI units throughout.
+/// A scene as plain values: what a user writes. Nothing here is checked; see
+/// core/validation/validate.h for the ranges and core/model/compile.h for what a scene becomes. SI
+/// units throughout.
 namespace vat {
 
 enum class BodyKind : std::uint8_t { liquid = 0, deformable = 1, rigid = 2 };
@@ -24,7 +25,7 @@ enum class IntegratorId : std::uint8_t {
   runge_kutta_4,
 };
 
-/// How the length of steps is chosen; see core/step/step_control.h.
+/// How the length of steps is chosen; see core/stepping/step_control.h.
 enum class StepControl : std::uint8_t {
   fixed,     ///< every step has the scene's length
   adaptive,  ///< the whole scene halves its step as often as the fastest process asks for
@@ -34,15 +35,16 @@ enum class StepControl : std::uint8_t {
 /// What keeps a liquid's volume.
 enum class PressureSolver : std::uint8_t {
   gas,   ///< Boldt eq. 14 with the kernels of [MCG03]; bodies and walls push with springs
-  tait,  ///< weakly compressible, see core/forces/weakly_compressible.h; bodies and walls take part
-  incompressible,  ///< see core/incompressible/volume_solve.h; bodies and walls take part as in
-                   ///< tait
+  tait,  ///< weakly compressible, see core/liquid/tait/weakly_compressible.h; bodies and walls take
+         ///< part
+  incompressible,  ///< see core/liquid/incompressible/volume_solve.h; bodies and walls take part as
+                   ///< in tait
 };
 
 /// What pulls a liquid's surface together.
 enum class SurfaceModel : std::uint8_t {
-  curvature,  ///< a force at the surface, see core/forces/surface_tension.h
-  cohesion,   ///< attraction of all pairs, see core/forces/cohesion.h
+  curvature,  ///< a force at the surface, see core/liquid/surface/surface_tension.h
+  cohesion,   ///< attraction of all pairs, see core/liquid/surface/cohesion.h
 };
 
 /// How well the solves of an incompressible liquid keep its volume: relative changes of density,
@@ -64,11 +66,12 @@ struct SpringConstants {
 /// What two particles that meet by an interface do to each other.
 enum class InterfaceLaw : std::uint8_t {
   /// A spring and dashpot along the line between them, which only push, and Coulomb friction across
-  /// it; see core/forces/friction.h.
+  /// it; see core/laws/friction.h.
   penalty,
-  lennard_jones,  ///< a layer that holds what touches it, see core/forces/lennard_jones.h
+  lennard_jones,  ///< a layer that holds what touches it, see core/laws/lennard_jones.h
   sph,            ///< one of them is liquid: the other takes part in its density and pressure
-  projection,     ///< what overlaps at the end of a step does not, see core/projection/projection.h
+  projection,     ///< what overlaps at the end of a step does not, see
+                  ///< core/contact/projection/projection.h
 };
 
 /// What happens where bodies touch. Each law has constants of its own; the others stay as they are
@@ -79,7 +82,7 @@ struct InterfaceConstants {
   Real friction = 0;   ///< penalty and projection; coefficient mu, 0: surfaces are smooth
   InterfaceLaw law = InterfaceLaw::penalty;
   /// Speed of parting over speed of approach: penalty, in place of damping (see
-  /// core/forces/restitution.h), and projection, where none is 0.
+  /// core/contact/restitution.h), and projection, where none is 0.
   std::optional<Real> restitution{};
   /// Of a layer: how far it reaches, in thresholds, at which it neither pushes nor pulls.
   Real reach = kDefaultReach;
@@ -97,7 +100,7 @@ struct LiquidConstants {
   /// alpha: adds alpha rho c h / (4 (d + 2)) to the viscosity of weakly compressible liquids, in d
   /// dimensions, which calms the sound of impacts.
   Real artificial_viscosity = 0.02;
-  Real surface_tension = 0;  ///< sigma [N/m]; see core/forces/surface_tension.h
+  Real surface_tension = 0;  ///< sigma [N/m]; see core/liquid/surface/surface_tension.h
 };
 
 /// Static springs that the shape sampler puts between lattice neighbours of a deformable body:
@@ -129,16 +132,16 @@ struct Material {
   std::optional<LatticeSprings> springs;        ///< used by sampled deformable bodies
   std::optional<SpringConstants> self_contact;  ///< dynamic springs within one deformable body
   /// Static springs are solved for, so that they limit no step; see
-  /// core/integrators/implicit_springs.h. Needs velocity Verlet, in fixed or adaptive steps.
+  /// core/solid/implicit_springs.h. Needs velocity Verlet, in fixed or adaptive steps.
   bool implicit_springs = false;
   std::optional<Plasticity> plasticity{};  ///< of static springs; they are elastic without
   std::optional<Real> tearing_strain{};    ///< static springs tear at this strain e, for good
   /// No static spring gets longer than 1 + this times its length at rest at the start; see
-  /// core/integrators/elongation_limit.h. Needs symplectic Euler or velocity Verlet, in fixed or
+  /// core/solid/elongation_limit.h. Needs symplectic Euler or velocity Verlet, in fixed or
   /// adaptive steps, without implicit springs.
   std::optional<Real> elongation_limit{};
   /// K [Pa], in two dimensions [N/m]: cells of the lattice of sampled deformable bodies keep their
-  /// volume, see core/forces/volume.h. 0: only springs resist compression.
+  /// volume, see core/solid/volume.h. 0: only springs resist compression.
   Real bulk_modulus = 0;
 };
 
@@ -364,7 +367,7 @@ struct Numerics {
   /// Of varied steps: the phase error per radian, relative, of the motion that they resolve.
   Real tolerance = 0.01;
   /// The relative error that integrator, step, control and tolerance are chosen for, in place of
-  /// those given here; see core/scene/choose_numerics.h.
+  /// those given here; see core/numerics/choose_numerics.h.
   std::optional<Real> accuracy{};
 };
 

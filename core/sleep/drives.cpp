@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/forces/vat_motion.h"
+#include "core/laws/vat_motion.h"
 
 namespace vat {
 namespace {
@@ -22,7 +22,7 @@ bool is_in_drain(const Model& model, const ModelBody& body, const Configuration&
 
 }  // namespace
 
-bool drives_all(const Scene& scene, Real time) {
+bool prevents_sleep(const Scene& scene, Real time) {
   if (scene.vat && moves_walls(*scene.vat, time)) return true;
   if (scene.settling && time < scene.settling->until) return true;
   return std::ranges::any_of(

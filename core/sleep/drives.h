@@ -1,15 +1,15 @@
 #pragma once
 
 #include "core/model/model.h"
+#include "core/state/controls.h"
 #include "core/state/state.h"
-#include "core/step/controls.h"
 
 /// What keeps bodies awake however slow they are.
 namespace vat {
 
 /// Whether something moves what it touches by itself: a vat that slides or has a wall that does,
 /// settling that is not over, an emitter that is open and has not come to its end. All stay awake.
-bool drives_all(const Scene& scene, Real time);
+bool prevents_sleep(const Scene& scene, Real time);
 
 /// Whether something is done to this body, or will be: users hold or push it, it moves as if no
 /// force acted or waits for its release, is to melt, has particles in a nozzle or in a drain.

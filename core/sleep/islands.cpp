@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
-#include "core/rigid/rigid_motion.h"
 #include "core/sleep/resting_bodies.h"
+#include "core/state/rigid_motion.h"
 
 namespace vat {
 

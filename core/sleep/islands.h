@@ -16,9 +16,9 @@
 ///
 /// The reach is the greatest distance at which particles of two bodies notice each other: that of
 /// contacts or a liquid's support radius. In a step nothing moves further than the reach, see
-/// core/step/guard.h, or in varied steps than it goes in twice its length at its present speed: at
-/// the reach and so much more sleepers wake. Islands are half a reach further apart, so that what
-/// lies beside them without moving does not wake them.
+/// core/guard/guard.h, or in varied steps than it goes in twice its length at its present speed:
+/// at the reach and so much more sleepers wake. Islands are half a reach further apart, so that
+/// what lies beside them without moving does not wake them.
 namespace vat {
 
 /// Of a body that is in no island that sleeps.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/forces/contact_search.h"
+#include "core/contact/contact_search.h"
 #include "core/model/model.h"
 
 namespace vat {

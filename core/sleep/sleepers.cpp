@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "core/forces/vat_motion.h"
+#include "core/laws/vat_motion.h"
 #include "core/model/compile.h"
+#include "core/stepping/step_plan.h"
 
 namespace vat {
 

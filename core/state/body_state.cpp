@@ -4,7 +4,7 @@
 #include <span>
 #include <tuple>
 
-#include "core/forces/vat_motion.h"
+#include "core/laws/vat_motion.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -100,7 +100,7 @@ Index moved(const Model& from, const std::vector<Index>& begins, Index particle)
 
 /// Adds the contacts that there are in the other model too.
 void append_contacts(const Model& from, const std::vector<ContactImpulse>& source,
-                  const std::vector<Index>& begins, std::vector<ContactImpulse>& target) {
+                     const std::vector<Index>& begins, std::vector<ContactImpulse>& target) {
   for (ContactImpulse contact : source) {
     contact.particle = moved(from, begins, contact.particle);
     if (contact.particle == kNowhere) continue;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/rigid/rigid_motion.h"
+#include "core/state/rigid_motion.h"
 
 namespace vat {
 namespace {

@@ -56,8 +56,9 @@ struct Forces {
   std::vector<Vec3> rigid_torque;  ///< tau about r_cm, Boldt eq. 6 [N m]
   /// Of friction on rigid particles, about their centres [N m]; empty where there is none. Read by
   /// rigid_torque alone.
-  std::vector<Vec3> rub_torque{};
-  std::vector<Vec3> transport;  ///< of liquids that fill their world, see core/forces/transport.h
+  std::vector<Vec3> friction_torque{};
+  std::vector<Vec3>
+      transport;  ///< of liquids that fill their world, see core/liquid/tait/transport.h
 };
 
 /// What adaptive step control remembers from one step to the next.

@@ -2,7 +2,7 @@
 
 #include <iostream>
 
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 
 namespace vat {
 

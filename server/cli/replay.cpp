@@ -21,7 +21,7 @@
 namespace vat {
 namespace {
 
-constexpr std::uint64_t kMostLines = 200;  // about so many of the hashes are printed
+constexpr std::uint64_t kMaxLines = 200;  // about so many of the hashes are printed
 
 struct ReplayOptions {
   std::string file;
@@ -80,7 +80,7 @@ int play(const ReplayOptions& options, const Recording& recording, const Catalog
     ++compared;
     if (!options.verify || (same.position < print_from && same.position != recording.end)) return;
     print_place(core, same.hash);
-    print_from = same.position + (recording.end - recording.begin) / kMostLines;
+    print_from = same.position + (recording.end - recording.begin) / kMaxLines;
   };
   if (options.verify) player.compare_moments();
   const std::atomic<bool> cancelled = false;

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 
 namespace vat {
 

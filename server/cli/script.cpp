@@ -26,7 +26,7 @@ against a server of its own on a free port.
 Exit codes: 0 every line was met, 1 one was not, or there is no server, 2 wrong usage, or a mistake
 in a script.)";
 
-constexpr double kMostPatience = 86'400;  // [s] a day
+constexpr double kMaxPatience = 86'400;  // [s] a day
 
 struct ScriptOptions {
   std::vector<std::string> files;
@@ -120,7 +120,7 @@ void add_script_options(CLI::App& command, ScriptOptions& options) {
       ->capture_default_str();
   command.add_option("--scenes", options.scenes_folder, "Folder of such a server's catalogue");
   command.add_option("--patience", options.patience, "How long a line waits [s]")
-      ->check(real_in(0, kMostPatience))
+      ->check(real_in(0, kMaxPatience))
       ->capture_default_str();
   command.add_option("--set", options.play.captures,
                      "NAME TEXT: what the scripts' \"$NAME\" stands for");

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/cli/command.h"
 #include "server/cli/open_files.h"
 #include "server/cli/scene_argument.h"

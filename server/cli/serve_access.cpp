@@ -12,7 +12,7 @@
 namespace vat {
 namespace {
 
-constexpr std::size_t kLeastTokenBytes = 16;
+constexpr std::size_t kMinTokenBytes = 16;
 constexpr const char* kVariable = "VAT_ADMIN_TOKEN";
 
 bool is_loopback(const std::string& host) {
@@ -42,10 +42,10 @@ Result<ServeAccess> serve_access(const ServeSettings& settings) {
   access.settings.mode = is_open ? AccessMode::open : AccessMode::token;
   const Result<std::optional<std::string>> given = given_token(settings.admin_token_file);
   if (!given) return given.errors();
-  if (given.value() && given.value()->size() < kLeastTokenBytes) {
+  if (given.value() && given.value()->size() < kMinTokenBytes) {
     return Error{
         "out_of_range", "",
-        "the admin's token must have at least " + std::to_string(kLeastTokenBytes) + " bytes"};
+        "the admin's token must have at least " + std::to_string(kMinTokenBytes) + " bytes"};
   }
   if (!given.value() && !is_open) access.made_token = make_token();
   if (given.value()) access.settings.admin = hash_of_token(*given.value());

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "core/limits.h"
-#include "core/scene/choose_numerics.h"
-#include "core/scene/validate.h"
-#include "core/simulation.h"
+#include "core/numerics/choose_numerics.h"
+#include "core/simulation/simulation.h"
+#include "core/validation/validate.h"
 #include "server/cli/command.h"
 #include "server/cli/option_checks.h"
 #include "server/cli/scene_argument.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "core/support/result.h"
 #include "server/cli/simulate_schedule.h"
 

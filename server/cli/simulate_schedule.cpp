@@ -13,8 +13,8 @@ namespace {
 constexpr Real kWholeTolerance = 1e-9;  // relative; far above round-off, far below any real misfit
 
 // How far a step is shortened to meet the end of the run: beyond, the end is moved instead.
-constexpr Real kMostShortening = 10;
-constexpr int kMostTries = 100'000;
+constexpr Real kMaxShortening = 10;
+constexpr int kMaxTries = 100'000;
 
 bool is_whole(Real interval, Real step) {
   const Real count = std::round(interval / step);
@@ -43,7 +43,7 @@ Real fitted_step(Real wanted_step, Real every, Real until) {
                                                    : std::ceil(every / wanted_step);
   const Real longest = is_whole(every, wanted_step) ? wanted_step : every / fewest;
   if (is_whole(until, longest)) return longest;
-  for (int more = 1; more <= kMostTries && fewest + more <= kMostShortening * fewest; ++more) {
+  for (int more = 1; more <= kMaxTries && fewest + more <= kMaxShortening * fewest; ++more) {
     const Real shorter = every / (fewest + more);
     if (is_whole(until, shorter)) return shorter;
   }

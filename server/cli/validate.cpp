@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "core/scene/cost_estimate.h"
-#include "core/simulation.h"
+#include "core/numerics/cost_estimate.h"
+#include "core/simulation/simulation.h"
 #include "server/cli/command.h"
 #include "server/cli/scene_argument.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "core/support/result.h"
 #include "server/output/output_file.h"
 

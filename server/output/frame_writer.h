@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "core/support/result.h"
 
 namespace vat {

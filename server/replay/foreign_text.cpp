@@ -1,7 +1,7 @@
 #include "server/replay/foreign_text.h"
 
-#include "protocol/json_reader.h"
-#include "protocol/printable.h"
+#include "protocol/json/json_reader.h"
+#include "protocol/json/printable.h"
 
 namespace vat {
 namespace {

@@ -20,7 +20,7 @@ std::variant<Imports::Progress, RpcError> Imports::add(ConnectionId client, Part
   if (part.size > kMaxRecordingBytes) return limit_reached("recording_bytes", kMaxRecordingBytes);
   if (held() + part.bytes.size() > most_bytes_) return limit_reached("import_bytes", most_bytes_);
   if (!part.name) {
-    if (files_.size() >= kMostFiles) return limit_reached("imports", kMostFiles);
+    if (files_.size() >= kMaxFiles) return limit_reached("imports", kMaxFiles);
     part.name = make_token();
     files_[*part.name] = {client, part.size, {}, nullptr, 0, now};
   }

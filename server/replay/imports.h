@@ -23,11 +23,11 @@ namespace vat {
 /// gone on with, or not opened, is forgotten after a while. Safe to use from any thread.
 class Imports {
  public:
-  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;  ///< of all that is held
-  static constexpr std::size_t kMostFiles = 16;
+  static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< of all that is held
+  static constexpr std::size_t kMaxFiles = 16;
   static constexpr std::chrono::seconds kPatience{600};
 
-  explicit Imports(std::size_t most_bytes = kMostBytes) : most_bytes_(most_bytes) {}
+  explicit Imports(std::size_t most_bytes = kMaxBytes) : most_bytes_(most_bytes) {}
 
   /// A part of a file, which begins at `offset`; without a name it is the first.
   struct Part {

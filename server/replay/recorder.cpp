@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "server/storage/compression.h"
 
 namespace vat {

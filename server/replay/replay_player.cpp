@@ -42,8 +42,8 @@ Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
 Simulation ReplayPlayer::load_scene(std::uint64_t sequence) const {
   const auto entry = std::ranges::find(recording_.log, sequence, &LogEntry::sequence);
   if (entry == recording_.log.end()) fail_replay("scene", "its entry is not there");
-  const Result<Json> params = parse_json(
-      entry->params, {entry->params.size(), kMostMessageDepth, entry->params.size() + 1});
+  const Result<Json> params =
+      parse_json(entry->params, {entry->params.size(), kMaxMessageDepth, entry->params.size() + 1});
   if (!params) fail_replay("scene", params.errors().front().message);
   const auto value = params.value().find("scene");
   if (value == params.value().end()) fail_replay("scene", "its entry has none");

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "server/script/pattern.h"
 
 namespace vat::script {

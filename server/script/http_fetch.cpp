@@ -13,7 +13,7 @@ namespace {
 namespace http = boost::beast::http;
 
 constexpr int kHttp11 = 11;
-constexpr std::uint64_t kMostBody = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxBody = std::uint64_t{1} << 30;
 
 std::string in_small_letters(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -51,7 +51,7 @@ Json fetch_http(const WebSocketUrl& url, const TlsTrust& trust, const std::strin
   outcome.reset();
   boost::beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
-  parser.body_limit(kMostBody);
+  parser.body_limit(kMaxBody);
   http::async_read(stream, buffer, parser, ended);
   operations.finish(stream, outcome, deadline,
                     "the server did not answer the HTTP request in time");

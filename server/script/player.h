@@ -3,7 +3,7 @@
 #include <deque>
 #include <vector>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "server/script/client.h"
 #include "server/script/frame_json.h"
 #include "server/script/script.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "server/limits.h"
 
 namespace vat {

@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
-#include "core/simulation.h"
-#include "protocol/json_reader.h"
+#include "core/simulation/simulation.h"
+#include "protocol/json/json_reader.h"
 
 /// JSON of what clients are told about a simulation; see PROTOCOL.md.
 namespace vat {

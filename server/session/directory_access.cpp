@@ -21,7 +21,7 @@ std::optional<Grant> SessionDirectory::find_grant(std::string_view token) {
   return tokens_.use(hash);
 }
 
-std::optional<RpcResult> SessionDirectory::enter(Caller& caller, std::string_view token) {
+std::optional<RpcResult> SessionDirectory::enter(PendingReply& caller, std::string_view token) {
   const std::lock_guard lock(mutex_);
   const auto found = clients_.find(caller.client()->id());
   if (found == clients_.end()) return not_allowed("the connection is closed");
@@ -37,7 +37,7 @@ std::optional<RpcResult> SessionDirectory::enter(Caller& caller, std::string_vie
   const bool is_last = ++client.wrong_tokens >= settings_.access.max_wrong_tokens;
   spdlog::warn("a wrong token, number {} of its connection", client.wrong_tokens);
   deferred_->add(clock_.now() + settings_.access.refusal_delay,
-                 [is_last, refused = std::make_shared<Caller>(std::move(caller))] {
+                 [is_last, refused = std::make_shared<PendingReply>(std::move(caller))] {
                    refused->answer(not_authenticated("the token is not good, or not any more"));
                    if (is_last)
                      refused->client()->close(kNotAuthenticated, "too many wrong tokens");
@@ -52,7 +52,7 @@ void SessionDirectory::close_unless_entered(ConnectionId id) {
   client->second.outbox->close(kNotAuthenticated, "no token was shown in time");
 }
 
-RpcResult SessionDirectory::issue_ticket(const Caller& caller, Role role,
+RpcResult SessionDirectory::issue_ticket(const PendingReply& caller, Role role,
                                          const std::optional<SessionId>& session) {
   const MethodRules& rules = rules_of("access.ticket");
   Grant grant{role, session.value_or(""), true};
@@ -83,12 +83,12 @@ void SessionDirectory::undo_join(ConnectionId id, Sessions::key_type session) {
   client->second.session = 0;
 }
 
-const SessionDirectory::Client* SessionDirectory::find_caller(const Caller& caller) const {
+const SessionDirectory::Client* SessionDirectory::find_caller(const PendingReply& caller) const {
   const auto client = clients_.find(caller.client()->id());
   return client == clients_.end() ? nullptr : &client->second;
 }
 
-std::optional<RpcError> SessionDirectory::refuse_role(const Caller& caller,
+std::optional<RpcError> SessionDirectory::refuse_role(const PendingReply& caller,
                                                       const MethodRules& rules,
                                                       Sessions::key_type session) const {
   const Client* client = find_caller(caller);
@@ -111,12 +111,12 @@ std::optional<RpcError> SessionDirectory::refuse_access(const Client& client,
   return not_allowed("the token is for session " + own + " only");
 }
 
-Entrant SessionDirectory::complete(Entrant entrant, const Client& client) const {
+JoinRequest SessionDirectory::complete(JoinRequest join_request, const Client& client) const {
   const Grant& access = client.access;
-  if (access.is_invitation) entrant.role = access.role;
-  entrant.passes_lock =
+  if (access.is_invitation) join_request.role = access.role;
+  join_request.passes_lock =
       access.is_invitation && (access.role == Role::admin || !access.session.empty());
-  return entrant;
+  return join_request;
 }
 
 }  // namespace vat

@@ -10,7 +10,7 @@ namespace vat {
 namespace {
 
 /// Turns after which what a viewer holds is not worth keeping: it gets a key frame.
-constexpr std::uint64_t kMostTurnsHeld = 16;
+constexpr std::uint64_t kMaxTurnsHeld = 16;
 
 /// So that even the slowest get one frame in a hundred ticks.
 unsigned most_stride(std::uint64_t every) {
@@ -104,7 +104,7 @@ void FrameDelivery::gather(Viewer& viewer, SteadyClock::time_point now, Groups& 
     viewer.is_due = false;
     return;
   }
-  if (source_.number() - viewer.shown > kMostTurnsHeld * viewer.period()) viewer.held = {};
+  if (source_.number() - viewer.shown > kMaxTurnsHeld * viewer.period()) viewer.held = {};
   const FrameChannel channel = viewer.outbox->frame_channel(viewer.subscription);
   if (!channel.is_open) return;
   viewer.pace.set_least_detail(least_detail_);
@@ -134,7 +134,7 @@ void FrameDelivery::serve(const Groups& groups, SteadyClock::time_point now) {
   std::vector<bool> is_served(entries.size());
   for (const std::size_t index : choose_groups(claims, kMaxFrameGroups)) {
     const auto& [key, viewers] = *entries[index];
-    const Made* made = make(key, viewers.front()->held);
+    const EncodedFrame* made = make(key, viewers.front()->held);
     if (made == nullptr) continue;
     is_served[index] = true;
     std::size_t sent = 0;
@@ -149,10 +149,11 @@ void FrameDelivery::serve(const Groups& groups, SteadyClock::time_point now) {
 }
 
 /// Null where as many have been made of this state as may be.
-const FrameDelivery::Made* FrameDelivery::make(const GroupKey& key, const HeldFrames& held) {
+const FrameDelivery::EncodedFrame* FrameDelivery::make(const GroupKey& key,
+                                                       const HeldFrames& held) {
   if (const auto found = made_.find(key); found != made_.end()) return &found->second;
   if (made_.size() >= kMaxFrameGroups) return nullptr;
-  Made made;
+  EncodedFrame made;
   made.frame = source_.frame(key.cut);
   if (key.awaits_any || held[0] == nullptr || !show_the_same(*held[0], *made.frame)) {
     made.bytes = source_.encode(*made.frame, held, key.stride);
@@ -160,7 +161,8 @@ const FrameDelivery::Made* FrameDelivery::make(const GroupKey& key, const HeldFr
   return &made_.emplace(key, std::move(made)).first->second;
 }
 
-bool FrameDelivery::hand_over(Viewer& viewer, const Made& made, SteadyClock::time_point now) {
+bool FrameDelivery::hand_over(Viewer& viewer, const EncodedFrame& made,
+                              SteadyClock::time_point now) {
   viewer.is_due = false;
   viewer.passed_over = 0;
   viewer.shown = source_.number();

@@ -61,7 +61,7 @@ class FrameDelivery {
     // NOLINTNEXTLINE(modernize-use-nullptr): a zero that clang-tidy 14 sees in what is not written
     auto operator<=>(const GroupKey&) const = default;
   };
-  struct Made {
+  struct EncodedFrame {
     std::shared_ptr<const GridFrame> frame;
     SharedFrame bytes;  // null: there is nothing new to see
   };
@@ -71,14 +71,14 @@ class FrameDelivery {
   bool turn_has_come(const Viewer& viewer, const PublishedState& state) const;
   void gather(Viewer& viewer, SteadyClock::time_point now, Groups& groups);
   void serve(const Groups& groups, SteadyClock::time_point now);
-  const Made* make(const GroupKey& key, const HeldFrames& held);
+  const EncodedFrame* make(const GroupKey& key, const HeldFrames& held);
   /// Whether it was sent.
-  bool hand_over(Viewer& viewer, const Made& made, SteadyClock::time_point now);
+  bool hand_over(Viewer& viewer, const EncodedFrame& made, SteadyClock::time_point now);
 
   ServerMetrics& metrics_;
   std::map<ConnectionId, Viewer> viewers_;
   FrameSource source_;
-  std::map<GroupKey, Made> made_;  // of the last state
+  std::map<GroupKey, EncodedFrame> made_;  // of the last state
   double default_error_ = 0;
   std::uint8_t least_detail_ = kFullDetail;
   bool has_state_ = false;

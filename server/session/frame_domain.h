@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/scene/scene.h"
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 
 namespace vat {
 

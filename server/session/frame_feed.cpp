@@ -34,36 +34,36 @@ bool FrameFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscrip
                     Subscription wish) {
   bool has_dropped = false;
   put([&] {
-    mail_.changes.emplace_back(Added{std::move(outbox), subscription, wish});
-    has_dropped = std::exchange(mail_.has_state, false);
+    pending_.changes.emplace_back(Added{std::move(outbox), subscription, wish});
+    has_dropped = std::exchange(pending_.has_state, false);
   });
   return has_dropped;
 }
 
 void FrameFeed::remove(ConnectionId client) {
-  put([&] { mail_.changes.emplace_back(client); });
+  put([&] { pending_.changes.emplace_back(client); });
 }
 
 void FrameFeed::set_vat(const std::optional<Vat>& vat) {
   put([&] {
-    mail_.changes.emplace_back(vat);
-    mail_.has_state = false;
+    pending_.changes.emplace_back(vat);
+    pending_.has_state = false;
   });
 }
 
 void FrameFeed::set_default_error(double max_error) {
-  put([&] { mail_.changes.emplace_back(DefaultError{max_error}); });
+  put([&] { pending_.changes.emplace_back(DefaultError{max_error}); });
 }
 
 void FrameFeed::publish(PublishedState& state) {
   put([&] {
-    std::swap(mail_.state, state);
-    mail_.has_state = true;
+    std::swap(pending_.state, state);
+    pending_.has_state = true;
   });
 }
 
 void FrameFeed::wake(ConnectionId client) {
-  put([&] { mail_.woken.push_back(client); });
+  put([&] { pending_.woken.push_back(client); });
 }
 
 void FrameFeed::post(std::function<void()> task) {
@@ -83,11 +83,11 @@ void FrameFeed::turn() {
   static_cast<void>(gives_way);
   {
     const std::lock_guard lock(mutex_);
-    std::swap(mail_, mail_at_work_);
+    std::swap(pending_, mail_at_work_);
     turn_scheduled_ = false;
   }
   try {
-    carry_out_mail();
+    apply_pending_changes();
   } catch (const std::exception& error) {
     spdlog::error("session {}: frames lost by a fault of the server: {}", session_, error.what());
   }
@@ -96,7 +96,7 @@ void FrameFeed::turn() {
   mail_at_work_.woken.clear();
 }
 
-void FrameFeed::carry_out_mail() {
+void FrameFeed::apply_pending_changes() {
   for (Change& change : mail_at_work_.changes) {
     if (auto* added = std::get_if<Added>(&change)) {
       delivery_.add(std::move(added->outbox), added->subscription, added->wish);

@@ -48,7 +48,7 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
     double max_error;
   };
   using Change = std::variant<Added, ConnectionId, std::optional<Vat>, DefaultError>;
-  struct Mail {
+  struct PendingChanges {
     std::vector<Change> changes;
     PublishedState state;
     bool has_state = false;  // or it is an older one's memory
@@ -57,18 +57,18 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   template <class Put>
   void put(Put&& put);
   void turn();
-  void carry_out_mail();
+  void apply_pending_changes();
 
   const std::string session_;
   const Clock& clock_;
   boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
 
   std::mutex mutex_;
-  Mail mail_;
+  PendingChanges pending_;
   bool turn_scheduled_ = false;
 
   // Used on the strand only.
-  Mail mail_at_work_;  // empty between turns, but for memory
+  PendingChanges mail_at_work_;  // empty between turns, but for memory
   FrameDelivery delivery_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "protocol/grid_frame.h"
+#include "protocol/frame/grid_frame.h"
 
 namespace vat {
 namespace {
@@ -12,7 +12,7 @@ using Seconds = std::chrono::duration<double>;
 // A judgement needs some time, some frames and an acknowledgement: one who answers nothing at all
 // tells nothing about the pace.
 constexpr Seconds kLook(0.5);
-constexpr unsigned kLeastDue = 4;
+constexpr unsigned kMinDue = 4;
 
 // Of acknowledgements beyond the least delay, which is that of the way and not of its queues.
 constexpr Seconds kLongQueue(0.1);
@@ -44,7 +44,7 @@ void FramePace::frame_due(bool is_ready, const AckDelays& delays, SteadyClock::t
   if (fine_since_ == SteadyClock::time_point{}) fine_since_ = now;
   ++due_;
   if (!is_ready) ++missed_;
-  if (now - look_began_ < kLook || due_ < kLeastDue || delays.count == acks_) return;
+  if (now - look_began_ < kLook || due_ < kMinDue || delays.count == acks_) return;
   judge(delays, now);
   acks_ = delays.count;
   due_ = missed_ = 0;

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "server/server_metrics.h"
 #include "server/session/client_outbox.h"
 #include "server/session/frame_domain.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "protocol/grid_frame.h"
+#include "protocol/frame/grid_frame.h"
 
 namespace vat {
 
@@ -22,12 +22,12 @@ class GridFramePool {
     }
     return {frame.release(), [spare = spare_](GridFrame* returned) {
               std::unique_ptr<GridFrame> owner(returned);
-              if (spare->size() < kMostSpare) spare->push_back(std::move(owner));
+              if (spare->size() < kMaxSpare) spare->push_back(std::move(owner));
             }};
   }
 
  private:
-  static constexpr std::size_t kMostSpare = 4;
+  static constexpr std::size_t kMaxSpare = 4;
   using Spare = std::vector<std::unique_ptr<GridFrame>>;
 
   std::shared_ptr<Spare> spare_ = std::make_shared<Spare>();

@@ -43,7 +43,7 @@ std::optional<RpcError> refuse_held_body(SessionCore& core, const Participant& p
   return held_by_other(holder->number, holder->name);
 }
 
-RpcResult list_sessions(const SessionDirectory& directory, const Caller& caller,
+RpcResult list_sessions(const SessionDirectory& directory, const PendingReply& caller,
                         void (*add)(Json& session, const SessionSummary& summary)) {
   Json sessions = Json::array();
   for (const auto& [id, summary, state] : directory.list(caller)) {

@@ -28,7 +28,7 @@ std::optional<RpcError> refuse_held_body(SessionCore& core, const Participant& p
                                          BodyId body);
 
 /// The answer with all sessions that are open to the caller; `add` says more of each.
-RpcResult list_sessions(const SessionDirectory& directory, const Caller& caller,
+RpcResult list_sessions(const SessionDirectory& directory, const PendingReply& caller,
                         void (*add)(Json& session, const SessionSummary& summary));
 
 }  // namespace vat

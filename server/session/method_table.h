@@ -13,7 +13,7 @@ namespace vat {
 
 /// A call whose parameters are read, to be made on the network's thread. A result is the answer at
 /// once; without one, whoever took the caller answers.
-using ServerAction = std::function<std::optional<RpcResult>(SessionDirectory&, Caller&)>;
+using ServerAction = std::function<std::optional<RpcResult>(SessionDirectory&, PendingReply&)>;
 
 /// A method of PROTOCOL.md: a reader of its parameters that gives what is then to be done, in the
 /// server or in the session that the caller has joined. Readers only collect errors; an action is

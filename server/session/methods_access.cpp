@@ -7,7 +7,7 @@ namespace {
 
 ServerAction read_enter(ObjectReader& params, Errors&) {
   const std::string token = params.text("token", kMaxTokenBytes);
-  return [token](SessionDirectory& directory, Caller& caller) {
+  return [token](SessionDirectory& directory, PendingReply& caller) {
     return directory.enter(caller, token);
   };
 }
@@ -17,7 +17,8 @@ ServerAction read_ticket(ObjectReader& params, Errors&) {
   const Role role = kRoles[params.choice("role", {"viewer", "controller", "admin"})];
   std::optional<SessionId> session;
   if (params.has("session")) session = read_session_id(params);
-  return [role, session](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
+  return [role, session](SessionDirectory& directory,
+                         PendingReply& caller) -> std::optional<RpcResult> {
     if (role == Role::admin && session) {
       const Error error{"out_of_range", "/role", "an admin is one in all sessions"};
       return invalid_params({error});

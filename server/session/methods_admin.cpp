@@ -8,7 +8,7 @@
 namespace vat {
 namespace {
 
-constexpr double kMostDrainSeconds = 3600;
+constexpr double kMaxDrainSeconds = 3600;
 
 Json describe_people(const SessionSummary& summary) {
   Json people = Json::array();
@@ -30,7 +30,7 @@ void add_people(Json& session, const SessionSummary& summary) {
 }
 
 ServerAction read_sessions(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, Caller& caller) {
+  return [](SessionDirectory& directory, PendingReply& caller) {
     return list_sessions(directory, caller, add_people);
   };
 }
@@ -38,10 +38,10 @@ ServerAction read_sessions(ObjectReader&, Errors&) {
 ServerAction read_drain(ObjectReader& params, Errors&) {
   std::optional<std::chrono::milliseconds> time;
   if (params.has("seconds")) {
-    time = std::chrono::milliseconds(
-        std::llround(1000 * params.real("seconds", 0, kMostDrainSeconds)));
+    time =
+        std::chrono::milliseconds(std::llround(1000 * params.real("seconds", 0, kMaxDrainSeconds)));
   }
-  return [time](SessionDirectory& directory, Caller&) -> std::optional<RpcResult> {
+  return [time](SessionDirectory& directory, PendingReply&) -> std::optional<RpcResult> {
     return directory.request_drain(time);
   };
 }

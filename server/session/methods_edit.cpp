@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "protocol/scene_json.h"
-#include "protocol/scene_parts.h"
+#include "protocol/scene/scene_json.h"
+#include "protocol/scene/scene_parts.h"
 #include "server/session/method_parts.h"
 #include "server/session/scene_loading.h"
 

@@ -13,8 +13,8 @@ namespace {
 constexpr std::array<std::string_view, kFrameAttributes> kAttributeNames = {
     "speed", "density", "pressure", "acceleration"};
 // A frame's whole steps reach a million quanta; finer ones than this are noise of the simulation.
-constexpr double kLeastAttributeError = 1e-6;  // [m/s], [kg/m^3], [Pa], [m/s^2]
-constexpr double kMostAttributeError = 1e12;
+constexpr double kMinAttributeError = 1e-6;  // [m/s], [kg/m^3], [Pa], [m/s^2]
+constexpr double kMaxAttributeError = 1e12;
 
 FrameRegion read_region(const Json& value, const std::string& path, Errors& errors) {
   ObjectReader reader(value, path, errors);
@@ -32,8 +32,7 @@ ByAttribute<double> read_attributes(const Json& value, const std::string& path, 
   ByAttribute<double> attribute_errors{};
   for (std::size_t a = 0; a < kFrameAttributes; ++a) {
     if (!reader.has(kAttributeNames[a])) continue;
-    attribute_errors[a] =
-        reader.real(kAttributeNames[a], kLeastAttributeError, kMostAttributeError);
+    attribute_errors[a] = reader.real(kAttributeNames[a], kMinAttributeError, kMaxAttributeError);
   }
   reader.refuse_unknown();
   return attribute_errors;
@@ -69,7 +68,7 @@ SessionAction read_unsubscribe(ObjectReader&, Errors&) {
 ServerAction read_ack(ObjectReader& params, Errors&) {
   const auto number = static_cast<std::uint32_t>(
       params.count("number", 1, std::numeric_limits<std::uint32_t>::max()));
-  return [number](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
+  return [number](SessionDirectory& directory, PendingReply& caller) -> std::optional<RpcResult> {
     if (!caller.client()->acknowledge(number, directory.clock().now())) {
       return invalid_params({Error{"out_of_range", "/number", "must be of a frame that was sent"}});
     }

@@ -19,7 +19,7 @@ ServerAction read_import(ObjectReader& params, Errors& errors) {
   } else {
     add_error(errors, "bad_value", params.path_of("data"), "must be base64, with padding");
   }
-  return [part = std::move(part)](SessionDirectory& directory, Caller& caller) {
+  return [part = std::move(part)](SessionDirectory& directory, PendingReply& caller) {
     return directory.import_recording(caller, part);
   };
 }
@@ -33,7 +33,7 @@ ServerAction read_open(ObjectReader& params, Errors& errors) {
               "give either a session or a recording");
   }
   if (params.has("name")) source.name = params.text("name", kMaxNameLength);
-  return [source](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
+  return [source](SessionDirectory& directory, PendingReply& caller) -> std::optional<RpcResult> {
     if (auto error = directory.open_replay(caller, source)) return *std::move(error);
     return {};
   };

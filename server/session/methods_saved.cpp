@@ -132,8 +132,8 @@ SessionAction read_save_scene(ObjectReader& params, Errors& errors) {
   };
 }
 
-RpcResult delete_scene(SessionDirectory& directory, const Caller& caller, const std::string& name,
-                       const std::string& key) {
+RpcResult delete_scene(SessionDirectory& directory, const PendingReply& caller,
+                       const std::string& name, const std::string& key) {
   SavedScenes& scenes = directory.saved_scenes();
   const auto scene = scenes.find(name);
   if (!scene) return no_such_scene(name, "/name");
@@ -147,9 +147,10 @@ ServerAction read_delete_scene(ObjectReader& params, Errors& errors) {
   const std::string name = read_person_name(params, "name", errors);
   std::string key;
   if (params.has("key")) key = params.text("key", kMaxTokenBytes);
-  return [name, key](SessionDirectory& directory, Caller& caller) -> std::optional<RpcResult> {
-    return delete_scene(directory, caller, name, key);
-  };
+  return
+      [name, key](SessionDirectory& directory, PendingReply& caller) -> std::optional<RpcResult> {
+        return delete_scene(directory, caller, name, key);
+      };
 }
 
 constexpr Method kSavedMethods[] = {

@@ -19,8 +19,8 @@ Json describe_limits_of_kept(const ServerLimits& limits) {
       {"recording_ticks", kMaxRecordedTicks},
       {"recording_entries", kMaxRecordedEntries},
       {"download_bytes", limits.max_download_bytes},
-      {"imports", Imports::kMostFiles},
-      {"import_bytes", Imports::kMostBytes},
+      {"imports", Imports::kMaxFiles},
+      {"import_bytes", Imports::kMaxBytes},
       {"states_per_session", limits.max_states_per_session},
       {"state_bytes_per_session", limits.max_state_bytes_per_session},
       {"state_bytes_in_all", limits.max_state_bytes_in_all},
@@ -116,11 +116,11 @@ std::optional<RpcResult> list_scenes(const SessionDirectory& directory) {
 }
 
 ServerAction read_server_info(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, Caller&) { return info(directory); };
+  return [](SessionDirectory& directory, PendingReply&) { return info(directory); };
 }
 
 ServerAction read_list_scenes(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, Caller&) { return list_scenes(directory); };
+  return [](SessionDirectory& directory, PendingReply&) { return list_scenes(directory); };
 }
 
 constexpr Method kServerMethods[] = {

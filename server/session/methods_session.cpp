@@ -17,7 +17,7 @@ ServerAction read_create(ObjectReader& params, Errors&) {
   std::string name = params.text("name", kMaxNameLength);
   const Json* scene = params.member("scene", true);
   if (scene == nullptr) return {};
-  return [name, scene = *scene](SessionDirectory& directory, Caller& caller) {
+  return [name, scene = *scene](SessionDirectory& directory, PendingReply& caller) {
     return to_answer(directory.create_later(caller, name, scene));
   };
 }
@@ -27,7 +27,7 @@ void add_clients(Json& session, const SessionSummary& summary) {
 }
 
 ServerAction read_list_sessions(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, Caller& caller) {
+  return [](SessionDirectory& directory, PendingReply& caller) {
     return list_sessions(directory, caller, add_clients);
   };
 }
@@ -35,23 +35,23 @@ ServerAction read_list_sessions(ObjectReader&, Errors&) {
 ServerAction read_join(ObjectReader& params, Errors& errors) {
   std::optional<SessionId> session;
   if (params.has("session")) session = read_session_id(params);
-  Entrant entrant;
-  if (params.has("name")) entrant.name = read_person_name(params, "name", errors);
-  if (params.has("resume")) entrant.resume = params.text("resume", kMaxTokenBytes);
-  return [session, entrant](SessionDirectory& directory, Caller& caller) {
-    return to_answer(directory.join(caller, session, entrant));
+  JoinRequest join_request;
+  if (params.has("name")) join_request.name = read_person_name(params, "name", errors);
+  if (params.has("resume")) join_request.resume = params.text("resume", kMaxTokenBytes);
+  return [session, join_request](SessionDirectory& directory, PendingReply& caller) {
+    return to_answer(directory.join(caller, session, join_request));
   };
 }
 
 ServerAction read_leave(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, Caller& caller) {
+  return [](SessionDirectory& directory, PendingReply& caller) {
     return to_answer(directory.leave(caller));
   };
 }
 
 ServerAction read_close(ObjectReader& params, Errors&) {
   const SessionId session = read_session_id(params);
-  return [session](SessionDirectory& directory, Caller& caller) {
+  return [session](SessionDirectory& directory, PendingReply& caller) {
     return to_answer(directory.close(caller, session, "closed by a client"));
   };
 }

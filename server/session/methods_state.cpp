@@ -72,7 +72,7 @@ SessionAction read_connections(ObjectReader& params, Errors& errors) {
   const std::size_t most = params.count("most", 1, kMaxConnections, kDefaultConnections);
   return [key, most](SessionCore& core, Participant&) -> ActionResult {
     const Simulation& simulation = core.run().simulation();
-    ConnectionWish wish{{}, most};
+    ConnectionQuery wish{{}, most};
     if (key) {
       const auto body = find_body(simulation, *key);
       if (!body) return no_such_body("no body has this id or name", "/body");

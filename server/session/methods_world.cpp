@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/limits.h"
-#include "protocol/scene_json.h"
-#include "protocol/scene_parts.h"
+#include "protocol/scene/scene_json.h"
+#include "protocol/scene/scene_parts.h"
 #include "server/session/method_parts.h"
 #include "server/session/scene_loading.h"
 

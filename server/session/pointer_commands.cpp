@@ -17,7 +17,8 @@ Json subject_of(const SessionCommand& command) {
 
 }  // namespace
 
-void PointerCommands::add(ParticipantNumber participant, SessionCommand command, Caller caller) {
+void PointerCommands::add(ParticipantNumber participant, SessionCommand command,
+                          PendingReply caller) {
   const Json subject = subject_of(command);
   Newest newest{participant, std::move(command), {}};
   const auto before = std::ranges::find_if(waiting_, [&](const Newest& other) {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/session/caller.h"
+#include "server/session/pending_reply.h"
 #include "server/session/session_core.h"
 
 namespace vat {
@@ -16,10 +16,10 @@ class PointerCommands {
   struct Newest {
     ParticipantNumber participant = 0;
     SessionCommand command;
-    std::vector<Caller> callers;  ///< of this one and of those whose place it took
+    std::vector<PendingReply> callers;  ///< of this one and of those whose place it took
   };
 
-  void add(ParticipantNumber participant, SessionCommand command, Caller caller);
+  void add(ParticipantNumber participant, SessionCommand command, PendingReply caller);
   bool empty() const { return waiting_.empty(); }
   bool has_of(ParticipantNumber participant) const;
   /// Those that have waited, in the order in which they came.

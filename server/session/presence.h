@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "server/session/participants.h"
 
 namespace vat {

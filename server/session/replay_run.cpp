@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "protocol/printable.h"
+#include "protocol/json/printable.h"
 #include "server/replay/foreign_text.h"
 #include "server/session/describe.h"
 #include "server/session/person_name.h"
@@ -17,7 +17,7 @@
 namespace vat {
 namespace {
 
-constexpr std::size_t kMostReason = 1000;  // bytes
+constexpr std::size_t kMaxReason = 1000;  // bytes
 constexpr auto kPeopleInterval = std::chrono::milliseconds(100);
 constexpr KeptMoments::Seconds kWork{
     0.04};  // between two moments, of a seek of a fifth of a second
@@ -67,7 +67,7 @@ bool ReplayRun::in_the_past(SessionCore& core, Action&& action) {
   const double speed = core.speed();
   std::string difference;
   {
-    const SessionCore::Past past(core);
+    const SessionCore::RecordedParticipants recorded(core);
     try {
       action();
     } catch (const Diverged& error) {
@@ -88,7 +88,7 @@ void ReplayRun::differ(SessionCore& core, const std::string& reason) {
   core.set_playing(false);
   differs_ = Json{{"position", core.run().position()},
                   {"tick", core.run().tick()},
-                  {"reason", fit_to_tell(reason, kMostReason)}};
+                  {"reason", fit_to_tell(reason, kMaxReason)}};
   core.participants().send_event(write_event("replay.diverged", *differs_));
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "protocol/printable.h"
+#include "protocol/json/printable.h"
 
 namespace vat {
 namespace {

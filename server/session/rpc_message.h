@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "server/session/error_table.h"
 #include "server/session/role.h"
 #include "server/storage/storage_error.h"

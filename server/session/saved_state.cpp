@@ -101,7 +101,7 @@ SavedState make_saved_state(const MomentToSave& moment, const std::string& name,
 
 Json params_of_restore(const SavedState& state) {
   Result<Json> fields =
-      parse_json(state.fields, {state.fields.size(), kMostMessageDepth, state.fields.size() + 1});
+      parse_json(state.fields, {state.fields.size(), kMaxMessageDepth, state.fields.size() + 1});
   if (!fields) fail(fields.errors().front().message);
   Json params = std::move(fields).value();
   if (!params.is_object()) fail("no object");

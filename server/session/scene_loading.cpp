@@ -38,7 +38,7 @@ std::variant<Json, RpcError> find_saved_scene(const std::string& name,
   const auto saved = environment.scenes == nullptr ? std::nullopt : environment.scenes->find(name);
   if (!saved) return no_such_scene(name);
   const std::string& text = saved->scene;
-  Result<Json> json = parse_json(text, {text.size(), kMostMessageDepth, text.size() + 1});
+  Result<Json> json = parse_json(text, {text.size(), kMaxMessageDepth, text.size() + 1});
   if (!json) throw StorageError(StorageError::Kind::corrupt, "the saved scene " + name);
   return std::move(json).value();
 }

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <variant>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/admission/resource_budget.h"
 #include "server/session/rpc_message.h"
 #include "server/session/session_environment.h"

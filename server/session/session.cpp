@@ -27,7 +27,7 @@ double seconds(SteadyClock::duration time) {
 
 Session::Session(std::string id, SessionSettings settings, Simulation simulation,
                  ResourceShare share, const SessionEnvironment& environment,
-                 boost::asio::thread_pool& pool, LongTicks& long_ticks)
+                 boost::asio::thread_pool& pool, SlowTickGate& slow_tick_gate)
     : id_(id),
       clock_(environment.clock),
       strand_(boost::asio::make_strand(pool.get_executor())),
@@ -36,7 +36,7 @@ Session::Session(std::string id, SessionSettings settings, Simulation simulation
       tick_timer_(environment.clock.make_timer(strand_)),
       status_timer_(environment.clock.make_timer(strand_)),
       presence_timer_(environment.clock.make_timer(strand_)),
-      long_ticks_(long_ticks) {
+      slow_tick_gate_(slow_tick_gate) {
   update_summary();
 }
 
@@ -58,7 +58,7 @@ void Session::start() {
   schedule(&Session::status_turn);
 }
 
-void Session::close(End end, std::optional<Caller> caller) {
+void Session::close(End end, std::optional<PendingReply> caller) {
   {
     const std::lock_guard lock(mutex_);
     end_ = end;
@@ -67,20 +67,20 @@ void Session::close(End end, std::optional<Caller> caller) {
   schedule(&Session::close_turn);
 }
 
-void Session::join(Caller caller, std::uint64_t membership, Entrant entrant,
+void Session::join(PendingReply caller, std::uint64_t membership, JoinRequest join_request,
                    std::function<void()> undo) {
-  put({std::move(caller), Join{membership, std::move(entrant), std::move(undo)}});
+  put({std::move(caller), Join{membership, std::move(join_request), std::move(undo)}});
 }
 
-void Session::disconnect(Caller caller) {
+void Session::disconnect(PendingReply caller) {
   put({std::move(caller), Disconnect{}});
 }
 
-void Session::leave(Caller caller) {
+void Session::leave(PendingReply caller) {
   put({std::move(caller), Leave{}});
 }
 
-void Session::post(Caller caller, SessionCommand command) {
+void Session::post(PendingReply caller, SessionCommand command) {
   put({std::move(caller), std::move(command)});
 }
 
@@ -112,7 +112,7 @@ void Session::schedule(void (Session::*turn)()) {
 
 void Session::run_turn(void (Session::*turn)()) {
   if (closed_) return;
-  const ThreadPoolRunner::Guest guest(core_.environment().runner);
+  const ThreadPoolRunner::HelperReservation guest(core_.environment().runner);
   try {
     (this->*turn)();
     end_turn();
@@ -128,7 +128,7 @@ void Session::run_turn(void (Session::*turn)()) {
 bool Session::has_place() {
   if (!is_long_ || place_ != nullptr) return true;
   if (waits_for_place_) return false;
-  place_ = long_ticks_.take([waiting = weak_from_this()](LongTicks::Place place) {
+  place_ = slow_tick_gate_.take([waiting = weak_from_this()](SlowTickGate::Place place) {
     const auto self = waiting.lock();
     if (self == nullptr) return;
     boost::asio::post(self->strand_, [self, place = std::move(place)]() mutable {
@@ -213,9 +213,9 @@ void Session::carry_out(Item item) {
   }
 }
 
-void Session::carry_out_join(Caller caller, const Join& join) {
+void Session::carry_out_join(PendingReply caller, const Join& join) {
   carry_out_pointers();  // the connection may have been another participant's
-  auto joined = core_.join(caller.client(), join.membership, join.entrant, clock_.now());
+  auto joined = core_.join(caller.client(), join.membership, join.join_request, clock_.now());
   if (auto* error = std::get_if<RpcError>(&joined)) {
     join.undo();
     caller.answer(std::move(*error));
@@ -235,7 +235,7 @@ void Session::carry_out_join(Caller caller, const Join& join) {
                      {"description", core_.description()}});
 }
 
-void Session::carry_out_leave(Caller caller) {
+void Session::carry_out_leave(PendingReply caller) {
   const ConnectionId client = caller.client()->id();
   carry_out_pointers();
   end_steps_of(client);
@@ -246,7 +246,7 @@ void Session::carry_out_leave(Caller caller) {
   caller.answer(Json{{"tick", core_.run().tick()}});
 }
 
-void Session::carry_out_disconnect(const Caller& caller) {
+void Session::carry_out_disconnect(const PendingReply& caller) {
   carry_out_pointers();
   end_steps_of(caller.client()->id());
   core_.disconnect(caller.client()->id(), clock_.now());
@@ -256,7 +256,7 @@ void Session::end_steps_of(ConnectionId client) {
   for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
 }
 
-void Session::carry_out_command(Caller caller, SessionCommand command) {
+void Session::carry_out_command(PendingReply caller, SessionCommand command) {
   const Participant* participant = core_.participants().find_client(caller.client()->id());
   if (participant == nullptr) {
     caller.answer(not_joined());
@@ -278,7 +278,7 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
   const bool is_in_order =
       command.rules->is_logged || command.rules->message_class == MessageClass::control;
   if (is_in_order || pointers_.has_of(participant->number)) carry_out_pointers();
-  const SessionCore::Given given{participant->number, command};
+  const SessionCore::ParticipantCommand given{participant->number, command};
   const auto begin = CostClock::now();
   ActionResult result = std::move(core_.carry_out({&given, 1}).front());
   if (core_.log() != nullptr) core_.log()->add_work(CostClock::now() - begin);
@@ -287,7 +287,7 @@ void Session::carry_out_command(Caller caller, SessionCommand command) {
   answer(std::move(caller), std::move(result));
 }
 
-void Session::answer(Caller caller, ActionResult result) {
+void Session::answer(PendingReply caller, ActionResult result) {
   if (const auto* run = std::get_if<RunTicks>(&result)) {
     steps_.push_back({std::move(caller), run->count, {}});
     schedule_step();
@@ -313,12 +313,12 @@ bool Session::tick_is_coming() const {
 void Session::carry_out_pointers() {
   if (pointers_.empty()) return;
   std::vector<PointerCommands::Newest> waiting = pointers_.take();
-  std::vector<SessionCore::Given> given;
+  std::vector<SessionCore::ParticipantCommand> given;
   given.reserve(waiting.size());
   for (const auto& newest : waiting) given.push_back({newest.participant, newest.command});
   const std::vector<ActionResult> results = core_.carry_out(given);
   for (std::size_t i = 0; i < waiting.size(); ++i) {
-    for (Caller& caller : waiting[i].callers) answer(std::move(caller), results[i]);
+    for (PendingReply& caller : waiting[i].callers) answer(std::move(caller), results[i]);
   }
 }
 
@@ -461,7 +461,7 @@ void Session::close_turn() {
   status_timer_->cancel();
   presence_timer_->cancel();
   std::deque<Item> items;
-  std::optional<Caller> closer;
+  std::optional<PendingReply> closer;
   End end = End::may_come_back;
   {
     const std::lock_guard lock(mutex_);
@@ -472,7 +472,7 @@ void Session::close_turn() {
   }
   end_log(end);
   if (seek_) {
-    for (Caller& waiting : seek_->callers) waiting.answer(no_such_session(id_));
+    for (PendingReply& waiting : seek_->callers) waiting.answer(no_such_session(id_));
   }
   for (StepJob& job : steps_) {
     job.caller.answer(no_such_session(id_));
@@ -480,7 +480,7 @@ void Session::close_turn() {
   }
   steps_.clear();
   for (auto& newest : pointers_.take()) {
-    for (Caller& pointer_caller : newest.callers) pointer_caller.answer(no_such_session(id_));
+    for (PendingReply& pointer_caller : newest.callers) pointer_caller.answer(no_such_session(id_));
   }
   for (Item& item : items) item.caller.answer(no_such_session(id_));
   core_.show(nullptr);

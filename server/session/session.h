@@ -11,12 +11,12 @@
 #include <variant>
 #include <vector>
 
-#include "server/session/caller.h"
-#include "server/session/long_ticks.h"
+#include "server/session/pending_reply.h"
 #include "server/session/pointer_commands.h"
 #include "server/session/replay_run.h"
 #include "server/session/session_core.h"
 #include "server/session/session_recovery.h"
+#include "server/session/slow_tick_gate.h"
 
 namespace vat {
 
@@ -37,7 +37,7 @@ class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::string id, SessionSettings settings, Simulation simulation, ResourceShare share,
           const SessionEnvironment& environment, boost::asio::thread_pool& pool,
-          LongTicks& long_ticks);
+          SlowTickGate& slow_tick_gate);
 
   /// Before start(): it is kept from now on.
   void keep_in(std::unique_ptr<SessionLog> log) { core_.keep_in(std::move(log)); }
@@ -50,21 +50,22 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Writes down where it is; what is kept is then for `task`, on the storage's thread. Where it is
   /// kept nowhere, or not any more, `caller` is told.
   using KeptTask = std::function<void(Storage&, std::uint64_t session)>;
-  void keep_and(KeptTask task, const std::shared_ptr<Caller>& caller);
+  void keep_and(KeptTask task, const std::shared_ptr<PendingReply>& caller);
   /// Ends all work soon, at most once: commands that are not carried out yet are answered by
   /// no_such_session, and then the caller, if there is one, with the tick that was the last. Where
   /// it is kept, it may come back from where it was.
   enum class End { closed, may_come_back };
-  void close(End end, std::optional<Caller> caller);
+  void close(End end, std::optional<PendingReply> caller);
 
   /// Answered with who it is then, and the description.
   /// Where it is refused, `undo` is called first.
-  void join(Caller caller, std::uint64_t membership, Entrant entrant, std::function<void()> undo);
+  void join(PendingReply caller, std::uint64_t membership, JoinRequest join_request,
+            std::function<void()> undo);
   /// The caller's connection has ended; its participant may be resumed for a while.
-  void disconnect(Caller caller);
-  void leave(Caller caller);
+  void disconnect(PendingReply caller);
+  void leave(PendingReply caller);
   /// The participant's role has to be as the command's rules ask when its turn comes.
-  void post(Caller caller, SessionCommand command);
+  void post(PendingReply caller, SessionCommand command);
 
   /// As of the last answer or turn.
   SessionSummary summary() const;
@@ -75,25 +76,25 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   struct Join {
     std::uint64_t membership;
-    Entrant entrant;
+    JoinRequest join_request;
     std::function<void()> undo;
   };
   struct Leave {};
   struct Disconnect {};
   struct Item {
-    Caller caller;
+    PendingReply caller;
     std::variant<Join, Leave, Disconnect, SessionCommand> task;
   };
   /// A control.step under way. The later commands of its client wait for its end.
   struct StepJob {
-    Caller caller;
+    PendingReply caller;
     std::uint64_t ticks_left;
     std::deque<Item> deferred;
   };
 
   /// A replay.seek under way: whoever asks for another place meanwhile is answered there too.
   struct Seek {
-    std::vector<Caller> callers;
+    std::vector<PendingReply> callers;
   };
 
   void put(Item item);
@@ -106,12 +107,12 @@ class Session : public std::enable_shared_from_this<Session> {
   void inbox_turn();
   bool take_item(std::optional<Item>& item);
   void carry_out(Item item);
-  void carry_out_join(Caller caller, const Join& join);
-  void carry_out_leave(Caller caller);
-  void carry_out_disconnect(const Caller& caller);
+  void carry_out_join(PendingReply caller, const Join& join);
+  void carry_out_leave(PendingReply caller);
+  void carry_out_disconnect(const PendingReply& caller);
   void end_steps_of(ConnectionId client);
-  void carry_out_command(Caller caller, SessionCommand command);
-  void answer(Caller caller, ActionResult result);
+  void carry_out_command(PendingReply caller, SessionCommand command);
+  void answer(PendingReply caller, ActionResult result);
   /// Whether a tick is to come, before which commands that follow a pointer wait.
   bool tick_is_coming() const;
   /// Carries out those that have waited.
@@ -125,11 +126,11 @@ class Session : public std::enable_shared_from_this<Session> {
   bool has_place();
   std::deque<StepJob>::iterator find_step(ConnectionId client);
   /// Makes a recording of what is kept, and answers where it is.
-  void record(Caller caller);
+  void record(PendingReply caller);
   /// Keeps the present state under a name, and answers then.
-  void save(Caller caller, SaveState save);
+  void save(PendingReply caller, SaveState save);
   void schedule_step();
-  void begin_seek(Caller caller, std::uint64_t position);
+  void begin_seek(PendingReply caller, std::uint64_t position);
   void seek_turn();
   void end_seek();
   /// Answers the job and carries out what was deferred.
@@ -159,7 +160,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::deque<Item> inbox_;
   bool inbox_scheduled_ = false;
   bool inbox_closed_ = false;
-  std::optional<Caller> closer_;  // is answered by the last turn
+  std::optional<PendingReply> closer_;  // is answered by the last turn
   End end_ = End::may_come_back;
   SessionSummary summary_;
 
@@ -176,10 +177,10 @@ class Session : public std::enable_shared_from_this<Session> {
   PointerCommands pointers_;
   std::deque<StepJob> steps_;
   bool step_scheduled_ = false;
-  LongTicks& long_ticks_;
+  SlowTickGate& slow_tick_gate_;
   bool is_long_ = false;  // the last tick was
   bool waits_for_place_ = false;
-  LongTicks::Place place_;             // during a turn only
+  SlowTickGate::Place place_;          // during a turn only
   std::unique_ptr<ReplayRun> replay_;  // null: what is simulated is new
   std::optional<Seek> seek_;
   bool seek_scheduled_ = false;

@@ -47,7 +47,7 @@ struct SessionSummary {
 };
 
 /// Who asks to take part.
-struct Entrant {
+struct JoinRequest {
   std::string name;                   ///< empty: one is made up
   std::optional<std::string> resume;  ///< the token of the participant to be resumed
   std::optional<Role> role;           ///< by invitation; absent: the usual one
@@ -147,12 +147,14 @@ class SessionCore {
   /// Those of a replay that were recorded; participants() watch it.
   const Participants& recorded() const { return recorded_; }
   /// While it lives, participants() are those that were recorded.
-  class Past {
+  class RecordedParticipants {
    public:
-    explicit Past(SessionCore& core) : core_(core) { core_.exchange_participants(); }
-    ~Past() { core_.exchange_participants(); }
-    Past(const Past&) = delete;
-    Past& operator=(const Past&) = delete;
+    explicit RecordedParticipants(SessionCore& core) : core_(core) {
+      core_.exchange_participants();
+    }
+    ~RecordedParticipants() { core_.exchange_participants(); }
+    RecordedParticipants(const RecordedParticipants&) = delete;
+    RecordedParticipants& operator=(const RecordedParticipants&) = delete;
 
    private:
     SessionCore& core_;
@@ -163,13 +165,13 @@ class SessionCore {
   void begin_epoch(std::uint32_t epoch);
 
   /// A command that a participant has given.
-  struct Given {
+  struct ParticipantCommand {
     ParticipantNumber participant = 0;
     const SessionCommand& command;
   };
   /// Carries out commands between two ticks, once they are in the log; their results. Where they
   /// cannot be logged, all of them are refused.
-  std::vector<ActionResult> carry_out(std::span<const Given> commands);
+  std::vector<ActionResult> carry_out(std::span<const ParticipantCommand> commands);
   /// The one way by which commands change a session, now or when a log is carried out again. The
   /// participant is a ghost where it is not here.
   ActionResult apply(const LogEntry& entry, const SessionAction& action);
@@ -189,7 +191,7 @@ class SessionCore {
   void resume(const SessionMoment& moment, Simulation simulation, Snapshot as_loaded);
   /// In a log that is carried out again: where the session was seen last, as far as the log does
   /// not tell it.
-  void pass(const SessionBeat& beat);
+  void pass(const SessionProgress& beat);
   /// The log has been carried out again, and the session goes on from here in a new epoch. Those
   /// who took part are away.
   void come_back(SteadyClock::time_point now);
@@ -205,7 +207,7 @@ class SessionCore {
   /// A connection comes in, as a further participant or as the one that it resumes, whose other
   /// connection, if it has one, is closed. Ends what the connection was in the session before.
   std::variant<Entry, RpcError> join(const std::shared_ptr<ClientOutbox>& outbox,
-                                     std::uint64_t membership, const Entrant& entrant,
+                                     std::uint64_t membership, const JoinRequest& join_request,
                                      SteadyClock::time_point now);
   /// The participant of the connection, if there is one, may be resumed for a while.
   void disconnect(ConnectionId client, SteadyClock::time_point now);
@@ -268,7 +270,8 @@ class SessionCore {
   void start_epoch();
   void publish_frame();
   void fill_state();
-  Participant& take_in(const ClientOutbox& outbox, const Entrant& entrant, std::string& token);
+  Participant& take_in(const ClientOutbox& outbox, const JoinRequest& join_request,
+                       std::string& token);
   /// As by a command of the participant, so that it is where commands are.
   void end_grab(ParticipantNumber participant, std::uint64_t grab);
   void release_connection(const Participant& participant, ConnectionId next);
@@ -279,9 +282,9 @@ class SessionCore {
     LogEntry entry;
     std::optional<SessionAction> action;  ///< in place of the command's
   };
-  std::variant<Prepared, RpcError> prepare(const Given& given) const;
-  std::variant<Prepared, RpcError> prepare_load(const Given& given) const;
-  std::variant<Prepared, RpcError> prepare_restore(const Given& given) const;
+  std::variant<Prepared, RpcError> prepare(const ParticipantCommand& given) const;
+  std::variant<Prepared, RpcError> prepare_load(const ParticipantCommand& given) const;
+  std::variant<Prepared, RpcError> prepare_restore(const ParticipantCommand& given) const;
   std::optional<RpcError> log(std::span<LogEntry> entries);
   void refuse(const LogEntry& entry);
   ActionResult act(ParticipantNumber participant, const SessionAction& action);

@@ -18,10 +18,10 @@ constexpr std::uint32_t kSkippedEpochs = 1000;
 
 }  // namespace
 
-std::vector<ActionResult> SessionCore::carry_out(std::span<const Given> commands) {
+std::vector<ActionResult> SessionCore::carry_out(std::span<const ParticipantCommand> commands) {
   std::vector<LogEntry> entries;
   std::vector<std::variant<Prepared, RpcError>> prepared;
-  for (const Given& given : commands) {
+  for (const ParticipantCommand& given : commands) {
     if (!given.command.rules->is_logged) continue;
     prepared.push_back(prepare(given));
     if (auto* good = std::get_if<Prepared>(&prepared.back())) {
@@ -33,7 +33,7 @@ std::vector<ActionResult> SessionCore::carry_out(std::span<const Given> commands
   std::vector<ActionResult> results;
   auto entry = entries.begin();
   auto next = prepared.begin();
-  for (const Given& given : commands) {
+  for (const ParticipantCommand& given : commands) {
     if (!given.command.rules->is_logged) {
       results.push_back(act(given.participant, given.command.action));
       continue;
@@ -51,7 +51,8 @@ std::vector<ActionResult> SessionCore::carry_out(std::span<const Given> commands
   return results;
 }
 
-std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare(const Given& given) const {
+std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare(
+    const ParticipantCommand& given) const {
   const std::string_view method = given.command.rules->method;
   try {
     if (method == kLoadMethod) return prepare_load(given);
@@ -64,7 +65,8 @@ std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare(const Given& 
 }
 
 // A scene that has a name is written out: the name may stand for another one day.
-std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare_load(const Given& given) const {
+std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare_load(
+    const ParticipantCommand& given) const {
   Json params = given.command.params;
   std::optional<SessionAction> action;
   Json& scene = params.at("scene");
@@ -82,7 +84,7 @@ std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare_load(const Gi
 }
 
 std::variant<SessionCore::Prepared, RpcError> SessionCore::prepare_restore(
-    const Given& given) const {
+    const ParticipantCommand& given) const {
   const auto& name = given.command.params.at("name").get_ref<const std::string&>();
   SavedStates* const states = environment_->states;
   const auto state = states == nullptr ? std::nullopt : states->find(id_, name);
@@ -190,7 +192,7 @@ void SessionCore::resume(const SessionMoment& moment, Simulation simulation, Sna
   read_participants(moment.participants, participants_);
 }
 
-void SessionCore::pass(const SessionBeat& beat) {
+void SessionCore::pass(const SessionProgress& beat) {
   playing_ = beat.playing;
   speed_ = beat.speed;
   Participants present;

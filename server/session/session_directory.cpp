@@ -52,7 +52,7 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
       clock_(clock),
       tokens_(settings_.limits.max_tokens, clock),
       resources_({settings_.limits.max_particles_in_all, settings_.limits.max_springs_in_all}),
-      long_ticks_(runner_.thread_count()),
+      slow_tick_gate_(runner_.thread_count()),
       frame_threads_(std::max<std::size_t>(1, runner_.thread_count() / 2)),
       storage_(open_storage(settings_, clock)),
       saved_in_memory_(storage_ ? nullptr : std::make_unique<SavedInMemory>()),
@@ -113,7 +113,7 @@ void SessionDirectory::disconnect(ConnectionId id) {
   if (client == clients_.end()) return;
   Client& gone = client->second;
   gone.outbox->leave();
-  if (gone.session != 0) sessions_.at(gone.session)->disconnect(Caller(gone.outbox, {}));
+  if (gone.session != 0) sessions_.at(gone.session)->disconnect(PendingReply(gone.outbox, {}));
   clients_.erase(client);
   if (clients_.empty()) drained_.notify_all();
 }
@@ -164,7 +164,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   const auto session = std::make_shared<Session>(
       to_id(number), SessionSettings{std::move(name), default_role(), false, creator.connection},
       std::get<Simulation>(std::move(simulation)), std::get<ResourceShare>(std::move(share)),
-      environment_, pool_, long_ticks_);
+      environment_, pool_, slow_tick_gate_);
   if (stored) {
     session->keep_in(std::make_unique<SessionLog>(*storage_, number, SessionLog::Place{1, 0}));
   }
@@ -175,7 +175,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   return to_id(number);
 }
 
-std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::string name,
+std::optional<RpcError> SessionDirectory::create_later(PendingReply& caller, std::string name,
                                                        Json scene) {
   const std::lock_guard lock(mutex_);
   if (auto error = refuse_session_locked()) return error;
@@ -190,7 +190,7 @@ std::optional<RpcError> SessionDirectory::create_later(Caller& caller, std::stri
   if (creator.place == nullptr) return limit_reached("sessions_per_address", most);
   boost::asio::post(creations_, [this, creator = std::move(creator), caller = std::move(caller),
                                  name = std::move(name), scene = std::move(scene)]() mutable {
-    const ThreadPoolRunner::Guest guest(runner_);
+    const ThreadPoolRunner::HelperReservation guest(runner_);
     try {
       caller.answer(create_from(scene, std::move(name), std::move(creator)));
     } catch (const std::exception& error) {
@@ -211,7 +211,7 @@ RpcResult SessionDirectory::create_from(const Json& scene, std::string name,
   return Json{{"session", std::get<SessionId>(created)}, {"tick", 0}};
 }
 
-std::vector<SessionDirectory::Listed> SessionDirectory::list(const Caller& caller) const {
+std::vector<SessionDirectory::Listed> SessionDirectory::list(const PendingReply& caller) const {
   const std::lock_guard lock(mutex_);
   const Client* client = find_caller(caller);
   std::vector<Listed> list;
@@ -229,8 +229,9 @@ std::vector<SessionDirectory::Listed> SessionDirectory::list(const Caller& calle
   return list;
 }
 
-std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::optional<SessionId>& id,
-                                               Entrant entrant) {
+std::optional<RpcError> SessionDirectory::join(PendingReply& caller,
+                                               const std::optional<SessionId>& id,
+                                               JoinRequest join_request) {
   const std::lock_guard lock(mutex_);
   const auto found = clients_.find(caller.client()->id());
   if (found == clients_.end()) return not_allowed("the connection is closed");
@@ -240,7 +241,7 @@ std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::option
   const std::optional<SessionId> wanted = has_own ? client.access.session : id;
   if (const auto absent = find_absent(wanted); absent != absent_.end()) {
     if (auto error = refuse_access(client, absent->first)) return error;
-    return wait_for(absent->second, to_id(absent->first), caller, std::move(entrant));
+    return wait_for(absent->second, to_id(absent->first), caller, std::move(join_request));
   }
   const auto session = wanted ? find_session(*wanted) : sessions_.begin();
   if (session == sessions_.end()) return no_such_session(id ? *id : "at all", "/session");
@@ -250,17 +251,17 @@ std::optional<RpcError> SessionDirectory::join(Caller& caller, const std::option
   if (others >= settings_.limits.max_clients_per_session) {
     return limit_reached("clients_per_session", settings_.limits.max_clients_per_session);
   }
-  if (client.session != session->first) leave_session(client, Caller(client.outbox, {}));
+  if (client.session != session->first) leave_session(client, PendingReply(client.outbox, {}));
   client.session = session->first;
   session->second->join(std::move(caller), client.outbox->join(),
-                        complete(std::move(entrant), client),
+                        complete(std::move(join_request), client),
                         [this, connection = client.outbox->id(), number = session->first] {
                           undo_join(connection, number);
                         });
   return {};
 }
 
-std::optional<RpcError> SessionDirectory::leave(Caller& caller) {
+std::optional<RpcError> SessionDirectory::leave(PendingReply& caller) {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(caller.client()->id());
   if (client == clients_.end() || client->second.session == 0) return not_joined();
@@ -268,7 +269,7 @@ std::optional<RpcError> SessionDirectory::leave(Caller& caller) {
   return {};
 }
 
-std::optional<RpcError> SessionDirectory::post(Caller& caller, SessionCommand command) {
+std::optional<RpcError> SessionDirectory::post(PendingReply& caller, SessionCommand command) {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(caller.client()->id());
   if (client == clients_.end() || client->second.session == 0) return not_joined();
@@ -276,7 +277,7 @@ std::optional<RpcError> SessionDirectory::post(Caller& caller, SessionCommand co
   return {};
 }
 
-std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId& id,
+std::optional<RpcError> SessionDirectory::close(PendingReply& caller, const SessionId& id,
                                                 const std::string& reason) {
   const std::lock_guard lock(mutex_);
   const auto session = find_session(id);
@@ -287,7 +288,7 @@ std::optional<RpcError> SessionDirectory::close(Caller& caller, const SessionId&
   return {};
 }
 
-std::optional<std::uint64_t> SessionDirectory::tick_of(const Caller& caller) const {
+std::optional<std::uint64_t> SessionDirectory::tick_of(const PendingReply& caller) const {
   const std::lock_guard lock(mutex_);
   const auto client = clients_.find(caller.client()->id());
   if (client == clients_.end() || client->second.session == 0) return {};
@@ -295,7 +296,7 @@ std::optional<std::uint64_t> SessionDirectory::tick_of(const Caller& caller) con
 }
 
 std::string SessionDirectory::metrics() const {
-  ServerMetrics::Present present;
+  ServerMetrics::Gauges present;
   present.version = settings_.version;
   present.instructions = settings_.instructions;
   present.threads = runner_.thread_count();
@@ -417,7 +418,7 @@ std::size_t SessionDirectory::client_count(Sessions::key_type session) const {
       clients_, [&](const auto& entry) { return entry.second.session == session; }));
 }
 
-void SessionDirectory::leave_session(Client& client, Caller caller) {
+void SessionDirectory::leave_session(Client& client, PendingReply caller) {
   if (client.session == 0) return;
   client.outbox->leave();
   sessions_.at(client.session)->leave(std::move(caller));
@@ -425,7 +426,8 @@ void SessionDirectory::leave_session(Client& client, Caller caller) {
 }
 
 void SessionDirectory::close_session(Sessions::iterator session, Session::End end,
-                                     const std::string& reason, std::optional<Caller> caller) {
+                                     const std::string& reason,
+                                     std::optional<PendingReply> caller) {
   const SessionId id = to_id(session->first);
   const std::string event = write_event("session.closed", {{"session", id}, {"reason", reason}});
   for (auto& [connection, client] : clients_) {

@@ -66,9 +66,10 @@ class SessionDirectory {
 
   /// Lets the client in anew, with what the token gives; answered at once, or later where the token
   /// is not good.
-  std::optional<RpcResult> enter(Caller& caller, std::string_view token);
+  std::optional<RpcResult> enter(PendingReply& caller, std::string_view token);
   /// A token for one use, soon. Without a session, which is an admin's to give, it is good in all.
-  RpcResult issue_ticket(const Caller& caller, Role role, const std::optional<SessionId>& session);
+  RpcResult issue_ticket(const PendingReply& caller, Role role,
+                         const std::optional<SessionId>& session);
 
   /// Brings back what is stored, in the background; how many sessions that is.
   std::size_t recover();
@@ -79,7 +80,7 @@ class SessionDirectory {
                                            SessionCreator creator);
   /// Reads the scene and creates the session on a thread of the pool, one at a time, and answers
   /// there; or gives the error at once.
-  std::optional<RpcError> create_later(Caller& caller, std::string name, Json scene);
+  std::optional<RpcError> create_later(PendingReply& caller, std::string name, Json scene);
 
   struct Listed {
     SessionId id;
@@ -87,20 +88,22 @@ class SessionDirectory {
     const char* state;  ///< "running", or, with a name and nothing else, "recovering" or "lost"
   };
   /// Those that are open to the caller.
-  std::vector<Listed> list(const Caller& caller) const;
+  std::vector<Listed> list(const PendingReply& caller) const;
   /// Answered by the session, or by the error that is returned. Without an id: the first session.
   /// Who asks for one that is coming back waits for it.
-  std::optional<RpcError> join(Caller& caller, const std::optional<SessionId>& id, Entrant entrant);
-  std::optional<RpcError> leave(Caller& caller);
+  std::optional<RpcError> join(PendingReply& caller, const std::optional<SessionId>& id,
+                               JoinRequest join_request);
+  std::optional<RpcError> leave(PendingReply& caller);
   /// Hands the command to the session that the caller is in.
-  std::optional<RpcError> post(Caller& caller, SessionCommand command);
+  std::optional<RpcError> post(PendingReply& caller, SessionCommand command);
   /// Answered by the session once its work has ended, or by the error that is returned.
-  std::optional<RpcError> close(Caller& caller, const SessionId& id, const std::string& reason);
+  std::optional<RpcError> close(PendingReply& caller, const SessionId& id,
+                                const std::string& reason);
   /// The tick of the session that the caller is in, as of its last answer or turn; none outside.
-  std::optional<std::uint64_t> tick_of(const Caller& caller) const;
+  std::optional<std::uint64_t> tick_of(const PendingReply& caller) const;
 
   /// A part of a file that a client brings. The last part is answered once the whole is read.
-  std::optional<RpcResult> import_recording(Caller& caller, const Imports::Part& part);
+  std::optional<RpcResult> import_recording(PendingReply& caller, const Imports::Part& part);
   /// What a replay is to show: a session that is kept, or a recording that was imported.
   struct ReplaySource {
     std::optional<SessionId> session;
@@ -108,7 +111,7 @@ class SessionDirectory {
     std::string name;  ///< of the new session; empty: the recording's
   };
   /// Makes a session that shows it, and answers with its id; or gives the error at once.
-  std::optional<RpcError> open_replay(Caller& caller, const ReplaySource& source);
+  std::optional<RpcError> open_replay(PendingReply& caller, const ReplaySource& source);
 
   ServerMetrics& counters() { return metrics_; }
   /// What Prometheus is told.
@@ -143,8 +146,8 @@ class SessionDirectory {
   /// A session that is stored and not here.
   struct Absent {
     struct Waiting {
-      Caller caller;
-      Entrant entrant;
+      PendingReply caller;
+      JoinRequest join_request;
     };
     std::string name;
     bool is_lost = false;  ///< it could not be brought back, and stays in the storage
@@ -174,7 +177,7 @@ class SessionDirectory {
   void undo_join(ConnectionId id, Sessions::key_type session);
 
   RpcResult take_recording(const std::string& name, std::size_t size);
-  void answer_replay(Caller caller, std::shared_ptr<const Recording> recording,
+  void answer_replay(PendingReply caller, std::shared_ptr<const Recording> recording,
                      const std::string& name, SessionCreator creator);
   RpcResult make_replay(std::shared_ptr<const Recording> recording, const std::string& name,
                         SessionCreator creator);
@@ -183,29 +186,29 @@ class SessionDirectory {
   void end_expired_sessions(SteadyClock::time_point now);
   /// With a session that nobody is in.
   std::chrono::milliseconds patience_with(Sessions::key_type session) const;
-  std::optional<RpcError> refuse_source(const Caller& caller, const Client& client,
+  std::optional<RpcError> refuse_source(const PendingReply& caller, const Client& client,
                                         const ReplaySource& source);
-  void record_and_open(Caller& caller, const ReplaySource& source, SessionCreator creator);
+  void record_and_open(PendingReply& caller, const ReplaySource& source, SessionCreator creator);
   std::size_t replay_count() const;
   void wait_for_expiry();
-  const Client* find_caller(const Caller& caller) const;
+  const Client* find_caller(const PendingReply& caller) const;
   /// Why the caller may not call a method that names this session, if so.
-  std::optional<RpcError> refuse_role(const Caller& caller, const MethodRules& rules,
+  std::optional<RpcError> refuse_role(const PendingReply& caller, const MethodRules& rules,
                                       Sessions::key_type session) const;
   std::optional<RpcError> refuse_access(const Client& client, Sessions::key_type session) const;
-  Entrant complete(Entrant entrant, const Client& client) const;
+  JoinRequest complete(JoinRequest join_request, const Client& client) const;
   Sessions::iterator find_session(const SessionId& id);
   std::map<Sessions::key_type, Absent>::iterator find_absent(const std::optional<SessionId>& id);
-  std::optional<RpcError> wait_for(Absent& absent, const SessionId& id, Caller& caller,
-                                   Entrant entrant);
+  std::optional<RpcError> wait_for(Absent& absent, const SessionId& id, PendingReply& caller,
+                                   JoinRequest join_request);
   /// Of one that is not in `sessions_`.
   RpcError refuse_missing(const Client& client, const SessionId& id);
-  std::optional<RpcError> close_absent(const SessionId& id, Caller& caller);
+  std::optional<RpcError> close_absent(const SessionId& id, PendingReply& caller);
   std::size_t client_count(Sessions::key_type session) const;
-  void leave_session(Client& client, Caller caller);
+  void leave_session(Client& client, PendingReply caller);
   /// The caller, if there is one, is answered by the session.
   void close_session(Sessions::iterator session, Session::End end, const std::string& reason,
-                     std::optional<Caller> caller);
+                     std::optional<PendingReply> caller);
   std::optional<RpcError> refuse_session_locked() const;
 
   const Catalogue& catalogue_;
@@ -217,7 +220,7 @@ class SessionDirectory {
   ServerMetrics metrics_;
   AccessTokens tokens_;
   ResourceBudget resources_;
-  LongTicks long_ticks_;
+  SlowTickGate slow_tick_gate_;
   boost::asio::thread_pool frame_threads_;
   Downloads downloads_{settings_.limits.max_download_bytes};
   Imports imports_;

@@ -34,7 +34,7 @@ std::optional<RpcError> find_excess(const Recording& recording) {
 
 }  // namespace
 
-std::optional<RpcResult> SessionDirectory::import_recording(Caller& caller,
+std::optional<RpcResult> SessionDirectory::import_recording(PendingReply& caller,
                                                             const Imports::Part& part) {
   auto added = imports_.add(caller.client()->id(), part, clock_.now());
   if (auto* error = std::get_if<RpcError>(&added)) return std::move(*error);
@@ -80,7 +80,8 @@ RpcResult SessionDirectory::take_recording(const std::string& name, std::size_t 
               {"instruction_set", to_string(recording->instructions)}};
 }
 
-std::optional<RpcError> SessionDirectory::open_replay(Caller& caller, const ReplaySource& source) {
+std::optional<RpcError> SessionDirectory::open_replay(PendingReply& caller,
+                                                      const ReplaySource& source) {
   const std::lock_guard lock(mutex_);
   const Client* client = find_caller(caller);
   if (client == nullptr) return not_allowed("the connection is closed");
@@ -109,7 +110,8 @@ std::optional<RpcError> SessionDirectory::open_replay(Caller& caller, const Repl
   return {};
 }
 
-std::optional<RpcError> SessionDirectory::refuse_source(const Caller& caller, const Client& client,
+std::optional<RpcError> SessionDirectory::refuse_source(const PendingReply& caller,
+                                                        const Client& client,
                                                         const ReplaySource& source) {
   const MethodRules& rules = rules_of("replay.open");
   if (source.recording) {
@@ -127,9 +129,9 @@ std::optional<RpcError> SessionDirectory::refuse_source(const Caller& caller, co
   return {};
 }
 
-void SessionDirectory::record_and_open(Caller& caller, const ReplaySource& source,
+void SessionDirectory::record_and_open(PendingReply& caller, const ReplaySource& source,
                                        SessionCreator creator) {
-  const auto waiting = std::make_shared<Caller>(std::move(caller));
+  const auto waiting = std::make_shared<PendingReply>(std::move(caller));
   const auto by = std::make_shared<SessionCreator>(std::move(creator));
   const auto session = find_session(*source.session)->second;
   session->keep_and(
@@ -157,9 +159,10 @@ void SessionDirectory::record_and_open(Caller& caller, const ReplaySource& sourc
       waiting);
 }
 
-void SessionDirectory::answer_replay(Caller caller, std::shared_ptr<const Recording> recording,
+void SessionDirectory::answer_replay(PendingReply caller,
+                                     std::shared_ptr<const Recording> recording,
                                      const std::string& name, SessionCreator creator) {
-  const ThreadPoolRunner::Guest guest(runner_);
+  const ThreadPoolRunner::HelperReservation guest(runner_);
   try {
     caller.answer(make_replay(std::move(recording), name, std::move(creator)));
   } catch (const StorageError& error) {
@@ -189,7 +192,7 @@ RpcResult SessionDirectory::make_replay(std::shared_ptr<const Recording> recordi
   const auto session = std::make_shared<Session>(
       to_id(number), SessionSettings{shown, default_role(), false, creator.connection},
       std::move(simulation), std::get<ResourceShare>(std::move(share)), environment_, pool_,
-      long_ticks_);
+      slow_tick_gate_);
   session->show(std::move(replay));
   sessions_.emplace(number, session);
   places_.emplace(number, std::move(creator.place));

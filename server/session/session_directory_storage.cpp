@@ -64,7 +64,7 @@ bool SessionDirectory::is_ready() const {
 }
 
 void SessionDirectory::recover_session(const StoredSession& stored) {
-  const ThreadPoolRunner::Guest guest(runner_);
+  const ThreadPoolRunner::HelperReservation guest(runner_);
   try {
     end_recovery(stored, make_recovered(stored));
   } catch (const Cancelled&) {
@@ -83,7 +83,7 @@ std::shared_ptr<Session> SessionDirectory::make_recovered(const StoredSession& s
   ResourceShare share = past_resources_.take_anyway(resources_of(simulation));
   auto session = std::make_shared<Session>(
       to_id(stored.number), read_settings(stored.name, stored.settings), std::move(simulation),
-      std::move(share), past_environment_, pool_, long_ticks_);
+      std::move(share), past_environment_, pool_, slow_tick_gate_);
   session->recover(recovery, *storage_, environment_);
   const std::chrono::duration<double> time = CostClock::now() - begin;
   spdlog::info("session {} is back at tick {}, in {:.2f} s", to_id(stored.number),
@@ -107,7 +107,7 @@ void SessionDirectory::end_recovery(const StoredSession& stored, std::shared_ptr
     }
   }
   for (Absent::Waiting& one : waiting) {
-    if (auto error = join(one.caller, to_id(stored.number), std::move(one.entrant))) {
+    if (auto error = join(one.caller, to_id(stored.number), std::move(one.join_request))) {
       one.caller.answer(*std::move(error));
     }
   }
@@ -127,9 +127,9 @@ std::map<std::uint64_t, SessionDirectory::Absent>::iterator SessionDirectory::fi
 }
 
 std::optional<RpcError> SessionDirectory::wait_for(Absent& absent, const SessionId& id,
-                                                   Caller& caller, Entrant entrant) {
+                                                   PendingReply& caller, JoinRequest join_request) {
   if (absent.is_lost) return not_recovered(id, "lost");
-  absent.waiting.push_back({std::move(caller), std::move(entrant)});
+  absent.waiting.push_back({std::move(caller), std::move(join_request)});
   return {};
 }
 
@@ -141,7 +141,7 @@ RpcError SessionDirectory::refuse_missing(const Client& client, const SessionId&
   return not_recovered(id, absent->second.is_lost ? "lost" : "recovering");
 }
 
-std::optional<RpcError> SessionDirectory::close_absent(const SessionId& id, Caller& caller) {
+std::optional<RpcError> SessionDirectory::close_absent(const SessionId& id, PendingReply& caller) {
   const auto absent = find_absent(id);
   if (absent == absent_.end()) return no_such_session(id, "/session");
   if (auto error = refuse_role(caller, rules_of("session.close"), absent->first)) return error;

@@ -3,7 +3,7 @@
 #include <boost/asio/thread_pool.hpp>
 
 #include "core/support/instruction_set.h"
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/access/access.h"
 #include "server/admission/resource_budget.h"
 #include "server/clock.h"

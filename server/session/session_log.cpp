@@ -21,7 +21,7 @@ std::size_t bytes_of(std::span<const LogEntry> entries) {
 }  // namespace
 
 bool CheckpointPace::is_due(Seconds cost) const {
-  return work_ >= std::min(std::max(wanted_, cost / kGreatestShare), kMostWork);
+  return work_ >= std::min(std::max(wanted_, cost / kGreatestShare), kMaxWork);
 }
 
 SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& place)
@@ -31,7 +31,7 @@ SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& pla
       pace_(storage.limits().checkpoint_after),
       kept_position_(place.position),
       kept_last_(place.last),
-      is_bent_(place.is_bent) {
+      is_bent_(place.needs_checkpoint) {
   writing_->log_bytes = storage.sessions().log_bytes(session);
   storage.checkpoints().drop_hashes(session, place.position);
 }

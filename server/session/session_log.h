@@ -25,8 +25,8 @@ inline constexpr std::string_view kLetGoEntry = "let_go";
 class CheckpointPace {
  public:
   using Seconds = std::chrono::duration<double>;
-  static constexpr double kGreatestShare = 0.05;     ///< of the work that ticks and commands are
-  static constexpr Seconds kMostWork = Seconds(10);  ///< without one, whatever one costs
+  static constexpr double kGreatestShare = 0.05;    ///< of the work that ticks and commands are
+  static constexpr Seconds kMaxWork = Seconds(10);  ///< without one, whatever one costs
 
   /// `wanted` is how much work there should be between two, where they are cheap enough.
   explicit CheckpointPace(Seconds wanted) : wanted_(wanted) {}
@@ -51,7 +51,7 @@ class SessionLog {
   struct Place {
     std::uint64_t last = 0;  ///< the sequence of the last entry that there is
     std::uint64_t position = 0;
-    bool is_bent =
+    bool needs_checkpoint =
         false;  ///< the log does not lead here: what comes needs a checkpoint to build on
   };
   SessionLog(Storage& storage, std::uint64_t session, const Place& place);

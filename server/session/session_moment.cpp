@@ -106,7 +106,7 @@ void read_participant(const Json& value, const std::string& path, Participants& 
 
 }  // namespace
 
-SessionBeat SessionMoment::beat() const {
+SessionProgress SessionMoment::beat() const {
   return {position, tick,    sequence, snapshot.state_hash(),
           epoch,    playing, speed,    participants.dump()};
 }

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "core/simulation.h"
-#include "protocol/json_reader.h"
+#include "core/simulation/simulation.h"
+#include "protocol/json/json_reader.h"
 #include "server/session/participants.h"
 #include "server/session/session_settings.h"
 #include "server/storage/session_store.h"
@@ -25,7 +25,7 @@ struct SessionMoment {
   Json participants;         ///< see write_participants()
   Snapshot snapshot;
 
-  SessionBeat beat() const;
+  SessionProgress beat() const;
   /// All but the snapshot.
   std::string fields() const;
 };

@@ -20,18 +20,20 @@ constexpr auto kLongAgo = SteadyClock::time_point(-std::chrono::hours(24));
 }  // namespace
 
 std::variant<Entry, RpcError> SessionCore::join(const std::shared_ptr<ClientOutbox>& outbox,
-                                                std::uint64_t membership, const Entrant& entrant,
+                                                std::uint64_t membership,
+                                                const JoinRequest& join_request,
                                                 SteadyClock::time_point now) {
-  Participant* resumed =
-      entrant.resume ? participants_.find_resume(hash_of_token(*entrant.resume)) : nullptr;
+  Participant* resumed = join_request.resume
+                             ? participants_.find_resume(hash_of_token(*join_request.resume))
+                             : nullptr;
   const Participant* before = participants_.find_client(outbox->id());
   if (before != nullptr && before != resumed) leave(before->number);
-  const bool may_pass = entrant.passes_lock || outbox->id() == settings_.creator;
+  const bool may_pass = join_request.passes_lock || outbox->id() == settings_.creator;
   if (resumed == nullptr && settings_.is_locked && !may_pass) {
     return not_allowed("the session is locked");
   }
-  std::string token = resumed != nullptr ? *entrant.resume : "";
-  Participant& participant = resumed != nullptr ? *resumed : take_in(*outbox, entrant, token);
+  std::string token = resumed != nullptr ? *join_request.resume : "";
+  Participant& participant = resumed != nullptr ? *resumed : take_in(*outbox, join_request, token);
   if (participant.is_here()) release_connection(participant, outbox->id());
   participants_.connect(participant, outbox, membership);
   outbox->start_epoch(membership, run_.epoch());
@@ -41,12 +43,12 @@ std::variant<Entry, RpcError> SessionCore::join(const std::shared_ptr<ClientOutb
   return Entry{participant, std::move(token), resumed != nullptr};
 }
 
-Participant& SessionCore::take_in(const ClientOutbox& outbox, const Entrant& entrant,
+Participant& SessionCore::take_in(const ClientOutbox& outbox, const JoinRequest& join_request,
                                   std::string& token) {
-  const bool is_creator = outbox.id() == settings_.creator && entrant.role != Role::admin;
-  const Role role = is_creator ? Role::owner : entrant.role.value_or(settings_.default_role);
+  const bool is_creator = outbox.id() == settings_.creator && join_request.role != Role::admin;
+  const Role role = is_creator ? Role::owner : join_request.role.value_or(settings_.default_role);
   token = make_token();
-  Participant& participant = participants_.add(entrant.name, role);
+  Participant& participant = participants_.add(join_request.name, role);
   if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);
   participant.resume = hash_of_token(token);
   environment_->tokens.add(*participant.resume, {Role::viewer, id_});
@@ -137,7 +139,7 @@ void SessionCore::set_role(Participant& participant, Role role) {
 
 void SessionCore::end_grab(ParticipantNumber participant, std::uint64_t grab) {
   const SessionCommand command = make_command("grab.end", {{"grab", grab}});
-  const Given given{participant, command};
+  const ParticipantCommand given{participant, command};
   carry_out({&given, 1});
 }
 

@@ -31,8 +31,8 @@ RpcResult make_recording(Storage& storage, std::uint64_t number, const std::stri
 
 }  // namespace
 
-void Session::record(Caller caller) {
-  const auto waiting = std::make_shared<Caller>(std::move(caller));
+void Session::record(PendingReply caller) {
+  const auto waiting = std::make_shared<PendingReply>(std::move(caller));
   Downloads* const downloads = core_.environment().downloads;
   if (downloads == nullptr) {
     waiting->answer(not_allowed("nobody could fetch it"));

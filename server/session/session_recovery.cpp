@@ -24,7 +24,7 @@ std::string name_of(const LogEntry& entry) {
 
 Json parse_params(const LogEntry& entry) {
   Result<Json> json =
-      parse_json(entry.params, {entry.params.size(), kMostMessageDepth, entry.params.size() + 1});
+      parse_json(entry.params, {entry.params.size(), kMaxMessageDepth, entry.params.size() + 1});
   if (!json) fail(name_of(entry), json.errors().front().message);
   return std::move(json).value();
 }
@@ -190,7 +190,7 @@ void SessionRecovery::carry_out_at_end(SessionCore& core, const LogEntry& entry)
 }
 
 void SessionRecovery::compare(SessionCore& core) {
-  const std::optional<SessionBeat>& beat = stored_.beat;
+  const std::optional<SessionProgress>& beat = stored_.beat;
   if (!beat || beat->sequence != core.sequence() || beat->position != core.run().position()) return;
   const std::uint64_t hash = core.run().simulation().state_hash();
   if (hash != beat->hash) {

@@ -19,7 +19,7 @@ void Session::show(std::unique_ptr<ReplayRun> replay) {
   update_summary();
 }
 
-void Session::begin_seek(Caller caller, std::uint64_t position) {
+void Session::begin_seek(PendingReply caller, std::uint64_t position) {
   end_all_steps();
   if (!seek_) seek_.emplace();
   seek_->callers.push_back(std::move(caller));
@@ -36,19 +36,19 @@ void Session::seek_turn() {
 }
 
 void Session::end_seek() {
-  std::vector<Caller> callers = std::move(seek_->callers);
+  std::vector<PendingReply> callers = std::move(seek_->callers);
   seek_.reset();
   replay_->end_seek(core_);
   core_.take_interruption();
   period_ = {};  // the clock begins anew from here
   update_summary();
-  for (Caller& caller : callers) {
+  for (PendingReply& caller : callers) {
     caller.answer(Json{{"tick", core_.run().tick()}, {"position", core_.run().position()}});
   }
   if (!steps_.empty()) schedule_step();
 }
 
-void Session::keep_and(KeptTask task, const std::shared_ptr<Caller>& caller) {
+void Session::keep_and(KeptTask task, const std::shared_ptr<PendingReply>& caller) {
   boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task), caller] {
     SessionLog* const log = self->closed_ ? nullptr : self->core_.log();
     if (log == nullptr) {

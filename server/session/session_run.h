@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/admission/resource_budget.h"
 #include "server/server_metrics.h"
 #include "server/session/tick_profile.h"

@@ -50,9 +50,9 @@ void Session::end_log(End end) {
   }
 }
 
-void Session::save(Caller caller, SaveState save) {
+void Session::save(PendingReply caller, SaveState save) {
   // On the pool: the session goes on meanwhile.
-  const auto waiting = std::make_shared<Caller>(std::move(caller));
+  const auto waiting = std::make_shared<PendingReply>(std::move(caller));
   boost::asio::post(strand_.get_inner_executor(),
                     [self = shared_from_this(), waiting, save = std::move(save),
                      moment = moment_to_save(core_), &environment = core_.environment()] {

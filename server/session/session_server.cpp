@@ -52,7 +52,7 @@ class SessionServer::Impl {
         client->send(write_reply(id.value_or(nullptr), std::move(*error)));
         return;
       }
-      Caller caller(client, id, &directory_.counters());
+      PendingReply caller(client, id, &directory_.counters());
       if (auto result =
               call(caller, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
         caller.answer(*std::move(result));
@@ -113,7 +113,8 @@ class SessionServer::Impl {
   }
 
   /// The answer, unless someone has taken the caller to answer later.
-  std::optional<RpcResult> call(Caller& caller, Role role, RpcRequest request, std::size_t bytes) {
+  std::optional<RpcResult> call(PendingReply& caller, Role role, RpcRequest request,
+                                std::size_t bytes) {
     const Method* method = find_method(request.method);
     if (role == Role::none && (method == nullptr || method->rules.least_role > Role::none)) {
       return not_authenticated("the first message has to be access.enter");

@@ -10,7 +10,7 @@
 
 #include "core/support/instruction_set.h"
 #include "core/support/result.h"
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/access/access.h"
 #include "server/limits.h"
 #include "server/net/transport.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/server_metrics.h"
 #include "server/stage_clock.h"
 

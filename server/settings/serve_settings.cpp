@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::size_t kMaxThreads = 256;
 constexpr std::size_t kMaxEndpoints = 64;
-constexpr std::size_t kMostConnections = 100'000;
-constexpr std::size_t kMostSessions = 10'000;
-constexpr std::size_t kLeastDepth = 10;  // of a request with a scene: 9
-constexpr std::size_t kMostBytes = 1024 * 1024 * 1024;
-constexpr std::size_t kMostInAll = 1'000'000'000;
-constexpr double kMostPerSecond = 1e6;
-constexpr double kMostBytesPerSecond = 1e9;
-constexpr double kMostAway = 1e8;
-constexpr std::uint64_t kMostSeconds = 3600;
+constexpr std::size_t kMaxConnectionSetting = 100'000;
+constexpr std::size_t kMaxSessions = 10'000;
+constexpr std::size_t kMinDepth = 10;  // of a request with a scene: 9
+constexpr std::size_t kMaxBytes = 1024 * 1024 * 1024;
+constexpr std::size_t kMaxInAll = 1'000'000'000;
+constexpr double kMaxPerSecond = 1e6;
+constexpr double kMaxBytesPerSecond = 1e9;
+constexpr double kMaxAway = 1e8;
+constexpr std::uint64_t kMaxSeconds = 3600;
 
 std::string check_host(const std::string& host) {
   boost::system::error_code error;
@@ -106,39 +106,40 @@ std::vector<Setting> access_group(ServeSettings& s) {
 
 std::vector<Setting> connection_limits(ServerLimits& limits) {
   return {
-      number_setting<std::size_t>("max_connections", limits.max_connections, 1, kMostConnections,
+      number_setting<std::size_t>("max_connections", limits.max_connections, 1,
+                                  kMaxConnectionSetting,
                                   "Open WebSockets; the server closes further ones"),
       number_setting<std::size_t>(
-          "max_connections_per_address", limits.max_connections_per_address, 1, kMostConnections,
+          "max_connections_per_address", limits.max_connections_per_address, 1,
+          kMaxConnectionSetting,
           "Open WebSockets from one address; behind a proxy, all clients share its address"),
       number_setting<std::size_t>("max_clients", limits.max_clients_per_session, 1,
-                                  kMostConnections, "Clients of one session"),
+                                  kMaxConnectionSetting, "Clients of one session"),
       number_setting<std::size_t>("max_grabs", limits.max_grabs_per_client, 1, kMaxGrabs,
                                   "Simultaneous grabs of one client"),
-      number_setting<std::size_t>("max_message_bytes", limits.max_message_bytes, 1024, kMostBytes,
+      number_setting<std::size_t>("max_message_bytes", limits.max_message_bytes, 1024, kMaxBytes,
                                   "Size of a message without scene or body"),
       number_setting<std::size_t>("max_scene_message_bytes", limits.max_scene_message_bytes, 1024,
-                                  kMostBytes, "Size of a message with a scene or a body"),
-      number_setting<std::size_t>("max_message_depth", limits.max_message_depth, kLeastDepth,
-                                  kMostMessageDepth,
+                                  kMaxBytes, "Size of a message with a scene or a body"),
+      number_setting<std::size_t>("max_message_depth", limits.max_message_depth, kMinDepth,
+                                  kMaxMessageDepth,
                                   "Nesting depth of lists and objects in a message"),
       number_setting<std::size_t>("max_message_values", limits.max_message_values, 1000, 10'000'000,
                                   "Numbers, strings, lists and objects in a message"),
       number_setting<std::size_t>("max_commands_in_flight", limits.max_commands_in_flight, 1,
                                   1'000'000, "Unanswered commands of one client"),
       number_setting<std::size_t>("max_bytes_in_flight", limits.max_bytes_in_flight, 1024,
-                                  kMostBytes,
-                                  "Total size of the unanswered commands of one client"),
+                                  kMaxBytes, "Total size of the unanswered commands of one client"),
       number_setting<std::size_t>("max_control_queue_bytes", limits.max_control_queue_bytes,
-                                  16 * 1024, kMostBytes,
+                                  16 * 1024, kMaxBytes,
                                   "Size of the replies and events that wait for one client; the "
                                   "server closes a connection that exceeds it"),
-      time_setting("frame_patience_seconds", limits.frame_patience, 1, kMostSeconds,
+      time_setting("frame_patience_seconds", limits.frame_patience, 1, kMaxSeconds,
                    "Time without a frame acknowledgement after which the server closes a viewer's "
                    "connection"),
-      time_setting("resume_seconds", limits.resume_time, 0, kMostSeconds,
+      time_setting("resume_seconds", limits.resume_time, 0, kMaxSeconds,
                    "Time after a disconnection within which a participant can resume"),
-      time_setting("grab_idle_seconds", limits.grab_idle, 0.1, kMostSeconds,
+      time_setting("grab_idle_seconds", limits.grab_idle, 0.1, kMaxSeconds,
                    "Time without movement after which a grab ends"),
       number_setting<std::size_t>("max_tokens", limits.max_tokens, 1, 1'000'000,
                                   "Valid invitations and tickets"),
@@ -147,56 +148,56 @@ std::vector<Setting> connection_limits(ServerLimits& limits) {
       number_setting<std::size_t>("max_download_bytes", limits.max_download_bytes, 1024,
                                   std::size_t{16} << 30,
                                   "Total size of exported recordings that wait for download"),
-      time_setting("handshake_seconds", limits.handshake_time, 0.001, kMostSeconds,
+      time_setting("handshake_seconds", limits.handshake_time, 0.001, kMaxSeconds,
                    "Time limit of an HTTP request or a WebSocket upgrade"),
-      time_setting("ping_seconds", limits.ping_interval, 0.001, kMostSeconds,
+      time_setting("ping_seconds", limits.ping_interval, 0.001, kMaxSeconds,
                    "Interval of pings; the server drops a client that is silent for two intervals"),
   };
 }
 
 std::vector<Setting> rate_limits(ServerLimits& limits) {
   return {
-      number_setting("max_queries_per_second", limits.max_queries_per_second, 0.01, kMostPerSecond,
+      number_setting("max_queries_per_second", limits.max_queries_per_second, 0.01, kMaxPerSecond,
                      "Queries and frame acknowledgements"),
-      number_setting("max_controls_per_second", limits.max_controls_per_second, 0.01,
-                     kMostPerSecond, "Control commands"),
+      number_setting("max_controls_per_second", limits.max_controls_per_second, 0.01, kMaxPerSecond,
+                     "Control commands"),
       number_setting("max_pointer_moves_per_second", limits.max_pointer_moves_per_second, 0.01,
-                     kMostPerSecond, "Commands that follow a pointer"),
-      number_setting("max_scenes_per_second", limits.max_scenes_per_second, 0.01, kMostPerSecond,
+                     kMaxPerSecond, "Commands that follow a pointer"),
+      number_setting("max_scenes_per_second", limits.max_scenes_per_second, 0.01, kMaxPerSecond,
                      "Messages with a scene or a body"),
       number_setting("max_message_bytes_per_second", limits.max_message_bytes_per_second, 1024,
-                     kMostBytesPerSecond, "Bytes of all messages"),
-      number_setting("burst_seconds", limits.burst_seconds, 0.1, kMostSeconds,
+                     kMaxBytesPerSecond, "Bytes of all messages"),
+      number_setting("burst_seconds", limits.burst_seconds, 0.1, kMaxSeconds,
                      "Burst size of each rate limit, as seconds at the full rate"),
       number_setting(
-          "max_refusals_per_second", limits.max_refusals_per_second, 0.01, kMostPerSecond,
+          "max_refusals_per_second", limits.max_refusals_per_second, 0.01, kMaxPerSecond,
           "Messages rejected by the rate limits; the server closes a connection that exceeds it"),
   };
 }
 
 std::vector<Setting> session_limits(ServerLimits& limits) {
   return {
-      number_setting<std::size_t>("max_sessions", limits.max_sessions, 1, kMostSessions,
+      number_setting<std::size_t>("max_sessions", limits.max_sessions, 1, kMaxSessions,
                                   "Simultaneous sessions"),
       number_setting<std::size_t>("max_sessions_per_address", limits.max_sessions_per_address, 1,
-                                  kMostSessions, "Simultaneous sessions created from one address"),
+                                  kMaxSessions, "Simultaneous sessions created from one address"),
       number_setting<std::size_t>("max_particles", limits.max_particles, 1, kMaxParticles,
                                   "Particles of one session"),
       number_setting<std::size_t>("max_springs", limits.max_springs, 1, kMaxSprings,
                                   "Springs of one session"),
-      number_setting<std::size_t>("max_particles_in_all", limits.max_particles_in_all, 1,
-                                  kMostInAll, "Particles of all sessions"),
-      number_setting<std::size_t>("max_springs_in_all", limits.max_springs_in_all, 1, kMostInAll,
+      number_setting<std::size_t>("max_particles_in_all", limits.max_particles_in_all, 1, kMaxInAll,
+                                  "Particles of all sessions"),
+      number_setting<std::size_t>("max_springs_in_all", limits.max_springs_in_all, 1, kMaxInAll,
                                   "Springs of all sessions"),
       number_setting<std::size_t>("max_particle_steps_per_tick", limits.max_particle_steps_per_tick,
                                   1, 1'000'000'000, "Particles of a session times steps per tick"),
-      time_setting("hibernate_after", limits.hibernate_after, 0, kMostAway,
+      time_setting("hibernate_after", limits.hibernate_after, 0, kMaxAway,
                    "Seconds without participants after which a session hibernates; 0: never"),
-      time_setting("expire_after", limits.expire_after, 0, kMostAway,
+      time_setting("expire_after", limits.expire_after, 0, kMaxAway,
                    "Seconds without participants after which a session ends, except the first "
                    "session; 0: never"),
       time_setting(
-          "replay_expire_after", limits.replay_expire_after, 0.1, kMostAway,
+          "replay_expire_after", limits.replay_expire_after, 0.1, kMaxAway,
           "Seconds without participants after which a replay ends, if less than expire_after"),
   };
 }
@@ -206,39 +207,38 @@ std::vector<Setting> saved_limits(ServerLimits& limits) {
       number_setting<std::size_t>("max_states_per_session", limits.max_states_per_session, 0,
                                   1'000'000, "Saved states of one session"),
       number_setting<std::size_t>("max_state_bytes_per_session", limits.max_state_bytes_per_session,
-                                  1024, kMostBytes,
-                                  "Total size of the saved states of one session"),
+                                  1024, kMaxBytes, "Total size of the saved states of one session"),
       number_setting<std::size_t>("max_state_bytes_in_all", limits.max_state_bytes_in_all, 1024,
-                                  kMostInAll, "Total size of the saved states of all sessions"),
+                                  kMaxInAll, "Total size of the saved states of all sessions"),
       number_setting<std::size_t>("max_scenes_per_address", limits.max_scenes_per_address, 0,
                                   1'000'000, "Scenes saved from one address"),
       number_setting<std::size_t>("max_scene_bytes_per_address", limits.max_scene_bytes_per_address,
-                                  1024, kMostBytes,
+                                  1024, kMaxBytes,
                                   "Total size of the scenes saved from one address"),
       number_setting<std::size_t>("max_scenes_in_all", limits.max_scenes_in_all, 0, 1'000'000,
                                   "Saved scenes"),
       number_setting<std::size_t>("max_scene_bytes_in_all", limits.max_scene_bytes_in_all, 1024,
-                                  kMostBytes, "Total size of the saved scenes"),
+                                  kMaxBytes, "Total size of the saved scenes"),
   };
 }
 
 std::vector<Setting> storage_group(ServeSettings& s) {
-  constexpr std::size_t kLeastBytes = 1024 * 1024;
-  constexpr std::size_t kMostBytesKept = std::size_t{1} << 40;
+  constexpr std::size_t kMinBytes = 1024 * 1024;
+  constexpr std::size_t kMaxBytesKept = std::size_t{1} << 40;
   return {
       text_setting("data", s.data, "FOLDER",
                    "Folder in which sessions persist; none: sessions exist in memory only"),
-      time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMostSeconds,
+      time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMaxSeconds,
                    "Computing time between two checkpoints of a session, which recovery repeats at "
                    "most; longer if checkpoints would take more than 5 % of the time"),
       time_setting(
-          "drain_seconds", s.drain_time, 0, kMostSeconds,
+          "drain_seconds", s.drain_time, 0, kMaxSeconds,
           "Time between SIGTERM and the end of the server, in which clients stay connected"),
       number_setting<std::size_t>(
-          "checkpoint_bytes", s.storage.checkpoint_bytes, kLeastBytes, kMostBytesKept,
+          "checkpoint_bytes", s.storage.checkpoint_bytes, kMinBytes, kMaxBytesKept,
           "Total size of one session's checkpoints; beyond it, the server thins older ones"),
       number_setting<std::size_t>(
-          "log_bytes", s.storage.log_bytes, kLeastBytes, kMostBytesKept,
+          "log_bytes", s.storage.log_bytes, kMinBytes, kMaxBytesKept,
           "Size of one session's command log; beyond it, the server deletes the oldest part"),
   };
 }

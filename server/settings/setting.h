@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 
 namespace vat {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "protocol/printable.h"
+#include "protocol/json/printable.h"
 
 namespace vat {
 namespace {

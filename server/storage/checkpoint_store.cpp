@@ -136,10 +136,10 @@ void CheckpointStore::write_hashes(std::uint64_t session, std::span<const TickHa
   Transaction transaction(database_);
   insert_hashes(session, hashes);
   const std::uint64_t last = hashes.back().position;
-  if (last > kMostHashes) {
+  if (last > kMaxHashes) {
     database_.prepare("DELETE FROM hashes WHERE session = ? AND last < ?")
         .bind(0, session)
-        .bind(1, last - kMostHashes)
+        .bind(1, last - kMaxHashes)
         .run();
   }
   transaction.commit();

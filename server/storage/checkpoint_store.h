@@ -50,14 +50,14 @@ class CheckpointStore {
   /// Nothing where it was removed in the meantime. Throws what is of kind corrupt for one that is
   /// damaged.
   std::optional<Checkpoint> read(const CheckpointPlace& place);
-  /// Adds hashes at positions that rise. Those that are `kMostHashes` positions back go.
+  /// Adds hashes at positions that rise. Those that are `kMaxHashes` positions back go.
   void write_hashes(std::uint64_t session, std::span<const TickHash> hashes);
   /// Rising by position; may begin somewhat before `from`.
   std::vector<TickHash> hashes(std::uint64_t session, std::uint64_t from);
   std::size_t hash_count(std::uint64_t session);
   /// Those behind a position go: the session goes on from there.
   void drop_hashes(std::uint64_t session, std::uint64_t behind);
-  static constexpr std::size_t kMostHashes = 2'000'000;  ///< eleven hours at 50 ticks a second
+  static constexpr std::size_t kMaxHashes = 2'000'000;  ///< eleven hours at 50 ticks a second
 
   /// Removes what is of all other sessions.
   void keep_only(const std::vector<std::uint64_t>& sessions);

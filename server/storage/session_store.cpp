@@ -16,9 +16,9 @@ constexpr const char* kWriteReached =
     "UPDATE sessions SET reached = max(reached, ?) WHERE number = ?";
 constexpr std::size_t kEntriesAtOnce = 500;  // read or removed while commands wait
 
-std::optional<SessionBeat> to_beat(const Statement& row, int column) {
+std::optional<SessionProgress> to_beat(const Statement& row, int column) {
   if (row.is_null(column)) return {};
-  SessionBeat beat;
+  SessionProgress beat;
   beat.position = row.count(column);
   beat.tick = row.count(column + 1);
   beat.sequence = row.count(column + 2);
@@ -199,7 +199,7 @@ bool SessionStore::trim_some(std::uint64_t session, std::uint64_t last, std::uin
   return database_.number("SELECT changes()") > 0;
 }
 
-void SessionStore::beat(std::uint64_t session, const SessionBeat& beat) {
+void SessionStore::beat(std::uint64_t session, const SessionProgress& beat) {
   const std::lock_guard lock(mutex_);
   write_beat_.bind(0, beat.position)
       .bind(1, beat.tick)

@@ -16,7 +16,7 @@ namespace vat {
 
 /// Where a session was, told from time to time, so that it comes back about there and can be shown
 /// to be the same.
-struct SessionBeat {
+struct SessionProgress {
   std::uint64_t position = 0;  ///< as in a LogEntry
   std::uint64_t tick = 0;
   std::uint64_t sequence = 0;  ///< of the last entry that had been applied
@@ -33,7 +33,7 @@ struct StoredSession {
   std::string instruction_set;  ///< that its hashes hold for
   std::string settings;         ///< JSON, an object
   std::uint64_t reached = 0;    ///< a position that somebody was told of
-  std::optional<SessionBeat> beat;
+  std::optional<SessionProgress> beat;
 };
 
 /// The sessions and their logs. What a call has written when it returns survives the end of the
@@ -70,7 +70,7 @@ class SessionStore {
   /// Removes entries up to `last`, but `kept`, which later ones build on.
   void trim(std::uint64_t session, std::uint64_t last, std::uint64_t kept);
 
-  void beat(std::uint64_t session, const SessionBeat& beat);
+  void beat(std::uint64_t session, const SessionProgress& beat);
   /// It will come back at this position or later.
   void reach(std::uint64_t session, std::uint64_t position);
 

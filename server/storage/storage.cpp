@@ -15,11 +15,11 @@ namespace {
 constexpr auto kMoveInterval = std::chrono::seconds(1);
 // While commands keep coming the moved part of a log is not used again; beyond this they wait once,
 // for some milliseconds, so that it is.
-constexpr std::size_t kMostLogBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxLogBytes = std::size_t{64} << 20;
 
 template <class Store>
 void move_log(Store& store) {
-  if (store.move_log(false) > kMostLogBytes) store.move_log(true);
+  if (store.move_log(false) > kMaxLogBytes) store.move_log(true);
 }
 
 std::string id_of(std::uint64_t session) {

@@ -37,13 +37,13 @@ struct SoakOptions {
 };
 
 /// A shorter one has not warmed up by its first rest, and has one at its end alone.
-constexpr double kLeastForRests = 300;  // [s]
+constexpr double kMinForRests = 300;  // [s]
 constexpr std::size_t kRests = 6;
 /// By then the server has given back what it does not use.
 constexpr std::chrono::milliseconds kRest = MemoryReturn::kInterval + std::chrono::seconds(2);
-constexpr double kMostHeapGrowth = 0.05;
+constexpr double kMaxHeapGrowth = 0.05;
 /// Where in the heap what is in use lies is chance, and with it which pages are free.
-constexpr double kMostResidentGrowth = 0.125;
+constexpr double kMaxResidentGrowth = 0.125;
 constexpr std::size_t kSamples = 600;
 constexpr std::chrono::seconds kReturn{30};  // for connections of clients that broke off
 constexpr std::size_t kSoakOtherFiles = 64;
@@ -67,7 +67,7 @@ class Soak {
   bool run() {
     std::this_thread::sleep_for(std::chrono::seconds(2));  // the maker's connection is gone by then
     const ProcessFigures before = process_figures(server_.process());
-    const std::size_t rests = options_.seconds < kLeastForRests ? 1 : kRests;
+    const std::size_t rests = options_.seconds < kMinForRests ? 1 : kRests;
     while (resting_.size() < rests && faults_ == 0) {
       let_clients_come(options_.seconds / static_cast<double>(rests));
       for (const std::string& fault : tally_.faults()) fail(fault);
@@ -154,8 +154,8 @@ class Soak {
   }
 
   void look_at_memory() {
-    if (!is_flat(resting_heap_, kMostHeapGrowth)) fail("the heap in use at rest has grown");
-    if (!is_flat(resting_, kMostResidentGrowth)) fail("what is resident at rest has grown");
+    if (!is_flat(resting_heap_, kMaxHeapGrowth)) fail("the heap in use at rest has grown");
+    if (!is_flat(resting_, kMaxResidentGrowth)) fail("what is resident at rest has grown");
   }
 
   /// What the server holds once it has noticed that all have gone.

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/validate.h"

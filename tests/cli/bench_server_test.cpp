@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "tests/bench/fanout/frame_facts.h"
 #include "tests/bench/fanout/segments.h"
 #include "tests/bench/soak/trend.h"

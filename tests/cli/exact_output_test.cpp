@@ -5,8 +5,8 @@
 
 #include <array>
 
-#include "core/simulation.h"
-#include "protocol/scene_json.h"
+#include "core/simulation/simulation.h"
+#include "protocol/scene/scene_json.h"
 #include "server/output/text.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"

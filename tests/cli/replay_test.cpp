@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/simulation.h"
-#include "protocol/scene_json.h"
+#include "core/simulation/simulation.h"
+#include "protocol/scene/scene_json.h"
 #include "server/replay/recording.h"
 #include "tests/cli/program.h"
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "tests/fuzz/target.h"
 
 namespace {

@@ -1,5 +1,5 @@
 #include "core/limits.h"
-#include "protocol/obj_mesh.h"
+#include "protocol/scene/obj_mesh.h"
 #include "tests/fuzz/target.h"
 
 /// An `.obj` text. A mesh that is taken has vertices in range and triangles of its own vertices.

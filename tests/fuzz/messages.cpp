@@ -8,8 +8,8 @@
 #include <mutex>
 #include <string>
 
-#include "protocol/frame_codec.h"
-#include "protocol/scene_json.h"
+#include "protocol/frame/frame_codec.h"
+#include "protocol/scene/scene_json.h"
 #include "server/access/token.h"
 #include "server/session/session_server.h"
 #include "tests/fuzz/target.h"

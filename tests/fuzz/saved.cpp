@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "core/saved/sealed_bytes.h"
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/fuzz/target.h"
 
 // The content of a saved simulation, sealed anew: a checksum finds what happens to bytes, and keeps

@@ -1,5 +1,5 @@
-#include "core/scene/validate.h"
-#include "protocol/scene_json.h"
+#include "core/validation/validate.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/fuzz/target.h"
 
 namespace {

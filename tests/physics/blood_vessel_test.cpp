@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/support/scenes.h"
 
 // The scene of the catalogue in which liquid presses on soft tissue.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/support/scenes.h"
 
 // Each scene of the catalogue, for the twenty seconds that it is made for.

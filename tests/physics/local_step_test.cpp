@@ -5,7 +5,8 @@
 #include <memory>
 
 #include "core/model/compile.h"
-#include "core/step/local_step.h"
+#include "core/stepping/local_step.h"
+#include "core/stepping/step_plan.h"
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/same_bits.h"
 

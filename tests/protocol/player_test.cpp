@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 
 namespace vat::script::player_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "server/script/client.h"
 #include "tests/server/message_record.h"
 #include "tests/support/patience.h"
@@ -77,9 +77,9 @@ class WaitingClient {
   }
   /// Of the first messages alone: a load sends the same again and again.
   script::Transcript* next_record() {
-    return ++messages_ <= kMostRecorded ? message_record() : nullptr;
+    return ++messages_ <= kMaxRecorded ? message_record() : nullptr;
   }
-  static constexpr int kMostRecorded = 40;
+  static constexpr int kMaxRecorded = 40;
   int messages_ = 0;
   static std::string next_name() {
     static std::atomic<int> last = 0;

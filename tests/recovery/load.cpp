@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "tests/recovery/client.h"
 #include "tests/support/wait.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/storage/log_entry.h"
 #include "server/storage/session_store.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "tests/server/fake_connection.h"
 
 namespace vat::test::client_outbox_test {

@@ -63,7 +63,7 @@ Imports::Part first_part(std::size_t bytes) {
 
 TEST(Imports, AreSoManyAtMost) {
   Imports imports;
-  for (std::size_t n = 0; n < Imports::kMostFiles; ++n) {
+  for (std::size_t n = 0; n < Imports::kMaxFiles; ++n) {
     EXPECT_TRUE(std::holds_alternative<Imports::Progress>(imports.add(1, first_part(3), kStart)));
   }
   const auto refused = imports.add(1, first_part(3), kStart);

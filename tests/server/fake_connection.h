@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "protocol/frame_codec.h"
-#include "protocol/json_reader.h"
+#include "protocol/frame/frame_codec.h"
+#include "protocol/json/json_reader.h"
 #include "server/net/transport.h"
 #include "server/script/transcript.h"
 #include "tests/support/patience.h"

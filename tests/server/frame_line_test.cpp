@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "server/session/frame_delivery.h"
 
 namespace vat::test::frame_line_test {

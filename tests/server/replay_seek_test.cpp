@@ -24,7 +24,7 @@ constexpr std::uint64_t kTicks = 300;
 constexpr double kTickWork = 0.1;  // [s] that each is said to take
 constexpr std::chrono::seconds kWanted{1};
 // So much work between two, and the tick that it comes after.
-constexpr auto kMostTicks = static_cast<std::uint64_t>(1 / kTickWork) + 1;
+constexpr auto kMaxTicks = static_cast<std::uint64_t>(1 / kTickWork) + 1;
 
 StorageLimits limits_with(std::size_t checkpoint_bytes) {
   StorageLimits limits;
@@ -101,7 +101,7 @@ TEST(ReplaySeeks, RunNoMoreTicksThanLieBetweenTwoCheckpoints) {
   ASSERT_EQ(recording.end, kTicks);
   ReplayPlayer player(recording, session.environment());
   SessionCore core("replay", {"n"}, player.begin(), session.environment());
-  EXPECT_LE(most_ticks(recording, player, core), kMostTicks);
+  EXPECT_LE(most_ticks(recording, player, core), kMaxTicks);
 }
 
 TEST(ShortenedRecording, HasItsHashesWhereTheSessionWasThen) {
@@ -144,8 +144,8 @@ TEST(ReplaySeeks, RunNoMoreThanTwoGapsWhereHalfOfThemWereThinned) {
   ReplayPlayer player(recording, session.environment());
   SessionCore core("replay", {"n"}, player.begin(), session.environment());
   const std::uint64_t most = most_ticks(recording, player, core);
-  EXPECT_GT(most, kMostTicks);
-  EXPECT_LE(most, 2 * kMostTicks);
+  EXPECT_GT(most, kMaxTicks);
+  EXPECT_LE(most, 2 * kMaxTicks);
 }
 
 TEST(ReplaySeeks, RunNoneWhereMomentsWereFilledIn) {

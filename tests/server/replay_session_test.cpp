@@ -29,7 +29,7 @@ std::string to_base64(const std::string& bytes) {
   return text;
 }
 
-constexpr std::size_t kMostParticles = 5000;
+constexpr std::size_t kMaxParticlesOfSession = 5000;
 
 /// A kept session `s1` that somebody called Ann has done something in, and a client that watches.
 class ReplaySession : public testing::Test {
@@ -120,7 +120,7 @@ class ReplaySession : public testing::Test {
  private:
   ServerSettings settings() const {
     ServerLimits limits = unhurried_limits();
-    limits.max_particles = kMostParticles;
+    limits.max_particles = kMaxParticlesOfSession;
     return test_settings(limits, folder_.file("data"));
   }
 
@@ -379,7 +379,7 @@ TEST_F(ReplaySession, IsNotHarmedByWhatAnybodyMayHaveWritten) {
 TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
   live();
   ServerLimits limits;
-  limits.max_particles = kMostParticles;
+  limits.max_particles = kMaxParticlesOfSession;
   const std::size_t most = most_state_bytes(limits);
   ASSERT_LT(most, std::size_t{1} << 30);
   const auto reason = [&](const Recording& recording) -> std::string {

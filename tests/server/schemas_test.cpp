@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "server/session/error_table.h"
 #include "server/session/method_rules.h"
 #include "server/session/rpc_message.h"

@@ -13,8 +13,8 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-ServerMetrics::Present make_present() {
-  ServerMetrics::Present present;
+ServerMetrics::Gauges make_present() {
+  ServerMetrics::Gauges present;
   present.version = "1.2.3";
   present.instructions = InstructionSet::avx2;
   present.threads = 4;

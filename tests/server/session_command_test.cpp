@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/session/pointer_commands.h"
 #include "tests/server/session_fixture.h"
 
@@ -262,7 +262,7 @@ const MethodRules* rules_of(std::string_view method) {
 class PointerCommandsTest : public testing::Test {
  protected:
   void add(ParticipantNumber participant, std::string_view method, const Json& params) {
-    pointers.add(participant, {rules_of(method), params, {}}, Caller(outbox, {}));
+    pointers.add(participant, {rules_of(method), params, {}}, PendingReply(outbox, {}));
   }
   /// "PARTICIPANT PARAMS CALLERS" of each that has waited.
   std::vector<std::string> take() {

@@ -1,7 +1,7 @@
 // What an editor does to a session: bodies put elsewhere, materials, the vat moved by hand. And
 // what it is shown of springs, contacts and energies.
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/server/host.h"
 
 namespace vat::test::session_edit_test {

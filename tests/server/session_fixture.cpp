@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/session/describe.h"
 #include "tests/server/message_record.h"
 #include "tests/support/temporary_folder.h"
@@ -90,8 +90,8 @@ TestServer::TestServer(const Catalogue& catalogue, ServerSettings settings, Manu
     : SessionServer(catalogue, std::move(settings), clock), clock_(&clock) {}
 
 void TestServer::advance_until(const std::function<bool()>& condition) {
-  constexpr auto kMostTime = std::chrono::minutes(1);
-  const auto end = clock_->now() + kMostTime;
+  constexpr auto kMaxTime = std::chrono::minutes(1);
+  const auto end = clock_->now() + kMaxTime;
   for (flush(); !condition(); flush()) {
     if (clock_->now() > end) throw std::runtime_error("an expected event did not come");
     clock_->advance_to_next();

@@ -6,7 +6,7 @@
 #include <boost/asio/thread_pool.hpp>
 #include <future>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/session/frame_feed.h"
 #include "server/session/session_core.h"
 #include "tests/server/fake_connection.h"

@@ -1,7 +1,7 @@
 // Limits of what clients may ask for together, and how often, at and beyond.
 
 #include "core/limits.h"
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 #include "server/http/downloads.h"
 #include "tests/server/session_fixture.h"
 

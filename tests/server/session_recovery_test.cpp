@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/storage/database.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"

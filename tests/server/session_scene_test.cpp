@@ -1,6 +1,6 @@
 // scene.get: scenes that clients read, change and load.
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/server/session_fixture.h"
 
 namespace vat::test::session_scene_test {

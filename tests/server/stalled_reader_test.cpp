@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "server/heap.h"
 #include "server/limits.h"
 #include "server/session/frame_delivery.h"

@@ -97,8 +97,8 @@ TEST_F(StorageCheckpoints, HaveHashesThatEndWhereTheSessionGoesOn) {
   store.drop_hashes(7, 4);
   EXPECT_EQ(hash_positions(store), (std::vector<std::uint64_t>{1, 2, 3, 4}));
   EXPECT_EQ(store.hash_count(7), 4U);
-  store.write_hashes(7, std::vector<TickHash>{{CheckpointStore::kMostHashes + 4,
-                                               3 * (CheckpointStore::kMostHashes + 4)}});
+  store.write_hashes(7, std::vector<TickHash>{{CheckpointStore::kMaxHashes + 4,
+                                               3 * (CheckpointStore::kMaxHashes + 4)}});
   EXPECT_EQ(hash_positions(store).front(), 4U);  // the rows before end too far back
   store.keep_only({8});
   EXPECT_EQ(store.hash_count(7), 0U);
@@ -353,8 +353,8 @@ TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
 TEST(CheckpointPace, SomeComeWhateverTheyCost) {
   const Course course =
       follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(5), Seconds(100));
-  EXPECT_LE(course.longest, CheckpointPace::kMostWork + Seconds(0.005));
-  EXPECT_GT(course.longest, CheckpointPace::kMostWork - Seconds(0.005));
+  EXPECT_LE(course.longest, CheckpointPace::kMaxWork + Seconds(0.005));
+  EXPECT_GT(course.longest, CheckpointPace::kMaxWork - Seconds(0.005));
 }
 
 class BoundedLog : public testing::Test {

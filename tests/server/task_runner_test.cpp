@@ -176,13 +176,13 @@ std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::s
 TEST(TaskRunner, GuestsTakeThePlacesOfHelpers) {
   ThreadPoolRunner runner(3);
   EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U);
-  const ThreadPoolRunner::Guest caller(runner);
+  const ThreadPoolRunner::HelperReservation caller(runner);
   EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U) << "the first guest is the caller";
   {
-    const ThreadPoolRunner::Guest second(runner);
-    const ThreadPoolRunner::Guest third(runner);
+    const ThreadPoolRunner::HelperReservation second(runner);
+    const ThreadPoolRunner::HelperReservation third(runner);
     EXPECT_EQ(threads_of_a_long_run(runner, 1), std::set{std::this_thread::get_id()});
-    const ThreadPoolRunner::Guest fourth(runner);
+    const ThreadPoolRunner::HelperReservation fourth(runner);
     EXPECT_EQ(threads_of_a_long_run(runner, 1), std::set{std::this_thread::get_id()});
   }
   EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U);
@@ -193,7 +193,7 @@ TEST(TaskRunner, HelpersLeaveForGuests) {
   constexpr std::size_t kThreads = 4;
   ThreadPoolRunner runner(kThreads);
   const auto caller = std::this_thread::get_id();
-  std::vector<std::unique_ptr<ThreadPoolRunner::Guest>> guests;
+  std::vector<std::unique_ptr<ThreadPoolRunner::HelperReservation>> guests;
   Threads threads(2);
   std::atomic<bool> guests_are_there = false;
   std::atomic<std::size_t> helped_later = 0;
@@ -206,7 +206,7 @@ TEST(TaskRunner, HelpersLeaveForGuests) {
     } else if (guests.empty()) {
       EXPECT_TRUE(threads.arrive()) << "a helper has come";
       while (guests.size() < kThreads) {
-        guests.push_back(std::make_unique<ThreadPoolRunner::Guest>(runner));
+        guests.push_back(std::make_unique<ThreadPoolRunner::HelperReservation>(runner));
       }
       guests_are_there = true;
     }

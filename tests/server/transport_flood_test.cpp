@@ -19,10 +19,10 @@ using std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 /// Beyond what was used before [bytes]. A sanitizer's shadow of memory is many times the memory.
-constexpr double kMostMemory = 48e6 * kSlowdown;
+constexpr double kMaxMemory = 48e6 * kSlowdown;
 /// Of a message to the server and back. A server that waits for its attackers takes 10 s, the time
 /// limit of a handshake.
-constexpr double kMostDelay = 8;  // [s]
+constexpr double kMaxDelay = 8;  // [s]
 
 class TransportFloodTest : public TransportTest {
  protected:
@@ -49,8 +49,8 @@ class TransportFloodTest : public TransportTest {
     attack();
     attacked = true;
     other.join();
-    EXPECT_LT(most - before, kMostMemory);
-    EXPECT_LT(std::ranges::max(delays), kMostDelay);
+    EXPECT_LT(most - before, kMaxMemory);
+    EXPECT_LT(std::ranges::max(delays), kMaxDelay);
   }
   /// Writes until the peer ends it; what was written.
   static std::size_t write_until_closed(RawClient& client, const std::string& bytes,

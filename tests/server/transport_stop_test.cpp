@@ -158,9 +158,9 @@ std::optional<int> option(int file, int level, int name) {
 
 /// The server's sockets: those that listen, or those of its connections.
 std::vector<int> sockets_of(std::uint16_t port, bool listening) {
-  constexpr int kMostFiles = 4096;
+  constexpr int kMaxFiles = 4096;
   std::vector<int> files;
-  for (int file = 0; file < kMostFiles; ++file) {
+  for (int file = 0; file < kMaxFiles; ++file) {
     if (local_port(file) != port) continue;
     if (option(file, SOL_SOCKET, SO_ACCEPTCONN) == (listening ? 1 : 0)) files.push_back(file);
   }

@@ -8,7 +8,7 @@ namespace vat::stability {
 namespace {
 
 /// An attempt in one, two, four and eight parts is all that the guard may spend on a step.
-constexpr std::uint64_t kMostAttempts = 1 + 2 + 4 + 8;
+constexpr std::uint64_t kMaxAttempts = 1 + 2 + 4 + 8;
 
 std::size_t count_non_finite(const Simulation& simulation) {
   std::size_t count = 0;
@@ -56,7 +56,7 @@ bool take_tick(const AdversarialCase& adversarial, Simulation& simulation, Outco
   outcome.attempts += report.steps;
   outcome.undone += report.undone_steps;
   outcome.wall_stops += report.wall_stops;
-  if (report.steps > kMostAttempts * steps) outcome.fault = "too many attempts";
+  if (report.steps > kMaxAttempts * steps) outcome.fault = "too many attempts";
   if (!report.events.empty() && outcome.message.empty()) {
     outcome.message = describe(report.events.front());
   }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 
 /// Scenes that a simulation has every reason to fail on, and what must not happen to any of them.
 namespace vat::stability {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/limits.h"
-#include "core/scene/step_limits.h"
+#include "core/numerics/step_limits.h"
 
 namespace vat::stability {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/scene/step_limits.h"
+#include "core/numerics/step_limits.h"
 #include "tests/stability/builders.h"
 #include "tests/stability/step_map.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
 namespace vat::stability {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <exception>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/stability/builders.h"
 #include "tests/stability/ledger.h"
 #include "tests/support/thread_runner.h"

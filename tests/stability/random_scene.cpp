@@ -5,7 +5,7 @@
 #include <numbers>
 #include <span>
 
-#include "core/scene/sampling.h"
+#include "core/sampling/sampling.h"
 #include "tests/stability/builders.h"
 #include "tests/stability/random.h"
 
@@ -171,7 +171,7 @@ void add_interfaces(Random& random, Scene& scene, std::span<const SampledBody> s
 
 /// An integrator that the scene allows, and steps of at most 0.4 of their limit.
 void choose_numerics(Random& random, Scene& scene) {
-  constexpr Real kLeastStep = 2e-5;
+  constexpr Real kMinAllowedStep = 2e-5;
   const Real pick = random.between(0, 1);
   scene.numerics.integrator = pick < 0.55   ? IntegratorId::velocity_verlet
                               : pick < 0.75 ? IntegratorId::symplectic_euler
@@ -179,7 +179,7 @@ void choose_numerics(Random& random, Scene& scene) {
                               : pick < 0.93 ? IntegratorId::heun
                                             : IntegratorId::explicit_euler;
   const bool is_projected = scene.default_interface.law == InterfaceLaw::projection;
-  if (least_step_limit(scene) < kLeastStep || is_projected) {
+  if (least_step_limit(scene) < kMinAllowedStep || is_projected) {
     scene.numerics.integrator = IntegratorId::velocity_verlet;
   }
   const Real step = std::min(random.between(0.1, 0.4) * least_step_limit(scene), 1e-3);

@@ -4,8 +4,8 @@
 #include <iostream>
 #include <set>
 
-#include "core/scene/validate.h"
-#include "protocol/scene_json.h"
+#include "core/validation/validate.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/stability/builders.h"
 #include "tests/stability/properties.h"
 #include "tests/stability/random_scene.h"

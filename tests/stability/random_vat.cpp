@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/stability/builders.h"
 #include "tests/stability/random.h"
 

@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "core/scene/validate.h"
-#include "protocol/scene_json.h"
+#include "core/validation/validate.h"
+#include "protocol/scene/scene_json.h"
 
 namespace vat::stability::random_vat_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/limits.h"
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/stability/builders.h"
 
 namespace vat::stability {

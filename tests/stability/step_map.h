@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/numerics/stable_step.h"
 #include "core/scene/scene.h"
-#include "core/scene/stable_step.h"
 
 namespace vat::stability {
 

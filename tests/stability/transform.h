@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 
 /// The same scene seen differently. Bodies must be of explicit particles.
 namespace vat::stability {

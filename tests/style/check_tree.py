@@ -3,10 +3,11 @@
 import sys
 
 import document_rules
+import folder_order
 import source_rules
 from tree import read_tree
 
-RULES = source_rules.RULES + document_rules.RULES
+RULES = source_rules.RULES + folder_order.RULES + document_rules.RULES
 
 
 def main():

@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import document_rules
+import folder_order
 import source_rules
 from tree import OUR_ENTRIES, Tree, read_tree
 
@@ -68,6 +69,17 @@ class SourceRules(RuleTest):
             with self.subTest(path=path, include=include):
                 text = f"#pragma once\n#  include {include}\n"
                 self.refuses(source_rules.layering, {path: text}, f"{path}:2", include.strip('<>"'))
+
+    def test_folder_order(self):
+        rule = folder_order.folder_order
+        self.accepts(rule, {
+            "core/model/a.h": '#include "core/model/b.h"\n#include "core/stage/plan.h"\n',
+            "protocol/frame/a.cpp": '#include "core/simulation/simulation.h"\n',
+            "server/a.h": '#include "server/session/b.h"\n',
+        })
+        self.refuses(rule, {"core/stage/a.h": '#include "core/model/b.h"\n'}, "core/model/b.h")
+        self.refuses(rule, {"core/new/a.h": "\n"}, "FOLDER_ORDER does not have core/new")
+        self.refuses(rule, {"core/model/a.h": '#include "core/new/b.h"\n'}, "core/new/b.h")
 
     def test_determinism(self):
         rule = source_rules.determinism

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 
 /// Commands of users as values. Bodies are given by name; an unknown name stands for an unused id.
 namespace vat::test {

@@ -3,8 +3,11 @@
 #include <memory>
 #include <vector>
 
+#include "core/evaluation/force_model.h"
 #include "core/model/compile.h"
-#include "core/step/force_model.h"
+#include "core/state/controls.h"
+#include "core/stepping/step_plan.h"
+#include "core/stepping/workspace.h"
 
 namespace vat::test {
 

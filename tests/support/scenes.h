@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 
 /// Small scenes as values. Bodies are given particle by particle, so that no test of the core
 /// depends on the sampler.

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/forces/cohesion.h"
-#include "core/forces/weakly_compressible_pairs.h"
 #include "core/kernels/smoothing_kernel.h"
+#include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/liquid/surface/cohesion.h"
 
 // Where the constants of cohesion come from: layers of liquid as a continuum, a support radius of 1
 // and A = 2, come to rest below a free surface or a wall.

@@ -1,4 +1,4 @@
-#include "core/forces/cohesion.h"
+#include "core/liquid/surface/cohesion.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/kernels/lattice_sum.h"
-#include "core/scene/step_limits.h"
+#include "core/numerics/step_limits.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/scenes.h"

@@ -1,4 +1,4 @@
-#include "core/incompressible/complementarity.h"
+#include "core/liquid/incompressible/complementarity.h"
 
 #include <gtest/gtest.h>
 

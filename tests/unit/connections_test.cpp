@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-constexpr ConnectionWish kAll{{}, 1'000'000};
+constexpr ConnectionQuery kAll{{}, 1'000'000};
 
 BodyDescription particle(const char* name, BodyKind kind, const Vec3& position) {
   return make_body(name, kind, "stone", make_particles({position}, 1), 0.05);

@@ -1,4 +1,4 @@
-#include "core/forces/contact_list.h"
+#include "core/contact/contact_list.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/forces/liquid.h"
+#include "core/liquid/gas/liquid.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 

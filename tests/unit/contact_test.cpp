@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/forces/pair_direction.h"
+#include "core/laws/pair_direction.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 

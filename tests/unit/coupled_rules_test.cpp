@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 #include "tests/support/errors.h"
 #include "tests/support/scenes.h"
 

@@ -1,8 +1,8 @@
-#include "core/integrators/damping_solve.h"
+#include "core/damping/damping_solve.h"
 
 #include <gtest/gtest.h>
 
-#include "core/integrators/integrator.h"
+#include "core/stepping/integrator.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 #include "tests/support/thread_runner.h"

@@ -1,4 +1,4 @@
-#include "core/integrators/elongation_limit.h"
+#include "core/solid/elongation_limit.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/model/compile.h"
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"

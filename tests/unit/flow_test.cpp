@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/limits.h"
-#include "core/scene/nozzle.h"
-#include "core/scene/validate.h"
+#include "core/sampling/nozzle.h"
+#include "core/validation/validate.h"
 #include "tests/support/scenes.h"
 #include "tests/support/thread_runner.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/scene/step_limits.h"
-#include "core/scene/validate.h"
+#include "core/numerics/step_limits.h"
+#include "core/validation/validate.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/compile.h"
+#include "core/stepping/step_plan.h"
 #include "tests/support/scenes.h"
 
 // Samples of liquids are let go, and made again where they are asked for.

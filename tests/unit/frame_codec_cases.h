@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 
 /// Frames that tests encode, and where the golden files are. Web tests read the same files.
 namespace vat::frame_cases {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "tests/unit/frame_limit_cases.h"
 
 namespace vat::frame_codec_golden_test {

@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "protocol/rans.h"
-#include "protocol/residual_tables.h"
+#include "protocol/frame/rans.h"
+#include "protocol/frame/residual_tables.h"
 #include "tests/unit/allocation_counter.h"
 #include "tests/unit/frame_limit_cases.h"
 

@@ -1,10 +1,10 @@
-#include "core/forces/friction.h"
+#include "core/laws/friction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/integrators/integrator.h"
+#include "core/stepping/integrator.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"
@@ -131,14 +131,19 @@ TEST(Friction, SeesTheSlipAlongWallsThatMove) {
 }
 
 TEST(Friction, LoadsParticlesWithItsGreatestRate) {
-  EXPECT_NEAR(ForceProbe(make_pair_scene(kAcross)).work().contact_loads[0].damping,
+  EXPECT_NEAR(ForceProbe(make_pair_scene(kAcross))
+                  .work()
+                  .of<ContactForceScratch>()
+                  .contact_loads[0]
+                  .damping,
               2 * std::sqrt(kStiffness * 2 / 3), 1e-12);
   Scene scene = make_floor_scene({1, 0, 0});
-  EXPECT_NEAR(ForceProbe(scene).work().contact_loads[0].damping, std::sqrt(kStiffness), 1e-12);
+  EXPECT_NEAR(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping,
+              std::sqrt(kStiffness), 1e-12);
   scene.default_interface.damping = 30;  // above the friction's, across it
-  EXPECT_EQ(ForceProbe(scene).work().contact_loads[0].damping, 30);
+  EXPECT_EQ(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping, 30);
   scene.default_interface = {kStiffness, 2, 0};
-  EXPECT_EQ(ForceProbe(scene).work().contact_loads[0].damping, 2);
+  EXPECT_EQ(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping, 2);
 }
 
 TEST(Friction, IsKeptForTheSolveAsADragAcrossTheContact) {
@@ -149,15 +154,15 @@ TEST(Friction, IsKeptForTheSolveAsADragAcrossTheContact) {
   work.keep_dampers = true;
   const Controls controls;
   ForceModel{probe.model(), controls, work}.evaluate(probe.state().now, 0, probe.state().forces);
-  const DamperBlock& block = work.contact_dampers[0];
+  const DamperBlock& block = work.of<ContactForceScratch>().contact_dampers[0];
   ASSERT_EQ(block.rows[0].particle, 0U);
   ASSERT_EQ(block.rows[0].damper_end, 1U);
   EXPECT_EQ(block.dampers[0].other, 1U);
   EXPECT_EQ(block.dampers[0].strength, 2);
-  ASSERT_EQ(block.rows[0].rub_end, 1U);
-  EXPECT_EQ(block.rubs[0].other, 1U);
-  EXPECT_NEAR(block.rubs[0].strength, kFriction * kPush / 7, 1e-12);
-  EXPECT_LT((block.rubs[0].normal - kNormal).norm(), 1e-12);
+  ASSERT_EQ(block.rows[0].friction_end, 1U);
+  EXPECT_EQ(block.friction_dampers[0].other, 1U);
+  EXPECT_NEAR(block.friction_dampers[0].strength, kFriction * kPush / 7, 1e-12);
+  EXPECT_LT((block.friction_dampers[0].normal - kNormal).norm(), 1e-12);
 }
 
 TEST(Friction, ActsWhereTheTwoTouch) {

@@ -1,4 +1,4 @@
-#include "protocol/grid_frame.h"
+#include "protocol/frame/grid_frame.h"
 
 #include <gtest/gtest.h>
 

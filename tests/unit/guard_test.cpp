@@ -1,4 +1,4 @@
-#include "core/step/guard.h"
+#include "core/guard/guard.h"
 
 #include <gtest/gtest.h>
 

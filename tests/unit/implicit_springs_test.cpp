@@ -1,10 +1,10 @@
-#include "core/integrators/implicit_springs.h"
+#include "core/solid/implicit_springs.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/support/shaken_vat.h"
 
 namespace vat::instruction_set_test {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 
 namespace vat::json_reader_object_test {
 namespace {

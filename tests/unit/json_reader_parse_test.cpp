@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 
 namespace vat::json_reader_parse_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "core/forces/weakly_compressible_pairs.h"
 #include "core/kernels/smoothing_kernel.h"
-#include "core/scene/step_limits.h"
+#include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/numerics/step_limits.h"
 #include "tests/support/scenes.h"
 
 namespace vat::kernel_limits_test {

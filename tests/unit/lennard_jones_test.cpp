@@ -1,4 +1,4 @@
-#include "core/forces/lennard_jones.h"
+#include "core/laws/lennard_jones.h"
 
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ TEST(LennardJones, JoinsBodiesOfAllKinds) {
 TEST(LennardJones, LoadsParticlesWithTheSlopeThatTheyAreAt) {
   const auto load = [](Real distance) {
     const Scene scene = make_layer_scene(distance, BodyKind::rigid, BodyKind::rigid);
-    return ForceProbe(scene).work().contact_loads[0].stiffness;
+    return ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].stiffness;
   };
   EXPECT_NEAR(load(0.1), 2 * layer_slope(kStiffness, kWidth, kEnd, 0.1), 1e-9);
   EXPECT_NEAR(load(0.3), 2 * kStiffness, 1e-9);  // a pull's slope is less than that at rest

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/forces/weakly_compressible_pairs.h"
+#include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -43,7 +43,7 @@ TEST(GasPressure, DoesNotPullBelowRestDensity) {
   const std::vector<Vec3> points = {{0, 0, 0}, {0.8, 0, 0}};
   const ForceProbe probe(make_liquid_scene({100, 0, 2}, make_particles(points, 1)));
   EXPECT_EQ(probe.force(0, 0), Vec3::Zero());
-  EXPECT_EQ(probe.work().pressure[0], 0);
+  EXPECT_EQ(probe.work().of<LiquidScratch>().pressure[0], 0);
 }
 
 // m1 m2 (p1 + p2)/(rho1 rho2) 45/(pi h^6)(h - r)^2, and half of it as it is printed.

@@ -1,4 +1,4 @@
-#include "core/rigid/mass_properties.h"
+#include "core/sampling/mass_properties.h"
 
 #include <gtest/gtest.h>
 

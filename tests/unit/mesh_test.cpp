@@ -1,12 +1,12 @@
-#include "core/scene/mesh.h"
+#include "core/sampling/mesh.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <random>
 
-#include "core/scene/lattice.h"
-#include "core/scene/validate_parts.h"
+#include "core/sampling/lattice.h"
+#include "core/validation/validate_parts.h"
 #include "tests/unit/mesh_shapes.h"
 
 namespace vat::mesh_test {

@@ -1,8 +1,8 @@
-#include "core/forces/mirrors.h"
+#include "core/liquid/pairs/mirrors.h"
 
 #include <gtest/gtest.h>
 
-#include "core/pairs/pair_sources.h"
+#include "core/liquid/pairs/pair_sources.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -35,7 +35,7 @@ TEST(Mirrors, CompleteALatticeAtFacesEdgesAndCorners) {
   for (const int dimensions : {2, 3}) {
     for (const Real ratio : {2.0, 3.0}) {
       const ForceProbe probe(make_full_box(dimensions, ratio));
-      for (const Real density : probe.work().density) {
+      for (const Real density : probe.work().of<LiquidScratch>().density) {
         EXPECT_NEAR(density, 1000, 1e-9) << dimensions << ' ' << ratio;
       }
     }

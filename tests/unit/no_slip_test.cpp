@@ -60,7 +60,7 @@ TEST(HalfSpace, DragIsTheMomentOfTheLaplacian) {
     for (const Real h : {0.04, 1.0, 3.5}) {
       const HalfSpace space(h, dimensions);
       const ViscosityKernel kernel(h, dimensions);
-      for (const Real q : {HalfSpace::kLeastDistance, 0.2, 0.5, 0.9, 0.999}) {
+      for (const Real q : {HalfSpace::kMinDistance, 0.2, 0.5, 0.9, 0.999}) {
         const Real d = q * h;
         const Real expected =
             moment_beyond(dimensions, d, h, [&](Real r) { return kernel.laplacian(r); }) / d;
@@ -74,7 +74,7 @@ TEST(HalfSpace, DragIsTheMomentOfTheLaplacian) {
 
 // The integral goes on to the wall, 9/(4h) and 20/(3 pi h) there; only 1/d stops.
 TEST(HalfSpace, DragIsBoundedAtTheWall) {
-  const Real least = HalfSpace::kLeastDistance;
+  const Real least = HalfSpace::kMinDistance;
   EXPECT_NEAR(HalfSpace(2, 3).drag(0), 9.0 / 4 / 4 / least, 1e-12);
   EXPECT_NEAR(HalfSpace(2, 2).drag(0), 20 / (3 * std::numbers::pi) / 4 / least, 1e-12);
   EXPECT_EQ(HalfSpace(2, 3).drag(-1), HalfSpace(2, 3).drag(0));
@@ -148,7 +148,7 @@ TEST(NoSlip, MovesWithTheVat) {
 TEST(NoSlip, CostsNothingWhereItDoesNothing) {
   const auto has_stage = [](const Scene& scene) {
     const ForceProbe probe(scene);
-    return !probe.work().filled_density.empty();
+    return !probe.work().of<LiquidScratch>().filled_density.empty();
   };
   Scene scene = make_wall_scene(4, {0.5, 0.5, 0.05}, {1, 0, 0});
   EXPECT_TRUE(has_stage(scene));

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 
 // The numerics of a scene file: what may stand together, and what comes back.
 

@@ -1,4 +1,4 @@
-#include "protocol/obj_mesh.h"
+#include "protocol/scene/obj_mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/pairs/pair_clusters.h"
+#include "core/liquid/pairs/pair_clusters.h"
 
 #include <gtest/gtest.h>
 
@@ -83,7 +83,7 @@ void expect_all_pairs(const Cloud& cloud, Real reach, InstructionSet set, TaskRu
   std::vector<int> seen(targets, 0);
   clusters.for_each_chunk(nullptr, {}, [&](const PairInputs& in, auto chunk) {
     for (const TargetCluster& cluster : chunk) {
-      ASSERT_LE(cluster.size(), kMostTargets);
+      ASSERT_LE(cluster.size(), kMaxTargets);
       ASSERT_EQ(cluster.candidate_count % lane_count(set), 0U);
       std::vector<Index> candidates(
           in.candidates + cluster.first_candidate,

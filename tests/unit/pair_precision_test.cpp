@@ -1,4 +1,4 @@
-#include "core/pairs/pair_precision.h"
+#include "core/scene/pair_precision.h"
 
 #include <gtest/gtest.h>
 

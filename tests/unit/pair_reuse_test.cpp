@@ -31,20 +31,20 @@ void expect_forces_of_a_new_workspace(ForceProbe& probe, Real time) {
 
 TEST(PairReuse, FindsNothingAgainWhereNothingMoved) {
   ForceProbe probe(make_wet_vat());
-  const std::uint64_t version = probe.work().sources.version();
+  const std::uint64_t version = probe.work().of<LiquidScratch>().sources.version();
   ASSERT_GT(version, 0U);
   for (Vec3& velocity : probe.state().now.velocity) velocity += Vec3(0.1, 0, 0.2);
   expect_forces_of_a_new_workspace(probe, 0);
-  EXPECT_EQ(probe.work().sources.version(), version);
+  EXPECT_EQ(probe.work().of<LiquidScratch>().sources.version(), version);
 }
 
 TEST(PairReuse, SeesTheLeastMotionOfLiquidsSolidsAndWalls) {
   ForceProbe probe(make_wet_vat());
-  std::uint64_t version = probe.work().sources.version();
+  std::uint64_t version = probe.work().of<LiquidScratch>().sources.version();
   const auto expect_new = [&](Real time) {
     expect_forces_of_a_new_workspace(probe, time);
-    EXPECT_GT(probe.work().sources.version(), version);
-    version = probe.work().sources.version();
+    EXPECT_GT(probe.work().of<LiquidScratch>().sources.version(), version);
+    version = probe.work().of<LiquidScratch>().sources.version();
   };
   const auto nudge = [&](std::size_t body) {
     Real& x = probe.state().now.position[probe.model().bodies[body].particles.begin].x();

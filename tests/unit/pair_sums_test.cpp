@@ -1,4 +1,4 @@
-#include "core/pairs/pair_sums.h"
+#include "core/liquid/pairs/pair_sums.h"
 
 #include <gtest/gtest.h>
 

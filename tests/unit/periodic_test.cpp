@@ -141,7 +141,7 @@ TEST(Periodic, DensitiesEqualBruteForceOverImages) {
         for_each_near_image(*scene.periodic, points[i] - other, 0.2,
                             [&](const Vec3& x) { expected += 2 * kernel.value(x.squaredNorm()); });
       }
-      ASSERT_NEAR(probe.work().density[i], expected, 1e-12 * expected);
+      ASSERT_NEAR(probe.work().of<LiquidScratch>().density[i], expected, 1e-12 * expected);
     }
   }
 }

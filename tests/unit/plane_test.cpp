@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/forces/pair_direction.h"
-#include "core/rigid/mass_properties.h"
+#include "core/laws/pair_direction.h"
+#include "core/sampling/mass_properties.h"
 #include "tests/support/errors.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
@@ -62,7 +62,7 @@ TEST(PlaneModel, LiquidHasTheDensityOfAnEndlessLattice) {
         if (rest > 0) expected += 4 / std::numbers::pi * std::pow(rest, 3) / std::pow(support, 8);
       }
     }
-    for (const Real density : probe.work().density) {
+    for (const Real density : probe.work().of<LiquidScratch>().density) {
       EXPECT_NEAR(density, 1000 * expected, 1e-10);
     }
   }

@@ -1,4 +1,6 @@
-#include "core/incompressible/pressure_response.h"
+#include "core/liquid/incompressible/pressure_response.h"
+#include "core/state/controls.h"
+#include "core/stepping/workspace.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +8,8 @@
 #include <random>
 
 #include "core/model/compile.h"
-#include "core/rigid/rigid_motion.h"
+#include "core/state/rigid_motion.h"
+#include "core/stepping/step_plan.h"
 #include "tests/support/mixed_scenes.h"
 
 // What pressures and motions do in one place of a liquid with solids and walls.
@@ -63,7 +66,8 @@ class Place {
   std::size_t count() const { return model->liquid_count; }
   std::vector<Real> volumes() const {
     std::vector<Real> volumes;
-    for (const Index i : work.liquid.grid.order()) volumes.push_back(model->rest_volume[i]);
+    for (const Index i : work.of<LiquidScratch>().liquid.grid.order())
+      volumes.push_back(model->rest_volume[i]);
     return volumes;
   }
   /// -V D M^-1 F(pressure)
@@ -143,8 +147,8 @@ TEST(PressureResponse, SeesHowMotionsCompress) {
   std::vector<Real> rate(place.count());
   place.response->see_velocities(Vec3::Zero());
   place.response->compress(rate);
-  const std::vector<Index> order(place.work.liquid.grid.order().begin(),
-                                 place.work.liquid.grid.order().end());
+  const std::vector<Index> order(place.work.of<LiquidScratch>().liquid.grid.order().begin(),
+                                 place.work.of<LiquidScratch>().liquid.grid.order().end());
   std::vector<Real> expected(place.count(), 0);
   for (const Real side : {-1.0, 1.0}) {
     Place moved(scene);
@@ -159,7 +163,7 @@ TEST(PressureResponse, SeesHowMotionsCompress) {
     moved.evaluate();
     for (std::size_t s = 0; s < order.size(); ++s) {
       const Real rest = moved.model->liquids[moved.model->material[order[s]]]->rest_density;
-      expected[s] += side * moved.work.density[order[s]] / rest / (2 * kWay);
+      expected[s] += side * moved.work.of<LiquidScratch>().density[order[s]] / rest / (2 * kWay);
     }
   }
   for (std::size_t s = 0; s < order.size(); ++s) {

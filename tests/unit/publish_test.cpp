@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "protocol/grid_frame.h"
+#include "protocol/frame/grid_frame.h"
 #include "tests/support/scenes.h"
 #include "tests/unit/allocation_counter.h"
 

@@ -1,4 +1,4 @@
-#include "core/forces/restitution.h"
+#include "core/laws/contact_damping.h"
 
 #include <gtest/gtest.h>
 
@@ -125,9 +125,9 @@ TEST(Restitution, IsThatOfThePointThatIsHit) {
     scene.bodies[0].position.x() = -0.1001;
     // 11 kg about its middle: 1.1 m^2 of the places, and a ball's own.
     const Real inertia = 1.1 + 11 * 0.4 * 0.05 * 0.05;
-    const Real yielding = 1.0 / 5 + 1.0 / 11 + 0.25 / inertia;
+    const Real mobility = 1.0 / 5 + 1.0 / 11 + 0.25 / inertia;
     // Stiff, so that nothing turns while they touch.
-    EXPECT_NEAR(speed_of_parting(scene, 1e8, 1 / yielding, e), e, 2 * kHalfStep) << e;
+    EXPECT_NEAR(speed_of_parting(scene, 1e8, 1 / mobility, e), e, 2 * kHalfStep) << e;
   }
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/rigid/rigid_motion.h"
+#include "core/state/rigid_motion.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 

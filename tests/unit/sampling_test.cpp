@@ -1,4 +1,4 @@
-#include "core/scene/sampling.h"
+#include "core/sampling/sampling.h"
 
 #include <gtest/gtest.h>
 

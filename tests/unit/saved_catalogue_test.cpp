@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/saved/greatest_size.h"
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/support/saved_bits.h"
 
 // Each scene of the catalogue goes on from bytes as if nothing had been, from its start and later.

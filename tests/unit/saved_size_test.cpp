@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/saved/greatest_size.h"
-#include "core/simulation.h"
-#include "protocol/scene_json.h"
+#include "core/simulation/simulation.h"
+#include "protocol/scene/scene_json.h"
 
 // What a saved simulation takes, and the bound that is told before it is read.
 

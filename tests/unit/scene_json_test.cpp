@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "core/saved/scene_fields.h"
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "tests/unit/scene_json_cases.h"
 
 namespace vat::scene_json_test {

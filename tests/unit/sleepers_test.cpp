@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/forces/vat_motion.h"
+#include "core/laws/vat_motion.h"
 #include "core/model/compile.h"
 #include "core/state/body_state.h"
+#include "core/stepping/step_plan.h"
 #include "tests/support/resting_scenes.h"
 
 // The columns of some of a model's bodies.

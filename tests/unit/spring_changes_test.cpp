@@ -1,11 +1,11 @@
-#include "core/forces/spring_changes.h"
+#include "core/solid/spring_changes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 

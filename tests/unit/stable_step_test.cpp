@@ -1,6 +1,6 @@
 // The limits against closed forms and published values; stability/StepMap has simulations.
 
-#include "core/scene/stable_step.h"
+#include "core/numerics/stable_step.h"
 
 #include <gtest/gtest.h>
 

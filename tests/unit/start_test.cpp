@@ -4,8 +4,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/scene/jitter.h"
-#include "core/scene/sampling.h"
+#include "core/sampling/jitter.h"
+#include "core/sampling/sampling.h"
 #include "tests/support/scenes.h"
 
 /// How fields, jitter and the number of dimensions change what a body starts with.

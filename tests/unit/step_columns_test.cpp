@@ -11,7 +11,9 @@
 
 #include "core/limits.h"
 #include "core/model/compile.h"
-#include "core/step/workspace.h"
+#include "core/state/controls.h"
+#include "core/stepping/step_plan.h"
+#include "core/stepping/workspace.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -111,44 +113,47 @@ void visit(Column column, Columns& columns, Visit& v) {
     case Column::force:
       return v.numbers(forces.particle);
     case Column::liquid_cells:
-      return v.structure(work.liquid, [&] { return work.liquid.x; });
+      return v.structure(work.of<LiquidScratch>().liquid,
+                         [&] { return work.of<LiquidScratch>().liquid.x; });
     case Column::solid_cells:
-      return v.structure(work.solids_in_liquid, [&] { return work.solids_in_liquid.x; });
+      return v.structure(work.of<LiquidScratch>().solids_in_liquid,
+                         [&] { return work.of<LiquidScratch>().solids_in_liquid.x; });
     case Column::pair_clusters:
       if (v.spoils()) {
-        work.sources = {};
-        work.liquid_clusters = {};
-        work.solid_clusters = {};
+        work.of<LiquidScratch>().sources = {};
+        work.of<LiquidScratch>().liquid_clusters = {};
+        work.of<LiquidScratch>().solid_clusters = {};
       }
-      return visit_sources(work.sources, true, v);
+      return visit_sources(work.of<LiquidScratch>().sources, true, v);
     case Column::pair_motion:
-      return visit_sources(work.sources, false, v);
+      return visit_sources(work.of<LiquidScratch>().sources, false, v);
     case Column::liquid_pairs:
-      return v.pair_blocks(work.liquid_pairs);
+      return v.pair_blocks(work.of<LiquidScratch>().liquid_pairs);
     case Column::density:
-      return v.numbers(work.density);
+      return v.numbers(work.of<LiquidScratch>().density);
     case Column::cell_pressure:
-      return v.numbers(work.cell_pressure);
+      return v.numbers(work.of<SolidScratch>().cell_pressure);
     case Column::filled_density:
-      return v.numbers(work.filled_density);
+      return v.numbers(work.of<LiquidScratch>().filled_density);
     case Column::pressure:
-      return v.numbers(work.pressure);
+      return v.numbers(work.of<LiquidScratch>().pressure);
     case Column::liquid_solids:
-      v.pair_blocks(work.solids_of_liquid);
-      return v.pair_blocks(work.liquid_of_solids);
+      v.pair_blocks(work.of<LiquidScratch>().solids_of_liquid);
+      return v.pair_blocks(work.of<LiquidScratch>().liquid_of_solids);
     case Column::solid_pressure:
-      return v.numbers(work.solid_pressure);
+      return v.numbers(work.of<LiquidScratch>().solid_pressure);
     case Column::transport:
       return v.numbers(forces.transport);
     case Column::surface:
-      return v.numbers(work.surface);
+      return v.numbers(work.of<SurfaceScratch>().surface);
     case Column::surface_normals:
-      return v.numbers(work.surface_normals);
+      return v.numbers(work.of<SurfaceScratch>().surface_normals);
     case Column::contact_list:
-      return v.structure(work.contacts,
-                         [&] { return listed_particles(work.contacts, now.position.size()); });
-    case Column::yielding:
-      return v.numbers(work.yieldings);
+      return v.structure(work.of<ContactForceScratch>().contacts, [&] {
+        return listed_particles(work.of<ContactForceScratch>().contacts, now.position.size());
+      });
+    case Column::mobility:
+      return v.numbers(work.of<ContactForceScratch>().mobilities);
     case Column::rigid_force:
       v.numbers(forces.rigid_force);
       return v.numbers(forces.rigid_torque);
@@ -316,10 +321,11 @@ TEST(StepColumns, OfACollapsedLiquidAreCutOffAndFailTheStep) {
   const auto model = compile(scene, {1}, {nullptr});
   Columns columns{initial_state(*model), {}};
   for (const Stage& stage : model->plan.stages) run(stage, *model, columns);
-  EXPECT_TRUE(columns.work.too_many_pairs);
+  EXPECT_TRUE(columns.work.of<LiquidScratch>().too_many_pairs);
   EXPECT_TRUE(columns.state.forces.particle[0].hasNaN());
   std::size_t pairs = 0;
-  for (const PairBlock& block : columns.work.liquid_pairs) pairs += block.slots.size();
+  for (const PairBlock& block : columns.work.of<LiquidScratch>().liquid_pairs)
+    pairs += block.slots.size();
   EXPECT_LT(static_cast<Real>(pairs), 1.3 * static_cast<Real>(max_pairs(points.size())));
 }
 

@@ -1,4 +1,4 @@
-#include "core/step/step_control.h"
+#include "core/stepping/step_control.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/limits.h"
-#include "core/scene/error_model.h"
+#include "core/numerics/error_model.h"
 #include "tests/support/scenes.h"
 
 namespace vat::step_control_test {

@@ -1,9 +1,9 @@
-#include "core/step/step_plan.h"
+#include "core/stepping/step_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/step/workspace.h"
+#include "core/stepping/workspace.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -85,11 +85,13 @@ TEST(StepPlan, HasTheStagesOfWallsAndLaws) {
   EXPECT_EQ(stages_of(in_vat({kDust})), "external_forces walls");
   Scene scene = in_vat(solids, {.stiffness = 100, .restitution = 0.5});
   EXPECT_EQ(stages_of(scene),
-            "pose_rigid_bodies external_forces find_contacts find_yieldings contacts springs walls "
+            "pose_rigid_bodies external_forces find_contacts find_contact_mobilities contacts "
+            "springs walls "
             "gather_rigid_forces");
   scene.forces.contacts = false;
   EXPECT_EQ(stages_of(scene),
-            "pose_rigid_bodies external_forces find_yieldings springs walls gather_rigid_forces");
+            "pose_rigid_bodies external_forces find_contact_mobilities springs walls "
+            "gather_rigid_forces");
   EXPECT_EQ(stages_of(in_vat(solids, {.law = InterfaceLaw::projection})),
             "pose_rigid_bodies external_forces find_contacts springs gather_rigid_forces");
   EXPECT_EQ(stages_of(in_vat({kPool, make_spring_body(), kBall}, {}, 1)),
@@ -129,8 +131,8 @@ TEST(StepPlan, TellsTheObserverOfEachStage) {
   simulation.advance(2);
   EXPECT_THAT(observer.record,
               ElementsAre("keep_state", "keep_state", "external_forces", "springs", "kick", "drift",
-                          "guard", "hold_inside", "keep_state", "external_forces", "springs",
-                          "kick", "drift", "guard", "hold_inside", "."));
+                          "guard", "enforce_walls", "keep_state", "external_forces", "springs",
+                          "kick", "drift", "guard", "enforce_walls", "."));
   observer.record.clear();
   simulation.set_observer(nullptr);
   simulation.advance(1);

@@ -1,4 +1,4 @@
-#include "core/forces/surface_tension.h"
+#include "core/liquid/surface/surface_tension.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/scene/step_limits.h"
-#include "protocol/scene_json.h"
+#include "core/numerics/step_limits.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -53,16 +53,16 @@ TEST(SurfaceTension, NormalsOfABallPointToItsCentre) {
     Scene scene = make_wet_scene(dimensions);
     scene.bodies = {make_water(ball(radius, dimensions, true), dimensions)};
     const ForceProbe probe(scene);
-    const std::span<const Index> order = probe.work().liquid.grid.order();
+    const std::span<const Index> order = probe.work().of<LiquidScratch>().liquid.grid.order();
     for (std::size_t slot = 0; slot < order.size(); ++slot) {
       const Vec3& x = probe.model().bodies[0].sample->positions[order[slot]];
-      const Vec3& normal = probe.work().surface_normals[slot];
+      const Vec3& normal = probe.work().of<SurfaceScratch>().surface_normals[slot];
       if (x.norm() < radius - scene.materials[0].liquid->support_radius) {
         EXPECT_TRUE(normal.isZero(0)) << x.transpose();
-        EXPECT_LT(probe.work().surface[slot].lack, 1e-12);
+        EXPECT_LT(probe.work().of<SurfaceScratch>().surface[slot].kernel_deficiency, 1e-12);
       } else if (x.norm() > radius - kSpacing) {
         EXPECT_LT(normal.dot(x.normalized()), -0.97) << x.transpose();  // a step of the lattice
-        EXPECT_GT(probe.work().surface[slot].lack, 0.05);
+        EXPECT_GT(probe.work().of<SurfaceScratch>().surface[slot].kernel_deficiency, 0.05);
       }
     }
   }
@@ -76,7 +76,7 @@ TEST(SurfaceTension, GradientsOfABallAddUpToItsSurface) {
     scene.bodies = {make_water(ball(radius, dimensions, true), dimensions)};
     const ForceProbe probe(scene);
     Real area = 0;
-    for (const SurfaceRecord& record : probe.work().surface) {
+    for (const SurfaceRecord& record : probe.work().of<SurfaceScratch>().surface) {
       area += 2 * record.gradient.norm() * std::pow(kSpacing, dimensions);
     }
     const Real exact =
@@ -126,7 +126,7 @@ Scene make_layer(Real contact_angle) {
 TEST(SurfaceTension, NormalsTurnAtWallsToTheContactAngle) {
   for (const Real angle : {75.0, 90.0, 120.0, 150.0}) {
     const ForceProbe probe(make_layer(angle));
-    const std::span<const Index> order = probe.work().liquid.grid.order();
+    const std::span<const Index> order = probe.work().of<LiquidScratch>().liquid.grid.order();
     const Real theta = angle * std::numbers::pi / 180;
     const Vec3 contact(-std::sin(theta), 0, -std::cos(theta));
     std::size_t count = 0;
@@ -135,7 +135,8 @@ TEST(SurfaceTension, NormalsTurnAtWallsToTheContactAngle) {
       if (x.x() < -0.6 * kSpacing || x.z() > 3 * kSpacing) continue;
       const Real share = 1 - x.z() / (3 * kSpacing);
       const Vec3 expected = (share * contact - (1 - share) * Vec3::UnitX()).normalized();
-      EXPECT_LT((probe.work().surface_normals[slot] - expected).norm(), 1e-9) << x.transpose();
+      EXPECT_LT((probe.work().of<SurfaceScratch>().surface_normals[slot] - expected).norm(), 1e-9)
+          << x.transpose();
       ++count;
     }
     EXPECT_EQ(count, 3u) << angle;
@@ -174,14 +175,14 @@ TEST(SurfaceTension, SolidsContinueTheLiquid) {
   stone.position = {0, 0, -8 * kSpacing};
   scene.bodies = {make_water(points, 2), stone};
   const ForceProbe probe(scene);
-  const std::span<const Index> order = probe.work().liquid.grid.order();
+  const std::span<const Index> order = probe.work().of<LiquidScratch>().liquid.grid.order();
   std::size_t count = 0;
   for (std::size_t slot = 0; slot < order.size(); ++slot) {
     const Vec3& x = probe.model().bodies[0].sample->positions[order[slot]];
     if (std::abs(x.x()) > 6 * kSpacing || x.z() > 0) continue;
     ++count;
-    EXPECT_TRUE(probe.work().surface_normals[slot].isZero(0)) << x.transpose();
-    EXPECT_LT(probe.work().surface[slot].lack, 1e-9);
+    EXPECT_TRUE(probe.work().of<SurfaceScratch>().surface_normals[slot].isZero(0)) << x.transpose();
+    EXPECT_LT(probe.work().of<SurfaceScratch>().surface[slot].kernel_deficiency, 1e-9);
   }
   EXPECT_EQ(count, 12u * 4u);
 }

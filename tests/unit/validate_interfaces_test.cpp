@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "core/scene/validate.h"
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
+#include "core/validation/validate.h"
 #include "tests/support/errors.h"
 #include "tests/support/scenes.h"
 

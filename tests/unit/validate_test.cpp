@@ -1,4 +1,4 @@
-#include "core/scene/validate.h"
+#include "core/validation/validate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "core/limits.h"
-#include "core/scene/validate_parts.h"
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
+#include "core/validation/validate_parts.h"
 #include "tests/support/errors.h"
 #include "tests/unit/mesh_shapes.h"
 
@@ -411,7 +411,7 @@ TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
   Scene scene = valid_scene();
   const std::vector<Vec3> far = {{0.9, 0.9, 0.9}};
   const std::vector<Real> radius = {0.01};
-  Present present;
+  CurrentScene present;
   present.bodies.assign(scene.bodies.size(), {far, radius, 0});
   scene.bodies[0].spacing = 1e-5;  // could not be sampled
   BodyDescription body = scene.bodies[2];
@@ -427,7 +427,7 @@ TEST(Validate, AddsABodyWhereTheVatIsNow) {
   Scene scene = valid_scene();
   scene.bodies.clear();
   BodyDescription body = valid_scene().bodies[2];  // 0.4 to 0.6 m of 0 to 1 m
-  Present present;
+  CurrentScene present;
   const auto codes = [&] {
     return test::errors_of(find_body_errors(scene, present, body, "/body"));
   };
@@ -444,7 +444,7 @@ TEST(Validate, ChecksAnInterfaceAlone) {
   two.bodies.push_back(scene.bodies[0]);
   const std::vector<Vec3>& points = std::get<ParticleShape>(scene.bodies[0].shape).positions;
   const std::vector<Real> radii(points.size(), 0.005);
-  Present present;
+  CurrentScene present;
   present.bodies.assign(2, {points, radii, 0});
   InterfaceDescription interface { {"m", "m"}, {1, 0}, 0.01 };
   const auto codes = [&] {

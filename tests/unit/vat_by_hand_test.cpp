@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/forces/vat_motion.h"
+#include "core/laws/vat_motion.h"
 #include "core/limits.h"
 #include "tests/support/scenes.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/model/acting_forces.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 

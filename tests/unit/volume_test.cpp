@@ -1,12 +1,12 @@
-#include "core/forces/volume.h"
+#include "core/solid/volume.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/forces/cell_volume.h"
-#include "core/scene/step_limits.h"
-#include "core/scene/validate.h"
+#include "core/laws/cell_volume.h"
+#include "core/numerics/step_limits.h"
+#include "core/validation/validate.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"

@@ -1,12 +1,12 @@
-#include "core/scene/volumes.h"
+#include "core/sampling/volumes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/scene/step_limits.h"
-#include "core/scene/validate.h"
+#include "core/numerics/step_limits.h"
+#include "core/validation/validate.h"
 #include "tests/support/scenes.h"
 
 namespace vat::volumes_test {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "core/scene/contact_limits.h"
-#include "core/scene/cost_estimate.h"
-#include "core/scene/validate.h"
+#include "core/numerics/contact_limits.h"
+#include "core/numerics/cost_estimate.h"
+#include "core/validation/validate.h"
 #include "tests/support/scenes.h"
 
 namespace vat::warnings_test {

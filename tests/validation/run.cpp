@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 
 namespace vat::validation {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 
 namespace vat::validation {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "tests/bench/accuracy/problem.h"
 
 namespace vat::bench {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "tests/bench/report/csv_file.h"
 #include "tests/bench/report/run_program.h"
 

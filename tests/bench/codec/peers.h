@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/grid_frame.h"
+#include "protocol/frame/grid_frame.h"
 
 namespace vat::bench {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "protocol/scene_json.h"
+#include "protocol/scene/scene_json.h"
 #include "server/cli/scene_argument.h"
 #include "server/task_runner.h"
 #include "tests/bench/speed/scenes.h"

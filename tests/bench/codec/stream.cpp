@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/support/byte_io.h"
-#include "protocol/frame_codec.h"
+#include "protocol/frame/frame_codec.h"
 #include "tests/bench/report/table.h"
 
 namespace vat::bench {

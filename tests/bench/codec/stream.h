@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/support/result.h"
-#include "protocol/grid_frame.h"
+#include "protocol/frame/grid_frame.h"
 
 namespace vat::bench {
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "tests/bench/report/table.h"
 
 /// The tables of core/ACCURACY.md, from the rows that the other commands write as JSON. They throw

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "core/support/byte_io.h"
-#include "protocol/frame_layout.h"
+#include "protocol/frame/frame_layout.h"
 
 namespace vat::bench {
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kDraws = 2000;
 constexpr double kOutside = 0.025;  // on either side of the interval
-constexpr std::size_t kLeastSegments = 5;
+constexpr std::size_t kMinSegments = 5;
 
 double segment_quantile(std::vector<float>& values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -40,7 +40,7 @@ QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share)
   QuantileRatio ratio;
   ratio.value = pooled_quantile(b, share) / pooled_quantile(a, share);
   ratio.low = ratio.high = std::numeric_limits<double>::quiet_NaN();
-  if (std::min(a.size(), b.size()) < kLeastSegments) return ratio;
+  if (std::min(a.size(), b.size()) < kMinSegments) return ratio;
   std::mt19937 random(1);
   std::vector<float> draws;
   for (int i = 0; i < kDraws; ++i) {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/cli/simulate_run.h"
 #include "tests/bench/speed/scenes.h"
 

@@ -60,7 +60,7 @@ Status check_counts(const std::vector<InstructionCount>& counts,
     }
     const std::uint64_t difference =
         std::max(count.instructions, expected) - std::min(count.instructions, expected);
-    if (100 * difference <= kMostChange * expected) continue;
+    if (100 * difference <= kMaxChange * expected) continue;
     const double change =
         static_cast<double>(count.instructions) / static_cast<double>(expected) - 1;
     char per_cent[32];
@@ -68,7 +68,7 @@ Status check_counts(const std::vector<InstructionCount>& counts,
     errors.push_back({"changed", count.scene,
                       std::to_string(count.instructions) + " instructions, and " +
                           std::to_string(expected) + " are stored (" + per_cent + ", " +
-                          std::to_string(kMostChange) + " % may be)" + kHowToRenew});
+                          std::to_string(kMaxChange) + " % may be)" + kHowToRenew});
   }
   return errors.empty() ? Status() : Status(errors);
 }

@@ -22,7 +22,7 @@ struct InstructionCount {
 std::string this_build();
 
 /// By how much a count may differ from the stored one [%].
-inline constexpr std::uint64_t kMostChange = 3;
+inline constexpr std::uint64_t kMaxChange = 3;
 
 /// The counts of all builds.
 struct StoredCount {
@@ -32,7 +32,7 @@ struct StoredCount {
 /// Fails where the file is no such file.
 Result<std::vector<StoredCount>> read_stored_counts(const CsvFile& file);
 
-/// An error for each count that is not stored for the build, or differs by more than kMostChange to
+/// An error for each count that is not stored for the build, or differs by more than kMaxChange to
 /// either side; it says how to renew the file.
 Status check_counts(const std::vector<InstructionCount>& counts,
                     const std::vector<StoredCount>& stored, const std::string& build);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 #include "server/script/client.h"
 #include "tests/bench/soak/tally.h"
 

@@ -65,9 +65,9 @@ std::string Rubbish::request() {
 }
 
 Json Rubbish::value(int depth) {
-  constexpr int kMostDepth = 3;
+  constexpr int kMaxDepth = 3;
   constexpr std::array kNumbers{0.0, 1.0, 2.0, -1.0, 0.5, 1e-300, 1e300, 4294967296.0};
-  switch (below(depth < kMostDepth ? 9 : 6)) {
+  switch (below(depth < kMaxDepth ? 9 : 6)) {
     case 0:
       return nullptr;
     case 1:

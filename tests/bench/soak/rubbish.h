@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "protocol/json_reader.h"
+#include "protocol/json/json_reader.h"
 
 namespace vat::bench {
 

@@ -22,7 +22,7 @@ struct Tally {
 
   void add_fault(const std::string& fault) {
     const std::lock_guard lock(mutex_);
-    if (faults_.size() < kMostFaults) faults_.push_back(fault);
+    if (faults_.size() < kMaxFaults) faults_.push_back(fault);
   }
   std::vector<std::string> faults() const {
     const std::lock_guard lock(mutex_);
@@ -39,7 +39,7 @@ struct Tally {
   }
 
  private:
-  static constexpr std::size_t kMostFaults = 20;
+  static constexpr std::size_t kMaxFaults = 20;
   mutable std::mutex mutex_;
   std::vector<std::string> faults_;
   double longest_ = 0;

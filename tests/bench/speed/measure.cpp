@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/simulation.h"
+#include "core/simulation/simulation.h"
 #include "server/cli/simulate_run.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kMostSamples = 256;  // of diagnostics, each as dear as a step
+constexpr std::uint64_t kMaxSamples = 256;  // of diagnostics, each as dear as a step
 
 Real speed_seconds_since(Clock::time_point begin) {
   return std::chrono::duration<Real>(Clock::now() - begin).count();
@@ -79,7 +79,7 @@ class FlowSamples {
 /// A repetition that is not timed, looked at from within.
 Result<FlowFigures> sample_flow(Simulation& simulation, std::uint64_t steps, bool has_liquid) {
   const Real neighbours_before = mean_neighbours(simulation);
-  const std::uint64_t stride = (steps + kMostSamples - 1) / kMostSamples;
+  const std::uint64_t stride = (steps + kMaxSamples - 1) / kMaxSamples;
   FlowSamples samples;
   for (std::uint64_t done = 0; done < steps;) {
     const std::uint64_t part = std::min(stride, steps - done);

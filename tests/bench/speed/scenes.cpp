@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/sampling.h"
-#include "core/scene/step_limits.h"
+#include "core/numerics/step_limits.h"
+#include "core/sampling/sampling.h"
 
 namespace vat::bench {
 

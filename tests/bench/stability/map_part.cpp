@@ -19,7 +19,7 @@ using stability::StepMapPoint;
 constexpr IntegratorId kIntegrators[] = {
     IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::velocity_verlet,
     IntegratorId::heun, IntegratorId::runge_kutta_4};
-constexpr Real kLeastPart = 0.95;  // of theory
+constexpr Real kMinPart = 0.95;  // of theory
 
 /// Some steps are stable and others are not.
 bool has_limit(const StepMapPoint& point) {
@@ -227,7 +227,7 @@ Result<StabilityCount> run_map_part(const Options& options) {
       points.push_back(stability::map_point(linear, integrator));
       const StepMapPoint& point = points.back();
       const bool good =
-          point.theory > 0 ? point.measured >= kLeastPart * point.theory : point.measured == 0;
+          point.theory > 0 ? point.measured >= kMinPart * point.theory : point.measured == 0;
       if (good) continue;
       ++count.faults;
       print_fault(point.body + ", " + to_string(integrator) + ", damping ratio " +

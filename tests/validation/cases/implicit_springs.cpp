@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/integrators/implicit_springs.h"
+#include "core/solid/implicit_springs.h"
 #include "tests/validation/cases.h"
 #include "tests/validation/convergence.h"
 #include "tests/validation/reference.h"

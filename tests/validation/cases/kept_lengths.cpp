@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/forces/cell_volume.h"
-#include "core/integrators/elongation_limit.h"
-#include "core/scene/sampling.h"
+#include "core/laws/cell_volume.h"
+#include "core/sampling/sampling.h"
+#include "core/solid/elongation_limit.h"
 #include "tests/validation/cases.h"
 #include "tests/validation/order.h"
 #include "tests/validation/reference.h"

@@ -1,0 +1,151 @@
+#include "core/contact/projection/projection.h"
+#include "core/contact/scratch.h"
+
+#include <algorithm>
+
+#include "core/contact/projection/contact_solve.h"
+#include "core/liquid/gas/liquid.h"
+#include "core/state/kick_drift.h"
+#include "core/state/rigid_motion.h"
+
+namespace vat {
+namespace {
+
+void pose_bodies(const Model& model, Configuration& at) {
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    pose_rigid_body(model, model.rigid_bodies[b], at.rigid[b], at);
+  }
+}
+
+VatMotion vat_at(const Model& model, Real time) {
+  return model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
+}
+
+/// The list of contacts at the configuration, with the margin of those that are nearly ones.
+void update_list(const ForceModel& f, Configuration& at, Real time) {
+  if (f.model.contact_reach <= 0) return;
+  Forces none;
+  StepContext context{f.model, f.controls, time, f.step, at, none, f.work, f.runner};
+  const Real slack = kContactMargin * f.model.contact_reach;
+  if (f.work.of<ContactForceScratch>().contacts.is_current(context, slack)) return;
+  if (f.model.liquid_count > 0) sort_liquid(context);
+  f.work.of<ContactForceScratch>().contacts.update(context, slack);
+}
+
+/// Gaps at the end of the step [m], from the poses that were predicted and what velocities have
+/// changed since.
+struct Gaps {
+  const Model& model;
+  const VatMotion& vat;
+  const Configuration& predicted;
+  const Configuration& start;
+  const std::vector<RigidMotion>& rigid;
+  const std::vector<RigidMotion>& rigid_predicted;
+  Real dt;
+
+  Vec3 position(const ContactEnd& end) const {
+    if (end.rigid == kNoParticle) {
+      return start.position[end.particle] + dt * start.velocity[end.particle];
+    }
+    const RigidMotion& now = rigid[end.rigid];
+    const RigidMotion& then = rigid_predicted[end.rigid];
+    const Vec3& place = predicted.position[end.particle];
+    const Vec3 arm = place - predicted.rigid[end.rigid].center_of_mass;
+    return place + dt * (now.velocity - then.velocity + (now.spin - then.spin).cross(arm));
+  }
+  Real operator()(const ContactConstraint& contact) const {
+    const Vec3 first = position(contact.ends[0]);
+    if (contact.wall >= 0) {
+      return wall_distance(*model.scene.vat, vat, contact.wall, first) - contact.threshold;
+    }
+    const Vec3 x = first - position(contact.ends[1]);
+    return (model.periodic.any() ? model.periodic.nearest(x) : x).norm() - contact.threshold;
+  }
+};
+
+}  // namespace
+
+void ContactProjection::predict(const ForceModel& f, Configuration& now, Real dt) {
+  now = start_;
+  vat::drift(f.model, f.runner, now, dt);
+  pose_bodies(f.model, now);
+  predicted_ = rigid_;
+}
+
+void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time, Real dt) {
+  // Beyond the first for what turns: it is predicted as if its turn were small.
+  constexpr int kMaxRounds = 4;
+  constexpr Real kTolerance = 1e-6;  // of a threshold
+  const Model& model = f.model;
+  start_ = now;
+  pose_bodies(model, start_);
+  predict(f, now, dt);
+  const VatMotion before = vat_at(model, time);
+  VatMotion vat = vat_at(model, time + dt);
+  update_list(f, now, time + dt);
+  f.work.of<ContactForceScratch>().too_many_contacts = !search_.find(f, now, vat, constraints_);
+  if (constraints_.empty()) return;
+
+  VatMotion moving = before;
+  moving.velocity = (vat.offset - before.offset) / dt;  // so that what sticks goes as far
+  ContactSolve solve{f, moving, start_, rigid_, dt};
+  solve.set_geometry(now, constraints_);
+  predicted_ = rigid_;
+  for (ContactConstraint& contact : constraints_) {
+    contact.approach = solve.slip(contact).dot(contact.normal);
+  }
+  recall(start_.contacts, constraints_);
+  for (ContactConstraint& contact : constraints_) {
+    if (contact.last.is_steady) solve.start_from(contact, dt * contact.last.drift);
+  }
+  const Gaps gap{model, vat, now, start_, rigid_, predicted_, dt};
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const bool is_solved = solve.sweep(constraints_, [&](ContactConstraint& contact) {
+      const Real wanted = contact.push - gap(contact) / (dt * contact.mobility);
+      const Real change = solve.push(contact, std::max(Real{0}, wanted) - contact.push);
+      return std::max(change, solve.apply_friction(contact));
+    });
+    predict(f, now, dt);
+    if (!is_solved) break;
+    const bool is_met = std::ranges::all_of(constraints_, [&](const ContactConstraint& contact) {
+      return gap(contact) >= -kTolerance * contact.threshold;
+    });
+    if (is_met) break;
+  }
+  for (ContactConstraint& contact : constraints_) contact.drift = contact.impulse();
+}
+
+void ContactProjection::finish(const ForceModel& f, Configuration& now, Real time, Real dt) {
+  constexpr Real kTouching = 1e-3;  // of a threshold
+  now.contacts.clear();
+  if (constraints_.empty()) return;
+  const Model& model = f.model;
+  const VatMotion vat = vat_at(model, time + dt);
+  pose_bodies(model, now);
+  rigid_.resize(model.rigid_bodies.size());
+  const Gaps gap{model, vat, now, now, rigid_, rigid_, 0};
+  std::erase_if(constraints_, [&](const ContactConstraint& contact) {
+    return contact.push == 0 && gap(contact) > kTouching * contact.threshold;
+  });
+  ContactSolve solve{f, vat, now, rigid_, dt};
+  solve.set_geometry(now, constraints_);
+
+  // What gravity alone brings about in two steps is rest.
+  const Real slow = model.scene.forces.gravity ? 2 * dt * model.scene.gravity.norm() : 0;
+  for (ContactConstraint& contact : constraints_) {
+    contact.friction_impulse -= contact.friction_impulse.dot(contact.normal) * contact.normal;
+    contact.drift = contact.impulse();
+    if (contact.last.is_steady) solve.start_from(contact, dt * contact.last.finish);
+    const bool bounces = -contact.approach > slow;
+    contact.parting = bounces ? -contact.restitution * contact.approach : 0;
+  }
+  solve.sweep(constraints_, [&](ContactConstraint& contact) {
+    const Real speed = solve.slip(contact).dot(contact.normal);
+    const Real wanted = contact.push + (contact.parting - speed) / contact.mobility;
+    const Real change = solve.push(contact, std::max(Real{0}, wanted) - contact.push);
+    return std::max(change, solve.apply_friction(contact));
+  });
+  record(constraints_, dt, now.contacts);
+}
+
+}  // namespace vat

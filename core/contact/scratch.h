@@ -1,0 +1,76 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/contact_list.h"
+#include "core/numerics/stable_step.h"
+#include "core/stage/scratch.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// The constants of the contacts that act on a particle, one whose other end moves too twice.
+struct ContactLoad {
+  Real stiffness = 0;  ///< [N/m]
+  Real damping = 0;    ///< [N s/m]
+};
+
+/// What dampers see of two particles, or of one and a wall: f_i = -strength ((w_i - w_j).n) n.
+struct Damper {
+  Index other;     ///< kNoParticle: a wall
+  Real strength;   ///< [N s/m]
+  Vec3 direction;  ///< n
+};
+
+/// The same of friction, across the normal n at the point of contact:
+/// f_i = -strength (1 - n n^T) (u_i - u_j) with u = w + omega x arm.
+struct FrictionDamper {
+  Index other;     ///< kNoParticle: a wall
+  Real strength;   ///< [N s/m]
+  Vec3 normal;     ///< n
+  Vec3 arm;        ///< from the particle's centre to the point [m]
+  Vec3 other_arm;  ///< and from the other's
+};
+
+/// Dampers of those particles of one block that have any: of each, those after the ones before.
+struct DamperBlock {
+  struct Row {
+    Index particle;
+    Index damper_end;
+    Index friction_end;
+  };
+  std::vector<Row> rows;
+  std::vector<Damper> dampers;
+  std::vector<FrictionDamper> friction_dampers;
+
+  void clear() {
+    rows.clear();
+    dampers.clear();
+    friction_dampers.clear();
+  }
+  /// What was added since the last call is of this particle.
+  void close(Index particle) {
+    const std::size_t dampers_before = rows.empty() ? 0 : rows.back().damper_end;
+    const std::size_t friction_dampers_before = rows.empty() ? 0 : rows.back().friction_end;
+    if (dampers.size() == dampers_before && friction_dampers.size() == friction_dampers_before)
+      return;
+    rows.push_back({particle, static_cast<Index>(dampers.size()),
+                    static_cast<Index>(friction_dampers.size())});
+  }
+};
+
+/// Buffers of contacts and walls.
+struct ContactForceScratch {
+  static constexpr Method kMethod = Method::contact;
+
+  bool too_many_contacts = false;  ///< by projection, above kMaxProjections: none solved
+  ContactList contacts;
+  std::vector<Vec3> spins;                   ///< by rigid body, where there is friction [rad/s]
+  std::vector<ContactLoad> contact_loads;    ///< by particle; empty where nothing touches
+  std::vector<Oscillation> load_bounds;      ///< by block of particles
+  std::vector<Vec3> mobilities;              ///< see restitution.h; by particle [1/kg]
+  std::vector<DamperBlock> contact_dampers;  ///< where dampers are kept, as the next
+  std::vector<DamperBlock> wall_dampers;
+};
+
+}  // namespace vat

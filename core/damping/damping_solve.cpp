@@ -1,0 +1,293 @@
+#include "core/damping/damping_solve.h"
+#include "core/contact/scratch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/model.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kTolerance = 1e-2;  // of the change of velocities, in the norm of M
+constexpr int kMaxDampingPasses = 200;
+
+/// The solve's constants.
+struct Equation {
+  const ForceModel& force_model;
+  const Configuration& at;
+  Real dt;
+  DampingScratch& scratch;
+
+  const Model& model() const { return force_model.model; }
+};
+
+void resize(const Model& model, Motion& motion) {
+  motion.particle.resize(model.particle_count);
+  motion.linear.resize(model.rigid_bodies.size());
+  motion.angular.resize(model.rigid_bodies.size());
+}
+
+/// The sums of f(i) over free particles, each over blocks in their order.
+template <class Sums, class F>
+Sums sum_over_particles(const Equation& eq, std::vector<Sums>& partial, F&& f) {
+  const Index count = eq.model().free_count;
+  partial.assign(block_count(count), Sums{});
+  for_blocks(eq.force_model.runner, count, [&](std::size_t begin, std::size_t end) {
+    Sums sum{};
+    for (std::size_t i = begin; i < end; ++i) f(i, sum);
+    partial[begin / kBlockSize] = sum;
+  });
+  Sums total{};
+  for (const Sums& sum : partial) total += sum;
+  return total;
+}
+
+void find_inertias(const Equation& eq) {
+  const Model& model = eq.model();
+  std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  bodies.resize(model.rigid_bodies.size());
+  for (std::size_t r = 0; r < bodies.size(); ++r) {
+    const RigidModel& rigid = model.rigid_bodies[r];
+    const Mat3 turn = eq.at.rigid[r].orientation.toRotationMatrix();
+    const bool is_held = rigid.is_held(eq.force_model.step);
+    bodies[r] = {
+        1 / rigid.inverse_mass, is_held ? 0 : rigid.inverse_mass,
+        turn * rigid.inertia * turn.transpose(),
+        is_held ? Mat3(Mat3::Zero()) : Mat3(turn * rigid.inverse_inertia * turn.transpose())};
+  }
+}
+
+/// force = D w; writes the rigid particles' entries of w.
+void apply_damping(const Equation& eq, Motion& w, Motion& force) {
+  const Model& model = eq.model();
+  std::vector<Vec3>& friction_torque = eq.scratch.friction_torque;
+  const auto for_rigid_particles = [&](auto&& f) {
+    for (const Index e : eq.scratch.matrix.rigid_particles()) {
+      const Index r = model.bodies[model.body[e]].rigid;
+      f(r, e, Vec3(eq.at.position[e] - eq.at.rigid[r].center_of_mass));
+    }
+  };
+  for_rigid_particles([&](Index r, Index e, const Vec3& arm) {
+    w.particle[e] = w.linear[r] + w.angular[r].cross(arm);
+    if (model.has_friction) friction_torque[e].setZero();
+  });
+  eq.scratch.matrix.multiply(eq.force_model, w.particle, w.angular, force.particle,
+                             friction_torque);
+  std::ranges::fill(force.linear, Vec3::Zero());
+  std::ranges::fill(force.angular, Vec3::Zero());
+  for_rigid_particles([&](Index r, Index e, const Vec3& arm) {
+    force.linear[r] += force.particle[e];
+    force.angular[r] += arm.cross(force.particle[e]);
+    if (model.has_friction) force.angular[r] += friction_torque[e];
+  });
+}
+
+/// r = dt f + M v with v the velocities given by particle, p = M^-1 r, w = 0, D w = 0; returns
+/// <r, M^-1 r>.
+template <class F>
+Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
+  const Model& model = eq.model();
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  Motion& w = eq.scratch.change;
+  Motion& force = eq.scratch.force;
+  Motion& r = eq.scratch.residual;
+  Motion& p = eq.scratch.direction;
+  Real error = sum_over_particles(eq, eq.scratch.partial_sums, [&](std::size_t i, Real& sum) {
+    r.particle[i] = eq.dt * forces.particle[i] + model.mass[i] * given_velocity(i);
+    p.particle[i] = model.inverse_mass[i] * r.particle[i];
+    w.particle[i].setZero();
+    force.particle[i].setZero();
+    sum += r.particle[i].dot(p.particle[i]);
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    r.linear[b] = eq.dt * forces.rigid_force[b];
+    r.angular[b] = eq.dt * forces.rigid_torque[b];
+    p.linear[b] = bodies[b].inverse_mass * r.linear[b];
+    p.angular[b] = bodies[b].inverse_inertia * r.angular[b];
+    for (std::vector<Vec3>* zero : {&w.linear, &w.angular, &force.linear, &force.angular}) {
+      (*zero)[b].setZero();
+    }
+    error += r.linear[b].dot(p.linear[b]) + r.angular[b].dot(p.angular[b]);
+  }
+  return error;
+}
+
+/// <p, (M - dt D) p> with q = D p.
+Real curvature_along(const Equation& eq) {
+  const Model& model = eq.model();
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  const Motion& p = eq.scratch.direction;
+  const Motion& q = eq.scratch.product;
+  Real sum = sum_over_particles(eq, eq.scratch.partial_sums, [&](std::size_t i, Real& part) {
+    part += p.particle[i].dot(model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    sum += p.linear[b].dot(bodies[b].mass * p.linear[b] - eq.dt * q.linear[b]);
+    sum += p.angular[b].dot(bodies[b].inertia * p.angular[b] - eq.dt * q.angular[b]);
+  }
+  return sum;
+}
+
+/// w += length p, and what follows from it for D w and r.
+DampingSums advance_along(const Equation& eq, Real length) {
+  const Model& model = eq.model();
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  Motion& w = eq.scratch.change;
+  Motion& force = eq.scratch.force;
+  Motion& r = eq.scratch.residual;
+  const Motion& p = eq.scratch.direction;
+  const Motion& q = eq.scratch.product;
+  DampingSums total = sum_over_particles(eq, eq.scratch.sums, [&](std::size_t i, DampingSums& sum) {
+    w.particle[i] += length * p.particle[i];
+    force.particle[i] += length * q.particle[i];
+    r.particle[i] -= length * (model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
+    sum.error += model.inverse_mass[i] * r.particle[i].squaredNorm();
+    sum.size += model.mass[i] * w.particle[i].squaredNorm();
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const DampedBody& body = bodies[b];
+    w.linear[b] += length * p.linear[b];
+    w.angular[b] += length * p.angular[b];
+    force.linear[b] += length * q.linear[b];
+    force.angular[b] += length * q.angular[b];
+    r.linear[b] -= length * (body.mass * p.linear[b] - eq.dt * q.linear[b]);
+    r.angular[b] -= length * (body.inertia * p.angular[b] - eq.dt * q.angular[b]);
+    total.error += body.inverse_mass * r.linear[b].squaredNorm() +
+                   r.angular[b].dot(body.inverse_inertia * r.angular[b]);
+    total.size +=
+        body.mass * w.linear[b].squaredNorm() + w.angular[b].dot(body.inertia * w.angular[b]);
+  }
+  return total;
+}
+
+/// p = M^-1 r + share p.
+void turn_direction(const Equation& eq, Real share) {
+  const Model& model = eq.model();
+  const std::vector<DampedBody>& bodies = eq.scratch.bodies;
+  const Motion& r = eq.scratch.residual;
+  Motion& p = eq.scratch.direction;
+  for_blocks(eq.force_model.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      p.particle[i] = model.inverse_mass[i] * r.particle[i] + share * p.particle[i];
+    }
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    p.linear[b] = bodies[b].inverse_mass * r.linear[b] + share * p.linear[b];
+    p.angular[b] = bodies[b].inverse_inertia * r.angular[b] + share * p.angular[b];
+  }
+}
+
+/// Conjugate gradients from w = 0, preconditioned with M.
+void iterate(const Equation& eq, Real error) {
+  Real size = 0;
+  for (int iteration = 0; iteration < kMaxDampingPasses; ++iteration) {
+    if (!(error > kTolerance * kTolerance * size)) return;
+    apply_damping(eq, eq.scratch.direction, eq.scratch.product);
+    const Real curvature = curvature_along(eq);
+    if (!(curvature > 0)) return;  // too small for numbers
+    const DampingSums advance = advance_along(eq, error / curvature);
+    turn_direction(eq, advance.error / error);
+    error = advance.error;
+    size = advance.size;
+  }
+}
+
+Oscillation greater(const Oscillation& a, const Oscillation& b) {
+  return {std::max(a.omega2, b.omega2), std::max(a.rate, b.rate)};
+}
+
+/// Of bodies with particles that move on their own, by their own forces.
+Oscillation bound_bodies(const Model& model) {
+  Oscillation bound;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    if (body.kind == BodyKind::rigid) continue;
+    const auto mobility =
+        std::span(model.inverse_mass).subspan(body.particles.begin, body.particles.size());
+    if (std::ranges::any_of(mobility, [](Real each) { return each > 0; })) {
+      bound = greater(bound, model.damping.own[b]);
+    }
+  }
+  return bound;
+}
+
+}  // namespace
+
+Oscillation find_bound(const ForceModel& f, const Configuration& at) {
+  const Model& model = f.model;
+  const std::vector<ContactLoad>& loads = f.work.of<ContactForceScratch>().contact_loads;
+  Oscillation bound = bound_bodies(model);
+  if (loads.empty()) return bound;
+  const auto take = [&](const Oscillation& o) { bound = greater(bound, o); };
+  std::vector<Oscillation>& by_block = f.work.of<ContactForceScratch>().load_bounds;
+  by_block.resize(block_count(model.free_count));
+  for_blocks(f.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    Oscillation& of_block = by_block[begin / kBlockSize];
+    of_block = {};
+    for (std::size_t i = begin; i < end; ++i) {
+      if (loads[i].stiffness == 0 && loads[i].damping == 0) continue;
+      const Real mobility = model.inverse_mass[i];
+      if (mobility == 0) continue;
+      of_block = greater(
+          of_block, model.damping.own[model.body[i]] +
+                        Oscillation{mobility * loads[i].stiffness, mobility * loads[i].damping});
+    }
+  });
+  std::ranges::for_each(by_block, take);
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
+    const RigidModel& rigid = model.rigid_bodies[r];
+    Oscillation sum;
+    for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
+      if (loads[e].stiffness == 0 && loads[e].damping == 0) continue;
+      Real arm2 = (at.position[e] - at.rigid[r].center_of_mass).squaredNorm();
+      if (model.has_friction) arm2 = std::pow(std::sqrt(arm2) + model.radius[e], 2);
+      const Real mobility = rigid.inverse_mass + arm2 * rigid.inverse_moments.maxCoeff();
+      sum = sum + Oscillation{mobility * loads[e].stiffness, mobility * loads[e].damping};
+    }
+    take(sum);
+  }
+  return bound;
+}
+
+bool must_solve_damping(const Oscillation& bound, Real dt) {
+  return bound.rate > 0 && bound.omega2 * dt * dt + 4 * bound.rate * dt > 4;
+}
+
+bool must_solve_viscosity(const Model& model, Real dt) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (model.bodies[b].kind == BodyKind::liquid && must_solve_damping(model.damping.own[b], dt)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool must_solve_own_damping(const Model& model, Real dt) {
+  return std::ranges::any_of(model.damping.own,
+                             [&](const Oscillation& own) { return must_solve_damping(own, dt); });
+}
+
+void solve_damping(const ForceModel& f, const Configuration& from, const Configuration& at,
+                   Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
+  const Equation eq{f, at, dt, scratch};
+  scratch.matrix.collect(f, at, time, viscosity);
+  for (Motion* motion :
+       {&scratch.change, &scratch.force, &scratch.residual, &scratch.direction, &scratch.product}) {
+    resize(f.model, *motion);
+  }
+  if (f.model.has_friction) scratch.friction_torque.resize(f.model.particle_count);
+  find_inertias(eq);
+  iterate(eq, start(eq, forces,
+                    [&](std::size_t i) { return Vec3(from.velocity[i] - at.velocity[i]); }));
+  for (Index i = 0; i < f.model.free_count; ++i) {
+    forces.particle[i] += scratch.force.particle[i];
+  }
+  for (std::size_t r = 0; r < f.model.rigid_bodies.size(); ++r) {
+    if (f.model.rigid_bodies[r].is_held(f.step)) continue;
+    forces.rigid_force[r] += scratch.force.linear[r];
+    forces.rigid_torque[r] += scratch.force.angular[r];
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/liquid/pairs/scratch.h"
+#include "core/stage/context.h"
+#include "core/state/state.h"
+
+namespace vat {
+
+struct ForceModel;
+
+/// The viscous forces between a weakly compressible liquid and the solids in it, those of
+/// add_tait_forces() and add_tait_forces_on_solids(), as a symmetric, negative semi-definite matrix
+/// D; see DampingMatrix.
+class SolidDrags {
+ public:
+  /// Of the configuration that `force_model` was last evaluated at.
+  void collect(const ForceModel& force_model);
+  /// force += D w, both with an entry for each particle.
+  void add(const ForceModel& force_model, const std::vector<Vec3>& w,
+           std::vector<Vec3>& force) const;
+
+ private:
+  /// f = -strength x x^T (w - w_other).
+  struct Drag {
+    Index other;    ///< particle
+    Real strength;  ///< over |x|^2 [N s/m^3]
+    Vec3 x;         ///< [m]
+  };
+  struct Block {
+    std::vector<Drag> drags;
+    std::array<Index, kBlockSize + 1> begin;  ///< by slot
+  };
+  /// Of `from`, whose first particle is `first`, by what `near` has of `to`.
+  static void collect_of(const ForceModel& f, const CellSortedPoints& from, Index first,
+                         const CellSortedPoints& to, Index other_first,
+                         const std::vector<PairBlock>& near, std::vector<Block>& blocks);
+  static void add_of(const ForceModel& f, const CellSortedPoints& from, Index first,
+                     const std::vector<Block>& blocks, const std::vector<Vec3>& w,
+                     std::vector<Vec3>& force);
+
+  std::vector<Block> of_liquid_;
+  std::vector<Block> of_solids_;
+};
+
+}  // namespace vat

@@ -1,0 +1,59 @@
+#include "core/evaluation/motion_probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vat {
+namespace {
+
+constexpr Real kNoticed = 1e-9;  // of a radius: shorter paths are rounding
+
+/// sum m |v - mean|^2 of a body's particles, with value(i) its vector.
+template <class Value>
+Real spread(const Model& model, const IndexRange& particles, Value&& value) {
+  Vec3 mean = Vec3::Zero();
+  Real mass = 0;
+  for (Index i = particles.begin; i < particles.end; ++i) {
+    mean += model.mass[i] * value(i);
+    mass += model.mass[i];
+  }
+  mean /= mass;
+  Real sum = 0;
+  for (Index i = particles.begin; i < particles.end; ++i) {
+    sum += model.mass[i] * (value(i) - mean).squaredNorm();
+  }
+  return sum;
+}
+
+}  // namespace
+
+void MotionProbe::begin(const State& state) {
+  seen_ = 0;
+  if (state.forces_current) see(state.now, state.forces);
+}
+
+void MotionProbe::see(const Configuration& at, const Forces& forces) {
+  const bool is_first = seen_++ == 0;
+  (is_first ? first_position_ : last_position_) = at.position;
+  (is_first ? first_force_ : last_force_) = forces.particle;
+}
+
+Real MotionProbe::observed_rate(const Model& model) const {
+  if (seen_ < 2) return 0;
+  Real greatest = 0;
+  for (const ModelBody& body : model.bodies) {
+    // Nor do bodies with implicit springs follow the forces that are seen here as they move.
+    if (body.kind == BodyKind::rigid || body.particles.begin >= model.implicit_begin) continue;
+    const Real way = spread(model, body.particles,
+                            [&](Index i) { return Vec3(last_position_[i] - first_position_[i]); });
+    const Real noticed = kNoticed * model.radius[body.particles.begin];
+    if (!(way > noticed * noticed * body.mass)) continue;
+    const Real change = spread(model, body.particles, [&](Index i) {
+      return Vec3(model.inverse_mass[i] * (last_force_[i] - first_force_[i]));
+    });
+    greatest = std::max(greatest, std::sqrt(std::sqrt(change / way)));
+  }
+  return greatest;
+}
+
+}  // namespace vat

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/kernels/cohesion_kernel.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// Constants of the cohesion of liquids; core/liquid/surface/cohesion.h derives them.
+inline constexpr Real kTensileShare = 0.4;
+inline constexpr Real kRelaxation = 1.52;
+
+/// A of a surface tension [N/m] and a support radius [m], in Pa.
+inline Real attraction_of(Real surface_tension, Real support_radius, int dimensions) {
+  const Real moment = CohesionKernel::first_moment(dimensions) *
+                      (CohesionKernel::kReach - CohesionKernel::kCore) * support_radius;
+  return 2 * surface_tension / (kRelaxation * moment);
+}
+
+/// The share of the far part that a wall has, by the cosine of the contact angle.
+inline Real adhesion_share(Real cosine) {
+  return 0.796 + cosine * (0.321 - 0.021 * cosine);
+}
+
+}  // namespace vat

@@ -1,0 +1,315 @@
+#include "core/liquid/incompressible/pressure_response.h"
+#include "core/liquid/pairs/scratch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/liquid/pairs/coupled_pairs.h"
+#include "core/liquid/pairs/liquid_pairs.h"
+#include "core/state/rigid_motion.h"
+
+namespace vat {
+namespace {
+
+/// Between a sum along g x and one of V dW/dx.
+Real gradient_factor(const Model& model, const LiquidModel& liquid) {
+  return slope_factor(model, liquid) / liquid.slope_scale;
+}
+
+PairMotion turned(const PairImage& image, const PairMotion& source) {
+  return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
+}
+
+/// G / rho of the liquid that it is greatest of.
+Real greatest_mobility(const Model& model) {
+  const auto mobility = by_material(
+      model, [](const LiquidModel& liquid) { return liquid.slope_scale / liquid.rest_density; });
+  return std::ranges::max(mobility);
+}
+
+}  // namespace
+
+PressureResponse::PressureResponse(const ForceModel& force_model, Configuration& at,
+                                   ResponseScratch& scratch, bool solids_move)
+    : f_(force_model),
+      at_(at),
+      context_{f_.model, f_.controls, 0, f_.step, at, scratch.unused, f_.work, f_.runner},
+      sums_(pair_sums_of(context_)),
+      scratch_(scratch),
+      order_(f_.work.of<LiquidScratch>().liquid.grid.order()),
+      solids_(f_.work.of<LiquidScratch>().solids_in_liquid.grid.order()),
+      has_solids_(has_solids(f_.model)),
+      solids_move_(solids_move && has_solids_),
+      greatest_mobility_(greatest_mobility(f_.model)) {
+  scratch_.liquid_motion.resize(order_.size());
+  f_.work.of<LiquidScratch>().sources.make_room_for_motions();
+  if (!has_solids_) return;
+  weigh_solids();
+  find_slopes();
+  scratch_.solid_motion.assign(solids_.size(), Vec3::Zero());
+  scratch_.solid_force.resize(solids_.size());
+  scratch_.rigid_force.resize(f_.model.rigid_bodies.size());
+  scratch_.rigid_torque.resize(f_.model.rigid_bodies.size());
+}
+
+void PressureResponse::weigh_solids() {
+  WeightFactors factors;
+  factors.solid = 2;
+  f_.work.of<LiquidScratch>().sources.set_weights(context_, factors);
+}
+
+PairInputs PressureResponse::charged_inputs() const {
+  PairInputs inputs = f_.work.of<LiquidScratch>().sources.charged_inputs();
+  inputs.inverse_support = pair_inputs(context_).inverse_support;
+  return inputs;
+}
+
+void PressureResponse::set_liquid_motion(std::size_t slot, const Vec3& motion) {
+  scratch_.liquid_motion[slot] = motion;
+  const Vec3 weighted = f_.work.of<LiquidScratch>().sources.weight(slot) * motion;
+  f_.work.of<LiquidScratch>().sources.set_motion(slot, motion_of(0, weighted));
+}
+
+void PressureResponse::charge(std::span<const Real> pressure) {
+  f_.work.of<LiquidScratch>().sources.set_charges(f_.runner,
+                                                  [&](std::size_t s) { return pressure[s]; });
+}
+
+void PressureResponse::accelerate(std::span<const Real> pressure) {
+  charge(pressure);
+  accelerate_liquid(pressure);
+  if (solids_move_) push_solids(pressure);
+}
+
+void PressureResponse::accelerate_liquid(std::span<const Real> pressure) {
+  const auto factor = by_material(f_.model, [&](const LiquidModel& liquid) {
+    return slope_factor(f_.model, liquid) / liquid.rest_density;
+  });
+  const auto set_acceleration = [&](const TargetCluster&, Index s, const Real* sums) {
+    const Index i = order_[s];
+    const Real own = f_.model.inverse_mass[i] > 0 ? factor[f_.model.material[i]] : 0;
+    const Vec3 sum = pressure[s] * f_.work.of<LiquidScratch>().volume_slopes[s].gradient +
+                     Eigen::Map<const Vec3>(sums);
+    set_liquid_motion(s, -own * sum);
+  };
+  f_.work.of<LiquidScratch>().liquid_clusters.for_each_sum<3>(f_.runner, charged_inputs(),
+                                                              sums_.gradient, set_acceleration);
+}
+
+/// The forces on solid particles and bodies, and the accelerations of all solid particles.
+void PressureResponse::push_solids(std::span<const Real> pressure) {
+  if (has_several_liquids(f_.model)) {
+    set_slope_weights(context_);
+    charge(pressure);
+  }
+  sum_solid_forces();
+  if (has_several_liquids(f_.model)) weigh_solids();
+  sum_rigid_forces();
+  for_blocks(f_.runner, solids_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      scratch_.solid_motion[s] = solid_acceleration(f_.model.liquid_count + solids_[s]);
+    }
+  });
+}
+
+void PressureResponse::sum_solid_forces() {
+  const Model& model = f_.model;
+  const Real factor = -2 * slope_factor(model, *model.liquids[model.material[0]]);
+  const Index first = f_.work.of<LiquidScratch>().sources.first_solid();
+  f_.work.of<LiquidScratch>().solid_clusters.for_each_sum<3>(
+      f_.runner, charged_inputs(), sums_.gradient,
+      [&](const TargetCluster&, Index n, const Real* sums) {
+        const Index b = solids_[n - first];
+        const Real volume = model.rest_volume[model.liquid_count + b];
+        scratch_.solid_force[b] = factor * volume * Eigen::Map<const Vec3>(sums);
+      });
+}
+
+void PressureResponse::sum_rigid_forces() {
+  const Model& model = f_.model;
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = model.rigid_bodies[b];
+    Vec3 sum = Vec3::Zero();
+    Vec3 torque = Vec3::Zero();
+    const Vec3 center = at_.rigid[b].center_of_mass;
+    const Index end = rigid.is_held(f_.step) ? rigid.particles.begin : rigid.particles.end;
+    for (Index e = rigid.particles.begin; e < end; ++e) {
+      const Vec3& force = scratch_.solid_force[e - model.liquid_count];
+      sum += force;
+      torque += (at_.position[e] - center).cross(force);
+    }
+    scratch_.rigid_force[b] = sum;
+    scratch_.rigid_torque[b] = torque;
+  }
+}
+
+/// By forces alone: what turns a body that spins anyway is no part of it.
+Vec3 PressureResponse::solid_acceleration(Index particle) const {
+  const Model& model = f_.model;
+  if (particle < model.free_count) {
+    return model.inverse_mass[particle] * scratch_.solid_force[particle - model.liquid_count];
+  }
+  const Index b = model.bodies[model.body[particle]].rigid;
+  const RigidState& state = at_.rigid[b];
+  const Vec3 turning =
+      angular_velocity(model.rigid_bodies[b], state.orientation, scratch_.rigid_torque[b]);
+  return model.rigid_bodies[b].inverse_mass * scratch_.rigid_force[b] +
+         turning.cross(at_.position[particle] - state.center_of_mass);
+}
+
+void PressureResponse::see_velocities(const Vec3& wall_velocity) {
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      set_liquid_motion(s, at_.velocity[order_[s]] - wall_velocity);
+    }
+  });
+  if (!has_solids_) return;
+  for (std::size_t s = 0; s < solids_.size(); ++s) {
+    scratch_.solid_motion[s] = at_.velocity[f_.model.liquid_count + solids_[s]] - wall_velocity;
+  }
+}
+
+void PressureResponse::compress(std::span<Real> rate) {
+  compress_to(rate, [](std::size_t) { return Real{1}; });
+}
+
+void PressureResponse::compress(std::span<Real> product, std::span<const Real> scale, Real factor) {
+  compress_to(product, [&](std::size_t s) { return factor * scale[s]; });
+}
+
+template <class Scale>
+void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
+  PairSources& sources = f_.work.of<LiquidScratch>().sources;
+  sources.set_other_motions(
+      f_.runner,
+      [&](std::size_t s) {
+        const Vec3 weighted = sources.weight(sources.first_solid() + s) * scratch_.solid_motion[s];
+        return motion_of(0, weighted);
+      },
+      turned);
+  const auto factor = by_material(
+      f_.model, [&](const LiquidModel& liquid) { return gradient_factor(f_.model, liquid); });
+  f_.work.of<LiquidScratch>().liquid_clusters.for_each_sum<1>(
+      f_.runner, pair_inputs(context_), sums_.divergence,
+      [&](const TargetCluster&, Index s, const Real* sum) {
+        const Real own =
+            scratch_.liquid_motion[s].dot(f_.work.of<LiquidScratch>().volume_slopes[s].gradient);
+        rate[s] = (own - *sum) * factor[f_.model.material[order_[s]]] * scale(s);
+      });
+}
+
+void PressureResponse::replace() {
+  has_whole_ = false;
+  add(1);
+}
+
+void PressureResponse::add(Real share) {
+  const bool is_first = !has_whole_;
+  const auto add_to = [&](std::vector<Vec3>& whole, const std::vector<Vec3>& part) {
+    whole.resize(part.size());
+    for_blocks(f_.runner, part.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        whole[k] = is_first ? Vec3(share * part[k]) : Vec3(whole[k] + share * part[k]);
+      }
+    });
+  };
+  add_to(scratch_.liquid_whole, scratch_.liquid_motion);
+  has_whole_ = true;
+  if (!solids_move_) return;
+  add_to(scratch_.solid_force_whole, scratch_.solid_force);
+  add_to(scratch_.rigid_force_whole, scratch_.rigid_force);
+  add_to(scratch_.rigid_torque_whole, scratch_.rigid_torque);
+}
+
+void PressureResponse::kick(Real dt) {
+  if (!has_whole_) return;
+  const Model& model = f_.model;
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      at_.velocity[order_[s]] += dt * scratch_.liquid_whole[s];
+    }
+  });
+  if (!solids_move_) return;
+  for (Index i = model.liquid_count; i < model.free_count; ++i) {
+    at_.velocity[i] +=
+        (dt * model.inverse_mass[i]) * scratch_.solid_force_whole[i - model.liquid_count];
+  }
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    at_.rigid[b].momentum += dt * scratch_.rigid_force_whole[b];
+    at_.rigid[b].angular_momentum += dt * scratch_.rigid_torque_whole[b];
+    pose_rigid_body(model, model.rigid_bodies[b], at_.rigid[b], at_);
+  }
+}
+
+void PressureResponse::shift(Real share) {
+  if (!has_whole_) return;
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      at_.position[order_[s]] += share * scratch_.liquid_whole[s];
+    }
+  });
+}
+
+/// G / rho; 0 where nothing moves it.
+Real PressureResponse::mobility_of_liquid(Index particle) const {
+  if (f_.model.inverse_mass[particle] == 0) return 0;
+  const LiquidModel& liquid = liquid_of(f_.model, particle);
+  return liquid.slope_scale / liquid.rest_density;
+}
+
+/// The inverse mass of the motion that a force on a solid particle starts, at most.
+Real PressureResponse::mobility_of(Index particle) const {
+  const Model& model = f_.model;
+  if (particle < model.free_count) return model.inverse_mass[particle];
+  const RigidModel& rigid = model.rigid_bodies[model.bodies[model.body[particle]].rigid];
+  if (rigid.is_held(f_.step)) return 0;
+  return rigid.inverse_mass + rigid.inverse_moments.maxCoeff() *
+                                  model.local_position[particle - model.free_count].squaredNorm();
+}
+
+/// With solids as mobile as each of them is by itself.
+void PressureResponse::find_slopes() {
+  const Model& model = f_.model;
+  f_.work.of<LiquidScratch>().sources.set_motions(
+      f_.runner,
+      [&](std::size_t s) {
+        return PairMotion{mobility_of_liquid(order_[s]) / greatest_mobility_, 0, 0, 0};
+      },
+      [&](std::size_t s) {
+        return PairMotion{0, std::sqrt(mobility_of(model.liquid_count + solids_[s])), 0, 0};
+      },
+      [](const PairImage&, const PairMotion& source) { return source; });
+  const Real scale = reference_kernel(model).scale() * greatest_mobility_;
+  f_.work.of<LiquidScratch>().volume_slopes.resize(order_.size());
+  f_.work.of<LiquidScratch>().liquid_clusters.for_each_sum<kResponseSums>(
+      f_.runner, pair_inputs(context_), sums_.response,
+      [&](const TargetCluster&, Index s, const Real* sums) {
+        const Real slope_scale = liquid_of(model, order_[s]).slope_scale;
+        const Real solids = slope_scale * sums[4] * sums[4];
+        f_.work.of<LiquidScratch>().volume_slopes[s] = {Eigen::Map<const Vec3>(sums),
+                                                        sums[3] + solids / scale};
+      });
+}
+
+/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with the least
+/// density for all others.
+void PressureResponse::find_diagonal(std::span<Real> diagonal) {
+  const Model& model = f_.model;
+  const Real scale = reference_kernel(model).scale() * greatest_mobility_;
+  const auto factor = by_material(model, [&](const LiquidModel& liquid) {
+    const Real gradient = gradient_factor(model, liquid);
+    return gradient * gradient;
+  });
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index i = order_[s];
+      const Real volume = model.rest_volume[i];
+      const VolumeSlope& slope = f_.work.of<LiquidScratch>().volume_slopes[s];
+      diagonal[s] =
+          volume * factor[model.material[i]] *
+          (mobility_of_liquid(i) * slope.gradient.squaredNorm() + volume * scale * slope.squares);
+    }
+  });
+}
+
+}  // namespace vat

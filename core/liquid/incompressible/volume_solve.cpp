@@ -1,0 +1,199 @@
+#include "core/liquid/incompressible/volume_solve.h"
+#include "core/liquid/pairs/scratch.h"
+
+#include <algorithm>
+
+#include "core/guard/enforce_walls.h"
+#include "core/laws/vat_motion.h"
+#include "core/liquid/gas/liquid.h"
+#include "core/liquid/incompressible/pressure_response.h"
+#include "core/liquid/pairs/liquid_pairs.h"
+#include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/liquid/tait/weakly_compressible.h"
+#include "core/rigid/rigid.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kGreatestOverMean = 36;     // of densities
+constexpr Real kGreatestDivergence = 200;  // of changes of density, which places correct
+constexpr Real kLeftAlone = 0.2;           // of the density tolerance, by velocities
+constexpr Real kClosing = 0.5;             // of what is missing at rest density, in a step
+constexpr int kMaxCorrections = 12;        // rounds of Newton's method
+constexpr Real kRow = 16;                  // of a lattice in space with a support of 3 spacings
+constexpr Real kLinearShare = 0.25;        // of the density tolerance, for the solve of one round
+constexpr Real kMaxExpansion = 0.05;       // in one round: further, linear theory leads astray
+constexpr Real kAlone = 1;                 // the diagonal of a particle with nothing around it
+
+/// Of the vat's walls over the step.
+Vec3 wall_velocity(const Model& model, Real time, Real dt) {
+  if (!model.scene.vat) return Vec3::Zero();
+  const Vat& vat = *model.scene.vat;
+  return (vat_motion(vat, time + dt).offset - vat_motion(vat, time).offset) / dt;
+}
+
+/// Solves over the liquid's slots, for pressures times dt^2.
+class VolumeSolve {
+ public:
+  /// The workspace has cells, pairs and densities of the present places.
+  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, bool solids_move,
+              VolumeScratch& scratch)
+      : f_(f),
+        now_(now),
+        dt_(dt),
+        s_(scratch),
+        response_(f, now, scratch.response, solids_move),
+        problem_(scratch.problem),
+        order_(f.work.of<LiquidScratch>().liquid.grid.order()) {
+    set_up();
+  }
+
+  SolveReport project_velocities(const Vec3& wall_velocity);
+  /// The number of iterations.
+  int shift_places();
+
+  // What Complementarity asks for.
+  void act(std::span<const Real> change) { response_.accelerate(change); }
+  void find_product(std::span<Real> product) {
+    response_.compress(product, problem_.scale, -dt_ * dt_);
+  }
+  void add(Real share) { response_.add(share); }
+  void replace() { response_.replace(); }
+
+ private:
+  template <class F>
+  void each_slot(F&& f) {
+    for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) f(s);
+    });
+  }
+  void set_up();
+  /// The whole of the response's accelerations is then that by the change of x.
+  SolveReport solve(Real mean, Real greatest);
+
+  const ForceModel& f_;
+  Configuration& now_;
+  const Real dt_;
+  VolumeScratch& s_;
+  PressureResponse response_;
+  Complementarity& problem_;
+  const std::span<const Index> order_;
+};
+
+void VolumeSolve::set_up() {
+  problem_.resize(order_.size());
+  s_.relative_density.resize(order_.size());
+  response_.find_diagonal(problem_.diagonal);
+  each_slot([&](std::size_t s) {
+    const Index i = order_[s];
+    s_.relative_density[s] =
+        f_.work.of<LiquidScratch>().density[i] / liquid_of(f_.model, i).rest_density;
+    problem_.scale[s] = f_.model.rest_volume[i];
+    Real& diagonal = problem_.diagonal[s];
+    diagonal = diagonal > 0 ? dt_ * dt_ * diagonal : kAlone;
+  });
+}
+
+SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
+  const IncompressibleSolve& wanted = f_.model.scene.incompressible;
+  response_.see_velocities(wall_velocity);
+  response_.compress(problem_.excess);
+  each_slot([&](std::size_t s) {
+    const Real density = s_.relative_density[s];
+    const Real excess = density - 1 - kLeftAlone * wanted.density_tolerance;
+    const Real room = density < 1 ? kClosing * (1 - density)
+                                  : -std::clamp(excess, Real{0}, wanted.density_tolerance);
+    problem_.excess[s] = problem_.scale[s] * (dt_ * problem_.excess[s] - room);
+    const bool is_alone = problem_.diagonal[s] == kAlone;
+    problem_.x[s] = is_alone ? 0 : now_.pressure[order_[s]] / (density * density);
+    if (is_alone) problem_.excess[s] = std::min(problem_.excess[s], Real{0});
+  });
+  const Real tolerance = wanted.divergence_tolerance;
+  const SolveReport report = solve(tolerance, kGreatestDivergence * tolerance);
+  if (report.iterations == 0) return report;
+  each_slot([&](std::size_t s) {
+    now_.pressure[order_[s]] = problem_.x[s] * s_.relative_density[s] * s_.relative_density[s];
+  });
+  response_.kick(dt_);
+  return report;
+}
+
+int VolumeSolve::shift_places() {
+  each_slot([&](std::size_t s) {
+    problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMaxExpansion);
+    problem_.x[s] = 0;
+  });
+  const IncompressibleSolve& wanted = f_.model.scene.incompressible;
+  const Real tolerance = kLinearShare * wanted.density_tolerance;
+  const SolveReport report = solve(tolerance, kGreatestOverMean * tolerance);
+  if (report.iterations > 0) response_.shift(dt_ * dt_);
+  return report.iterations;
+}
+
+SolveReport VolumeSolve::solve(Real mean, Real greatest) {
+  const SolveLimits limits{mean, greatest, f_.model.scene.incompressible.most_iterations, kRow};
+  return problem_.solve(limits, f_.runner, *this);
+}
+
+/// Puts back liquid that has passed a wall, before anything is found in places that a later step
+/// would have to find anew.
+void hold_liquid_inside(const ForceModel& f, Real time, Configuration& now) {
+  const std::uint64_t stops =
+      hold_particles_inside(f.model, time, f.model.liquid_count, f.runner, now);
+  if (f.report != nullptr) f.report->wall_stops += stops;
+}
+
+/// Cells, pairs and densities of places that have changed.
+void find_density(StepContext& c) {
+  sort_liquid(c);
+  if (has_solids(c.model)) sort_solids_in_liquid(c);
+  find_pair_clusters(c);
+  compute_tait_density(c);
+}
+
+/// How much is too dense.
+void measure_excess(const StepContext& c, SolveReport& report) {
+  report.mean = 0;
+  report.greatest = 0;
+  for (Index i = 0; i < c.model.liquid_count; ++i) {
+    const Real excess =
+        c.work.of<LiquidScratch>().density[i] / liquid_of(c.model, i).rest_density - 1;
+    // A NaN is the guard's to see.
+    report.mean += std::max(Real{0}, excess) / c.model.liquid_count;
+    report.greatest = std::max(report.greatest, excess);
+  }
+}
+
+}  // namespace
+
+void recall_pressure(StepContext& c) {
+  c.work.of<LiquidScratch>().pressure = c.configuration.pressure;
+}
+
+SolveReport project_velocities(const ForceModel& f, Configuration& now, Real time, Real dt,
+                               VolumeScratch& scratch) {
+  return VolumeSolve(f, now, dt, true, scratch)
+      .project_velocities(wall_velocity(f.model, time, dt));
+}
+
+SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
+                            VolumeScratch& scratch) {
+  Forces unused;
+  StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};
+  const Real tolerance = f.model.scene.incompressible.density_tolerance;
+  if (!f.model.rigid_bodies.empty()) pose_rigid_bodies(c);
+  SolveReport report;
+  for (int round = 0;; ++round) {
+    hold_liquid_inside(f, time, now);
+    find_density(c);
+    measure_excess(c, report);
+    const bool is_solved =
+        report.mean <= tolerance && report.greatest <= kGreatestOverMean * tolerance;
+    if (is_solved || round == kMaxCorrections || f.work.of<LiquidScratch>().too_many_pairs)
+      return report;
+    constexpr Real kUnit = 1;  // shifts take no time
+    report.iterations += VolumeSolve(f, now, kUnit, false, scratch).shift_places();
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,57 @@
+#include "core/liquid/pairs/neighbour_lists.h"
+#include "core/liquid/pairs/scratch.h"
+
+#include "core/liquid/pairs/liquid_pairs.h"
+#include "core/liquid/pairs/weakly_compressible_pairs.h"
+
+namespace vat {
+namespace {
+
+template <bool periodic>
+void list_liquid(const Model& model, Scratch& work, TaskRunner* runner) {
+  const CellSortedPoints& points = work.of<LiquidScratch>().liquid;
+  const std::span<const Index> order = points.grid.order();
+  work.of<LiquidScratch>().liquid_records.resize(order.size());
+  find_pairs<periodic>(model, work, runner, [&](Index s, std::span<const Index>) {
+    LiquidRecord& record = work.of<LiquidScratch>().liquid_records[s];
+    record.position = {points.x[s], points.y[s], points.z[s]};
+    record.volume = model.rest_volume[order[s]];
+  });
+}
+
+void list_near(const Model& model, const CellSortedPoints& from, const CellSortedPoints& to,
+               TaskRunner* runner, std::vector<PairBlock>& blocks) {
+  const Real support = support_of(model);
+  const std::size_t count = from.grid.order().size();
+  blocks.resize(block_count(count));
+  for_blocks(runner, count, [&](std::size_t begin, std::size_t end) {
+    PairBlock& block = blocks[begin / kBlockSize];
+    std::size_t found = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      block.begin[s - begin] = static_cast<Index>(found);
+      const Vec3 place(from.x[s], from.y[s], from.z[s]);
+      model.periodic.for_each_image(place, support, [&](const Vec3& shift) {
+        found = find_near(to, place + shift, kNoParticle, support, block.slots, found);
+      });
+    }
+    block.begin[end - begin] = static_cast<Index>(found);
+  });
+}
+
+}  // namespace
+
+void list_neighbours(const Model& model, Scratch& work, TaskRunner* runner) {
+  model.periodic.any() ? list_liquid<true>(model, work, runner)
+                       : list_liquid<false>(model, work, runner);
+  if (!has_solids(model)) return;
+  list_near(model, work.of<LiquidScratch>().liquid, work.of<LiquidScratch>().solids_in_liquid,
+            runner, work.of<LiquidScratch>().solids_of_liquid);
+  list_near(model, work.of<LiquidScratch>().solids_in_liquid, work.of<LiquidScratch>().liquid,
+            runner, work.of<LiquidScratch>().liquid_of_solids);
+}
+
+void list_neighbours(StepContext& c) {
+  list_neighbours(c.model, c.work, c.runner);
+}
+
+}  // namespace vat

@@ -1,0 +1,236 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/limits.h"
+#include "core/liquid/pairs/mirrors.h"
+#include "core/liquid/pairs/pair_clusters.h"
+#include "core/liquid/pairs/pair_sums.h"
+#include "core/support/grow.h"
+
+namespace vat {
+
+struct CellSortedPoints;
+struct StepContext;
+
+/// What walls, or a world that repeats itself, show of a particle.
+struct PairImage {
+  Vec3 offset;                 ///< of the image from the particle, once that is turned [m]
+  Index source;                ///< the particle
+  std::array<bool, 3> axes{};  ///< along which the image is reflected
+
+  Vec3 turn(const Vec3& x) const { return Mirror{axes, {}}.turn(x); }
+  Vec3 place(const Vec3& p) const { return offset + turn(p); }
+  /// The mirror alone, of an image in walls.
+  Mirror mirror() const;
+};
+
+/// The same in few bytes: of each axis, which of the offsets that there are along it.
+struct PackedImage {
+  Index source;
+  std::array<std::uint8_t, 3> offsets;
+};
+
+/// The offsets of images along each axis.
+class ImageOffsets {
+ public:
+  ImageOffsets() = default;
+  ImageOffsets(const Model& model, const VatMotion& motion);
+
+  PackedImage pack(const PairImage& image) const;
+  PairImage unpack(const PackedImage& image) const {
+    const auto& [x, y, z] = image.offsets;
+    return {{offsets_[0][x], offsets_[1][y], offsets_[2][z]},
+            image.source,
+            {x >= low_wall, y >= low_wall, z >= low_wall}};
+  }
+
+ private:
+  enum Kind : std::uint8_t { none, back, on, low_wall, high_wall };
+  static constexpr std::size_t kKinds = high_wall + 1;
+
+  std::array<std::array<Real, kKinds>, 3> offsets_{};  ///< by axis [m]
+};
+
+struct WeightFactors {
+  std::array<Real, kMaxMaterials> liquid;  ///< by material
+  Real solid = 1;
+
+  WeightFactors() { liquid.fill(1); }
+};
+
+/// All that acts in a coupled liquid's sums over pairs: liquid in the order of its cells, solids in
+/// theirs; images of solids, and of liquid, in a world that repeats itself; images of solids, and
+/// of liquid, in walls; and one more that adds nothing, for padding.
+class PairSources {
+ public:
+  /// From the workspace's sorted points, with images of those within `reach` [m] of walls, and
+  /// weights with factors of 1.
+  void build(const StepContext& context, Real reach);
+  /// Whether build() would find the same places.
+  bool is_current(const StepContext& context) const;
+  /// Rises with each build().
+  std::uint64_t version() const { return version_; }
+  /// Weights are rest volumes times the scale of the first liquid's kernel and these factors.
+  void set_weights(const StepContext& context, const WeightFactors& factors);
+
+  void make_room_for_motions();
+  /// motion(s) of liquid slots, solid(s) of solid slots, and image(image, motion of its source).
+  template <class Liquid, class Solid, class Image>
+  void set_motions(TaskRunner* runner, Liquid&& liquid, Solid&& solid, Image&& image) {
+    make_room_for_motions();
+    for_blocks(runner, solids_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) set_motion(s, liquid(s));
+    });
+    set_other_motions(runner, solid, image);
+  }
+  /// The same where those of liquid are set already, by set_motion() with room made for them.
+  template <class Solid, class Image>
+  void set_other_motions(TaskRunner* runner, Solid&& solid, Image&& image) {
+    for_blocks(runner, images_begin_ - solids_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) set_motion(solids_ + s, solid(s));
+    });
+    for (const ImageGroup& group : images_) {
+      for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+          const PairImage& one = offsets_.unpack(group.image(s));
+          set_motion(group.first + s, image(one, motion(one.source)));
+        }
+      });
+    }
+  }
+  PairMotion motion(std::size_t n) const {
+    if (!is_single_) return motions_[n];
+    const PackedMotion& m = packed_motions_[n];
+    return {static_cast<Real>(m.pressure), static_cast<Real>(m.vx), static_cast<Real>(m.vy),
+            static_cast<Real>(m.vz)};
+  }
+  void set_motion(std::size_t n, const PairMotion& m) {
+    if (is_single_) {
+      packed_motions_[n] = {static_cast<float>(m.pressure), static_cast<float>(m.vx),
+                            static_cast<float>(m.vy), static_cast<float>(m.vz)};
+    } else {
+      motions_[n] = m;
+    }
+  }
+
+  /// Charges are weights times charge(s) of liquid slots; of images those of their sources; and 0
+  /// of solids.
+  template <class Charge>
+  void set_charges(TaskRunner* runner, Charge&& charge) {
+    is_single_ ? charge_copies(runner, packed_places_, packed_charges_, charge)
+               : charge_copies(runner, places_, charges_, charge);
+  }
+
+  /// Those of sources there is room for.
+  std::size_t motion_count() const { return std::max(packed_motions_.size(), motions_.size()); }
+
+  /// Inputs with the places and motions; or with charges in place of weights.
+  PairInputs inputs() const;
+  PairInputs charged_inputs() const;
+  Real weight(std::size_t n) const {
+    return is_single_ ? static_cast<Real>(packed_places_[n].weight) : places_[n].weight;
+  }
+  /// [m], rounded as in the sums.
+  Vec3 place(std::size_t n) const {
+    if (is_single_) return grid_.place(packed_places_[n]);
+    return {places_[n].x, places_[n].y, places_[n].z};
+  }
+
+  /// In which sums are to be made: the scene's, or double where that asks for too much.
+  PairPrecision precision() const {
+    return is_single_ ? PairPrecision::single_precision : PairPrecision::double_precision;
+  }
+  /// Without the padding.
+  std::size_t count() const { return count_; }
+  Index first_solid() const { return solids_; }
+  Index first_image() const { return images_begin_; }
+  /// The particle that an image is of; a particle itself.
+  Index source_of(Index n) const;
+  /// The first image in a wall; and the first of liquid.
+  Index first_mirrored() const { return images_[mirrored_solids].first; }
+  Index first_mirrored_liquid() const { return images_[mirrored_liquid].first; }
+  /// As above; and of them those of liquid.
+  std::array<SourceGroup, 6> groups(const UniformGrid& liquid, const UniformGrid& solids) const;
+  std::array<SourceGroup, 3> liquid_groups(const UniformGrid& liquid) const;
+  const SearchPlaces& search_places() const { return search_; }
+
+ private:
+  struct ImageGroup {
+    std::vector<PackedImage> all;  ///< in the order of their sources
+    UniformGrid grid;
+    Index first = 0;  ///< source
+
+    std::size_t count() const { return all.size(); }
+    /// That in a slot.
+    const PackedImage& image(std::size_t slot) const { return all[grid.order()[slot]]; }
+  };
+  enum Images : std::uint8_t { shifted_solids, shifted_liquid, mirrored_solids, mirrored_liquid };
+  static constexpr std::array kAllImages = {shifted_solids, shifted_liquid, mirrored_solids,
+                                            mirrored_liquid};
+  SourceGroup group_of(Images which) const { return {&images_[which].grid, images_[which].first}; }
+  void find_images(const StepContext& c, Real reach, Images kind);
+  void join_images(const StepContext& c, Images kind);
+  void set_weight(std::size_t n, Real weight) {
+    if (is_single_) {
+      packed_places_[n].weight = static_cast<float>(weight);
+    } else {
+      places_[n].weight = weight;
+    }
+  }
+  template <class Place, class Charge>
+  void charge_copies(TaskRunner* runner, const std::vector<Place>& places,
+                     std::vector<Place>& charges, Charge&& charge) {
+    using Number = decltype(Place::weight);
+    resize_closely(charges, places.size());
+    charges[count_] = places[count_];
+    for_blocks(runner, images_begin_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        charges[n] = places[n];
+        charges[n].weight *= n < solids_ ? static_cast<Number>(charge(n)) : 0;
+      }
+    });
+    for (const ImageGroup& group : images_) {
+      for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+          charges[group.first + s] = places[group.first + s];
+          charges[group.first + s].weight = charges[group.image(s).source].weight;
+        }
+      });
+    }
+  }
+  /// Room for `count` sources and the padding; what there is of the last time is written over.
+  void make_room(std::size_t count);
+  void set_place(std::size_t n, const Vec3& place);
+  void set_places(const StepContext& c);
+  void set_image_places(Images kind, TaskRunner* runner);
+  void add_padding(Real reach);
+
+  bool is_single_ = true;           ///< which columns are filled: the packed ones, or the others
+  std::vector<PairPlace> places_;   ///< by source, and the padding, as the next
+  std::vector<PairPlace> charges_;  ///< the same with charges in place of weights
+  std::vector<PairMotion> motions_;
+  PlaceGrid grid_;
+  std::vector<PackedPlace> packed_places_;
+  std::vector<PackedPlace> packed_charges_;
+  std::vector<PackedMotion> packed_motions_;
+
+  std::size_t count_ = 0;
+  Index solids_ = 0;  ///< first source that is a solid
+  Index images_begin_ = 0;
+  std::array<ImageGroup, 4> images_;
+  ImageOffsets offsets_;
+  std::vector<std::vector<PackedImage>> found_;  ///< by block of particles
+  std::vector<std::size_t> found_begin_;         ///< the same: of its images among all
+  std::vector<Vec3> image_points_;               ///< of the group last found
+  SearchPlaces search_;
+  std::uint64_t version_ = 0;
+  std::uint64_t liquid_version_ = 0;
+  std::uint64_t solid_version_ = 0;
+  Vec3 wall_offset_ = Vec3::Zero();
+};
+
+}  // namespace vat

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/laws/vat_motion.h"
+#include "core/liquid/pairs/mirrors.h"
+#include "core/model/model.h"
+#include "core/neighbours/cell_sorted_points.h"
+#include "core/stage/context.h"
+#include "core/state/state.h"
+
+/// What the stages of the weakly compressible liquid share.
+namespace vat {
+
+inline Vec3 nearest_image(const Model& model, const Vec3& x) {
+  return model.periodic.any() ? model.periodic.nearest(x) : x;
+}
+
+/// The acceleration of free fall at a place, seen from the vat.
+inline Vec3 fall_in_vat(const Model& model, const VatMotion& motion, const Vec3& position) {
+  Vec3 fall = -motion.acceleration;
+  if (!model.scene.forces.gravity) return fall;
+  fall += model.scene.gravity;
+  if (model.scene.central_field) {
+    const CentralField& field = *model.scene.central_field;
+    fall -= field.angular_frequency * field.angular_frequency * (position - field.center);
+  }
+  return fall;
+}
+
+/// 2 (d + 2) mu between two liquids: the harmonic mean, through which the slower one lets as much
+/// through as the other (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq. 22).
+inline Real mean_viscosity(const LiquidModel& a, const LiquidModel& b) {
+  const Real sum = a.central_viscosity + b.central_viscosity;
+  return sum > 0 ? 2 * a.central_viscosity * b.central_viscosity / sum : 0;
+}
+
+/// |x|^2 + 0.01 h^2 with the smoothing length h, half of the support radius, as in Monaghan's form:
+/// with the support radius in its place the viscosity would be a thirtieth too small.
+inline Real softened_square(const LiquidModel& liquid, Real r) {
+  const Real h = liquid.support_radius / 2;
+  return r * r + Real{0.01} * h * h;
+}
+
+/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2, up to s = 1.03, and from there on linear
+/// in the volume 1 / s. Only impacts press a liquid further together, with pressures rho c v that
+/// are those of the chosen speed of sound; and the denser a lattice, the shorter its stable step.
+/// On this line that stays above 0.77 h / c up to twice the density, the limit in
+/// find_step_limits(); with s^7 it is 0.62 h / c at s = 1.1 already. From twice the density on it
+/// goes along its tangent: the line has an end, and a liquid that is too soft for its own weight
+/// would fall together.
+inline Real tait_pressure(Real s) {
+  constexpr Real kEnd = 1.03;
+  constexpr Real kPressure = (kEnd * kEnd * kEnd * kEnd * kEnd * kEnd * kEnd - 1) / 7;
+  constexpr Real kSlope = 0.9;
+  constexpr Real kTwice = 2;
+  if (s > kTwice) {
+    return kPressure + kSlope * (1 / kEnd - 1 / kTwice + (s - kTwice) / (kTwice * kTwice));
+  }
+  if (s > kEnd) return kPressure + kSlope * (1 / kEnd - 1 / s);
+  const Real s2 = s * s;
+  return (s2 * s2 * s2 * s - 1) / 7;
+}
+
+/// What a liquid with a free surface bears at the density s, over that at rest.
+inline Real least_pressure(const LiquidModel& liquid, Real s) {
+  return 0 - liquid.tensile_strength * s * s;
+}
+
+inline bool has_solids(const Model& model) {
+  return model.particle_count > model.liquid_count;
+}
+
+/// That of all liquids, which coupled ones share.
+inline Real support_of(const Model& model) {
+  return model.liquids[model.material[0]]->support_radius;
+}
+
+/// Of the cells of coupled liquids and of solids in them: at rest they hold some eight particles,
+/// or nine in the plane [m].
+inline Real pair_cell_size(const Model& model) {
+  const Real in_spacings = model.scene.dimensions == 3 ? 2 : 3;
+  return in_spacings * model.liquids[model.material[0]]->spacing;
+}
+
+inline VatMotion motion_of(const StepContext& c) {
+  return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
+}
+
+/// Calls f(slot, x, mirror) for the walls' images of points within `radius` of `place`; x leads
+/// from the image to the place.
+template <class F>
+void for_each_image(const Model& model, const VatMotion& motion, const CellSortedPoints& points,
+                    const Vec3& place, Real radius, F&& f) {
+  for_each_mirror(model, motion, place, radius, [&](const Mirror& mirror) {
+    const Vec3 mirrored = mirror.place(place);
+    model.periodic.for_each_image(mirrored, radius, [&](const Vec3& shift) {
+      const Vec3 from = mirrored + shift;
+      points.grid.for_each_run(from, radius, [&](Index begin, Index end) {
+        for (Index slot = begin; slot < end; ++slot) {
+          const Vec3 x(from.x() - points.x[slot], from.y() - points.y[slot],
+                       from.z() - points.z[slot]);
+          if (x.squaredNorm() < radius * radius) f(slot, mirror.turn(x), mirror);
+        }
+      });
+    });
+  });
+}
+
+/// The pressure of a particle's image near a place. The mirror keeps energy, but turns gravity's
+/// part across the wall round; the rest is what the weight beyond the wall would add, as far as
+/// there is pressure where there is a free surface.
+class ImagePressure {
+ public:
+  ImagePressure(const Model& model, const VatMotion& motion, const Vec3& place)
+      : fall_(fall_in_vat(model, motion, place)),
+        acceleration_(fall_.norm()),
+        may_pull_(model.is_filled) {}
+
+  Real operator()(const LiquidModel& liquid, Real pressure, const Vec3& position,
+                  const Mirror& mirror) const {
+    return near(liquid, pressure, mirror.place(position) - position);
+  }
+  /// `way`: from the particle to its image [m].
+  Real near(const LiquidModel& liquid, Real pressure, const Vec3& way) const {
+    const Real more = liquid.rest_density * fall_.dot(way);
+    if (may_pull_) return pressure + more;
+    if (pressure <= 0) return pressure;
+    // What the weight of one layer of particles makes.
+    const Real layer = liquid.rest_density * acceleration_ * liquid.spacing;
+    return std::max(Real{0}, pressure + pressure / (pressure + layer) * more);
+  }
+
+ private:
+  Vec3 fall_;
+  Real acceleration_;
+  bool may_pull_;
+};
+
+}  // namespace vat

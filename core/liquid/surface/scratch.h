@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "core/stage/scratch.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// What surface tension sees of a liquid particle; see core/liquid/surface/surface_tension.h.
+struct SurfaceRecord {
+  Vec3 gradient;           ///< g [1/m]
+  Real kernel_deficiency;  ///< 1 - s, never below zero
+};
+
+/// Of one block of slots: sums of the forces of curvature and of what balances them, about the
+/// origin.
+struct SurfaceSum {
+  Vec3 force = Vec3::Zero();          ///< [N]
+  Vec3 torque = Vec3::Zero();         ///< [N m]
+  Real share = 0;                     ///< sigma times surface [J]
+  Vec3 moment = Vec3::Zero();         ///< share times x
+  Mat3 second_moment = Mat3::Zero();  ///< share times x x^T
+
+  SurfaceSum& operator+=(const SurfaceSum& other) {
+    force += other.force;
+    torque += other.torque;
+    share += other.share;
+    moment += other.moment;
+    second_moment += other.second_moment;
+    return *this;
+  }
+};
+
+/// Buffers of surface tension, by liquid slot.
+struct SurfaceScratch {
+  static constexpr Method kMethod = Method::surface;
+
+  std::vector<SurfaceRecord> surface;
+  std::vector<Vec3> surface_normals;  ///< of length 1, inwards; zero away from the surface
+  std::vector<Vec3> surface_forces;   ///< of its curvature [N]
+  std::vector<SurfaceSum> surface_sums;
+};
+
+}  // namespace vat

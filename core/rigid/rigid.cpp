@@ -1,0 +1,50 @@
+#include "core/rigid/rigid.h"
+
+#include "core/contact/scratch.h"
+#include "core/stage/context.h"
+#include "core/state/rigid_motion.h"
+#include "core/state/state.h"
+
+namespace vat {
+namespace {
+
+void find_spins(StepContext& c) {
+  c.work.of<ContactForceScratch>().spins.clear();
+  for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
+    const RigidState& state = c.configuration.rigid[b];
+    c.work.of<ContactForceScratch>().spins.push_back(
+        angular_velocity(c.model.rigid_bodies[b], state.orientation, state.angular_momentum));
+  }
+}
+
+}  // namespace
+
+void pose_rigid_bodies(StepContext& c) {
+  if (c.model.has_friction) find_spins(c);
+  for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
+    pose_rigid_body(c.model, c.model.rigid_bodies[b], c.configuration.rigid[b], c.configuration);
+  }
+}
+
+void gather_rigid_forces(StepContext& c) {
+  for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = c.model.rigid_bodies[b];
+    const Vec3 center = c.configuration.rigid[b].center_of_mass;
+    Vec3 force = Vec3::Zero();
+    Vec3 torque = Vec3::Zero();
+    for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
+      force += c.forces.particle[e];
+      torque += (c.configuration.position[e] - center).cross(c.forces.particle[e]);
+    }
+    if (c.model.has_friction) {
+      for (Index e = rigid.particles.begin; e < rigid.particles.end; ++e) {
+        torque += c.forces.friction_torque[e];
+      }
+    }
+    const bool is_held = rigid.is_held(c.step);
+    c.forces.rigid_force[b] = is_held ? Vec3(Vec3::Zero()) : force;
+    c.forces.rigid_torque[b] = is_held ? Vec3(Vec3::Zero()) : torque;
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,62 @@
+// The command of Simulation that changes how it is stepped.
+
+#include <cmath>
+
+#include "core/simulation/simulation.h"
+#include "core/simulation/simulation_impl.h"
+#include "core/validation/validate.h"
+
+namespace vat {
+namespace {
+
+/// Why the length of steps cannot change now.
+std::optional<std::string> refuse_other_step(const Scene& scene, bool is_between_ticks) {
+  if (!scene.emitters.empty()) return "must stay, since the scene's emitters count by it";
+  if (!is_between_ticks) return "can change at the end of a tick only";
+  return {};
+}
+
+/// What is left of a force acts for whole steps of the new length, weakened so that its impulse
+/// stays.
+AppliedForce in_steps(AppliedForce applied, std::uint64_t step, std::uint64_t new_step,
+                      Real new_per_old) {
+  const Real left = static_cast<Real>(applied.end_step - step) * new_per_old;
+  const Real steps = std::ceil(left - 1e-6);  // rounding must not add one
+  applied.acceleration *= left / steps;
+  applied.end_step = new_step + static_cast<std::uint64_t>(steps);
+  return applied;
+}
+
+}  // namespace
+
+Status Simulation::set_numerics(IntegratorId integrator, Real step) {
+  Scene scene = impl_->all().scene;
+  const Numerics before = scene.numerics;
+  const std::uint32_t old_steps = impl_->steps_per_tick();
+  scene.numerics.integrator = integrator;
+  scene.numerics.step = step;
+  scene.numerics.accuracy.reset();  // it has chosen
+  if (Errors errors = find_numerics_errors(scene); !errors.empty()) return errors;
+  if (integrator == before.integrator && step == before.step) return {};
+  const bool is_between_ticks = impl_->state.step_count % old_steps == 0;
+  if (const auto reason = refuse_other_step(scene, is_between_ticks);
+      reason && step != before.step) {
+    return Error{"not_allowed", "/step", *reason};
+  }
+  impl_->wake_all();
+  impl_->recompile(std::move(scene), impl_->ids());
+  if (step != before.step) {
+    const std::uint64_t count = impl_->state.step_count;
+    const std::uint32_t new_steps = impl_->steps_per_tick();
+    impl_->state.step_count = count / old_steps * new_steps;
+    const Real new_per_old = static_cast<Real>(new_steps) / static_cast<Real>(old_steps);
+    for (AppliedForce& applied : impl_->controls.applied_forces) {
+      applied = in_steps(applied, count, impl_->state.step_count, new_per_old);
+    }
+    impl_->tune_grabs();
+  }
+  impl_->pose_rigid_particles();
+  return {};
+}
+
+}  // namespace vat

@@ -1,0 +1,135 @@
+// The command of Simulation by which a body that has been there comes back.
+
+#include <cmath>
+
+#include "core/limits.h"
+#include "core/model/compile.h"
+#include "core/scene/interface_table.h"
+#include "core/scene/range_check.h"
+#include "core/simulation/simulation.h"
+#include "core/simulation/simulation_impl.h"
+#include "core/state/rigid_motion.h"
+#include "core/validation/validate.h"
+
+namespace vat {
+namespace {
+
+Status wrong(const std::string& member, const std::string& range) {
+  return Error{"out_of_range", "/state/" + member, "must be " + range};
+}
+
+Status check_pose(const RigidPose& pose, int dimensions) {
+  if (!are_at_most(pose.center_of_mass, kMaxLength)) {
+    return wrong("center_of_mass", "three finite numbers of magnitude at most 1e6");
+  }
+  const bool is_turn =
+      std::isfinite(pose.orientation.norm()) && std::abs(pose.orientation.norm() - 1) <= 0.001;
+  if (!is_turn) return wrong("orientation", "a quaternion of length 1, but for rounding");
+  if (!(pose.velocity.norm() <= kMaxSpeed)) return wrong("velocity", "at most 1e4 m/s");
+  if (!are_at_most(pose.angular_velocity, kMaxAngularSpeed)) {
+    return wrong("angular_velocity", "three finite numbers of magnitude at most 1e4");
+  }
+  if (dimensions == 3) return {};
+  const bool is_in_plane = pose.center_of_mass.y() == 0 && pose.velocity.y() == 0 &&
+                           pose.orientation.x() == 0 && pose.orientation.z() == 0 &&
+                           pose.angular_velocity.x() == 0 && pose.angular_velocity.z() == 0;
+  if (is_in_plane) return {};
+  return Error{"off_plane", "/state", "must stay in the plane y = 0 of the scene"};
+}
+
+Status check_columns(const BodyMotion& motion, std::size_t particles, int dimensions) {
+  const std::string as_many = std::to_string(particles) + " vectors, one for each particle";
+  if (motion.positions.size() != particles) return wrong("positions", as_many);
+  if (motion.velocities.size() != particles) return wrong("velocities", as_many);
+  for (std::size_t i = 0; i < particles; ++i) {
+    const std::string at = '/' + std::to_string(i);
+    if (!are_at_most(motion.positions[i], kMaxLength)) {
+      return wrong("positions" + at, "three finite numbers of magnitude at most 1e6");
+    }
+    if (!(motion.velocities[i].norm() <= kMaxSpeed)) {
+      return wrong("velocities" + at, "finite and at most 1e4 m/s");
+    }
+    if (dimensions == 2 && (motion.positions[i].y() != 0 || motion.velocities[i].y() != 0)) {
+      return Error{"off_plane", "/state", "must stay in the plane y = 0 of the scene"};
+    }
+  }
+  return {};
+}
+
+Status check_motion(const BodyMotion& motion, BodyKind kind, std::size_t particles,
+                    int dimensions) {
+  if (kind != BodyKind::rigid) return check_columns(motion, particles, dimensions);
+  if (!motion.pose) return Error{"missing", "/state", "of a rigid body its pose is needed"};
+  return check_pose(*motion.pose, dimensions);
+}
+
+/// Where a rigid body's particles are in this pose.
+std::vector<Vec3> posed(const SampledBody& sample, const BodyDescription& body,
+                        const RigidPose& pose) {
+  Vec3 center = Vec3::Zero();
+  Real mass = 0;
+  for (std::size_t i = 0; i < sample.positions.size(); ++i) {
+    center += sample.masses[i] * sample.positions[i];
+    mass += sample.masses[i];
+  }
+  center /= mass;
+  const Quat turn = pose.orientation.normalized() * body.orientation.normalized().conjugate();
+  std::vector<Vec3> places;
+  for (const Vec3& place : sample.positions) {
+    places.push_back(pose.center_of_mass + turn * (place - center));
+  }
+  return places;
+}
+
+void set_motion(const BodyMotion& motion, const Model& model, const ModelBody& body,
+                Configuration& now) {
+  if (body.kind == BodyKind::rigid) {
+    const RigidModel& rigid = model.rigid_bodies[body.rigid];
+    RigidState& state = now.rigid[body.rigid];
+    state.center_of_mass = motion.pose->center_of_mass;
+    state.orientation = motion.pose->orientation.normalized();
+    const Mat3 turned = state.orientation.toRotationMatrix();
+    state.momentum = motion.pose->velocity / rigid.inverse_mass;
+    state.angular_momentum =
+        turned * (rigid.inertia * (turned.transpose() * motion.pose->angular_velocity));
+    return;
+  }
+  for (Index i = 0; i < body.particles.size(); ++i) {
+    const Index particle = body.particles.begin + i;
+    now.position[particle] = motion.positions[i];
+    if (model.inverse_mass[particle] > 0) now.velocity[particle] = motion.velocities[i];
+  }
+}
+
+}  // namespace
+
+Result<BodyId> Simulation::add_body(const BodyDescription& body, const BodyMotion& motion) {
+  Scene scene = impl_->all().scene;
+  Scene open = scene;
+  open.vat.reset();  // it may have begun where the vat is no more
+  Errors errors = find_body_errors(open, impl_->present(), body, "/body");
+  if (!errors.empty()) return errors;
+  const Material& material = scene.materials[material_index(scene.materials, body.material)];
+  const SampledBody sample = sample_body(body, material, scene.dimensions);
+  const std::size_t particles = sample.positions.size();
+  const Status status = check_motion(motion, body.kind, particles, scene.dimensions);
+  if (!status) return status.errors();
+  const bool is_rigid = body.kind == BodyKind::rigid;
+  const auto places = is_rigid ? posed(sample, body, *motion.pose) : motion.positions;
+  CurrentScene present = impl_->present();
+  present.bodies.push_back({places, sample.radii, sample.springs.size()});
+  scene.bodies.push_back(body);
+  errors = find_returned_errors(scene, present);
+  for (Error& error : errors) error.path = "/state";
+  if (!errors.empty()) return errors;
+  impl_->wake_all();
+  std::vector<BodyId> ids = impl_->ids();
+  const BodyId id = impl_->next_id++;
+  ids.push_back(id);
+  impl_->recompile(std::move(scene), ids);
+  set_motion(motion, *impl_->model, impl_->model->bodies.back(), impl_->state.now);
+  impl_->pose_rigid_particles();
+  return id;
+}
+
+}  // namespace vat

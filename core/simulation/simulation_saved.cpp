@@ -1,0 +1,179 @@
+// States of a simulation that are kept: snapshots, and their bytes.
+
+#include <algorithm>
+
+#include "core/model/compile.h"
+#include "core/saved/check_saved.h"
+#include "core/saved/scene_fields.h"
+#include "core/saved/sealed_bytes.h"
+#include "core/saved/state_fields.h"
+#include "core/simulation/simulation.h"
+#include "core/simulation/simulation_impl.h"
+#include "core/state/body_state.h"
+#include "core/stepping/step_plan.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+constexpr Seal kSeal{"vat.sim\n", 1, "a saved simulation"};
+
+}  // namespace
+
+template <>
+inline constexpr InstructionSet kLastOf<InstructionSet> = InstructionSet::avx512;
+
+Snapshot Simulation::snapshot() const {
+  return {std::make_shared<const Snapshot::Content>(*impl_), impl_->next_id,
+          impl_->work.instructions};
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+  VAT_CHECK(snapshot.instructions_ == impl_->work.instructions);
+  const Snapshot::Content& content = *snapshot.content_;
+  impl_->adopt(content, Impl::bounds_of(content), find_step_bounds(*content.model));
+  impl_->next_id = std::max(impl_->next_id, snapshot.next_id_);
+  impl_->show();
+}
+
+Snapshot::Snapshot(std::shared_ptr<const Content> content, BodyId next_id,
+                   InstructionSet instructions)
+    : content_(std::move(content)), next_id_(next_id), instructions_(instructions) {}
+Snapshot::Snapshot(const Snapshot&) = default;
+Snapshot::Snapshot(Snapshot&&) noexcept = default;
+Snapshot& Snapshot::operator=(const Snapshot&) = default;
+Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
+Snapshot::~Snapshot() = default;
+
+std::uint64_t Snapshot::state_hash() const {
+  return content_->hash();
+}
+const Scene& Snapshot::scene() const {
+  return content_->all().scene;
+}
+
+namespace {
+
+/// What a body has that its description does not tell: the sample of a liquid into which or from
+/// which something flowed, or which has melted. Its damping is that under the gravity that there
+/// was when it was compiled.
+SavedBody saved_body(const Model& model, std::size_t index) {
+  const ModelBody& body = model.bodies[index];
+  SavedBody saved{body.id, model.damping.own[index], {}};
+  if (body.sample == nullptr || body.is_as_described) return saved;
+  VAT_CHECK(body.kind == BodyKind::liquid);
+  saved.sample = *body.sample;
+  return saved;
+}
+
+/// The model of all bodies, as it was when it was saved.
+std::shared_ptr<const Model> compile_saved(Scene scene, std::vector<SavedBody> bodies) {
+  std::vector<BodyId> ids;
+  std::vector<std::shared_ptr<const SampledBody>> samples;
+  for (SavedBody& body : bodies) {
+    ids.push_back(body.id);
+    samples.push_back(body.sample ? std::make_shared<const SampledBody>(std::move(*body.sample))
+                                  : nullptr);
+  }
+  const std::shared_ptr<Model> model = compile(std::move(scene), ids, std::move(samples));
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Oscillation& own = model->damping.own[b];
+    model->damping.is_current = model->damping.is_current && own == bodies[b].damping;
+    own = bodies[b].damping;
+  }
+  forget_samples(*model);
+  return model;
+}
+
+Status bad_bytes(const LoadingArchive& archive) {
+  if (archive.failed()) return Error{"bad_value", "", "the saved simulation's values end early"};
+  if (archive.left() > 0) return Error{"bad_value", "", "there is more than one simulation"};
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> Snapshot::to_bytes() const {
+  std::vector<std::uint8_t> bytes = begin_sealed(kSeal);
+  SavingArchive archive(bytes);
+  const Model& all = content_->all();
+  std::vector<SavedBody> bodies;
+  for (std::size_t b = 0; b < all.bodies.size(); ++b) bodies.push_back(saved_body(all, b));
+  archive(instructions_, content_->hash(), all.scene, next_id_, bodies,
+          content_->sleepers != nullptr);
+  if (content_->sleepers) archive(content_->sleepers->configuration, content_->sleepers->islands);
+  archive(content_->state, content_->controls);
+  if (all.scene.vat && all.scene.vat->hand) archive(*all.scene.vat->hand);
+  close_seal(bytes);
+  return bytes;
+}
+
+Result<Simulation> Simulation::load(std::span<const std::uint8_t> bytes, TaskRunner* runner,
+                                    std::optional<InstructionSet> instructions) {
+  const auto content = open_sealed(kSeal, bytes);
+  if (!content) return content.errors();
+  LoadingArchive archive(content.value());
+  InstructionSet saved{};
+  archive(saved);
+  if (archive.failed()) {
+    return Error{"bad_value", "/instruction_set", "must be one that this program knows"};
+  }
+  if (instructions.value_or(saved) != saved) {
+    return Error{"other_instruction_set", "/instruction_set",
+                 std::string("the simulation was saved with the instruction set ") +
+                     to_string(saved) + ", not " + to_string(*instructions)};
+  }
+  if (Status available = check_available(saved); !available) return available.errors();
+  Simulation simulation;
+  Impl& impl = *simulation.impl_;
+  impl.runner = runner;
+  impl.work.instructions = impl.measured.instructions = saved;
+  if (Status loaded = impl.load(archive); !loaded) return loaded.errors();
+  return simulation;
+}
+
+Status Simulation::Impl::load(LoadingArchive& archive) {
+  std::uint64_t saved_hash = 0;
+  Scene scene;
+  std::vector<SavedBody> bodies;
+  bool some_sleep = false;
+  Configuration configuration;
+  std::vector<Index> islands;
+  archive(saved_hash, scene, next_id, bodies, some_sleep);
+  if (some_sleep) archive(configuration, islands);
+  Content content;
+  archive(content.state, content.controls);
+  std::optional<HandMotion> hand;  // what users do comes last, as it came into the format
+  if (archive.left() > 0 && scene.vat) archive(hand.emplace());
+  if (Status status = bad_bytes(archive); !status) return status;
+  if (hand) {
+    if (Status status = check_saved_hand(*hand); !status) return status;
+    scene.vat->hand = hand;
+  }
+  if (Status status = check_saved_scene(scene, bodies, next_id); !status) return status;
+
+  content.model = compile_saved(std::move(scene), std::move(bodies));
+  if (some_sleep) {
+    if (Status status = check_saved_sleepers(*content.model, configuration, islands); !status) {
+      return status;
+    }
+    content.sleepers = std::make_shared<const Sleepers>(content.model, std::move(configuration),
+                                                        std::move(islands));
+    content.model = compile_awake(*content.model, content.sleepers->islands);
+  }
+  if (!content.state.forces_current) content.state.forces = no_forces(*content.model);
+  if (Status status = check_saved_state(*content.model, content.state); !status) return status;
+  if (Status status = check_saved_controls(*content.model, content.controls); !status) {
+    return status;
+  }
+  if (content.hash() != saved_hash) {
+    return Error{"bad_value", "/hash", "the state does not have the hash that it was saved with"};
+  }
+  GuardBounds content_bounds = bounds_of(content);
+  StepBounds content_step_bounds = find_step_bounds(*content.model);
+  adopt(std::move(content), std::move(content_bounds), std::move(content_step_bounds));
+  show();
+  return {};
+}
+
+}  // namespace vat

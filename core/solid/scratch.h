@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "core/stage/scratch.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// Buffers of deformable bodies.
+struct SolidScratch {
+  static constexpr Method kMethod = Method::solid;
+
+  std::vector<Real> cell_pressure;  ///< by cell [Pa]
+  /// n of Boldt eq. 3, by end that its block asked for; where dampers are kept.
+  std::vector<Vec3> spring_directions;
+};
+
+}  // namespace vat

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/stage/scratch.h"
+#include "core/support/parallel.h"
+#include "core/types.h"
+
+namespace vat {
+
+struct Configuration;
+struct Controls;
+struct Forces;
+struct Model;
+
+/// What a stage sees.
+struct StepContext {
+  const Model& model;
+  const Controls& controls;
+  Real time;           ///< [s]
+  std::uint64_t step;  ///< the nominal step being taken
+  Configuration& configuration;
+  Forces& forces;
+  Scratch& work;
+  TaskRunner* runner;
+};
+
+}  // namespace vat

@@ -1,0 +1,48 @@
+#include "core/stage/plan.h"
+
+#include <array>
+
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
+    "position",       "velocity",        "rigid_state",   "force",          "liquid_cells",
+    "solid_cells",    "pair_clusters",   "pair_motion",   "liquid_pairs",   "density",
+    "filled_density", "pressure",        "liquid_solids", "solid_pressure", "transport",
+    "surface",        "surface_normals", "contact_list",  "mobility",       "cell_pressure",
+    "rigid_force",    "kept_pressure"};
+
+std::string join(const std::vector<Column>& columns) {
+  std::string text;
+  for (const Column column : columns) {
+    if (!text.empty()) text += ' ';
+    text += kColumnNames[static_cast<std::size_t>(column)];
+  }
+  return text;
+}
+
+}  // namespace
+
+PlanBuilder::PlanBuilder(std::initializer_list<Column> given) {
+  for (const Column column : given) written_[static_cast<std::size_t>(column)] = true;
+}
+
+void PlanBuilder::add(std::string_view name, std::initializer_list<Column> reads,
+                      std::initializer_list<Column> writes, StageFunction run) {
+  for (const Column column : reads) VAT_CHECK(written_[static_cast<std::size_t>(column)]);
+  for (const Column column : writes) written_[static_cast<std::size_t>(column)] = true;
+  plan_.stages.push_back({name, reads, writes, run});
+}
+
+std::string to_text(const StepPlan& plan) {
+  std::string text;
+  for (const Stage& stage : plan.stages) {
+    text += stage.name;
+    text += "\n  reads  " + join(stage.reads) + "\n  writes " + join(stage.writes) + "\n";
+  }
+  return text;
+}
+
+}  // namespace vat

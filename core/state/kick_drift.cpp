@@ -1,0 +1,45 @@
+#include "core/state/kick_drift.h"
+
+#include "core/state/rigid_motion.h"
+
+namespace vat {
+
+void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt) {
+  for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      configuration.position[i] += dt * configuration.velocity[i];
+    }
+  });
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = model.rigid_bodies[b];
+    RigidState& state = configuration.rigid[b];
+    state.center_of_mass += (dt * rigid.inverse_mass) * state.momentum;
+    // A held body at rest stays to the bit.
+    if (rigid.free_from > 0 && state.angular_momentum.isZero(0)) continue;
+    state.orientation = rotate_freely(rigid, state.orientation, state.angular_momentum, dt);
+  }
+}
+
+void move_with_transport(const Model& model, TaskRunner* runner, const Forces& forces,
+                         Configuration& configuration, Real dt) {
+  for_blocks(runner, forces.transport.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (model.inverse_mass[i] > 0) configuration.position[i] += dt * forces.transport[i];
+    }
+  });
+}
+
+void kick(const Model& model, TaskRunner* runner, const Forces& forces,
+          Configuration& configuration, Real dt) {
+  for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      configuration.velocity[i] += (dt * model.inverse_mass[i]) * forces.particle[i];
+    }
+  });
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    configuration.rigid[b].momentum += dt * forces.rigid_force[b];
+    configuration.rigid[b].angular_momentum += dt * forces.rigid_torque[b];
+  }
+}
+
+}  // namespace vat

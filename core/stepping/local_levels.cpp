@@ -1,0 +1,49 @@
+#include "core/stepping/local_levels.h"
+
+#include <algorithm>
+
+namespace vat {
+namespace {
+
+std::uint8_t small_level_of(Real step, Real dt) {
+  return static_cast<std::uint8_t>(level_of(step, dt));
+}
+
+/// Raises levels of free particles to what their neighbours' allow; true where it raised any.
+bool raise_neighbours(const Model& model, std::vector<std::uint8_t>& level) {
+  bool raised = false;
+  for (Index i = model.liquid_count; i < model.free_count; ++i) {
+    if (model.inverse_mass[i] == 0) continue;
+    int least = level[i];
+    for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+      least = std::max(least, level[model.spring_ends[s].other] - kMaxLevelDifference);
+    }
+    raised = raised || least > level[i];
+    level[i] = static_cast<std::uint8_t>(least);
+  }
+  return raised;
+}
+
+}  // namespace
+
+void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
+                         LocalLevels& levels) {
+  levels.particle.resize(model.particle_count);
+  for (Index i = 0; i < model.free_count; ++i) {
+    levels.particle[i] = model.inverse_mass[i] == 0 ? 0 : small_level_of(steps.particle[i], dt);
+  }
+  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = model.rigid_bodies[b];
+    const std::uint8_t level = rigid.inverse_mass == 0 ? 0 : small_level_of(steps.rigid[b], dt);
+    std::fill(levels.particle.begin() + rigid.particles.begin,
+              levels.particle.begin() + rigid.particles.end, level);
+  }
+  levels.liquid = model.liquid_count > 0 ? small_level_of(steps.liquid, dt) : 0;
+  if (model.spring_ends.empty()) return;
+  const auto [coarsest, finest] = std::ranges::minmax(levels.particle);
+  if (finest - coarsest <= kMaxLevelDifference) return;
+  while (raise_neighbours(model, levels.particle)) {
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,365 @@
+#include "core/stepping/step_control.h"
+#include "core/contact/scratch.h"
+#include "core/state/controls.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/contacts.h"
+#include "core/damping/damping_solve.h"
+#include "core/limits.h"
+#include "core/liquid/gas/liquid.h"
+#include "core/numerics/error_model.h"
+#include "core/numerics/step_limits.h"
+#include "core/rigid/rigid.h"
+#include "core/state/rigid_motion.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+constexpr Real kTravelShare = 0.5;         // of the guard's: two bodies may approach each other
+constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, by each of two particles
+constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by a percent in a step
+constexpr Real kGreatestTurn = 0.5;               // [rad] a step; the guard's is 1
+
+/// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they start.
+template <class Constant>
+Real spring_load(const Model& model, const ModelBody& body, Index i, Constant&& constant) {
+  const std::vector<Vec3>& at = body.sample->positions;
+  const Index first = body.particles.begin;
+  Mat3 load = Mat3::Zero();
+  for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
+    const SpringEnd& spring = model.spring_ends[s];
+    const Vec3 x = at[i - first] - at[spring.other - first];
+    const Real length2 = x.squaredNorm();
+    load += constant(spring) *
+            (length2 > 0 ? Mat3(x * x.transpose() / length2) : Mat3(Mat3::Identity()));
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(load, Eigen::EigenvaluesOnly);
+  return 2 * solver.eigenvalues()[2] * model.inverse_mass[i];
+}
+
+/// With the sound of a liquid that is compressed.
+Oscillation compressed(const Model& model, const Oscillation& liquid) {
+  if (model.is_coupled) return liquid;  // its bound allows for that
+  const Real share = compressed_step_share(model.scene.dimensions);
+  return {liquid.omega2 / (share * share), liquid.rate};
+}
+
+/// What is left of bodies' own bounds for the length of steps; see OscillatingPart::limiting().
+Oscillation limiting(const Model& model, const Oscillation& own) {
+  return {own.omega2, solves_damping(model.scene) ? 0 : own.rate};
+}
+
+Real travel_share(const Model& model) {
+  return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
+}
+
+/// Those of a body's particles, which all have the same.
+void bound_liquid(const Model& model, std::size_t b, StepBounds& bounds) {
+  const IndexRange& particles = model.bodies[b].particles;
+  const bool has_level_of_its_own = model.scene.numerics.control == StepControl::local;
+  const Oscillation own = has_level_of_its_own
+                              ? Oscillation{}
+                              : limiting(model, compressed(model, model.damping.own[b]));
+  const Real step = safe_step(model.scene.numerics, own);
+  const Real step_at_rest = safe_step(model.scene.numerics, {});
+  for (Index i = particles.begin; i < particles.end; ++i) {
+    const bool is_free = model.inverse_mass[i] > 0;
+    bounds.own[i] = is_free ? own : Oscillation{};
+    bounds.own_step[i] = is_free ? step : step_at_rest;
+  }
+}
+
+void bound_deformable(const Model& model, const ModelBody& body, StepBounds& bounds) {
+  const Oscillation cells{
+      model.scene.forces.springs && !body.sample->cells.empty()
+          ? bound_cells(*body.sample, model.scene.materials[body.material].bulk_modulus,
+                        model.scene.dimensions)
+          : 0,
+      0};
+  for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+    Oscillation own;
+    if (model.inverse_mass[i] > 0) {
+      if (i < model.implicit_begin && model.spring_begin[i] != model.spring_begin[i + 1]) {
+        own = {spring_load(model, body, i, [](const SpringEnd& s) { return s.stiffness; }),
+               spring_load(model, body, i, [](const SpringEnd& s) { return s.damping; })};
+      }
+      own.omega2 += cells.omega2;
+    }
+    bounds.own[i] = limiting(model, own);
+    bounds.own_step[i] = safe_step(model.scene.numerics, bounds.own[i]);
+  }
+}
+
+Real find_scene_step(const Model& model) {
+  const Numerics& numerics = model.scene.numerics;
+  Real step = kInfinity;
+  if (model.scene.forces.gravity && model.scene.central_field &&
+      model.scene.central_field->angular_frequency > 0) {
+    step = resolving_phase_of_places(numerics) / model.scene.central_field->angular_frequency;
+  }
+  for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
+    if (model.bodies[b].kind == BodyKind::liquid) continue;
+    const Oscillation own = limiting(model, compressed(model, model.damping.own[b]));
+    step = std::min(step, safe_step(numerics, own));
+  }
+  return step;
+}
+
+void bound_body(const Model& model, std::size_t b, StepBounds& bounds) {
+  const ModelBody& body = model.bodies[b];
+  if (body.kind == BodyKind::liquid) bound_liquid(model, b, bounds);
+  if (body.kind == BodyKind::deformable) bound_deformable(model, body, bounds);
+}
+
+}  // namespace
+
+StepBounds find_step_bounds(const Model& model) {
+  StepBounds bounds;
+  if (model.scene.numerics.control == StepControl::fixed) return bounds;
+  bounds.own.resize(model.free_count);
+  bounds.own_step.resize(model.free_count);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) bound_body(model, b, bounds);
+  bounds.scene_step = find_scene_step(model);
+  return bounds;
+}
+
+StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds bounds) {
+  if (model.scene.numerics.control == StepControl::fixed) return bounds;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const bool is_liquid = model.bodies[b].kind == BodyKind::liquid;
+    if (b == body || is_liquid) bound_body(model, b, bounds);
+  }
+  bounds.scene_step = find_scene_step(model);
+  return bounds;
+}
+
+namespace {
+
+/// The time in which a particle at `speed` with `acceleration` travels `way`.
+Real travel_time(Real way, Real speed, Real acceleration) {
+  return 2 * way / (speed + std::sqrt(speed * speed + 4 * acceleration * way));
+}
+
+/// What a state says about one body's steps.
+struct PresentBounds {
+  const Model& model;
+  const State& state;
+  const StepBounds& bounds;
+  const GuardBounds& guard;
+
+  /// With local control, forces are kept in parts.
+  bool forces_known() const {
+    return state.forces_current && model.scene.numerics.control != StepControl::local;
+  }
+  Real acceleration(Index i) const {
+    return forces_known() ? model.inverse_mass[i] * state.forces.particle[i].norm() : 0;
+  }
+};
+
+void limit_free_travel(const PresentBounds& present, TaskRunner* runner, std::vector<Real>& steps) {
+  for_blocks(runner, present.model.free_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Index>(k);
+      const Real way = kTravelShare * present.guard.travel[present.model.body[i]];
+      const Real speed = present.state.now.velocity[i].norm();
+      steps[i] = std::min({present.bounds.own_step[i], present.bounds.scene_step,
+                           travel_time(way, speed, present.acceleration(i))});
+    }
+  });
+}
+
+void limit_rigid_travel(const PresentBounds& present, std::vector<Real>& steps) {
+  for (std::size_t b = 0; b < present.model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = present.model.rigid_bodies[b];
+    const RigidState& state = present.state.now.rigid[b];
+    const Real turning = angular_velocity(rigid, state.orientation, state.angular_momentum).norm();
+    const Real speed =
+        rigid.inverse_mass * state.momentum.norm() + present.guard.extent[b] * turning;
+    const Real acceleration = present.forces_known()
+                                  ? rigid.inverse_mass * present.state.forces.rigid_force[b].norm()
+                                  : 0;
+    const Real way = kTravelShare * present.guard.travel[rigid.body];
+    steps[b] = std::min({present.bounds.scene_step, travel_time(way, speed, acceleration),
+                         turning > 0 ? kGreatestTurn / turning : kInfinity});
+  }
+}
+
+Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
+  Vec3 sum = Vec3::Zero();
+  for (Index i = 0; i < model.liquid_count; ++i) sum += now.velocity[i];
+  return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
+}
+
+/// What one in kRare of a liquid's particles exceed: greater ones are impacts, gone before they can
+/// shake the lattice.
+Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& particles,
+                      std::vector<Real>& scratch) {
+  constexpr Index kRare = 100;
+  if (particles.size() == 0) return 0;
+  scratch.assign(pressure.begin() + particles.begin, pressure.begin() + particles.end);
+  const auto place = scratch.begin() + (particles.size() - 1 - (particles.size() - 1) / kRare);
+  std::ranges::nth_element(scratch, place);
+  return *place;
+}
+
+/// Of a body's own forces: sound and viscosity, or the pressure, where viscosity is solved for.
+Oscillation liquid_bound(const PresentBounds& present, std::size_t body,
+                         std::vector<Real>& scratch) {
+  const Model& model = present.model;
+  if (!model.is_incompressible) return compressed(model, model.damping.own[body]);
+  const ModelBody& liquid = model.bodies[body];
+  const Real pressure = lasting_pressure(present.state.now.pressure, liquid.particles, scratch);
+  const LiquidModel& constants = *model.liquids[liquid.material];
+  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius), 0};
+}
+
+Real liquid_step(const PresentBounds& present, std::vector<Real>& scratch) {
+  const Vec3 mean = mean_liquid_velocity(present.model, present.state.now);
+  Real step = kInfinity;
+  for (std::size_t b = 0; b < present.model.bodies.size(); ++b) {
+    const ModelBody& body = present.model.bodies[b];
+    if (body.kind != BodyKind::liquid) continue;
+    Real speed2 = 0;
+    Real acceleration = 0;
+    for (Index i = body.particles.begin; i < body.particles.end; ++i) {
+      speed2 = std::max(speed2, (present.state.now.velocity[i] - mean).squaredNorm());
+      acceleration = std::max(acceleration, present.acceleration(i));
+    }
+    const Real way =
+        travel_share(present.model) * present.model.liquids[body.material]->support_radius;
+    step =
+        std::min({step, safe_step(present.model.scene.numerics, liquid_bound(present, b, scratch)),
+                  travel_time(way, std::sqrt(speed2), acceleration)});
+  }
+  return step;
+}
+
+void limit_grabs(const ForceModel& f, PresentSteps& steps) {
+  for (const Grab& grab : f.controls.grabs) {
+    const Real step = safe_step(f.model.scene.numerics,
+                                {grab.stiffness / grab.held_mass, grab.damping / grab.held_mass});
+    const ModelBody& body = f.model.bodies[grab.body];
+    if (body.kind == BodyKind::rigid) {
+      steps.rigid[body.rigid] = std::min(steps.rigid[body.rigid], step);
+      continue;
+    }
+    for (const Index held : grab.held) {
+      Real& own = steps.particle[body.particles.begin + held];
+      own = std::min(own, step);
+    }
+  }
+}
+
+/// How far any two particles that may touch can approach each other in a step of `longest`, and no
+/// more than in the steps that their travel allows.
+Real greatest_approach(const PresentBounds& present, Real longest) {
+  Real greatest = 0;
+  const auto take = [&](Index body, Real speed) {
+    greatest =
+        std::max(greatest, std::min(speed * longest, kTravelShare * present.guard.travel[body]));
+  };
+  const Real gained = present.model.scene.gravity.norm() * longest;
+  for (Index i = 0; i < present.model.free_count; ++i) {
+    take(present.model.body[i], present.state.now.velocity[i].norm() + gained);
+  }
+  for (std::size_t b = 0; b < present.model.rigid_bodies.size(); ++b) {
+    const RigidModel& rigid = present.model.rigid_bodies[b];
+    for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
+      take(rigid.body, present.state.now.velocity[i].norm() + gained);
+    }
+  }
+  return 2 * greatest;
+}
+
+}  // namespace
+
+Real greatest_base_step(const ForceModel& f, const State& state, const StepBounds& bounds) {
+  const Model& model = f.model;
+  Real step = bounds.scene_step;
+  for (const Grab& grab : f.controls.grabs) {
+    step = std::min(step, safe_step(model.scene.numerics, {grab.stiffness / grab.held_mass,
+                                                           grab.damping / grab.held_mass}));
+  }
+  if (model.contact_reach <= 0) return step;
+  Real speed2 = 0;
+  for (const Vec3& velocity : state.now.velocity) speed2 = std::max(speed2, velocity.squaredNorm());
+  const Real pull = model.scene.forces.gravity ? model.scene.gravity.norm() : 0;
+  return std::min(step, travel_time(model.contact_reach / 2, std::sqrt(speed2), pull));
+}
+
+Real PresentSteps::least() const {
+  Real least = liquid;
+  for (const Real step : particle) least = std::min(least, step);
+  for (const Real step : rigid) least = std::min(least, step);
+  return least;
+}
+
+void find_present_steps(const ForceModel& f, State& state, Real time, Real longest,
+                        const StepBounds& bounds, const GuardBounds& guard, PresentSteps& steps) {
+  const Model& model = f.model;
+  StepContext context{model, f.controls, time, f.step, state.now, state.forces, f.work, f.runner};
+  pose_rigid_bodies(context);
+  const PresentBounds present{model, state, bounds, guard};
+  steps.particle.resize(model.free_count);
+  steps.rigid.resize(model.rigid_bodies.size());
+  limit_free_travel(present, f.runner, steps.particle);
+  limit_rigid_travel(present, steps.rigid);
+  steps.liquid = liquid_step(present, steps.pressures);
+  limit_grabs(f, steps);
+  const Real approach = greatest_approach(present, longest);
+  if (model.contact_reach > 0 &&
+      !f.work.of<ContactForceScratch>().contacts.is_current(context, approach)) {
+    if (model.liquid_count > 0) sort_liquid(context);
+    f.work.of<ContactForceScratch>().contacts.update(context, approach);
+  }
+  find_contact_steps(f, state.now, time, {longest, approach}, bounds, steps.contacts,
+                     steps.particle, steps.rigid);
+}
+
+Real without_viscosity_solve(const Model& model, Real step) {
+  if (!model.is_incompressible || !must_solve_own_damping(model, step)) return step;
+  Real longest = step;
+  for (const auto& [omega2, rate] : model.damping.own) {
+    if (rate > 0) longest = std::min(longest, 2 / (rate + std::sqrt(rate * rate + omega2)));
+  }
+  constexpr Real kRounding = 1e-9;
+  return longest > step / 2 ? (1 - kRounding) * longest : step;
+}
+
+std::uint32_t level_of(Real step, Real nominal) {
+  std::uint32_t level = 0;
+  while (level < kMaxStepLevel && std::ldexp(nominal, -static_cast<int>(level)) > step) ++level;
+  return level;
+}
+
+namespace {
+
+std::uint32_t steps_of(Real step, Real left, Real nominal) {
+  constexpr Real kRounding = 1e-9;
+  if (!(step < left)) return 1;  // nor is what is not a number: the guard deals with such states
+  const Real longest = std::max(step, std::ldexp(nominal, -kMaxStepLevel));
+  return static_cast<std::uint32_t>(std::ceil(left / longest * (1 - kRounding)));
+}
+
+}  // namespace
+
+std::uint32_t choose_step_count(Real wanted, Real left, Real nominal, StepHistory& history) {
+  const std::uint32_t needed = steps_of(wanted, left, nominal);
+  std::uint32_t count = history.step > 0 ? steps_of(history.step, left, nominal) : needed;
+  if (needed > count) {
+    count = needed;
+    history.held = 0;
+  } else if (needed < count && history.held >= kHeldSteps) {
+    count = std::max(needed, (count + 1) / 2);
+    history.held = 0;
+  }
+  history.step = left / count;
+  return count;
+}
+
+}  // namespace vat

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "core/validation/validate.h"
+
+namespace vat {
+
+/// Adds a warning, code no_effect, for each setting that changes nothing in this scene.
+void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings);
+
+}  // namespace vat

@@ -1,0 +1,91 @@
+#include <algorithm>
+
+#include "core/limits.h"
+#include "core/numerics/pair_limits.h"
+#include "core/scene/lookup.h"
+#include "core/validation/validate.h"
+#include "core/validation/validate_parts.h"
+
+namespace vat {
+namespace {
+
+/// A liquid whose particles are known: its description only names it, and places what comes.
+void check_known(const Scene& scene, const BodyDescription& body, const std::string& path,
+                 RangeCheck& check) {
+  check.text(body.name, kMaxNameLength, false, path + "/name");
+  const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
+  const bool is_liquid = body.kind == BodyKind::liquid && !body.melting &&
+                         material != scene.materials.end() && material->liquid;
+  if (!is_liquid) check.add("not_liquid", path, "must be a liquid, of a material for liquids");
+  if (body.radius) check.real(*body.radius, kMinLength, kMaxLength, path + "/radius");
+}
+
+/// The parts that bodies have nothing to do with.
+Scene without_bodies(const Scene& scene) {
+  Scene world = scene;
+  world.bodies.clear();
+  world.emitters.clear();
+  world.numerics.accuracy.reset();  // it has chosen
+  return world;
+}
+
+/// One in which bodies may start anywhere, and flow as fast as they like.
+Scene without_bounds(const Scene& scene) {
+  Scene open = scene;
+  open.vat.reset();
+  open.numerics.step = kMinStep;
+  return open;
+}
+
+}  // namespace
+
+Errors find_numerics_errors(const Scene& scene) {
+  Errors errors = find_errors(without_bodies(scene));
+  const std::string own = "/numerics";
+  for (Error& error : errors) {
+    if (error.path == own + "/integrator" || error.path == own + "/step") {
+      error.path = error.path.substr(own.size());
+      continue;
+    }
+    error.message = error.path + " would be wrong: " + error.message;
+    error.path = error.path == own + "/tick" ? "/step" : "/integrator";
+  }
+  return errors;
+}
+
+Errors find_changed_errors(const Scene& scene, const std::vector<const SampledBody*>& known) {
+  Errors errors = find_errors(without_bodies(scene));
+  if (!errors.empty()) return errors;
+  RangeCheck check(errors);
+  if (scene.bodies.size() > kMaxBodies) check.add("too_many", "/bodies", "too many bodies");
+  const Scene open = without_bounds(scene);
+  const bool levels_are_own =
+      scene.numerics.control == StepControl::local && scene.pressure_solver != PressureSolver::gas;
+  std::vector<SampledBody> samples(scene.bodies.size());
+  std::vector<PairBody> pairs;
+  Allowance total;
+  for (std::size_t b = 0; b < scene.bodies.size() && errors.empty(); ++b) {
+    const BodyDescription& body = scene.bodies[b];
+    const std::string path = body_path(b);
+    if (levels_are_own && body.kind == BodyKind::liquid) {
+      check.add("not_allowed", path + "/kind", "a liquid needs other steps or the solver \"gas\"");
+    }
+    const SampledBody* sample = known[b];
+    if (sample != nullptr) {
+      check_known(scene, body, path, check);
+    } else {
+      Allowance own;
+      samples[b] = check_body(open, Vec3::Zero(), body, path, own, check).value_or(SampledBody{});
+      sample = &samples[b];
+    }
+    total.take_particles(sample->positions.size());
+    total.take_springs(sample->springs.size());
+    total.check_totals("/bodies", check);
+    pairs.push_back({&body, sample->positions, sample->radii});
+  }
+  if (errors.empty()) check_flow(open, errors);
+  if (errors.empty()) check_periods(scene, pairs, "/periodic/max", check);
+  return errors;
+}
+
+}  // namespace vat

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/support/check.h"
+
+/// The entropy coder of FRAMES.md: three interleaved range coders of the asymmetric
+/// numeral kind (J. Duda, arXiv:1311.2540), with frequencies of 12 bits and words of 16.
+namespace vat::rans {
+
+inline constexpr int kScaleBits = 12;
+inline constexpr std::uint32_t kScale = 1U << kScaleBits;
+inline constexpr std::uint32_t kMinState = 1U << 15;  // states are from here to 2^31
+inline constexpr std::size_t kLanes = 3;
+inline constexpr std::size_t kStateBytes = 4 * kLanes;
+
+/// Takes symbols in their order and writes them backwards, as the decoder needs it.
+class Encoder {
+ public:
+  void clear() { symbols_.clear(); }
+  /// A symbol that has `frequency` of 4096, from `start` on.
+  void put(std::uint32_t lane, std::uint32_t start, std::uint32_t frequency) {
+    symbols_.push_back(start | frequency << 12 | lane << 25);
+  }
+  /// Appends the states and the words.
+  void finish(std::vector<std::uint8_t>& bytes);
+
+ private:
+  std::vector<std::uint32_t> symbols_;
+  std::vector<std::uint16_t> words_;
+};
+
+/// Reads symbols. Past the end it reads zeros, and ended_early() stays true.
+class Decoder {
+ public:
+  /// The bytes are states and words; fewer than states need have ended early.
+  explicit Decoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), left_(bytes.size()) {
+    for (std::uint32_t& state : states_) {
+      const std::uint32_t low = word();
+      state = low | word() << 16;
+    }
+  }
+  /// Whether every state is one that an encoder leaves behind.
+  bool states_are_valid() const {
+    for (const std::uint32_t state : states_) {
+      if (state < kMinState || state >> 31 != 0) return false;
+    }
+    return true;
+  }
+
+  std::uint32_t slot(std::uint32_t lane) const { return states_[lane] & (kScale - 1); }
+  void take(std::uint32_t lane, std::uint32_t start, std::uint32_t frequency) {
+    std::uint32_t state = states_[lane];
+    state = frequency * (state >> kScaleBits) + (state & (kScale - 1)) - start;
+    if (state < kMinState) state = state << 16 | word();
+    states_[lane] = state;
+  }
+
+  bool ended_early() const { return ended_early_; }
+  std::size_t bytes_left() const { return left_; }
+  /// Where all symbols have been read, the encoder's first states are left.
+  bool is_at_start() const {
+    return states_ == std::array<std::uint32_t, kLanes>{kMinState, kMinState, kMinState};
+  }
+
+ private:
+  std::uint32_t word() {
+    if (left_ < 2) {
+      ended_early_ = true;
+      left_ = 0;
+      return 0;
+    }
+    const std::uint32_t value = next_[0] | static_cast<std::uint32_t>(next_[1]) << 8;
+    next_ += 2;
+    left_ -= 2;
+    return value;
+  }
+
+  const std::uint8_t* next_;
+  std::size_t left_;
+  std::array<std::uint32_t, kLanes> states_{};
+  bool ended_early_ = false;
+};
+
+}  // namespace vat::rans

@@ -1,0 +1,268 @@
+#include "protocol/scene/scene_json.h"
+
+#include <set>
+
+#include "core/limits.h"
+#include "core/numerics/choose_numerics.h"
+#include "core/validation/validate.h"
+#include "protocol/scene/scene_parts.h"
+
+namespace vat {
+namespace {
+
+/// The scene as far as it was read without errors. `..._at` holds, for each element that was kept,
+/// its place in the document.
+struct PartialScene {
+  Scene scene;
+  std::vector<std::size_t> materials_at;
+  std::vector<std::size_t> interfaces_at;
+  std::vector<std::size_t> bodies_at;
+  std::vector<std::size_t> emitters_at;
+  std::vector<std::size_t> drains_at;
+  /// Names that the document defines though their material could not be read.
+  std::set<std::string> broken_materials;
+  bool material_names_known = true;
+  bool body_names_known = true;  ///< all bodies were read without errors
+};
+
+/// Whether every name that an element refers to was read, or is certainly not there.
+bool can_be_checked(const PartialScene& partial, const std::string& material) {
+  for (const Material& known : partial.scene.materials) {
+    if (known.name == material) return true;
+  }
+  return partial.material_names_known && partial.broken_materials.count(material) == 0;
+}
+
+/// Calls `read(element, path)` for each element of the list `key`, and `keep(value, index, intact)`
+/// with what it gave.
+template <class Read, class Keep>
+void for_elements(ObjectReader& reader, const Json* list, std::string_view key,
+                  const Errors& errors, Read&& read, Keep&& keep) {
+  if (list == nullptr) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::size_t errors_before = errors.size();
+    auto value = read((*list)[i], pointer_to(reader.path_of(key), i));
+    const bool intact = errors.size() == errors_before && errors.size() < kMaxReadErrors;
+    keep(std::move(value), i, intact);
+  }
+}
+
+void read_materials(ObjectReader& reader, PartialScene& partial, Errors& errors) {
+  const Json* list = reader.array("materials", kMaxMaterials, true);
+  partial.material_names_known = list != nullptr;
+  for_elements(
+      reader, list, "materials", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_material(value, path, errors);
+      },
+      [&](Material material, std::size_t at, bool intact) {
+        if (intact) {
+          partial.scene.materials.push_back(std::move(material));
+          partial.materials_at.push_back(at);
+        } else if (material.name.empty()) {
+          partial.material_names_known = false;
+        } else {
+          partial.broken_materials.insert(material.name);
+        }
+      });
+}
+
+void read_interfaces(ObjectReader& reader, PartialScene& partial, Errors& errors) {
+  for_elements(
+      reader, reader.array("interfaces", scene_parts::kMaxInterfaces), "interfaces", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_interface(value, path, errors);
+      },
+      [&](InterfaceDescription interface, std::size_t at, bool intact) {
+        if (!intact || !can_be_checked(partial, interface.materials[0]) ||
+            !can_be_checked(partial, interface.materials[1])) {
+          return;
+        }
+        partial.scene.interfaces.push_back(std::move(interface));
+        partial.interfaces_at.push_back(at);
+      });
+}
+
+void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& partial,
+                 Errors& errors) {
+  const Json* list = reader.array("bodies", kMaxBodies, true);
+  partial.body_names_known = list != nullptr;
+  for_elements(
+      reader, list, "bodies", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_body(value, path, meshes, errors);
+      },
+      [&](BodyDescription body, std::size_t at, bool intact) {
+        const bool is_known = intact && can_be_checked(partial, body.material) &&
+                              (!body.melting || can_be_checked(partial, body.melting->into));
+        partial.body_names_known = partial.body_names_known && is_known;
+        if (!is_known) return;
+        partial.scene.bodies.push_back(std::move(body));
+        partial.bodies_at.push_back(at);
+      });
+}
+
+/// Whether a body could be checked, so that what names it can be.
+bool is_checked(const PartialScene& partial, const std::string& body) {
+  return partial.body_names_known ||
+         std::ranges::find(partial.scene.bodies, body, &BodyDescription::name) !=
+             partial.scene.bodies.end();
+}
+
+void read_flow(ObjectReader& reader, PartialScene& partial, Errors& errors) {
+  for_elements(
+      reader, reader.array("emitters", kMaxEmitters), "emitters", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_emitter(value, path, errors);
+      },
+      [&](Emitter emitter, std::size_t at, bool intact) {
+        if (!intact || !is_checked(partial, emitter.body)) return;
+        partial.scene.emitters.push_back(std::move(emitter));
+        partial.emitters_at.push_back(at);
+      });
+  for_elements(
+      reader, reader.array("drains", kMaxDrains), "drains", errors,
+      [&](const Json& value, const std::string& path) {
+        return scene_parts::to_drain(value, path, errors);
+      },
+      [&](Drain drain, std::size_t at, bool intact) {
+        if (!intact) return;
+        partial.scene.drains.push_back(std::move(drain));
+        partial.drains_at.push_back(at);
+      });
+}
+
+/// Reads the optional member `key`; `target` keeps its value where the member has errors.
+template <class Target, class Read>
+void read_part(ObjectReader& reader, std::string_view key, Target& target, const Errors& errors,
+               Read&& read) {
+  const Json* member = reader.member(key);
+  if (member == nullptr) return;
+  const std::size_t errors_before = errors.size();
+  auto value = read(*member, reader.path_of(key));
+  if (errors.size() == errors_before) target = std::move(value);
+}
+
+/// A choice of one of an enumeration's names, in its order.
+template <class Enum>
+void read_enum(ObjectReader& reader, std::string_view key,
+               std::initializer_list<std::string_view> names, Enum& value) {
+  value = static_cast<Enum>(reader.choice(key, names, static_cast<std::size_t>(value)));
+}
+
+/// What all liquids of the scene have in common.
+void read_liquid_model(ObjectReader& reader, Scene& scene) {
+  read_enum(reader, "pressure_solver", {"gas", "tait", "incompressible"}, scene.pressure_solver);
+  scene.printed_pressure_force =
+      reader.boolean("printed_pressure_force", scene.printed_pressure_force);
+  read_enum(reader, "kernel", {"wendland_c2", "cubic_spline"}, scene.kernel);
+  read_enum(reader, "pair_precision", {"single", "double"}, scene.pair_precision);
+  read_enum(reader, "surface_tension_model", {"curvature", "cohesion"}, scene.surface_model);
+}
+
+PartialScene read_document(const Json& document, const MeshSource& meshes, Errors& errors) {
+  PartialScene partial;
+  Scene& scene = partial.scene;
+  ObjectReader reader(document, "", errors);
+  reader.choice("format", {"vat.scene/1"});
+  scene.name = reader.text("name", kMaxNameLength, "");
+  scene.title = reader.text("title", kMaxTextLength, "");
+  scene.description = reader.text("description", kMaxTextLength, "");
+  read_liquid_model(reader, scene);
+  scene.dimensions = static_cast<int>(reader.count("dimensions", 2, 3, 3));
+  scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
+  read_materials(reader, partial, errors);
+  read_part(reader, "default_interface", scene.default_interface, errors,
+            [&](const Json& value, std::string path) {
+              return scene_parts::to_interface_constants(value, std::move(path), errors);
+            });
+  read_interfaces(reader, partial, errors);
+  read_part(reader, "vat", scene.vat, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_vat(value, std::move(path), errors);
+  });
+  read_part(reader, "periodic", scene.periodic, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_periodicity(value, std::move(path), errors);
+  });
+  read_part(reader, "central_field", scene.central_field, errors,
+            [&](const Json& value, std::string path) {
+              return scene_parts::to_central_field(value, std::move(path), errors);
+            });
+  read_part(reader, "settling", scene.settling, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_settling(value, std::move(path), errors);
+  });
+  read_part(reader, "sleeping", scene.sleeping, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_sleeping(value, std::move(path), errors);
+  });
+  read_part(reader, "incompressible", scene.incompressible, errors,
+            [&](const Json& value, std::string path) {
+              return scene_parts::to_incompressible(value, std::move(path), errors);
+            });
+  read_part(reader, "forces", scene.forces, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_force_switches(value, std::move(path), errors);
+  });
+  read_part(reader, "numerics", scene.numerics, errors, [&](const Json& value, std::string path) {
+    return scene_parts::to_numerics(value, std::move(path), errors);
+  });
+  read_bodies(reader, meshes, partial, errors);
+  read_flow(reader, partial, errors);
+  reader.refuse_unknown();
+  return partial;
+}
+
+/// A pointer into the partial scene as a pointer into the document.
+std::string document_path(const std::string& path, std::string_view list,
+                          const std::vector<std::size_t>& at) {
+  const std::string prefix = pointer_to("", list) + '/';
+  if (path.compare(0, prefix.size(), prefix) != 0) return path;
+  const std::size_t end = std::min(path.find('/', prefix.size()), path.size());
+  const std::size_t index = std::stoul(path.substr(prefix.size(), end - prefix.size()));
+  return pointer_to(pointer_to("", list), at.at(index)) + path.substr(end);
+}
+
+}  // namespace
+
+Result<Scene> read_scene(const Json& document, const MeshSource& meshes) {
+  Errors errors;
+  PartialScene partial = read_document(document, meshes, errors);
+  for (Error& error : find_errors(partial.scene)) {
+    std::string path = document_path(error.path, "materials", partial.materials_at);
+    path = document_path(path, "interfaces", partial.interfaces_at);
+    path = document_path(path, "bodies", partial.bodies_at);
+    path = document_path(path, "emitters", partial.emitters_at);
+    path = document_path(path, "drains", partial.drains_at);
+    add_error(errors, std::move(error.code), std::move(path), std::move(error.message));
+  }
+  if (!errors.empty()) return errors;
+  resolve_accuracy(partial.scene);
+  return std::move(partial.scene);
+}
+
+Result<Scene> read_scene_text(std::string_view text, const MeshSource& meshes) {
+  const Result<Json> document = parse_json(text, kSceneLimits);
+  if (!document) return document.errors();
+  return read_scene(document.value(), meshes);
+}
+
+Result<BodyDescription> read_body(const Json& document, const std::string& path,
+                                  const MeshSource& meshes) {
+  Errors errors;
+  BodyDescription body = scene_parts::to_body(document, path, meshes, errors);
+  if (!errors.empty()) return errors;
+  return body;
+}
+
+Result<InterfaceDescription> read_interface(const Json& document, const std::string& path) {
+  Errors errors;
+  InterfaceDescription interface = scene_parts::to_interface(document, path, errors);
+  if (!errors.empty()) return errors;
+  return interface;
+}
+
+Result<Material> read_material(const Json& document, const std::string& path) {
+  Errors errors;
+  Material material = scene_parts::to_material(document, path, errors);
+  if (!errors.empty()) return errors;
+  return material;
+}
+
+}  // namespace vat

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "protocol/json/json_reader.h"
+#include "protocol/scene/scene_json.h"
+
+/// Readers of the parts of a scene. Each adds what is wrong to `errors` and returns a value in any
+/// case, which is of use only if nothing was added.
+namespace vat::scene_parts {
+
+/// Limits that belong to the file format; those of the values themselves are in core/limits.h.
+inline constexpr std::size_t kMaxFileName = 256;
+inline constexpr std::size_t kMaxInterfaces = 4096;  // 64 materials and the vat, pair by pair
+
+/// The member as a list of points, each component at most `bound` in magnitude.
+std::vector<Vec3> read_vectors(ObjectReader& reader, std::string_view key, Real bound,
+                               bool required, Errors& errors);
+/// Not normalised: a length far from 1 is a mistake, which the core reports.
+Quat to_orientation(const Json& value, const std::string& path, Errors& errors);
+SpringConstants to_spring_constants(ObjectReader& reader);
+SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors);
+/// Of an interface without materials and threshold.
+InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors);
+Material to_material(const Json& value, std::string path, Errors& errors);
+InterfaceDescription to_interface(const Json& value, std::string path, Errors& errors);
+Vat to_vat(const Json& value, std::string path, Errors& errors);
+Periodicity to_periodicity(const Json& value, std::string path, Errors& errors);
+CentralField to_central_field(const Json& value, std::string path, Errors& errors);
+Settling to_settling(const Json& value, std::string path, Errors& errors);
+Sleeping to_sleeping(const Json& value, std::string path, Errors& errors);
+Emitter to_emitter(const Json& value, std::string path, Errors& errors);
+Drain to_drain(const Json& value, std::string path, Errors& errors);
+IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors);
+ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors);
+/// The member "integrator". Without a fallback it is required.
+IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback = {});
+Numerics to_numerics(const Json& value, std::string path, Errors& errors);
+/// `bound` is that of the field's values at its waves' crests.
+VectorField to_field(const Json& value, std::string path, Real bound, Errors& errors);
+Shape to_shape(const Json& value, const std::string& path, const MeshSource& meshes,
+               Errors& errors);
+BodyDescription to_body(const Json& value, const std::string& path, const MeshSource& meshes,
+                        Errors& errors);
+
+}  // namespace vat::scene_parts

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "server/server_metrics.h"
+#include "server/session/client_outbox.h"
+#include "server/session/rpc_message.h"
+
+namespace vat {
+
+/// Who sent a command, and is answered once. Moves with the command; one that is never answered
+/// (the client has gone) is taken off the client's commands in flight all the same.
+class PendingReply {
+ public:
+  /// Without an id nothing is sent: a notification.
+  PendingReply(std::shared_ptr<ClientOutbox> client, std::optional<Json> id,
+               ServerMetrics* metrics = nullptr)
+      : client_(std::move(client)), id_(std::move(id)), metrics_(metrics) {}
+  PendingReply(PendingReply&& other) noexcept
+      : client_(std::move(other.client_)),
+        id_(std::move(other.id_)),
+        metrics_(other.metrics_),
+        counted_bytes_(std::exchange(other.counted_bytes_, std::nullopt)) {}
+  PendingReply& operator=(PendingReply&& other) noexcept {
+    std::swap(client_, other.client_);
+    std::swap(id_, other.id_);
+    std::swap(metrics_, other.metrics_);
+    std::swap(counted_bytes_, other.counted_bytes_);
+    return *this;
+  }
+  ~PendingReply() { uncount(); }
+
+  const std::shared_ptr<ClientOutbox>& client() const { return client_; }
+
+  /// Counts the command, a message of `bytes`, as in flight until it is answered; the error if the
+  /// client has too much in flight.
+  std::optional<RpcError> count(std::size_t bytes, std::size_t max_commands,
+                                std::size_t max_bytes) {
+    if (const auto excess = client_->begin_command(bytes, max_commands, max_bytes)) {
+      return limit_reached(excess->limit, excess->maximum);
+    }
+    counted_bytes_ = bytes;
+    return {};
+  }
+
+  /// Whether somebody reads the answer.
+  bool wants_answer() const { return id_.has_value(); }
+
+  void answer(const RpcResult& result) {
+    if (metrics_ != nullptr) count_refusal(result);
+    uncount();  // first: the client may send the next command as soon as it has the answer
+    if (id_) client_->send(write_reply(*id_, result));
+  }
+
+ private:
+  void count_refusal(const RpcResult& result) {
+    const auto* error = std::get_if<RpcError>(&result);
+    if (error == nullptr || error->kind != ErrorKind::limit_reached) return;
+    metrics_->add_refusal(error->data.at("limit").get_ref<const std::string&>());
+  }
+  void uncount() {
+    if (counted_bytes_) client_->end_command(*std::exchange(counted_bytes_, std::nullopt));
+  }
+
+  std::shared_ptr<ClientOutbox> client_;
+  std::optional<Json> id_;
+  ServerMetrics* metrics_;  // null: what is refused is not counted
+  std::optional<std::size_t> counted_bytes_;
+};
+
+}  // namespace vat

@@ -1,0 +1,43 @@
+"""The order of the folders: a folder includes itself and the folders before it only."""
+
+import posixpath
+import re
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
+
+# The lowest first. Each line is a floor of the architecture.
+FOLDER_ORDER = (
+    # constants, containers, kernels
+    "core", "core/support", "core/kernels",
+    # the values that a user describes, and the formulas of forces
+    "core/scene", "core/laws",
+    # from shapes to particles; which step and integrator suit a scene; checks
+    "core/neighbours", "core/sampling", "core/numerics", "core/validation",
+    # the stages of a step without physics; the compiled scene; what is integrated
+    "core/stage", "core/model", "core/state", "core/evaluation", "core/guard",
+    # the methods
+    "core/liquid/pairs", "core/liquid/gas", "core/liquid/tait",
+    "core/liquid/surface", "core/contact", "core/contact/projection", "core/solid", "core/rigid",
+    "core/external", "core/liquid/incompressible", "core/damping",
+    # the step, and the simulation
+    "core/stepping", "core/sleep", "core/saved", "core/simulation",
+    "protocol/json", "protocol/scene", "protocol/frame",
+)
+
+
+def folder_order(tree):
+    floors = {folder: floor for floor, folder in enumerate(FOLDER_ORDER)}
+    faults = []
+    for path, text in tree.matching(["core/", "protocol/"], (".cpp", ".h")):
+        folder = posixpath.dirname(path)
+        if folder not in floors:
+            faults.append(f"{path}: FOLDER_ORDER does not have {folder}")
+            continue
+        for header in INCLUDE.findall(text):
+            included = posixpath.dirname(header)
+            if floors.get(included, len(floors)) > floors[folder]:
+                faults.append(f"{path}: {folder} may not include {header}")
+    return faults
+
+
+RULES = (folder_order,)
