@@ -12,15 +12,38 @@ namespace {
 constexpr std::array kSets = {InstructionSet::baseline, InstructionSet::avx2,
                               InstructionSet::avx512};
 
+// The compiler's library detects the processor: the one of Highway reads a timer when it is loaded,
+// with an instruction that valgrind does not know on every processor.
+#if HWY_ARCH_X86
+bool has_avx2() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+         __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+         __builtin_cpu_supports("lzcnt") && __builtin_cpu_supports("f16c") &&
+         __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul");
+}
+
+bool has_avx512() {
+  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl");
+}
+#else
+bool has_avx2() {
+  return false;
+}
+bool has_avx512() {
+  return false;
+}
+#endif
+
 bool is_available(InstructionSet set) {
-  const std::int64_t targets = HWY_TARGETS & hwy::SupportedTargets();
   switch (set) {
     case InstructionSet::baseline:
       return true;
     case InstructionSet::avx2:
-      return (targets & HWY_AVX2) != 0;
+      return (HWY_TARGETS & HWY_AVX2) != 0 && has_avx2();
     case InstructionSet::avx512:
-      return (targets & HWY_AVX3) != 0;
+      return (HWY_TARGETS & HWY_AVX3) != 0 && has_avx512();
   }
   VAT_CHECK(false && "not an instruction set");
   return false;
