@@ -166,7 +166,7 @@ describe('marks over a scene, at full resolution', () => {
   stayAt('sliding-vat-liquid', 40, { deviceScaleFactor: 1 });
 
   it.each([
-    ['arrows', 'Arrows point to where'],
+    ['arrows', 'Arrows show the distance'],
     ['axes', ''],
     ['cells', 'cm wide'],
   ] as const)('shows and hides %s', async (mark, words) => {
