@@ -36,7 +36,7 @@ export class NumericsForm implements ParameterForm {
     for (const [value, words] of Object.entries(kIntegrators)) {
       this.integrator.add(new Option(words, value));
     }
-    this.reset = makeButton('↺', () => void this.goBack(), 'Integrator as it was');
+    this.reset = makeButton('↺', () => void this.goBack(), 'Reset Integrator');
     this.integrator.addEventListener('change', () => void this.set(this.integrator.value));
     const label = make('label', { htmlFor: 'integrator' }, 'Integrator');
     const row = make('div', { className: 'parameter choice' }, label, this.integrator, this.reset);
