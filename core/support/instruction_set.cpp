@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <span>
+
+#include "core/support/instruction_set_limit.h"
 
 namespace vat {
 namespace {
@@ -36,7 +39,10 @@ bool has_avx512() {
 }
 #endif
 
+std::atomic<InstructionSet> greatest_set = InstructionSet::avx512;
+
 bool is_available(InstructionSet set) {
+  if (set > greatest_set) return false;
   switch (set) {
     case InstructionSet::baseline:
       return true;
@@ -59,6 +65,10 @@ std::string list(std::span<const InstructionSet> sets) {
 }
 
 }  // namespace
+
+void limit_instruction_sets(InstructionSet greatest) {
+  greatest_set = greatest;
+}
 
 const char* to_string(InstructionSet set) {
   switch (set) {

@@ -2,11 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 
 #include "core/simulation/simulation.h"
+#include "core/support/instruction_set_limit.h"
 #include "tests/support/shaken_vat.h"
 
 namespace vat::instruction_set_test {
@@ -18,13 +18,13 @@ using testing::HasSubstr;
 
 constexpr auto kAll = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 
-/// While it lives, the machine seems to lack what these targets need.
-class Lacking {
+/// While it lives, the machine seems to lack the sets above one.
+class Limited {
  public:
-  explicit Lacking(std::int64_t targets) { hwy::DisableTargets(targets); }
-  ~Lacking() { hwy::DisableTargets(0); }
-  Lacking(const Lacking&) = delete;
-  Lacking& operator=(const Lacking&) = delete;
+  explicit Limited(InstructionSet greatest) { limit_instruction_sets(greatest); }
+  ~Limited() { limit_instruction_sets(InstructionSet::avx512); }
+  Limited(const Limited&) = delete;
+  Limited& operator=(const Limited&) = delete;
 };
 
 TEST(InstructionSet, NamesAreReadBack) {
@@ -48,13 +48,13 @@ TEST(InstructionSet, TheBestIsTheLastOfThoseThere) {
 }
 
 TEST(InstructionSet, AMachineWithoutAnyHasTheBaseline) {
-  const Lacking both(HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL);
+  const Limited plain(InstructionSet::baseline);
   EXPECT_THAT(available_instruction_sets(), ElementsAre(InstructionSet::baseline));
 }
 
 TEST(InstructionSet, ASimulationIsRefusedOneThatTheMachineLacks) {
   const Scene scene = test::make_shaken_vat(IntegratorId::velocity_verlet);
-  const Lacking avx512(HWY_AVX3 | HWY_AVX3_DL);
+  const Limited without_avx512(InstructionSet::avx2);
   EXPECT_LT(best_instruction_set(), InstructionSet::avx512);
   const Result<Simulation> refused = Simulation::create(scene, nullptr, InstructionSet::avx512);
   ASSERT_FALSE(refused);

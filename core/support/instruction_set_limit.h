@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/support/instruction_set.h"
+
+namespace vat {
+
+/// Treats this machine as one without the sets above `greatest`, in all threads from now on. For
+/// tests of machines with fewer instructions.
+void limit_instruction_sets(InstructionSet greatest);
+
+}  // namespace vat
