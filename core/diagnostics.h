@@ -31,7 +31,7 @@ struct SolveReport {
   Real greatest = 0;   ///< the same
 };
 
-/// Of the last step's solves; see core/liquid/incompressible/volume_solve.h.
+/// Results of the last step's solves; see core/liquid/incompressible/volume_solve.h.
 struct VolumeReport {
   SolveReport velocities;  ///< changes of density in one step
   SolveReport places;      ///< densities above the one at rest

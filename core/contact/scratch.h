@@ -9,30 +9,31 @@
 
 namespace vat {
 
-/// The constants of the contacts that act on a particle, one whose other end moves too twice.
+/// Sums of the constants of a particle's contacts. A contact counts twice if its other end moves.
 struct ContactLoad {
   Real stiffness = 0;  ///< [N/m]
   Real damping = 0;    ///< [N s/m]
 };
 
-/// What dampers see of two particles, or of one and a wall: f_i = -strength ((w_i - w_j).n) n.
+/// A damper between two particles, or a particle and a wall: f_i = -strength ((w_i - w_j).n) n.
 struct Damper {
   Index other;     ///< kNoParticle: a wall
   Real strength;   ///< [N s/m]
   Vec3 direction;  ///< n
 };
 
-/// The same of friction, across the normal n at the point of contact:
+/// A friction damper, perpendicular to the normal n at the point of contact:
 /// f_i = -strength (1 - n n^T) (u_i - u_j) with u = w + omega x arm.
 struct FrictionDamper {
   Index other;     ///< kNoParticle: a wall
   Real strength;   ///< [N s/m]
   Vec3 normal;     ///< n
   Vec3 arm;        ///< from the particle's centre to the point [m]
-  Vec3 other_arm;  ///< and from the other's
+  Vec3 other_arm;  ///< from the other particle's centre to the point [m]
 };
 
-/// Dampers of those particles of one block that have any: of each, those after the ones before.
+/// The dampers of one block of particles. A row belongs to a particle with dampers: its dampers lie
+/// between the ends of the preceding row and its own ends.
 struct DamperBlock {
   struct Row {
     Index particle;
@@ -48,7 +49,7 @@ struct DamperBlock {
     dampers.clear();
     friction_dampers.clear();
   }
-  /// What was added since the last call is of this particle.
+  /// Assigns the dampers added since the last call to this particle.
   void close(Index particle) {
     const std::size_t dampers_before = rows.empty() ? 0 : rows.back().damper_end;
     const std::size_t friction_dampers_before = rows.empty() ? 0 : rows.back().friction_end;
@@ -63,13 +64,13 @@ struct DamperBlock {
 struct ContactForceScratch {
   static constexpr Method kMethod = Method::contact;
 
-  bool too_many_contacts = false;  ///< by projection, above kMaxProjections: none solved
+  bool too_many_contacts = false;  ///< more than kMaxProjections: none is projected
   ContactList contacts;
-  std::vector<Vec3> spins;                   ///< by rigid body, where there is friction [rad/s]
-  std::vector<ContactLoad> contact_loads;    ///< by particle; empty where nothing touches
+  std::vector<Vec3> spins;                   ///< by rigid body, if there is friction [rad/s]
+  std::vector<ContactLoad> contact_loads;    ///< by particle; empty without contacts
   std::vector<Oscillation> load_bounds;      ///< by block of particles
   std::vector<Vec3> mobilities;              ///< see restitution.h; by particle [1/kg]
-  std::vector<DamperBlock> contact_dampers;  ///< where dampers are kept, as the next
+  std::vector<DamperBlock> contact_dampers;  ///< if Scratch::keep_dampers, as the next
   std::vector<DamperBlock> wall_dampers;
 };
 

@@ -9,14 +9,14 @@ namespace vat {
 inline constexpr Real kTensileShare = 0.4;
 inline constexpr Real kRelaxation = 1.52;
 
-/// A of a surface tension [N/m] and a support radius [m], in Pa.
+/// The attraction A [Pa] for a surface tension [N/m] and a support radius [m].
 inline Real attraction_of(Real surface_tension, Real support_radius, int dimensions) {
   const Real moment = CohesionKernel::first_moment(dimensions) *
                       (CohesionKernel::kReach - CohesionKernel::kCore) * support_radius;
   return 2 * surface_tension / (kRelaxation * moment);
 }
 
-/// The share of the far part that a wall has, by the cosine of the contact angle.
+/// The share of the attractive part at a wall, for the cosine of the contact angle.
 inline Real adhesion_share(Real cosine) {
   return 0.796 + cosine * (0.321 - 0.021 * cosine);
 }

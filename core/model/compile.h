@@ -11,8 +11,8 @@ namespace vat {
 std::uint64_t first_step_from(Real time, Real step);
 
 /// Compiles a scene without errors, without its plan. `ids` and `samples` have one entry per body
-/// of the scene; a null sample is made here. Where the bodies are some of those of a model `whole`,
-/// given its materials, their liquids have the constants that they have there.
+/// of the scene; a null sample is computed. If the bodies are a part of a model `whole` with the
+/// same materials, their liquids get its constants.
 std::shared_ptr<Model> compile_model(Scene scene, const std::vector<BodyId>& ids,
                                      std::vector<std::shared_ptr<const SampledBody>> samples,
                                      const Model* whole = nullptr);

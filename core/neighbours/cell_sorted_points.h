@@ -11,22 +11,22 @@
 
 namespace vat {
 
-/// Points of one kind in cell order, coordinates in columns of their own so that a compiler can
-/// vectorise distance tests over a run of slots.
+/// Points in cell order. The coordinates are separate columns, so that a compiler can vectorise
+/// distance tests over consecutive slots.
 struct CellSortedPoints {
   UniformGrid grid;
   std::vector<Real> x;
   std::vector<Real> y;
   std::vector<Real> z;
-  std::vector<Vec3> wrapped;  ///< the points themselves, in their order; periodic worlds only
-  std::uint64_t version = 0;  ///< rises whenever the points are other ones
-  bool is_whole = false;      ///< false while they are sorted, or where that failed
+  std::vector<Vec3> wrapped;  ///< the wrapped points in input order; periodic worlds only
+  std::uint64_t version = 0;  ///< increases with each change of the points
+  bool is_whole = false;      ///< false during sorting, and after a failed sort
 
-  /// `cell_size`: best the search radius [m]. In a periodic world the coordinates are those of the
-  /// images in the box.
+  /// `cell_size` [m] should be the search radius. In a periodic world, the coordinates are those of
+  /// the images in the box.
   void build(std::span<const Vec3> points, Real cell_size, const PeriodicBox& periodic,
              TaskRunner* runner = nullptr);
-  /// The same, but nothing is done where the points are those of the last time, to the bit.
+  /// Calls build(), unless the points have the same bits as in the last call.
   void update(std::span<const Vec3> points, Real cell_size, const PeriodicBox& periodic,
               TaskRunner* runner);
 };

@@ -7,10 +7,9 @@
 
 namespace vat {
 
-/// What the guard saw. A step, or the part of one that step control takes, that ends with a
-/// non-finite value, outside the domain, too fast (see core/guard/guard.h) or with more pairs of
-/// liquid particles, or contacts by projection, than memory is meant for is undone and repeated in
-/// two, four and at last eight parts.
+/// A failed step, or a failed part of one. A step fails if it ends with a non-finite value, outside
+/// the domain, too fast (see core/guard/guard.h), or with too many pairs of liquid particles or
+/// projected contacts. It is undone and repeated in two, four and finally eight parts.
 struct GuardEvent {
   enum class Cause { non_finite, outside_domain, too_fast, too_many_pairs };
   Cause cause;
@@ -18,13 +17,13 @@ struct GuardEvent {
   BodyId body;
   Index particle;  ///< its number within the body, see BodyView
   Real step;       ///< [s] length of the failed step, or part of one
-  bool recovered;  ///< false: no number of parts helped, and the simulation should pause
+  bool recovered;  ///< false: eight parts failed too, and the simulation should pause
 };
 const char* to_string(GuardEvent::Cause cause);
 
-/// What a call of advance() did.
+/// The result of a call of advance().
 struct AdvanceReport {
-  /// Of an unstable scene every step may have events; the first of a call, and its last, are kept.
+  /// An unstable scene may have an event in each step. A report keeps the first ones and the last.
   static constexpr std::size_t kMaxEvents = 16;
 
   std::uint64_t steps = 0;         ///< steps taken, parts and undone ones included
@@ -42,12 +41,12 @@ struct AdvanceReport {
   /// How often the forces on one particle were summed, in part or whole: the measure on which local
   /// control and implicit springs compare with the others, whose evaluations count every particle.
   std::uint64_t particle_evaluations = 0;
-  bool bodies_changed = false;             ///< some melted, as the scene has it
-  std::vector<std::uint64_t> ended_grabs;  ///< of what is gone, or liquid now
+  bool bodies_changed = false;             ///< some bodies have melted, as the scene describes
+  std::vector<std::uint64_t> ended_grabs;  ///< grabs of removed or melted particles
   bool failed = false;                     ///< the state is the one before the call
   std::vector<GuardEvent> events;          ///< in the order in which they were seen
 
-  /// Counts the event, and keeps it in place of the last where there are kMaxEvents.
+  /// Counts the event. If there are kMaxEvents already, it replaces the last one.
   void add(const GuardEvent& event);
   void count_evaluation(std::size_t particles) {
     ++force_evaluations;

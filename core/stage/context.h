@@ -13,7 +13,7 @@ struct Controls;
 struct Forces;
 struct Model;
 
-/// What a stage sees.
+/// The arguments of a stage.
 struct StepContext {
   const Model& model;
   const Controls& controls;

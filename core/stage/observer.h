@@ -4,14 +4,14 @@
 
 namespace vat {
 
-/// Told what advance() is at: each stage of the plan, and all that is done besides, by names of the
-/// same kind. No clock.
+/// Receives the begin of each stage of the plan, and of the other parts of advance(). The core has
+/// no clock: an observer can measure times.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;
-  /// What was at work before, if anything, has ended. The name is a literal: it lives on.
+  /// The preceding stage has ended, and `stage` begins. The name is a literal.
   virtual void stage_begins(std::string_view stage) = 0;
-  /// Nothing is at work any more: advance() returns, or throws.
+  /// The last stage has ended: advance() returns or throws.
   virtual void stages_end() = 0;
 };
 

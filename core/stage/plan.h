@@ -10,7 +10,7 @@ namespace vat {
 
 struct StepContext;
 
-/// The columns that stages hand to one another.
+/// The columns that stages exchange.
 enum class Column : std::uint8_t {
   position,
   velocity,
@@ -37,7 +37,7 @@ enum class Column : std::uint8_t {
 };
 inline constexpr std::size_t kColumnCount = 22;
 
-/// One pass over whole arrays: never one particle.
+/// One pass over whole arrays.
 using StageFunction = void (*)(StepContext&);
 
 struct Stage {
@@ -47,12 +47,12 @@ struct Stage {
   StageFunction run;
 };
 
-/// The stages of one force evaluation, in order: only those that some body of the scene needs.
+/// The stages of one force evaluation, in order. It contains only stages that the scene needs.
 struct StepPlan {
   std::vector<Stage> stages;
 };
 
-/// Collects stages; a stage that reads a column nobody has written yet is a programming error.
+/// Collects stages. A stage must not read a column before another stage has written it.
 class PlanBuilder {
  public:
   explicit PlanBuilder(std::initializer_list<Column> given);
@@ -65,7 +65,7 @@ class PlanBuilder {
   bool written_[kColumnCount] = {};
 };
 
-/// One line a stage: name, columns read, columns written.
+/// The name of each stage, the columns that it reads, and the columns that it writes.
 std::string to_text(const StepPlan& plan);
 
 }  // namespace vat

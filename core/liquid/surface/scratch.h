@@ -7,13 +7,13 @@
 
 namespace vat {
 
-/// What surface tension sees of a liquid particle; see core/liquid/surface/surface_tension.h.
+/// The data of a liquid particle for surface tension; see core/liquid/surface/surface_tension.h.
 struct SurfaceRecord {
   Vec3 gradient;           ///< g [1/m]
   Real kernel_deficiency;  ///< 1 - s, never below zero
 };
 
-/// Of one block of slots: sums of the forces of curvature and of what balances them, about the
+/// Sums over one block of slots: the forces of curvature, and their balancing forces, about the
 /// origin.
 struct SurfaceSum {
   Vec3 force = Vec3::Zero();          ///< [N]
@@ -37,8 +37,8 @@ struct SurfaceScratch {
   static constexpr Method kMethod = Method::surface;
 
   std::vector<SurfaceRecord> surface;
-  std::vector<Vec3> surface_normals;  ///< of length 1, inwards; zero away from the surface
-  std::vector<Vec3> surface_forces;   ///< of its curvature [N]
+  std::vector<Vec3> surface_normals;  ///< unit vectors inwards; zero away from the surface
+  std::vector<Vec3> surface_forces;   ///< forces of curvature [N]
   std::vector<SurfaceSum> surface_sums;
 };
 

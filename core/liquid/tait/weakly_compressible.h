@@ -28,14 +28,13 @@ void sort_solids_in_liquid(StepContext& context);
 /// in the workspace.
 void find_pair_clusters(StepContext& context);
 
-/// s_i rho_0, as density; one that is not a number where there were too many pairs, so that the
-/// step fails.
+/// density = s_i rho_0. It is NaN after too many pairs, so that the step fails.
 void compute_tait_density(StepContext& context);
 
-/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 on and in rho from 2 rho_0
-/// on, and never below zero
-/// (see compute_liquid_pressure()) but where liquid fills its world or attracts itself, down to
-/// what it bears (core/liquid/surface/cohesion.h).
+/// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 and in rho from 2 rho_0.
+/// The pressure is at least zero (see compute_liquid_pressure()), with two exceptions: a liquid that
+/// fills its world, and a cohesive liquid, whose minimum is -kTensileShare A/2 s^2
+/// (core/liquid/surface/cohesion.h).
 void compute_tait_pressure(StepContext& context);
 
 /// The pressure of solid particles, from that of the liquid around them and the weight between (S.
