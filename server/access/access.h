@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "server/access/role.h"
 #include "server/access/token.h"
 #include "server/clock.h"
-#include "server/session/role.h"
 
 namespace vat {
 

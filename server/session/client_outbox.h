@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "server/access/role.h"
 #include "server/admission/message_meter.h"
 #include "server/admission/resource_budget.h"
 #include "server/limits.h"
 #include "server/net/transport.h"
 #include "server/session/frame_window.h"
-#include "server/session/role.h"
 
 namespace vat {
 

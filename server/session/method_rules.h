@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "server/session/role.h"
+#include "server/access/role.h"
 #include "server/session/rpc_message.h"
 
 namespace vat {

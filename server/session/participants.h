@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/types.h"
+#include "server/access/role.h"
 #include "server/access/token.h"
 #include "server/session/client_outbox.h"
-#include "server/session/role.h"
 #include "server/session/subscription.h"
 
 namespace vat {

@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "protocol/json/json_reader.h"
+#include "server/access/role.h"
 #include "server/session/error_table.h"
-#include "server/session/role.h"
 #include "server/storage/storage_error.h"
 
 /// JSON-RPC 2.0 messages and the errors of PROTOCOL.md.

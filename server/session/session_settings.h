@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "server/access/role.h"
 #include "server/net/transport.h"
-#include "server/session/role.h"
 
 namespace vat {
 

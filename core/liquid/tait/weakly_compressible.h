@@ -32,8 +32,8 @@ void find_pair_clusters(StepContext& context);
 void compute_tait_density(StepContext& context);
 
 /// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 and in rho from 2 rho_0.
-/// The pressure is at least zero (see compute_liquid_pressure()), with two exceptions: a liquid that
-/// fills its world, and a cohesive liquid, whose minimum is -kTensileShare A/2 s^2
+/// The pressure is at least zero (see compute_liquid_pressure()), with two exceptions: a liquid
+/// that fills its world, and a cohesive liquid, whose minimum is -kTensileShare A/2 s^2
 /// (core/liquid/surface/cohesion.h).
 void compute_tait_pressure(StepContext& context);
 

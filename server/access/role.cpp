@@ -1,4 +1,4 @@
-#include "server/session/role.h"
+#include "server/access/role.h"
 
 namespace vat {
 
