@@ -5,12 +5,13 @@
 namespace vat {
 namespace {
 
-/// How many places the box of all cells may have.
+/// Returns the largest allowed number of places in the box of all cells.
 std::uint64_t most_places(std::size_t particles) {
   return 4096 + 16 * std::uint64_t{particles};
 }
 
-/// The box of all positions. Eight particles at a time, so that the loops become vectors.
+/// Computes the bounding box of all positions. Blocks of eight particles let the compiler
+/// vectorise.
 void find_box(std::span<const std::uint16_t> positions, std::array<std::uint16_t, 3>& min,
               std::array<std::uint16_t, 3>& max) {
   constexpr std::size_t kSide = 24;
@@ -42,7 +43,7 @@ void find_box(std::span<const std::uint16_t> positions, std::array<std::uint16_t
 }  // namespace
 
 bool CellOrder::divide(std::size_t particles, int shift) {
-  // With a layer of empty places around.
+  // An empty layer surrounds the occupied box.
   std::array<std::uint64_t, 3> sizes{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     least_[axis] = std::uint32_t{box_min_[axis]} >> shift;
@@ -65,7 +66,7 @@ std::size_t CellOrder::count_cells(std::span<const std::uint16_t> positions, int
     const std::uint32_t x = std::uint32_t{positions[3 * i]} >> shift;
     const std::uint32_t y = std::uint32_t{positions[3 * i + 1]} >> shift;
     const std::uint32_t z = std::uint32_t{positions[3 * i + 2]} >> shift;
-    places_[i] = z * layer_ + y * row_ + x - first;  // modulo 2^32, which is exact in the end
+    places_[i] = z * layer_ + y * row_ + x - first;  // modulo 2^32; the sum is exact
     occupied += numbers_[places_[i]]++ == 0 ? 1 : 0;
   }
   return occupied;
@@ -116,12 +117,12 @@ int CellOrder::sort(std::span<const std::uint16_t> positions) {
   int shift = kCoarsest;
   while (shift > 0 && divide(count, shift - 1)) {
     --shift;
-    if (count > kMaxInCell * std::size_t{place_count_}) continue;  // they cannot be enough
+    if (count > kMaxInCell * std::size_t{place_count_}) continue;
     if (count > kMaxInCell * count_cells(positions, shift)) continue;
     fill_order();
     return shift;
   }
-  // Smaller cells would be too many, or there are none.
+  // Smaller cells exceed the limit, or there are no particles.
   divide(count, shift);
   count_cells(positions, shift);
   fill_order();

@@ -16,8 +16,8 @@ constexpr std::int32_t kMaxResidualSize = 131064;  // [eighths]
 constexpr std::int32_t kMiddleOfGrid = 32768;
 constexpr std::size_t kMaxStrides = 3;
 
-/// Particles so many before a particle in the order of their numbers are near it: the neighbours in
-/// the lattice that a body began as.
+/// Distances, in the order of particle numbers, to particles that are close in space: neighbours in
+/// the lattice from which the body was sampled.
 struct Strides {
   std::array<std::uint32_t, kMaxStrides> values{1, 0, 0};
   std::uint32_t count = 1;
@@ -34,9 +34,7 @@ std::uint32_t key_class(std::int32_t size) {
                                                static_cast<std::int32_t>(residuals::kClasses) - 1));
 }
 
-// ---- what only writers choose
-
-/// Mean distance along the axes over about so many samples.
+/// Returns the sum over the axes of the mean distance at a stride, from about `samples` particles.
 double distance_at(const GridBlock& block, const std::vector<std::uint32_t>& places,
                    std::size_t stride, std::size_t samples) {
   const std::size_t step = std::max<std::size_t>(1, (places.size() - stride) / samples);
@@ -50,7 +48,7 @@ double distance_at(const GridBlock& block, const std::vector<std::uint32_t>& pla
   return static_cast<double>(sum) / static_cast<double>(count);
 }
 
-/// The stride with the nearest particles, but for 1 and those within 2 of `other`.
+/// Returns the stride with the smallest distance, except 1 and strides within 2 of `other`.
 std::size_t nearest_stride(const std::vector<double>& distances, std::size_t other) {
   std::size_t best = 0;
   for (std::size_t s = 2; s < distances.size(); ++s) {
@@ -60,7 +58,7 @@ std::size_t nearest_stride(const std::vector<double>& distances, std::size_t oth
   return best;
 }
 
-/// Sum of what three strides, or one, leave unpredicted of some particles.
+/// Returns whether prediction from three strides has smaller residuals than from one, in a sample.
 bool three_predict_better(const GridBlock& block, const std::vector<std::uint32_t>& places,
                           const Strides& strides) {
   const std::size_t begin = *std::ranges::max_element(strides.values);
@@ -79,7 +77,8 @@ bool three_predict_better(const GridBlock& block, const std::vector<std::uint32_
   return by_three < by_one;
 }
 
-/// By stride, from 2 on. Few samples tell which are worth a closer look; the others are infinite.
+/// Returns the distance of each stride from 2 on. A small sample selects the candidates; all other
+/// strides have an infinite distance.
 std::vector<double> distances_of(const GridBlock& block, const std::vector<std::uint32_t>& places) {
   constexpr std::size_t kMaxStride = 2048;
   constexpr std::size_t kLookedAt = 64;
@@ -115,8 +114,6 @@ Strides choose_strides(const GridBlock& block, const std::vector<std::uint32_t>&
   return three_predict_better(block, places, strides) ? strides : Strides{};
 }
 
-// ---- what is coded
-
 template <class Coder>
 void code_strides(Coder& coder, Strides& strides) {
   strides.count = coder.bits(strides.count - 1, 2) + 1;
@@ -127,7 +124,7 @@ void code_strides(Coder& coder, Strides& strides) {
   }
 }
 
-/// How three quantities of a particle are predicted from particles before it.
+/// Prediction of three quantities of a particle from preceding particles.
 struct Prediction {
   Triple sums{};
   Triple sizes{};

@@ -11,7 +11,7 @@ using frame_layout::has_attribute;
 
 constexpr std::uint32_t kGridShiftBits = 4;
 
-/// Chances out of 4096 of something that was true so often; never none.
+/// Returns the probability, of 4096, of a flag that is true `times` times in `cases`; at least 1.
 std::uint32_t chances_of(std::size_t times, std::size_t cases) {
   const std::size_t chances = cases == 0 ? 0 : times * rans::kScale / cases;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(chances, 1, rans::kScale - 1));
@@ -31,7 +31,7 @@ void resize_columns(const FrameScale& scale, std::size_t count, GridBlock& block
   }
 }
 
-/// For every particle of `from`, its place in `to`, or BlockScratch::kNone.
+/// Writes for every particle of `from` its index in `to`, or BlockScratch::kNone.
 void match(const GridBlock& from, const GridBlock& to, std::vector<std::uint32_t>& places) {
   const std::size_t count = from.particle_count();
   const std::size_t end = to.particle_count();
@@ -53,7 +53,7 @@ void match(const GridBlock& from, const GridBlock& to, std::vector<std::uint32_t
   }
 }
 
-/// What of a block has come since `first`, whose particles have places in it.
+/// Lists the particles that were added since the first reference. Requires scratch.new_place.
 void list_added(const GridBlock& block, BlockScratch& scratch) {
   scratch.added.clear();
   scratch.numbers.clear();
@@ -72,8 +72,8 @@ void list_added(const GridBlock& block, BlockScratch& scratch) {
   add_up_to(block.particle_count());
 }
 
-/// The numbers of a block, from those of `first` that stay and those that come; and their places.
-/// False where one that comes is there already.
+/// Merges the remaining numbers of `first` with the added numbers, and sets their indices. Returns
+/// false if an added number already exists.
 bool merge_numbers(const GridBlock& first, GridBlock& block, BlockScratch& scratch) {
   std::vector<std::uint32_t>& numbers = block.numbers;
   numbers.clear();
@@ -97,7 +97,7 @@ bool merge_numbers(const GridBlock& first, GridBlock& block, BlockScratch& scrat
   return true;
 }
 
-/// What of a delta block is coded at all.
+/// The parts that a delta block contains.
 struct Parts {
   bool removes = false;
   std::uint32_t added = 0;
@@ -144,7 +144,7 @@ void code_parts(Coder& coder, const FrameScale& scale, GridBlock::Kind kind, Par
   }
 }
 
-/// The cells of the first reference, in the order of which the rest is coded.
+/// Sorts the first reference's particles by cells, which define the coding order.
 template <class Coder>
 void code_order(Coder& coder, const GridBlock& first, BlockScratch& scratch) {
   if constexpr (Coder::kReads) {
@@ -155,7 +155,7 @@ void code_order(Coder& coder, const GridBlock& first, BlockScratch& scratch) {
   }
 }
 
-/// Which particles have gone, by whether the one before has.
+/// Codes which particles were removed, with the previous particle's flag as context.
 template <class Coder>
 void code_removed(Coder& coder, BlockScratch& scratch) {
   const auto order = scratch.cells.order();
@@ -182,7 +182,7 @@ void code_removed(Coder& coder, BlockScratch& scratch) {
   }
 }
 
-/// What stays as it was.
+/// Copies unchanged positions and attributes from the first reference.
 void keep_unmoved(const GridBlock& first, const Parts& parts, const BlockScratch& scratch,
                   GridBlock& block) {
   bool any = !parts.moves;
@@ -203,7 +203,7 @@ void keep_unmoved(const GridBlock& first, const Parts& parts, const BlockScratch
   }
 }
 
-/// The block's particles, without their places and attributes. False as of merge_numbers().
+/// Sets the block's particle numbers and sizes. Returns false if merge_numbers() does.
 bool place_numbers(const GridBlock& first, const Parts& parts, const FrameScale& scale,
                    GridBlock& block, BlockScratch& scratch) {
   if (!parts.removes && parts.added == 0) {
@@ -273,7 +273,7 @@ void code_new_particles(Coder& coder, const FrameScale& scale, CodedBlock<Coder>
   if (coder.is_sound()) code_added(coder, scale, block, scratch);
 }
 
-/// A reader's block may have been one of another kind before.
+/// Clears the fields of another kind, because a reader reuses blocks.
 void clear_other_kind(GridBlock& block) {
   if (block.has_particles()) {
     block.place = {};

@@ -12,9 +12,7 @@ using frame_layout::kMaxAttribute;
 constexpr std::uint32_t kShiftBits = 3;
 constexpr std::int32_t kShiftOffset = 4;
 
-// ---- what only writers choose
-
-/// Sums of squares by which two factors fit best: of y ~ a * u + b * v.
+/// A least-squares fit of the factors in y ~ a * u + b * v.
 struct Fit {
   double uu = 1e-9, uv = 0, vv = 1e-9, uy = 0, vy = 0;
 
@@ -35,12 +33,12 @@ struct Fit {
   std::int32_t b_alone() const { return factor(vy / vv); }
 };
 
-/// In place of a writer: keeps what is to be written, chooses the tuning with which that costs the
-/// least, and writes it.
+/// Replaces a writer: stores the residuals, chooses the tuning with the lowest cost, and writes
+/// them.
 class TuningChoice {
  public:
   static constexpr bool kReads = false;
-  /// With it no class lies outside the counted ones, and what is coded first has one of its own.
+  /// A tuning that keeps all classes in range. Residuals without context have a separate class.
   static constexpr Neighbourhood::Tuning kNeutral{3, residuals::kClasses};
 
   explicit TuningChoice(std::vector<BlockScratch::CodedResidual>& lefts) : lefts_(lefts) {
@@ -84,7 +82,7 @@ class TuningChoice {
 
  private:
   static constexpr std::int32_t kBins = 64;
-  /// How many residuals there are of a magnitude; none from `end` on.
+  /// A histogram of magnitudes. All bins from `end` on are 0.
   struct Counts {
     std::array<std::uint32_t, kBins> bins{};
     std::int32_t end = 0;
@@ -127,8 +125,6 @@ class TuningChoice {
   std::array<Counts, residuals::kClasses + 1> counts_{};
 };
 
-// ---- what is coded
-
 template <class Coder>
 void code_tuning(Coder& coder, Neighbourhood::Tuning& tuning) {
   tuning.shift = static_cast<std::int32_t>(coder.bits(
@@ -138,9 +134,10 @@ void code_tuning(Coder& coder, Neighbourhood::Tuning& tuning) {
   if (tuning.first_class >= residuals::kClasses) coder.refuse();
 }
 
-/// Codes three quantities of all particles that stay, cell by cell: `predict(i, cell)` of the first
-/// reference's particle i [eighths], `value(place)` of the frame's, which `store(place, values)`
-/// takes and may refuse. Quantities that are not `coded` are left alone.
+/// Codes three quantities of all remaining particles, cell by cell. `predict(i, cell)` returns the
+/// prediction [eighths] for particle i of the first reference, and `value(place)` the values of the
+/// frame's particle. `store(place, values)` stores decoded values; false refuses them. Ignores
+/// quantities that are not `coded`.
 template <class Coder, class Predict, class Value, class Store>
 void code_cells(Coder& coder, BlockScratch& scratch, const std::array<bool, 3>& coded,
                 const Neighbourhood::Tuning& tuning, Predict predict, Value value, Store store) {
@@ -171,8 +168,7 @@ void code_cells(Coder& coder, BlockScratch& scratch, const std::array<bool, 3>& 
   }
 }
 
-/// The mean step from the second reference to the first, of the particles of a cell and those
-/// around it.
+/// Computes the mean step from the second reference to the first, over a cell and its neighbours.
 void find_mean_steps(const GridBlock& first, const GridBlock* second, BlockScratch& scratch) {
   constexpr std::int32_t kMaxParticleStep = 8191;
   constexpr std::uint32_t kMaxCounted = 63;
@@ -213,13 +209,13 @@ void find_mean_steps(const GridBlock& first, const GridBlock* second, BlockScrat
   }
 }
 
-/// Where a particle would be from its neighbours' mean step and what it moved beyond that.
+/// Predicts positions from the neighbours' mean step and from the particle's deviation from it.
 struct MotionPrediction {
   const GridBlock& first;
   const GridBlock* second;
   const BlockScratch& scratch;
   std::int32_t common = 0;  ///< factor of the mean step
-  std::int32_t own = 0;     ///< of what the particle's own step differs from it
+  std::int32_t own = 0;     ///< factor of the particle's deviation from the mean step
 
   Triple excess(std::uint32_t i, std::size_t cell) const {
     const std::uint32_t j = second != nullptr ? scratch.second_place[i] : BlockScratch::kNone;
@@ -266,13 +262,13 @@ void fit_factors(const GridBlock& block, MotionPrediction& prediction) {
   prediction.own = fit.b();
 }
 
-/// An attribute's change goes on as it was.
+/// Extrapolates the change of an attribute.
 struct AttributePrediction {
   const GridBlock& first;
   const GridBlock* second;
   const BlockScratch& scratch;
-  std::size_t begin;          ///< quantity q is of the attribute begin + q
-  std::array<bool, 3> moved;  ///< by quantity; there may be fewer attributes
+  std::size_t begin;          ///< quantity q is the attribute begin + q
+  std::array<bool, 3> moved;  ///< by quantity; false beyond the last attribute
   Triple factors{};
 
   std::int32_t value(const GridBlock& block, std::uint32_t i, std::size_t q) const {

@@ -5,7 +5,7 @@ namespace {
 
 constexpr std::uint32_t kOrderBits = 5;
 
-/// Those below 2^order are alike, and the larger rarer. A reader's may be anything: it is checked.
+/// Codes a gap by an exponential Golomb code of the given order. A reader's result is unchecked.
 template <class Coder>
 std::uint64_t code_gap(Coder& coder, std::uint64_t gap, std::uint32_t order) {
   const std::uint64_t raised = gap + (std::uint64_t{1} << order);
@@ -22,10 +22,10 @@ std::uint64_t code_gap(Coder& coder, std::uint64_t gap, std::uint32_t order) {
   return result + (std::uint64_t{1} << bits) - (std::uint64_t{1} << order);
 }
 
-/// How the numbers that come are spread.
+/// The distribution of the gaps between added numbers.
 struct Spread {
-  std::uint32_t chances = 1;  ///< that a number follows at once on the one before, of 4096
-  std::uint32_t order = 0;    ///< of the other gaps
+  std::uint32_t chances = 1;  ///< probability, of 4096, that a number is its predecessor + 1
+  std::uint32_t order = 0;    ///< order of the code of other gaps
 };
 
 Spread spread_of(const std::vector<std::uint32_t>& numbers) {

@@ -9,7 +9,7 @@ namespace {
 
 using frame_layout::kMaxPlace;
 
-/// A whole number with its sign in the lowest bit.
+/// Codes an integer with its sign in the lowest bit.
 template <class Coder>
 std::int32_t code_signed(Coder& coder, std::int32_t value) {
   const std::uint32_t magnitude = static_cast<std::uint32_t>(std::abs(value));
@@ -34,7 +34,7 @@ bool is_near_unit(const GridBlock& block) {
 template <std::size_t count>
 using Numbers = std::array<std::int32_t, count>;
 
-/// first + turn * (first - second), in 256ths.
+/// Returns first + turn * (first - second) / 256.
 template <std::size_t count>
 Numbers<count> extrapolated(const Numbers<count>& first, const Numbers<count>& second,
                             std::int64_t turn) {

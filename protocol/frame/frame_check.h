@@ -6,8 +6,8 @@
 
 namespace vat {
 
-/// The check of FRAMES.md over all blocks of a frame: a decoder that has another frame than was
-/// encoded would build all later ones on it.
+/// Returns the checksum of FRAMES.md over all blocks of a frame. It detects a decoder that differs
+/// from the encoder, because later frames depend on this frame.
 std::uint32_t frame_check(const GridFrame& frame);
 
 }  // namespace vat

@@ -12,25 +12,25 @@
 /// The binary frames of FRAMES.md.
 namespace vat {
 
-/// A client keeps that many of the last frames that it got, from the last key frame on; any two of
-/// them may be references.
+/// Number of received frames that a client stores, beginning with the last key frame. Any two of
+/// them can be references.
 inline constexpr std::size_t kFrameRing = 16;
-/// How much later than its references a frame may be, in numbers.
+/// Largest difference between the numbers of a frame and its reference.
 inline constexpr std::uint32_t kMaxReferenceDistance = 65'535;
 
-/// What a delta frame builds on: frames that the client has got, the newest first. Both null: a key
-/// frame.
+/// The references of a delta frame: frames that the client has, the newer one first. If both are
+/// null, the frame is a key frame.
 struct FrameReferences {
   const GridFrame* first = nullptr;
   const GridFrame* second = nullptr;
 };
 
-/// Whether `reference` may be one of `frame`: an earlier number of the same epoch, at most
-/// kMaxReferenceDistance before it, with the same scale and blocks. Detail and region may differ.
+/// Returns whether `reference` can be a reference of `frame`: it has the same epoch, scale and
+/// blocks, and its number is 1 to kMaxReferenceDistance smaller. Detail and region can differ.
 bool can_refer(const GridFrame& frame, const GridFrame& reference);
 
-/// Makes the bytes of frames. One may make any frames in turn; it only keeps memory. Used by one
-/// thread at a time.
+/// Encodes frames. It has no state except reused memory, so it can encode frames of any sessions.
+/// Not thread-safe.
 class FrameEncoder {
  public:
   FrameEncoder();
@@ -38,9 +38,9 @@ class FrameEncoder {
   FrameEncoder(FrameEncoder&&) noexcept;
   FrameEncoder& operator=(FrameEncoder&&) noexcept;
 
-  /// The bytes depend on the arguments alone, so that all clients with the same references share
-  /// them; `stride` goes into the header. The references must be as can_refer() says, the second
-  /// earlier than the first. The result lives until the next call.
+  /// Returns the bytes of a frame, valid until the next call. They depend on the arguments only, so
+  /// clients with the same references share them. The header contains `stride`. The references must
+  /// satisfy can_refer(), and the second must be older than the first.
   std::span<const std::uint8_t> encode(const GridFrame& frame, const FrameReferences& references,
                                        std::uint8_t stride = 1);
 
@@ -49,7 +49,7 @@ class FrameEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A client's side: decodes one frame after the other and keeps the last kFrameRing of them.
+/// Decodes the frames of a session in order and stores the last kFrameRing of them.
 class FrameDecoder {
  public:
   FrameDecoder();
@@ -57,12 +57,10 @@ class FrameDecoder {
   FrameDecoder(FrameDecoder&&) noexcept;
   FrameDecoder& operator=(FrameDecoder&&) noexcept;
 
-  /// A key frame makes the decoder forget all before it.
-  ///
-  /// The frame, only if every byte is as FRAMES.md says: the same integers that were encoded,
-  /// whatever its references were. It lives until the next call. A frame that is refused changes
-  /// nothing. Error codes: bad_magic, bad_version, bad_type, bad_header, bad_block, bad_check,
-  /// missing_reference, truncated, extra_bytes.
+  /// Returns the decoded frame, valid until the next call, if every byte conforms to FRAMES.md. Its
+  /// integers equal those that were encoded, for any references. A key frame discards all earlier
+  /// frames. An invalid frame changes nothing. Error codes: bad_magic, bad_version, bad_type,
+  /// bad_header, bad_block, bad_check, missing_reference, truncated, extra_bytes.
   Result<const GridFrame*> decode(std::span<const std::uint8_t> bytes);
 
  private:
@@ -70,11 +68,11 @@ class FrameDecoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What a frame's header says; the bytes must be a frame's.
+/// Fields of the header of a valid frame.
 std::uint32_t frame_number(std::span<const std::uint8_t> frame);
 bool is_key_frame(std::span<const std::uint8_t> frame);
 
-/// A key frame and its content, for who has no use for more.
+/// Encodes or decodes a single key frame.
 std::vector<std::uint8_t> encode_key_frame(const GridFrame& frame);
 Result<GridFrame> decode_key_frame(std::span<const std::uint8_t> bytes);
 

@@ -26,12 +26,12 @@ bool all_finite(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](auto value) { return std::isfinite(value); });
 }
 
-/// What the header says of how the frame is coded.
+/// Header fields that describe the coding of the frame.
 struct Coding {
   bool is_key = false;
   std::array<std::uint16_t, 2> distances{};
   std::uint32_t check = 0;
-  bool has_acceleration = false;  ///< of key frames
+  bool has_acceleration = false;  ///< key frames only
 };
 
 Status read_header(ByteReader& in, GridFrame& frame, Coding& coding) {
@@ -91,7 +91,7 @@ Status read_scale(ByteReader& in, bool accelerations, FrameScale& scale) {
   return {};
 }
 
-/// Body 0 is the vat, and comes first.
+/// Returns whether the vat, and only the vat, has body 0, and is the first block.
 bool are_in_order(const GridFrame& frame) {
   for (const GridBlock& block : frame.blocks) {
     const bool is_vat = block.kind == GridBlock::Kind::vat;
@@ -134,10 +134,10 @@ void read_delta_blocks(SymbolReader& reader, const FrameReferences& references, 
 }  // namespace
 
 struct FrameDecoder::Impl {
-  /// Frames take their places in turn; `next` is the place of the one that is being read.
+  /// A ring buffer; `next` is the index of the frame that is being read.
   std::array<GridFrame, kFrameRing + 1> ring;
   std::size_t next = 0;
-  std::size_t count = 0;  ///< of those that may be references
+  std::size_t count = 0;  ///< number of possible references before `next`
   BlockScratch scratch;
 
   const GridFrame* find(std::uint32_t number, std::uint32_t epoch) const {
@@ -162,14 +162,14 @@ Status FrameDecoder::Impl::read_blocks(std::span<const std::uint8_t> bytes,
     }
   }
   if (reader.was_refused()) {
-    return frame_error("bad_block", "a block is not as an encoder writes it");
+    return frame_error("bad_block", "a block has an invalid code");
   }
   if (reader.coder().ended_early()) return truncated();
   if (reader.coder().bytes_left() != 0) {
-    return frame_error("extra_bytes", "the frame has bytes left over");
+    return frame_error("extra_bytes", "the frame has extra bytes at its end");
   }
   if (!reader.coder().is_at_start()) {
-    return frame_error("bad_block", "the blocks end where no encoder began");
+    return frame_error("bad_block", "the decoder's final state is invalid");
   }
   return {};
 }
@@ -197,14 +197,14 @@ Result<const GridFrame*> FrameDecoder::decode(std::span<const std::uint8_t> byte
     references.first = own.find(number - first, epoch);
     references.second = second == 0 ? nullptr : own.find(number - second, epoch);
     if (references.first == nullptr || (second != 0 && references.second == nullptr)) {
-      return frame_error("missing_reference", "a frame that it builds on is not there");
+      return frame_error("missing_reference", "a reference of the frame is not stored");
     }
     frame.scale = references.first->scale;
   }
   const Status blocks = own.read_blocks(bytes.last(in.left()), references, frame);
   if (!blocks) return blocks.errors();
   if (frame_check(frame) != coding.check) {
-    return frame_error("bad_check", "the frame is not the one that was encoded");
+    return frame_error("bad_check", "the checksum does not match the decoded frame");
   }
   own.count = coding.is_key ? 1 : std::min(own.count + 1, kFrameRing);
   own.next = (own.next + 1) % own.ring.size();

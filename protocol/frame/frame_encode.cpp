@@ -51,7 +51,7 @@ void write_key_blocks(const GridFrame& frame, SymbolWriter& writer, BlockScratch
   for (const GridBlock& block : frame.blocks) code_key_block(writer, frame.scale, block, scratch);
 }
 
-/// How far poses go on as they went, by the times of the references.
+/// Returns the extrapolation factor of poses, in 256ths, from the times of frame and references.
 std::int32_t turn_of(const GridFrame& frame, const GridFrame& first, const GridFrame* second) {
   if (second == nullptr) return 0;
   const double now = frame.header.time - first.header.time;

@@ -18,16 +18,18 @@ inline constexpr std::uint8_t kPlayingFlag = 1;
 inline constexpr std::uint8_t kSlowFlag = 2;
 inline constexpr int kDetailShift = 2;
 inline constexpr std::uint8_t kRegionFlag = 16;
-inline constexpr std::uint8_t kAccelerationFlag = 32;  // of key frames: a fourth quantum
-inline constexpr std::uint8_t kKnownFlags = 31;        // of all frames
+inline constexpr std::uint8_t kAccelerationFlag =
+    32;                                          // key frames only: the scale has a fourth quantum
+inline constexpr std::uint8_t kKnownFlags = 31;  // allowed in all frames
 
 inline constexpr std::size_t kTypeOffset = 5;
 inline constexpr std::size_t kNumberOffset = 12;
 inline constexpr std::size_t kHeaderSize = 52;
-inline constexpr std::size_t kScaleSize = 56;       // in key frames, after the header
-inline constexpr std::size_t kScaleAttributes = 3;  // with quanta in it, and then perhaps a fourth
+inline constexpr std::size_t kScaleSize = 56;  // in key frames, after the header
+inline constexpr std::size_t kScaleAttributes =
+    3;  // quanta in the scale, without the optional fourth
 
-/// Out of 4096, that a block has changed: where the one before has not, and where it has.
+/// Probabilities, of 4096, that a block has changed, if the previous block is unchanged or changed.
 inline constexpr std::array<std::uint32_t, 2> kChangeChances{256, 3584};
 
 inline constexpr double kMaxGridCoordinate = 65535;
@@ -36,7 +38,7 @@ inline constexpr std::int32_t kMaxPlace = 1 << 28;
 inline constexpr std::uint8_t kMinOrientationBits = 4;
 inline constexpr std::uint8_t kMaxOrientationBits = 27;
 
-/// Whether blocks of this kind have the attribute in frames of this scale.
+/// Returns whether blocks of this kind have the attribute in frames of this scale.
 inline bool has_attribute(GridBlock::Kind kind, const FrameScale& scale, std::size_t attribute) {
   if (!(scale.attribute_quanta[attribute] > 0)) return false;
   if (kind == GridBlock::Kind::liquid) return true;
@@ -45,7 +47,7 @@ inline bool has_attribute(GridBlock::Kind kind, const FrameScale& scale, std::si
           attribute == static_cast<std::size_t>(FrameAttribute::acceleration));
 }
 
-/// Whether frames of this scale have the flag and the fourth quantum.
+/// Returns whether frames of this scale have kAccelerationFlag and the fourth quantum.
 inline bool has_acceleration(const FrameScale& scale) {
   return scale.attribute_quanta[static_cast<std::size_t>(FrameAttribute::acceleration)] > 0;
 }

@@ -10,7 +10,7 @@ namespace {
 
 using namespace frame_layout;
 
-/// The nearest whole number within [least, greatest]; of a NaN, the least.
+/// Rounds to the nearest integer in [least, greatest]. Returns `least` for NaN.
 double nearest(double value, double least, double greatest) {
   const double rounded = std::round(value);
   if (!(rounded > least)) return least;
@@ -51,9 +51,9 @@ void place_particles(const PublishedState::Body& body, const FrameScale& scale, 
   }
 }
 
-/// Half of the greatest error, quantum / 2, is the centre's, and half the orientation's: a
-/// component that is off by half a step turns the body by at most 2 steps, so 2^bits must be at
-/// least 2 radius / (quantum / 4).
+/// Returns the bits per component. The centre and the orientation each have half of the maximum
+/// error quantum / 2. Rounding a component by half a step rotates the body by at most 2 steps.
+/// Therefore 2^bits must be at least 2 radius / (quantum / 4).
 std::uint8_t orientation_bits_for(double radius, double quantum) {
   std::uint8_t bits = kMinOrientationBits;
   while (bits < kMaxOrientationBits && std::ldexp(quantum, bits) < 8 * radius) ++bits;
@@ -72,7 +72,7 @@ void place_rigid(const PublishedState::Body& body, const FrameGrid& grid, GridBl
   }
 }
 
-/// An empty block of a body that keeps the memory of another.
+/// Clears a block for a body. Reuses its memory.
 void begin_block(std::uint32_t body, GridBlock::Kind kind, GridBlock& block) {
   block.body = body;
   block.kind = kind;
@@ -90,7 +90,7 @@ void place_vat(const Vec3& offset, double quantum, GridBlock& block) {
   }
 }
 
-/// The region in steps of the grid.
+/// The region in quanta of the grid.
 struct GridRegion {
   std::array<double, 3> min;
   std::array<double, 3> max;
@@ -129,7 +129,7 @@ void select_from(const GridBlock& all, std::uint8_t detail, const GridRegion* re
 
 FrameGrid make_frame_grid(const Vec3& min, const Vec3& max, double max_error) {
   VAT_CHECK(min.allFinite() && max.allFinite() && (max - min).allFinite());
-  constexpr double kFinest = 1e-12;  // [m]: keeps the quantum of an empty domain above zero
+  constexpr double kFinest = 1e-12;  // [m] a positive quantum for an empty domain
   const double widest = (max - min).maxCoeff();
   const double wanted = std::isfinite(max_error) ? 2 * max_error : 0;
   return {{min.x(), min.y(), min.z()}, std::max({wanted, widest / kMaxGridCoordinate, kFinest})};

@@ -9,32 +9,33 @@
 
 namespace vat {
 
-/// The grid on which positions are sent: covers [min, max] with at most 65 535 steps per axis.
+/// The grid of transmitted positions: origin + n * quantum with 0 <= n <= 65 535 per axis.
 struct FrameGrid {
-  std::array<double, 3> origin{};
-  double quantum = 0;  ///< [m] finite and above 0
+  std::array<double, 3> origin{};  ///< [m]
+  double quantum = 0;              ///< [m] finite and above 0
 
   bool operator==(const FrameGrid&) const = default;
 };
-/// The coarsest grid that keeps `max_error` [m] per axis: quantum = 2 * max_error, or more where
-/// [min, max] does not fit. A `max_error` that is not above 0 asks for the finest grid that covers
-/// the domain. The corners must be finite.
+/// Returns the coarsest grid with an error of at most `max_error` [m] per axis: quantum =
+/// 2 * max_error, or larger if [min, max] requires it. If `max_error` is not above 0, returns the
+/// finest grid that covers the domain. The corners [m] must be finite.
 FrameGrid make_frame_grid(const Vec3& min, const Vec3& max, double max_error);
 
-/// The steps in which a frame's numbers are given.
+/// The quantisation of a frame.
 struct FrameScale {
   FrameGrid grid;
-  ByAttribute<double> attribute_quanta{};  ///< twice the greatest error; 0: not in the frame
+  ByAttribute<double> attribute_quanta{};  ///< twice the maximum error; 0: not in the frame
 
   bool operator==(const FrameScale&) const = default;
 };
 
-/// Levels of detail: level d has the layers 0 to d.
+/// Largest level of detail. Level d contains the layers 0 to d.
 inline constexpr std::uint8_t kFullDetail = 3;
-/// The layer of a particle: 0 and 1 have an eighth of a body's particles each, 2 a quarter, 3 half.
+/// Returns the layer of a particle number. Layers 0 and 1 each contain an eighth of a body's
+/// particles, layer 2 a quarter, layer 3 half.
 std::uint8_t detail_layer(std::uint32_t number);
 
-/// A box along the axes [m].
+/// An axis-aligned box [m].
 struct FrameRegion {
   Vec3 min = Vec3::Zero();
   Vec3 max = Vec3::Zero();
@@ -42,30 +43,30 @@ struct FrameRegion {
   bool operator==(const FrameRegion&) const = default;
 };
 
-/// Which particles of liquid and deformable bodies a frame has.
+/// Selects the particles of liquid and deformable bodies in a frame.
 struct FrameSelection {
   std::uint8_t detail = kFullDetail;
-  std::optional<FrameRegion> region;  ///< only what is inside or on it
+  std::optional<FrameRegion> region;  ///< only particles inside or on the boundary
 
   bool operator==(const FrameSelection&) const = default;
 
   bool is_all() const { return detail == kFullDetail && !region; }
 };
 
-/// A body's part of a frame in whole steps: what an encoder and its decoders hold alike.
+/// The quantised data of one body. Encoder and decoders store the same integers.
 struct GridBlock {
   enum class Kind : std::uint8_t { liquid = 0, deformable = 1, rigid = 2, vat = 3 };
 
   std::uint32_t body = 0;  ///< 0 for the vat
   Kind kind = Kind::liquid;
   // Liquid and deformable bodies.
-  std::vector<std::uint32_t> numbers;    ///< of its particles, rising; empty: 0, 1, 2, ...
+  std::vector<std::uint32_t> numbers;    ///< particle numbers, ascending; empty: 0, 1, 2, ...
   std::vector<std::uint16_t> positions;  ///< x, y, z of each particle
   ByAttribute<std::vector<std::int32_t>> attributes;
-  // Rigid bodies and the vat: in half quanta from the grid's origin, and in whole quanta from the
-  // vat's place at time 0.
+  // Rigid bodies: centre of mass in half quanta from the grid's origin. The vat: displacement since
+  // time 0 in quanta.
   std::array<std::int32_t, 3> place{};
-  /// Rigid bodies: w, x, y, z, times 2^orientation_bits. Of a unit quaternion but for rounding.
+  /// Rigid bodies: unit quaternion w, x, y, z times 2^orientation_bits, rounded.
   std::array<std::int32_t, 4> orientation{};
   std::uint8_t orientation_bits = 0;
 
@@ -77,7 +78,7 @@ struct GridBlock {
   bool operator==(const GridBlock&) const = default;
 };
 
-/// A frame in whole steps. Its blocks are in the order of the description's bodies, the vat first.
+/// A quantised frame. Its blocks are in the order of the description's bodies, the vat first.
 struct GridFrame {
   FrameHeader header;
   FrameScale scale;
@@ -86,23 +87,23 @@ struct GridFrame {
   std::vector<GridBlock> blocks;
 };
 
-/// Drops the numbers of so many particles where they are 0, 1, 2, ...: they rise.
+/// Clears ascending `numbers` of `count` particles if they are 0, 1, 2, ...
 void drop_plain_numbers(std::size_t count, std::vector<std::uint32_t>& numbers);
 
-/// The state on a grid: every particle and attribute is off by half a quantum at most, and a rigid
-/// body's pose so that none of its particles is, per axis. What is outside the grid goes to its
-/// edge, and attributes beyond 2^20 quanta to that. Reuses the memory of `frame`.
+/// Writes the quantised state. The error of each position and attribute, and of each particle of a
+/// rigid body, is at most half a quantum per axis. Positions outside the grid are moved to its
+/// edge. Attributes are limited to 2^20 quanta. Reuses the memory of `frame`.
 void make_grid_frame(const PublishedState& state, const FrameScale& scale, GridFrame& frame);
-/// The part of a frame that a selection has. Reuses the memory of `part`, which is another frame.
+/// Writes the selected part of a frame. `part` must be another frame; its memory is reused.
 void select_particles(const GridFrame& all, const FrameSelection& selection, GridFrame& part);
 
-/// Whether two frames differ in nothing but when they were made: all but number, stride, tick,
-/// time, publication and real-time factor.
+/// Returns whether two frames show the same content: they may differ in number, stride, tick, time,
+/// publication time and real-time factor only.
 bool show_the_same(const GridFrame& a, const GridFrame& b);
 
-/// In metres: a rigid body's centre of mass, or the vat's displacement.
+/// Returns a rigid body's centre of mass or the vat's displacement [m].
 std::array<double, 3> place_of(const GridFrame& frame, const GridBlock& block);
-/// Of a rigid body: w, x, y, z of a unit quaternion.
+/// Returns a rigid body's orientation as a unit quaternion w, x, y, z.
 std::array<double, 4> orientation_of(const GridBlock& block);
 
 }  // namespace vat

@@ -10,8 +10,8 @@
 #include "protocol/frame/cell_order.h"
 #include "protocol/frame/symbols.h"
 
-/// What neighbours tell of a particle: FRAMES.md, "Context of neighbouring cells". Whole numbers
-/// only, so that every decoder finds the same.
+/// Prediction from neighbouring particles: FRAMES.md, "Context of neighbouring cells". All numbers
+/// are integers, so that all decoders compute the same values.
 namespace vat {
 
 using Triple = std::array<std::int32_t, 3>;
@@ -24,18 +24,18 @@ inline constexpr std::array<std::int32_t, kInverses> kInverse = [] {
   return all;
 }();
 
-/// The class for residuals of which the mean magnitude is `size` / 2048.
+/// Returns the class for residuals with a mean magnitude of `size` / 2048.
 inline std::int32_t class_of_size(std::int32_t size) {
   const auto s = static_cast<std::uint32_t>(std::max(size, 64));
   const int octave = static_cast<int>(std::bit_width(s)) - 7;
   return 4 * octave + static_cast<int>(s >> (octave + 4) & 3) - 3;
 }
 
-/// Three quantities of every particle, coded cell by cell: what the predictions left of those
-/// before tells where the next lies, and how surely.
+/// Context for three quantities per particle, coded cell by cell. The residuals of earlier
+/// particles correct the next prediction and determine the width of its distribution.
 class Neighbourhood {
  public:
-  /// How the encoder sets the classes: a shift of all, and the class where nothing is known.
+  /// Classes chosen by the encoder: a shift of all classes, and the class without context.
   struct Tuning {
     std::int32_t shift = 0;
     std::uint32_t first_class = 0;
@@ -51,7 +51,7 @@ class Neighbourhood {
   }
   void leave(std::size_t cell) { cells_[cell] = own_; }
 
-  /// Where the values are expected, from predictions [eighths].
+  /// Writes the expected values and their distributions, from predictions [eighths].
   void expect(const Triple& predictions, Triple& wholes,
               std::array<Expectation, 3>& expected) const;
   void learn(const Triple& predictions, const Triple& wholes,
@@ -78,7 +78,7 @@ class Neighbourhood {
 
   std::vector<Sums> cells_;
   Tuning tuning_;
-  Sums before_;  // of the three cells before the present one
+  Sums before_;  // of the three preceding neighbours of the current cell
   Sums own_;
 };
 

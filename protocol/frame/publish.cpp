@@ -13,7 +13,7 @@ void put_speeds(const BodyView& view, std::vector<float>& speeds) {
   }
 }
 
-/// Back to what a new one is, but for the memory.
+/// Resets all fields. Keeps the capacity of the arrays.
 void clear(PublishedState::Body& body) {
   body.positions.clear();
   body.center_of_mass = {};

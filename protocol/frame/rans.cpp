@@ -3,7 +3,7 @@
 namespace vat::rans {
 namespace {
 
-/// For exact quotients by multiplication: x / f = x * factor >> shift for all x below 2^31.
+/// Exact division by multiplication: x / f = x * factor >> shift for all x below 2^31.
 struct Reciprocal {
   std::uint32_t factor = 0;
   std::uint32_t shift = 0;
@@ -25,7 +25,7 @@ void Encoder::finish(std::vector<std::uint8_t>& bytes) {
   static const std::array<Reciprocal, kScale + 1> kReciprocals = make_reciprocals();
   std::array<std::uint32_t, kLanes> states;
   states.fill(kMinState);
-  words_.resize(symbols_.size());  // each symbol gives one at most
+  words_.resize(symbols_.size());  // each symbol writes at most one
   std::uint16_t* const begin = words_.data();
   std::uint16_t* out = begin;
   for (std::size_t i = symbols_.size(); i-- > 0;) {

@@ -9,21 +9,21 @@
 
 #include "core/support/check.h"
 
-/// The entropy coder of FRAMES.md: three interleaved range coders of the asymmetric
-/// numeral kind (J. Duda, arXiv:1311.2540), with frequencies of 12 bits and words of 16.
+/// The entropy coder of FRAMES.md: three interleaved range asymmetric numeral systems (rANS;
+/// J. Duda, arXiv:1311.2540), with frequencies of 12 bits and words of 16 bits.
 namespace vat::rans {
 
 inline constexpr int kScaleBits = 12;
 inline constexpr std::uint32_t kScale = 1U << kScaleBits;
-inline constexpr std::uint32_t kMinState = 1U << 15;  // states are from here to 2^31
+inline constexpr std::uint32_t kMinState = 1U << 15;  // states are in [kMinState, 2^31)
 inline constexpr std::size_t kLanes = 3;
 inline constexpr std::size_t kStateBytes = 4 * kLanes;
 
-/// Takes symbols in their order and writes them backwards, as the decoder needs it.
+/// Collects symbols in reading order and encodes them in reverse order, as rANS requires.
 class Encoder {
  public:
   void clear() { symbols_.clear(); }
-  /// A symbol that has `frequency` of 4096, from `start` on.
+  /// Appends a symbol with the range [start, start + frequency) of 4096.
   void put(std::uint32_t lane, std::uint32_t start, std::uint32_t frequency) {
     symbols_.push_back(start | frequency << 12 | lane << 25);
   }
@@ -35,17 +35,17 @@ class Encoder {
   std::vector<std::uint16_t> words_;
 };
 
-/// Reads symbols. Past the end it reads zeros, and ended_early() stays true.
+/// Reads symbols. After the end of the data it reads zeros, and ended_early() is true.
 class Decoder {
  public:
-  /// The bytes are states and words; fewer than states need have ended early.
+  /// Reads the initial states. If there are fewer bytes, ended_early() is true.
   explicit Decoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), left_(bytes.size()) {
     for (std::uint32_t& state : states_) {
       const std::uint32_t low = word();
       state = low | word() << 16;
     }
   }
-  /// Whether every state is one that an encoder leaves behind.
+  /// Returns whether every state is in the encoder's range.
   bool states_are_valid() const {
     for (const std::uint32_t state : states_) {
       if (state < kMinState || state >> 31 != 0) return false;
@@ -63,7 +63,7 @@ class Decoder {
 
   bool ended_early() const { return ended_early_; }
   std::size_t bytes_left() const { return left_; }
-  /// Where all symbols have been read, the encoder's first states are left.
+  /// Returns whether the states equal the encoder's initial states, as after the last symbol.
   bool is_at_start() const {
     return states_ == std::array<std::uint32_t, kLanes>{kMinState, kMinState, kMinState};
   }

@@ -14,7 +14,7 @@ constexpr std::array<std::int32_t, 82> kLogistic{
     65374, 65393, 65410, 65425, 65438, 65449, 65459, 65468, 65476, 65483, 65489, 65495,
     65500, 65504, 65508, 65511, 65514, 65517, 65519, 65521, 65523, 65524, 65526, 65527,
     65528, 65529, 65530, 65530, 65531, 65532, 65532, 65533, 65533, 65533};
-// 256 / s for the scales s = 0.045 * 2^(t / 4), and the residuals that have symbols: 7 s, and one.
+// 256 / s for the scales s = 0.045 * 2^(t / 4), and the radius of the coded residuals, 7 s + 1.
 constexpr std::array<std::int32_t, kTables> kSteepness{
     5689, 4784, 4023, 3383, 2844, 2392, 2011, 1691, 1422, 1196, 1006, 846,
     711,  598,  503,  423,  356,  299,  251,  211,  178,  149,  126,  106};
@@ -22,7 +22,7 @@ constexpr std::array<int, kTables> kRadius{2, 2, 2, 2, 2, 2, 2, 3,  3,  3,  3,  
                                            4, 4, 5, 6, 7, 7, 9, 10, 12, 13, 16, 18};
 constexpr std::array<std::int32_t, kPlaces> kMiddle{1, 3};  // [eighths]
 
-/// The part of 65536 that lies below `eighths` in a distribution around zero.
+/// Returns the cumulative distribution, of 65536, at `eighths` of a distribution centred at zero.
 constexpr std::int32_t part_below(std::int32_t eighths, std::int32_t steepness) {
   const std::int32_t steps = (eighths < 0 ? -eighths : eighths) * steepness;
   const auto index = static_cast<std::size_t>(std::min(steps >> 8, 80));
@@ -37,7 +37,7 @@ constexpr void fill_table(std::size_t table, std::size_t place, std::size_t inde
   const auto below = [&](int residual) {
     return part_below(8 * residual - 4 - kMiddle[place], kSteepness[table]);
   };
-  // Every symbol has one of 4096, and its part of the others.
+  // Every symbol has a frequency of 1, plus its share of the remaining 4096.
   const auto start = [&](int k) {
     if (k == symbols) return static_cast<std::int32_t>(rans::kScale);
     const auto spare = static_cast<std::int32_t>(rans::kScale) - symbols;

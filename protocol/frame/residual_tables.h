@@ -6,19 +6,19 @@
 
 #include "protocol/frame/rans.h"
 
-/// How residuals are distributed: FRAMES.md, "Residuals". What predictions leave is logistic in
-/// all scenes, whatever its scale, so that fixed tables of a few scales serve all frames.
+/// Distributions of residuals: FRAMES.md, "Residuals". In all scenes, residuals have a logistic
+/// distribution of varying scale. Fixed tables for some scales therefore suffice for all frames.
 namespace vat::residuals {
 
-inline constexpr std::uint32_t kTables = 24;   // scales, a fourth of an octave apart
-inline constexpr std::uint32_t kClasses = 68;  // and those that send low bits as they are
-inline constexpr std::uint32_t kPlaces = 2;    // of the distribution's middle
+inline constexpr std::uint32_t kTables = 24;   // scales, a quarter of an octave apart
+inline constexpr std::uint32_t kClasses = 68;  // the tables, and classes with uncoded low bits
+inline constexpr std::uint32_t kPlaces = 2;    // positions of the distribution's centre
 inline constexpr int kMaxRadius = 18;
-/// From this class on no residual has a probability above a half.
+/// From this class on, each residual has a probability of at most 1/2.
 inline constexpr std::uint32_t kMinKeyClass = 14;
 
-/// Of residuals from -radius to radius, and an escape behind them, which is symbol 2 radius + 1: by
-/// table and by place, where the middle is one eighth above the prediction, or three.
+/// Tables of the residuals -radius to radius, and of an escape symbol 2 radius + 1. One for each
+/// scale and each position of the centre: one or three eighths above the prediction.
 struct Tables {
   static constexpr std::uint32_t kCount = kTables * kPlaces;
   static constexpr std::uint32_t kMaxSymbols = 2 * kMaxRadius + 2;
@@ -33,7 +33,7 @@ struct Tables {
 };
 extern const Tables kAllTables;
 
-/// A class of residuals: a table for what is left of one without its low bits.
+/// A class of residuals: low bits that are not entropy-coded, and the table of the other bits.
 struct Class {
   std::uint32_t table = 0;
   std::uint32_t low_bits = 0;

@@ -7,14 +7,14 @@
 #include "protocol/frame/rans.h"
 #include "protocol/frame/residual_tables.h"
 
-/// The symbols of FRAMES.md, "Symbols", written or read by functions of the same names, so that
-/// one piece of code says how a frame is coded in both directions.
+/// The symbols of FRAMES.md, "Symbols". Writer and reader have functions of the same names, so that
+/// the same code encodes and decodes a frame.
 namespace vat {
 
-/// A residual's class, and where the middle of its distribution lies.
+/// A residual's class and the centre of its distribution.
 struct Expectation {
   std::uint32_t residual_class = 0;
-  std::int32_t fraction = 0;  ///< [eighths] of the prediction above its whole part, -4 to 3
+  std::int32_t fraction = 0;  ///< [eighths] prediction minus its integer part, -4 to 3
 };
 
 constexpr bool is_far(const Expectation& expected) {
@@ -28,12 +28,12 @@ class SymbolWriter {
   void clear() { coder_.clear(); }
   void finish(std::vector<std::uint8_t>& bytes) { coder_.finish(bytes); }
 
-  /// The lowest `count` bits, at most 12.
+  /// Writes the lowest `count` bits, at most 12.
   std::uint32_t bits(std::uint32_t value, std::uint32_t count, std::uint32_t lane = 0) {
     if (count > 0) coder_.put(lane, value << (rans::kScaleBits - count), rans::kScale >> count);
     return value;
   }
-  /// Of 4096 cases, `chances` are true.
+  /// Writes a flag that is true with probability `chances` / 4096.
   bool flag(bool value, std::uint32_t chances) {
     coder_.put(0, value ? 0 : chances, value ? chances : rans::kScale - chances);
     return value;
@@ -78,8 +78,8 @@ class SymbolWriter {
   rans::Encoder coder_;
 };
 
-/// Ignores the values that it is given. What no writer writes makes it unsound for good; it then
-/// goes on with whatever it reads.
+/// Reads symbols; ignores the values of its arguments. After invalid input, is_sound() is false
+/// permanently, and further results are undefined but in range.
 class SymbolReader {
  public:
   static constexpr bool kReads = true;
@@ -133,10 +133,10 @@ class SymbolReader {
   }
 
   bool is_sound() const { return !was_refused_ && !coder_.ended_early(); }
-  /// What was read is not what a writer writes; nothing, if the bytes have ended before.
+  /// Marks the input as invalid, unless the data has ended before.
   void refuse() { was_refused_ = was_refused_ || !coder_.ended_early(); }
   bool was_refused() const { return was_refused_; }
-  /// Whether there can be so many things that take a bit or more each.
+  /// Returns whether the input can contain `count` items of at least one bit.
   bool may_hold(std::uint32_t count) const { return count <= most_; }
   const rans::Decoder& coder() const { return coder_; }
 
@@ -152,7 +152,7 @@ class SymbolReader {
     return is_negative ? -high : high;
   }
 
-  static constexpr std::uint32_t kMaxBits = 30;  // of a residual
+  static constexpr std::uint32_t kMaxBits = 30;  // limit of a residual
 
   rans::Decoder coder_;
   bool was_refused_ = false;

@@ -7,8 +7,8 @@
 namespace vat {
 namespace {
 
-/// Walks a text without building anything, so that a hostile one costs nothing: copying or freeing
-/// a deeply nested value would overflow the stack, and duplicate keys are lost in the document.
+/// Checks a text without building values, because copying or freeing a deeply nested value
+/// overflows the stack. It also detects duplicate keys, which a document does not store.
 class LimitCheck final : public nlohmann::json_sax<Json> {
  public:
   explicit LimitCheck(const JsonLimits& limits) : limits_(limits) {}
@@ -64,7 +64,7 @@ class LimitCheck final : public nlohmann::json_sax<Json> {
 
   JsonLimits limits_;
   std::size_t values_ = 0;
-  std::vector<std::set<std::string>> keys_;  // of every open array or object
+  std::vector<std::set<std::string>> keys_;  // of each open array or object
   std::optional<Error> error_;
 };
 
@@ -76,7 +76,7 @@ Result<Json> parse_json(std::string_view text, const JsonLimits& limits) {
                  "the text has " + std::to_string(text.size()) + " bytes; at most " +
                      std::to_string(limits.bytes) + " are allowed"};
   }
-  // The parser takes a zero byte for the end of the text and would ignore what follows it.
+  // The parser stops at a zero byte and would ignore the rest of the text.
   const std::size_t zero = text.find('\0');
   if (zero != std::string_view::npos) {
     return Error{"parse_error", "", "not JSON: zero byte at position " + std::to_string(zero)};

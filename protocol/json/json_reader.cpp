@@ -22,11 +22,11 @@ std::string count_rule(std::uint64_t min, std::uint64_t max) {
   return "must be a whole number from " + std::to_string(min) + " to " + std::to_string(max);
 }
 
-/// The number, where it is whole and not negative: JSON does not tell 2 from 2.0.
+/// Returns the number if it is an integer and not negative. JSON does not distinguish 2 and 2.0.
 std::optional<std::uint64_t> whole_number(const Json& value) {
   if (value.is_number_unsigned()) return value.get<std::uint64_t>();
   if (!value.is_number_float()) return {};
-  constexpr Real kExact = 9007199254740992.0;  // 2^53: whole numbers above are rounded
+  constexpr Real kExact = 9007199254740992.0;  // 2^53: larger integers are rounded
   const Real number = value.get<Real>();
   if (!(number >= 0 && number <= kExact) || std::trunc(number) != number) return {};
   return static_cast<std::uint64_t>(number);

@@ -16,34 +16,34 @@ namespace vat {
 
 using Json = nlohmann::json;
 
-/// Bounds of a text before a document is built from it.
+/// Limits of a JSON text. The parser checks them before it allocates values.
 struct JsonLimits {
   std::size_t bytes = 64 * 1024;
   std::size_t depth = 16;
   std::size_t values = 100'000;
 };
 
-/// Parses untrusted text. Refuses what is over a limit, duplicate keys, invalid UTF-8 and
-/// anything after the document; the error's path is empty and its message names the place.
-/// Codes: too_large, too_deep, too_many_values, duplicate_key, parse_error.
+/// Parses untrusted text. Rejects texts over a limit, duplicate keys, invalid UTF-8, and content
+/// after the document. The error's path is empty, and its message names the position. Codes:
+/// too_large, too_deep, too_many_values, duplicate_key, parse_error.
 Result<Json> parse_json(std::string_view text, const JsonLimits& limits = {});
 
-/// Greatest number of errors that are collected for one document; a reply stays small.
+/// Largest number of errors collected for one document. It limits the size of a reply.
 inline constexpr std::size_t kMaxReadErrors = 256;
 
-/// Adds an error, unless there are kMaxReadErrors already.
+/// Adds an error if there are fewer than kMaxReadErrors.
 void add_error(Errors& errors, std::string code, std::string path, std::string message);
 
-/// JSON pointers (RFC 6901) of a member and of an array element.
+/// Returns the JSON pointer (RFC 6901) of a member or of an array element.
 std::string pointer_to(std::string_view parent, std::string_view key);
 std::string pointer_to(std::string_view parent, std::size_t index);
 
-/// Bounds for numbers that only have to be finite.
+/// Bounds of a number that only needs to be finite.
 inline constexpr Real kAnyMin = std::numeric_limits<Real>::lowest();
 inline constexpr Real kAnyMax = std::numeric_limits<Real>::max();
 
-/// Checked reading of single values: nothing, and one error, where the value does not fit. Codes:
-/// wrong_type, out_of_range, bad_text.
+/// Read one value. If it is invalid, they add one error and return nothing. Codes: wrong_type,
+/// out_of_range, bad_text.
 std::optional<Real> to_real(const Json& value, const std::string& path, Real min, Real max,
                             Errors& errors);
 std::optional<std::uint64_t> to_count(const Json& value, const std::string& path, std::uint64_t min,
@@ -52,41 +52,42 @@ std::optional<std::string> to_text(const Json& value, const std::string& path,
                                    std::size_t max_bytes, Errors& errors);
 std::optional<Vec3> to_vector(const Json& value, const std::string& path, Real min, Real max,
                               Errors& errors);
-/// Null, and one error, unless the value is an array of `min` to `max` elements.
+/// Returns null and adds one error if the value is not an array of `min` to `max` elements.
 const Json* to_array(const Json& value, const std::string& path, std::size_t min, std::size_t max,
                      Errors& errors);
 
-/// Checked reading of one JSON object. Errors are collected, not thrown: each wrong, missing or
-/// unknown member adds one Error with its JSON pointer and the allowed range, and the read returns
-/// the fallback (or a value in range), so that one pass reports everything. Codes, beside those
-/// above: missing, unknown_member, unknown_name.
+/// Reads one JSON object. Each wrong, missing or unknown member adds one error with its JSON
+/// pointer and its range. The read then returns the fallback or a value in range, so that one pass
+/// reports all errors. Additional codes: missing, unknown_member, unknown_name.
 class ObjectReader {
  public:
-  /// `path` is the JSON pointer of `value`; adds an error if `value` is not an object. The value
-  /// and the errors must outlive this.
+  /// `path` is the JSON pointer of `value`. Adds an error if `value` is not an object. The value
+  /// and the errors must outlive the reader.
   ObjectReader(const Json& value, std::string path, Errors& errors);
 
   bool has(std::string_view key) const;
-  /// The member, or null (and an error if `required`). Marks the key as known.
+  /// Returns the member, or null if it is absent (with an error if `required`). Marks the key as
+  /// known.
   const Json* member(std::string_view key, bool required = false);
   std::string path_of(std::string_view key) const;
 
-  /// Finite number in [min, max]. Without a fallback the member is required. Same below.
+  /// Reads a finite number in [min, max]. Without a fallback the member is required; this holds for
+  /// all functions below.
   Real real(std::string_view key, Real min, Real max, std::optional<Real> fallback = {});
   std::uint64_t count(std::string_view key, std::uint64_t min, std::uint64_t max,
                       std::optional<std::uint64_t> fallback = {});
   bool boolean(std::string_view key, std::optional<bool> fallback = {});
-  /// UTF-8 text of at most `max_bytes` bytes without control characters.
+  /// Reads UTF-8 text of at most `max_bytes` bytes without control characters.
   std::string text(std::string_view key, std::size_t max_bytes,
                    const std::optional<std::string>& fallback = {});
   Vec3 vector(std::string_view key, Real min, Real max, const std::optional<Vec3>& fallback = {});
-  /// The position of the member's text in `names`.
+  /// Returns the index of the member's text in `names`.
   std::size_t choice(std::string_view key, std::initializer_list<std::string_view> names,
                      std::optional<std::size_t> fallback = {});
-  /// The member as an array of at most `max` elements; null where it is absent or wrong.
+  /// Returns the member as an array of at most `max` elements; null if it is absent or invalid.
   const Json* array(std::string_view key, std::size_t max, bool required = false);
 
-  /// Adds an error for every member that no call above asked for.
+  /// Adds an error for every member that was not read before.
   void refuse_unknown();
 
  private:

@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// Foreign text made fit for a message: plain ASCII and short.
+/// Returns untrusted text for a message: printable ASCII, with a limited length.
 std::string printable(std::string_view text);
 
 }  // namespace vat

@@ -19,7 +19,7 @@ Error mesh_error(const std::string& source, const std::string& what) {
 
 constexpr std::string_view kBlank = " \t\r";
 
-/// Takes the first word off `line`; empty where there is none.
+/// Removes the first word of `line` and returns it. Returns an empty text if there is none.
 std::string_view take_word(std::string_view& line) {
   line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
   const std::string_view word = line.substr(0, line.find_first_of(kBlank));
@@ -34,8 +34,8 @@ bool is_finite_number(std::string_view word) {
   return failure == std::errc() && end == word.data() + word.size() && std::isfinite(number);
 }
 
-/// The number, from 1, of the first line whose vertex has not three numbers; 0 where there is none.
-/// The library takes 0 for what it cannot read.
+/// Returns the number, from 1, of the first line with an invalid vertex; 0 if all are valid. The
+/// library replaces unreadable coordinates by 0 and reports no error.
 std::size_t bad_vertex_line(std::string_view text) {
   for (std::size_t number = 1; !text.empty(); ++number) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -54,19 +54,19 @@ std::size_t triangle_count(const tinyobj::ObjReader& reader) {
   return count;
 }
 
-/// False where a coordinate is not finite or beyond kMaxLength.
+/// Returns false if a coordinate is not finite or exceeds kMaxLength.
 bool read_vertices(const std::vector<tinyobj::real_t>& coordinates, Real scale, MeshShape& mesh) {
   mesh.vertices.reserve(coordinates.size() / 3);
   for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) {
     const Vec3 vertex = scale * Vec3(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
-    // Written so that a NaN fails it.
+    // The negation also detects NaN.
     if (!(vertex.array().abs() <= kMaxLength).all()) return false;
     mesh.vertices.push_back(vertex);
   }
   return true;
 }
 
-/// False where a face names a vertex that does not exist.
+/// Returns false if a face refers to a vertex that does not exist.
 bool read_triangles(const tinyobj::mesh_t& faces, MeshShape& mesh) {
   for (std::size_t i = 0; i + 2 < faces.indices.size(); i += 3) {
     std::array<Index, 3> triangle{};

@@ -7,11 +7,11 @@
 
 namespace vat {
 
-inline constexpr std::size_t kMaxObjBytes = 16 * 1024 * 1024;  // 200 000 triangles, and slack
+inline constexpr std::size_t kMaxObjBytes = 16 * 1024 * 1024;  // sufficient for 200 000 triangles
 
-/// Reads the faces of a Wavefront `.obj` text: all objects as one mesh, polygons cut into
-/// triangles, coordinates times `scale`; normals, textures, lines and points are ignored. `source`
-/// is the name in the messages. Codes: bad_mesh, too_large.
+/// Reads a Wavefront `.obj` text. Returns all objects as one mesh, with polygons split into
+/// triangles and coordinates multiplied by `scale`. Ignores normals, textures, lines and points.
+/// `source` is the name in error messages. Codes: bad_mesh, too_large.
 Result<MeshShape> read_obj(const std::string& text, const std::string& source, Real scale);
 
 }  // namespace vat

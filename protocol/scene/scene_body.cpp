@@ -49,7 +49,7 @@ std::vector<Real> read_reals(ObjectReader& reader, std::string_view key, Real mi
   return reals;
 }
 
-/// Elements of `list` as indices of particles or vertices.
+/// Reads the elements of `list` as indices of particles or vertices.
 std::vector<Index> to_indices(const Json& list, const std::string& path, Errors& errors) {
   std::vector<Index> indices;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -213,7 +213,8 @@ Shape to_shape(const Json& value, const std::string& path, const MeshSource& mes
   const std::size_t errors_before = errors.size();
   const std::size_t type =
       reader.choice("type", {"box", "sphere", "cylinder", "mesh", "particles"});
-  if (errors.size() != errors_before || !value.is_object()) return {};  // its members say nothing
+  if (errors.size() != errors_before || !value.is_object())
+    return {};  // further errors would follow from these
   Shape shape;
   switch (type) {
     case 0:
@@ -260,7 +261,7 @@ BodyDescription to_body(const Json& value, const std::string& path, const MeshSo
   ObjectReader reader(value, path, errors);
   BodyDescription body;
   body.name = reader.text("name", kMaxNameLength);
-  // In the order of BodyKind.
+  // The order of BodyKind.
   body.kind = static_cast<BodyKind>(reader.choice("kind", {"liquid", "deformable", "rigid"}));
   body.material = reader.text("material", kMaxNameLength);
   if (const Json* shape = reader.member("shape", true)) {

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The whole file; refuses what is not a plain file or has more than `max_bytes`.
+/// Reads a whole file. Fails if it is not a regular file or has more than `max_bytes` bytes.
 Result<std::string> read_file(const fs::path& path, const std::string& shown,
                               std::size_t max_bytes) {
   std::error_code failure;
@@ -22,7 +22,7 @@ Result<std::string> read_file(const fs::path& path, const std::string& shown,
   std::ifstream file(path, std::ios::binary);
   std::string text;
   char buffer[1 << 16];
-  // Counted while reading: the size that the file system tells may change.
+  // The bytes are counted while reading, because the size of a file can change.
   while (file.read(buffer, sizeof buffer) || file.gcount() > 0) {
     text.append(buffer, static_cast<std::size_t>(file.gcount()));
     if (text.size() > max_bytes) {
@@ -40,7 +40,7 @@ bool stays_below(const fs::path& name) {
          std::none_of(name.begin(), name.end(), [](const fs::path& part) { return part == ".."; });
 }
 
-/// The same errors, with the file's name in front of the messages.
+/// Returns the errors with the file name before their messages.
 Errors name_file(Errors errors, const std::string& file) {
   for (Error& error : errors) error.message = file + ": " + error.message;
   return errors;

@@ -10,8 +10,8 @@
 namespace vat {
 namespace {
 
-/// The scene as far as it was read without errors. `..._at` holds, for each element that was kept,
-/// its place in the document.
+/// The parts of a scene without read errors. `..._at` contains the index in the document of each
+/// part.
 struct PartialScene {
   Scene scene;
   std::vector<std::size_t> materials_at;
@@ -19,13 +19,14 @@ struct PartialScene {
   std::vector<std::size_t> bodies_at;
   std::vector<std::size_t> emitters_at;
   std::vector<std::size_t> drains_at;
-  /// Names that the document defines though their material could not be read.
+  /// Names of materials with read errors.
   std::set<std::string> broken_materials;
   bool material_names_known = true;
   bool body_names_known = true;  ///< all bodies were read without errors
 };
 
-/// Whether every name that an element refers to was read, or is certainly not there.
+/// Returns whether a reference to `material` can be checked: it was read, or is not in the
+/// document.
 bool can_be_checked(const PartialScene& partial, const std::string& material) {
   for (const Material& known : partial.scene.materials) {
     if (known.name == material) return true;
@@ -33,8 +34,8 @@ bool can_be_checked(const PartialScene& partial, const std::string& material) {
   return partial.material_names_known && partial.broken_materials.count(material) == 0;
 }
 
-/// Calls `read(element, path)` for each element of the list `key`, and `keep(value, index, intact)`
-/// with what it gave.
+/// Calls `read(element, path)` for each element of the list `key`, and then
+/// `keep(value, index, intact)` with its result.
 template <class Read, class Keep>
 void for_elements(ObjectReader& reader, const Json* list, std::string_view key,
                   const Errors& errors, Read&& read, Keep&& keep) {
@@ -102,7 +103,7 @@ void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& p
       });
 }
 
-/// Whether a body could be checked, so that what names it can be.
+/// Returns whether a reference to `body` can be checked.
 bool is_checked(const PartialScene& partial, const std::string& body) {
   return partial.body_names_known ||
          std::ranges::find(partial.scene.bodies, body, &BodyDescription::name) !=
@@ -132,7 +133,7 @@ void read_flow(ObjectReader& reader, PartialScene& partial, Errors& errors) {
       });
 }
 
-/// Reads the optional member `key`; `target` keeps its value where the member has errors.
+/// Reads the optional member `key`. `target` does not change if the member has errors.
 template <class Target, class Read>
 void read_part(ObjectReader& reader, std::string_view key, Target& target, const Errors& errors,
                Read&& read) {
@@ -143,14 +144,14 @@ void read_part(ObjectReader& reader, std::string_view key, Target& target, const
   if (errors.size() == errors_before) target = std::move(value);
 }
 
-/// A choice of one of an enumeration's names, in its order.
+/// Reads a value of an enumeration by name.
 template <class Enum>
 void read_enum(ObjectReader& reader, std::string_view key,
                std::initializer_list<std::string_view> names, Enum& value) {
   value = static_cast<Enum>(reader.choice(key, names, static_cast<std::size_t>(value)));
 }
 
-/// What all liquids of the scene have in common.
+/// Reads the members that apply to all liquids of the scene.
 void read_liquid_model(ObjectReader& reader, Scene& scene) {
   read_enum(reader, "pressure_solver", {"gas", "tait", "incompressible"}, scene.pressure_solver);
   scene.printed_pressure_force =
@@ -209,7 +210,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   return partial;
 }
 
-/// A pointer into the partial scene as a pointer into the document.
+/// Converts a JSON pointer of the partial scene to one of the document.
 std::string document_path(const std::string& path, std::string_view list,
                           const std::vector<std::size_t>& at) {
   const std::string prefix = pointer_to("", list) + '/';

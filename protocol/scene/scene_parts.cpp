@@ -69,12 +69,12 @@ namespace {
 using Laws = std::initializer_list<InterfaceLaw>;
 using enum InterfaceLaw;
 
-/// The law of an interface, and its members that not all laws have.
+/// The law of an interface, and the members that only some laws have.
 class LawReader {
  public:
   LawReader(ObjectReader& reader, Errors& errors) : reader_(reader), errors_(errors) {
     const std::size_t errors_before = errors.size();
-    // In the order of InterfaceLaw.
+    // The order of InterfaceLaw.
     law_ = static_cast<InterfaceLaw>(
         reader.choice("law", {"penalty", "lennard_jones", "sph", "projection"}, std::size_t{0}));
     is_known_ = errors.size() == errors_before;
@@ -83,7 +83,7 @@ class LawReader {
   InterfaceLaw law() const { return law_; }
   bool is_one_of(Laws laws) const { return std::ranges::find(laws, law_) != laws.end(); }
   bool needs(Laws laws) const { return is_known_ && is_one_of(laws); }
-  /// The member if it is there, and an error where the law has none.
+  /// Returns the member if it is present. Adds an error if the law does not have it.
   std::optional<Real> real(std::string_view key, Laws laws) {
     if (!reader_.has(key)) return {};
     if (is_known_ && !is_one_of(laws)) {

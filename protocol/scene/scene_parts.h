@@ -9,22 +9,22 @@
 #include "protocol/json/json_reader.h"
 #include "protocol/scene/scene_json.h"
 
-/// Readers of the parts of a scene. Each adds what is wrong to `errors` and returns a value in any
-/// case, which is of use only if nothing was added.
+/// Readers of the parts of a scene. Each adds its errors to `errors` and returns a value. The value
+/// is valid only if no error was added.
 namespace vat::scene_parts {
 
-/// Limits that belong to the file format; those of the values themselves are in core/limits.h.
+/// Limits of the file format. core/limits.h contains the limits of the values.
 inline constexpr std::size_t kMaxFileName = 256;
-inline constexpr std::size_t kMaxInterfaces = 4096;  // 64 materials and the vat, pair by pair
+inline constexpr std::size_t kMaxInterfaces = 4096;  // all pairs of 64 materials and the vat
 
-/// The member as a list of points, each component at most `bound` in magnitude.
+/// Reads a list of vectors with components of at most `bound` in magnitude.
 std::vector<Vec3> read_vectors(ObjectReader& reader, std::string_view key, Real bound,
                                bool required, Errors& errors);
-/// Not normalised: a length far from 1 is a mistake, which the core reports.
+/// Reads a quaternion without normalising it. The core reports a length far from 1.
 Quat to_orientation(const Json& value, const std::string& path, Errors& errors);
 SpringConstants to_spring_constants(ObjectReader& reader);
 SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors);
-/// Of an interface without materials and threshold.
+/// Reads the constants of an interface without materials and threshold.
 InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors);
 Material to_material(const Json& value, std::string path, Errors& errors);
 InterfaceDescription to_interface(const Json& value, std::string path, Errors& errors);
@@ -37,10 +37,10 @@ Emitter to_emitter(const Json& value, std::string path, Errors& errors);
 Drain to_drain(const Json& value, std::string path, Errors& errors);
 IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors);
 ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors);
-/// The member "integrator". Without a fallback it is required.
+/// Reads the member "integrator". Without a fallback it is required.
 IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback = {});
 Numerics to_numerics(const Json& value, std::string path, Errors& errors);
-/// `bound` is that of the field's values at its waves' crests.
+/// Reads a field whose values have a magnitude of at most `bound`, including its waves.
 VectorField to_field(const Json& value, std::string path, Real bound, Errors& errors);
 Shape to_shape(const Json& value, const std::string& path, const MeshSource& meshes,
                Errors& errors);

@@ -143,7 +143,7 @@ ForceSwitches to_force_switches(const Json& value, std::string path, Errors& err
 IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback) {
   std::optional<std::size_t> usual;
   if (fallback) usual = static_cast<std::size_t>(*fallback);
-  // In the order of IntegratorId.
+  // The order of IntegratorId.
   return static_cast<IntegratorId>(reader.choice(
       "integrator",
       {"explicit_euler", "symplectic_euler", "velocity_verlet", "heun", "runge_kutta_4"}, usual));
@@ -155,7 +155,7 @@ Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
   numerics.integrator = read_integrator(reader, numerics.integrator);
   numerics.step = reader.real("step", kMinStep, kMaxStep, numerics.step);
   numerics.tick = reader.real("tick", kMinStep, kMaxTick, numerics.tick);
-  // In the order of StepControl.
+  // The order of StepControl.
   numerics.control = static_cast<StepControl>(reader.choice(
       "control", {"fixed", "adaptive", "local"}, static_cast<std::size_t>(numerics.control)));
   numerics.tolerance = reader.real("tolerance", kMinAccuracy, kMaxTolerance, numerics.tolerance);

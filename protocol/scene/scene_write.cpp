@@ -190,7 +190,7 @@ Json to_json(const BodyDescription& body) {
                {"seed", body.seed},
                {"fixed", body.fixed},
                {"release", body.release}};
-  // Explicit particles may go without a spacing, which zero stands for.
+  // A spacing of zero means that explicit particles have no spacing.
   if (body.spacing != 0) json["spacing"] = body.spacing;
   if (body.mass) json["mass"] = *body.mass;
   if (body.radius) json["radius"] = *body.radius;
