@@ -6,20 +6,20 @@ interface RoundTrip {
 const kKept = 8;
 
 /**
- * Estimates how far the server's clock is ahead of ours from round trips: the server's time is
- * taken as that of the middle of the trip, which is wrong by half the trip at most. Of the last few
- * the shortest counts.
+ * Estimates the offset of the server's clock from round trips. It assumes that the server replies in
+ * the middle of a trip, with an error of at most half of the trip. The shortest of the last trips
+ * counts.
  */
 export class ClockOffset {
   private trips: RoundTrip[] = [];
 
-  /** `sent` and `received` by our clock, `server` by the server's; all in seconds. */
+  /** `sent` and `received` are times of the local clock [s], `server` of the server's clock [s]. */
   add(sent: number, received: number, server: number): void {
     const trip = { offset: server - (sent + received) / 2, duration: received - sent };
     this.trips = [...this.trips.slice(1 - kKept), trip];
   }
 
-  /** Seconds to add to our clock to get the server's; undefined before the first round trip. */
+  /** The server's time minus the local time [s]; undefined before the first round trip. */
   get seconds(): number | undefined {
     if (this.trips.length === 0) return undefined;
     return this.trips.reduce((a, b) => (b.duration < a.duration ? b : a)).offset;

@@ -8,17 +8,17 @@ import type { Socket, SocketClose, SocketConstructor } from './socket.js';
 export type ConnectionState =
   | { name: 'connecting' }
   | { name: 'open' }
-  /** The line is down; the next attempt comes after `retryMs`. */
+  /** Disconnected; the next attempt follows after `retryMs`. */
   | { name: 'waiting'; reason: string; retryMs: number }
-  /** For good: by us, or by the server for the reason that is given. */
+  /** Closed permanently, by the client or by the server with a reason. */
   | { name: 'closed'; reason?: string };
 
 export interface ConnectionHandlers {
   onState?(state: ConnectionState): void;
   onEvent?(event: Event): void;
-  /** One binary message. */
+  /** Receives one binary message. */
   onFrame?(bytes: ArrayBuffer): void;
-  /** A message that is not of the protocol; the connection goes on. */
+  /** Reports an invalid message. The connection remains open. */
   onFault?(message: string): void;
 }
 
@@ -27,31 +27,31 @@ export interface ConnectionOptions {
   /** The browser's `WebSocket` or that of the `ws` package. */
   socket: SocketConstructor;
   /**
-   * Whether the server answers plain HTTP. Browsers do not say why a line did not open; with this
-   * a server that refuses it is told from one that is away.
+   * Returns whether the server answers plain HTTP. Browsers do not report why a WebSocket failed to
+   * open. The probe distinguishes a refusal from an unreachable server.
    */
   probe?: () => Promise<boolean>;
-  /** How long a request, or opening the line, may take. */
+  /** The time limit of a request and of opening the connection. */
   timeoutMs?: number;
-  /** Delay before the n-th attempt in a row to reconnect, n from 1. */
+  /** Returns the delay before the n-th successive attempt to reconnect, n from 1. */
   retryDelayMs?: (attempt: number) => number;
 }
 
-/** 0.5 s, doubled up to 8 s, and up to a quarter more so that clients do not return all at once. */
+/** Returns 0.5 s, doubled up to 8 s, plus a random quarter, which spreads the clients' attempts. */
 export function defaultRetryDelayMs(attempt: number): number {
   return Math.min(500 * 2 ** (attempt - 1), 8000) * (1 + Math.random() / 4);
 }
 
 const kRefused = `the server does not support ${kSubprotocol}; reload the page`;
 
-/** A line to the server that comes back by itself when it breaks. */
+/** A connection to the server that reopens after a failure. */
 export class Connection {
   private readonly timeoutMs: number;
   private readonly retryDelayMs: (attempt: number) => number;
   private readonly pending: PendingRequests;
   private socket: Socket | undefined;
   private isOpen = false;
-  /** To connect since the server last sent something unasked: replies may be refusals to join. */
+  /** Attempts since the last event or frame. Replies do not count, because they can be refusals to join. */
   private attempts = 0;
   private retryMs = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -65,7 +65,7 @@ export class Connection {
     this.pending = new PendingRequests(this.timeoutMs);
   }
 
-  /** Connects now, whatever the state was before. */
+  /** Connects now, from any state. */
   open(): void {
     this.drop();
     this.handlers.onState?.({ name: 'connecting' });
@@ -80,18 +80,18 @@ export class Connection {
     this.timer = setTimeout(() => this.retryLater('the server does not answer'), this.timeoutMs);
   }
 
-  /** Ends the line and does not come back. */
+  /** Closes the connection permanently. */
   close(): void {
     this.drop();
     this.handlers.onState?.({ name: 'closed' });
   }
 
-  /** Gives up a line that is open but dead, and connects anew after a while. */
+  /** Closes an open connection that does not respond, and reconnects after a delay. */
   restart(reason: string): void {
     if (this.isOpen) this.retryLater(reason);
   }
 
-  /** Rejects with a RequestError if the server refuses, does not answer in time, or is away. */
+  /** Rejects with a RequestError if the server refuses, does not reply in time, or is not connected. */
   async request<M extends MethodName>(method: M, params: Params<M>): Promise<Result<M>> {
     if (!this.isOpen) throw new RequestError('disconnected', `${method}: not connected`);
     const { id, reply } = this.pending.add(method);
@@ -99,13 +99,13 @@ export class Connection {
     return (await reply) as Result<M>;
   }
 
-  /** Sends without wanting an answer; lost if the line is down. */
+  /** Sends a notification. It is lost if there is no connection. */
   notify<M extends MethodName>(method: M, params: Params<M>): void {
     if (this.isOpen) this.send(method, params);
   }
 
   private send(method: string, params: object, id?: number): void {
-    // JSON.stringify leaves undefined members out: no id in a notification, no empty params.
+    // JSON.stringify omits undefined members: the id of a notification, and empty params.
     const given = Object.keys(params).length > 0 ? params : undefined;
     this.socket?.send(JSON.stringify({ jsonrpc: '2.0', id, method, params: given }));
   }
@@ -116,7 +116,7 @@ export class Connection {
     this.handlers.onState?.({ name: 'open' });
   }
 
-  /** `fault`: what Node says of a line that broke; browsers say nothing. */
+  /** `fault` is Node's reason for a failure. Browsers give no reason. */
   private handleClose(event: SocketClose, fault?: string): void {
     const wasOpen = this.isOpen;
     const reason = fault ? `${describeClose(event)}: ${fault}` : describeClose(event);
@@ -129,12 +129,12 @@ export class Connection {
     if (!wasOpen) void this.explainRefusal();
   }
 
-  /** Corrects the reason for waiting if the server is there. */
+  /** Corrects the reported reason if the server is reachable. */
   private async explainRefusal(): Promise<void> {
     const { timer } = this;
     const start = Date.now();
     const isThere = await this.options.probe?.();
-    if (!isThere || this.timer !== timer) return; // the next attempt has begun already
+    if (!isThere || this.timer !== timer) return; // the next attempt has begun
     const retryMs = Math.max(0, this.retryMs - (Date.now() - start));
     this.handlers.onState?.({ name: 'waiting', reason: kRefused, retryMs });
   }
@@ -166,7 +166,7 @@ export class Connection {
     }
   }
 
-  /** Replies that come after their time-out are stray too, and not worth a word. */
+  /** Ignores replies with an id, because they can be late replies of timed-out requests. */
   private reportStrayReply({ id, error }: Reply): void {
     if (typeof id !== 'number') {
       this.handlers.onFault?.(error?.message ?? 'a reply without a request');

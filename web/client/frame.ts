@@ -14,7 +14,7 @@ export type { Frame, FrameBlock, GridBlock, PoseBlock, VatBlock } from './frame/
 export { frameNumber } from './frame/header.js';
 export type { FrameHeader, FrameScale } from './frame/header.js';
 
-/** Decodes the frames of one connection in their order: protocol/FRAMES.md. */
+/** Decodes the frames of one connection in order: protocol/FRAMES.md. */
 export class FrameDecoder {
   private readonly ring = new FrameRing();
   private readonly symbols = new SymbolReader();
@@ -23,14 +23,14 @@ export class FrameDecoder {
   private dropped = 0;
   private isWaiting = false;
 
-  /** A frame was refused, so that those which build on it will be, up to the next key frame. */
+  /** Whether a frame was invalid. Frames that refer to it are then invalid, until the next key frame. */
   get needsKey(): boolean {
     return this.isWaiting;
   }
 
   /**
-   * Decodes to `into`, of which all is overwritten and all memory that suffices is used again.
-   * @throws FrameError with the first reason why this is no frame; it then changes nothing.
+   * Decodes to `into`, which is overwritten. Reuses its memory if it is large enough.
+   * @throws FrameError with the first error of an invalid frame; the decoder then does not change.
    */
   decode(buffer: ArrayBuffer, into: Frame = emptyFrame()): Frame {
     const wasWaiting = this.isWaiting;
@@ -40,7 +40,7 @@ export class FrameDecoder {
     return into;
   }
 
-  /** Whether it is a key frame. */
+  /** Returns whether it is a key frame. */
   private read(buffer: ArrayBuffer, into: Frame): boolean {
     const header = new HeaderBytes(buffer);
     const { isKey, number, epoch } = header;

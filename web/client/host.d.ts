@@ -1,3 +1,3 @@
-/** The timers that browsers and Node have alike; the client needs nothing else of its host. */
+/** The timers of browsers and Node. The client uses no other function of its host. */
 declare function setTimeout(callback: () => void, milliseconds: number): number;
 declare function clearTimeout(timer: number | undefined): void;

@@ -1,4 +1,4 @@
-/** Client of the vat.v1 protocol for browsers and Node: no DOM, the WebSocket is handed in. */
+/** Client of the vat.v1 protocol for browsers and Node: without DOM. The caller supplies the WebSocket. */
 export * from './clock.js';
 export * from './connection.js';
 export * from './frame.js';

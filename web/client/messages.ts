@@ -1,6 +1,6 @@
 /**
- * The control messages of protocol/PROTOCOL.md as types, which are written from its schemas. SI
- * units; vectors are [x, y, z].
+ * Types of the control messages of protocol/PROTOCOL.md, generated from its schemas. Units are SI;
+ * vectors are [x, y, z].
  */
 import { kEventNames } from './protocol.js';
 import type { Events, Methods, ReplyError, Role } from './protocol.js';
@@ -46,7 +46,7 @@ export type MethodName = keyof Methods;
 export type Params<M extends MethodName> = Methods[M]['params'];
 export type Result<M extends MethodName> = Methods[M]['result'];
 
-/** The values of particles that frames may have, each with the greatest error that it may have. */
+/** Optional attributes of particles in frames, each with its maximum error. */
 export type Attributes = NonNullable<Params<'frames.subscribe'>['attributes']>;
 
 export type EventName = keyof Events;
@@ -58,21 +58,21 @@ export function isEventName(name: string): name is EventName {
   return kNames.has(name);
 }
 
-/** The `data` of an error reply, of whatever kind. */
+/** The `data` of an error reply. */
 export interface ErrorData {
   kind?: ReplyError['data']['kind'];
-  /** What to do. */
+  /** The action that resolves the error. */
   hint?: string;
-  /** The parameter that is at fault, a JSON pointer into the params. */
+  /** JSON pointer to the invalid parameter. */
   path?: string;
   limit?: string;
   maximum?: number;
-  /** Of a request that came too soon: when to come again [s]. */
+  /** For rate-limited requests: the delay until a retry can succeed [s]. */
   retry_after?: number;
   errors?: { code: string; path: string; message: string }[];
-  /** Of what needs more than the caller's role. */
+  /** The required role, if the caller's role is insufficient. */
   role?: Role | 'none';
   least_role?: Role;
-  /** Of a body that another holds. */
+  /** The participant who holds the body. */
   holder?: { participant: number; name: string };
 }

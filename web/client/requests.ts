@@ -1,9 +1,9 @@
 import type { ErrorData } from './messages.js';
 
-/** A request that the server refused, or that got no answer. */
+/** A request that the server rejected or did not answer. */
 export class RequestError extends Error {
   constructor(
-    /** The error's `data.kind` (see PROTOCOL.md), or what the client found out by itself. */
+    /** The error's `data.kind` (PROTOCOL.md), or an error that the client detected. */
     readonly kind: string | 'timed_out' | 'disconnected',
     message: string,
     readonly code?: number,
@@ -20,21 +20,21 @@ interface Waiting {
   timer: ReturnType<typeof setTimeout>;
 }
 
-/** The reply to a request, as far as this class looks at it. */
+/** The members of a reply that this class reads. */
 export interface Reply {
   id?: unknown;
   result?: unknown;
   error?: { code: number; message: string; data?: ErrorData };
 }
 
-/** Requests that wait for their replies, by id. */
+/** Pending requests by id. */
 export class PendingRequests {
   private readonly waiting = new Map<number, Waiting>();
   private lastId = 0;
 
   constructor(private readonly timeoutMs: number) {}
 
-  /** Gives a new id and the promise that the reply with this id settles. */
+  /** Returns a new id, and the promise that its reply settles. */
   add(method: string): { id: number; reply: Promise<unknown> } {
     const id = ++this.lastId;
     const reply = new Promise<unknown>((resolve, reject) => {
@@ -48,7 +48,7 @@ export class PendingRequests {
     return { id, reply };
   }
 
-  /** Returns false if nothing waits for this reply. */
+  /** Returns false if no request waits for this reply. */
   settle(reply: Reply): boolean {
     if (typeof reply.id !== 'number') return false;
     const waiting = this.waiting.get(reply.id);

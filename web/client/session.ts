@@ -16,44 +16,44 @@ import { RequestError } from './requests.js';
 
 export interface SessionHandlers {
   onState?(state: ConnectionState): void;
-  /** Who we are in the session and who else is there; before its description. */
+  /** Called after joining, before the description: this participant and the others. */
   onJoined?(joined: JoinedAs): void;
-  /** After joining, and after each change of scene or bodies before its first frame. */
+  /** Called after joining and after each change of scene or bodies, before the next frame. */
   onDescription?(description: SessionDescription): void;
   onEvent?(event: Event): void;
-  /** A decoded frame and its size. Answer with `acknowledge` once it is taken. */
+  /** Receives a decoded frame and its size. Call `acknowledge` after processing it. */
   onFrame?(frame: Frame, bytes: number): void;
-  /** What the next frame is decoded to: one that is not in use any more. By default a new one. */
+  /** Returns an unused frame for the next decoding. By default, frames are newly allocated. */
   frameFor?(): Frame;
-  /** The secret by which this participant may come back, on this line or another. */
+  /** Receives the token with which this participant can resume on any connection. */
   onResumeToken?(token: string): void;
-  /** Seconds that the server's clock is ahead of `now`. */
+  /** Receives the server's time minus `now` [s]. */
   onClockOffset?(seconds: number): void;
-  /** Something that a user should hear of; the session goes on. */
+  /** Receives a message for the user. The session continues. */
   onFault?(message: string): void;
 }
 
 export interface SessionOptions extends ConnectionOptions {
   /** The session to join; by default the server's first. */
   session?: string | undefined;
-  /** What lets us in where the server asks for it: of an invitation, a ticket or an admin. */
+  /** The token of an invitation, a ticket or an admin, if the server requires one. */
   token?: string | undefined;
-  /** Who we were: `onResumeToken` told it. */
+  /** The token of `onResumeToken`, to resume a participant. */
   resume?: string | undefined;
-  /** Our clock [s]. */
+  /** Returns the local time [s]. */
   now: () => number;
-  /** Time between two round trips that measure the clock and prove that the line lives. */
+  /** The period of round trips, which measure the clock and check the connection. */
   clockPeriodMs?: number;
   /**
-   * The greatest error of a position over the radius of the scene's smallest particles; by default
-   * what the session gives.
+   * The maximum position error divided by the radius of the smallest particles; by default the
+   * session's value.
    */
   errorInRadii?: number;
 }
 
 const kSilent = 'the server does not answer; it is busy, or the connection is slow';
 
-/** One client in a session: joins, subscribes, and does so again after a break. */
+/** A client of a session. It joins and subscribes, also after reconnecting. */
 export class Session {
   private readonly connection: Connection;
   private clock = new ClockOffset();
@@ -62,10 +62,10 @@ export class Session {
   private isLetIn = false;
   private hasJoined = false;
   private isWatched = true;
-  /** The session to be in; undefined: the server's first. */
+  /** The session to join; undefined: the server's first. */
   private wanted: string | undefined;
   private resume: string | undefined;
-  /** What was subscribed to, or is to be [m]; undefined: what the session gives. */
+  /** The maximum position error of the subscription [m]; undefined: the session's value. */
   private maxError: number | undefined;
   private attributes: Attributes = {};
 
@@ -91,7 +91,7 @@ export class Session {
     this.connection.close();
   }
 
-  /** Takes part in another session, by the same line; undefined: in the server's first. */
+  /** Joins another session on the same connection; undefined: the server's first. */
   go(session: string | undefined): void {
     this.wanted = session;
     this.resume = undefined;
@@ -102,14 +102,14 @@ export class Session {
     return this.connection.request(method, params);
   }
 
-  /** Acknowledges the frame with this number and all before it; the server then sends more. */
+  /** Acknowledges all frames up to this number. The server then sends further frames. */
   acknowledge(number: number): void {
     this.connection.notify('frames.ack', { number });
   }
 
   /**
-   * Whether frames are wanted. A client that draws nothing for long has to say so: the server closes
-   * one that acknowledges nothing.
+   * Subscribes or unsubscribes. A client that stops drawing must unsubscribe, because the server
+   * closes connections that do not acknowledge frames.
    */
   watch(wanted: boolean): void {
     if (wanted === this.isWatched) return;
@@ -119,14 +119,14 @@ export class Session {
     request.catch((error: unknown) => this.restart(error));
   }
 
-  /** Which values of particles frames are to have, and how exactly; none from the start. */
+  /** Selects the attributes in frames and their maximum errors; initially none. */
   askFor(attributes: Attributes): void {
     if (JSON.stringify(attributes) === JSON.stringify(this.attributes)) return;
     this.attributes = { ...attributes };
     this.subscribeAgain();
   }
 
-  /** The newest frame once more, whole: the server forgets that we were too slow for such ones. */
+  /** Requests the newest frame in full detail, and resets the server's reduction for slow clients. */
   refresh(): void {
     this.subscribeAgain();
   }
@@ -181,7 +181,7 @@ export class Session {
       ...(wanted !== undefined && { session: wanted }),
       ...(resume !== undefined && { resume }),
     });
-    if (wanted !== this.wanted) return; // gone on elsewhere
+    if (wanted !== this.wanted) return; // another session was chosen
     this.resume = joined.resume;
     this.handlers.onResumeToken?.(joined.resume);
     this.handlers.onJoined?.(joined);
@@ -190,7 +190,7 @@ export class Session {
     if (this.isWatched) await this.subscribe();
   }
 
-  /** Shows who we were, or what we were given, where that is asked for or changes our role. */
+  /** Presents the token if the server requires it or if it changes the role. */
   private async letIn(access: Result<'server.info'>['access']): Promise<void> {
     const { token } = this.options;
     if (access === 'token' && this.resume !== undefined && (await this.isGood(this.resume))) return;
@@ -210,10 +210,10 @@ export class Session {
     }
   }
 
-  /** A request that entering or measuring needs has failed: begin again on a new line. */
+  /** Reconnects after the failure of a request that joining or measuring requires. */
   private restart(error: unknown): void {
     if (!(error instanceof RequestError)) throw error;
-    // Who uses the page knows no methods. Does nothing if the line is down already.
+    // The text for users omits the method. Without a connection, restart() does nothing.
     this.connection.restart(error.kind === 'timed_out' ? kSilent : error.message);
   }
 
@@ -233,7 +233,7 @@ export class Session {
   private handleEvent(event: Event): void {
     if (event.event === 'session.description') this.describe(event.params);
     else this.handlers.onEvent?.(event);
-    if (event.event === 'session.closed') void this.enter(); // the server may have another one
+    if (event.event === 'session.closed') void this.enter(); // the server can have another session
   }
 
   private handleFrame(bytes: ArrayBuffer): void {
@@ -249,11 +249,11 @@ export class Session {
     this.handlers.onFrame?.(frame, bytes.byteLength);
   }
 
-  /** Frames to come may build on what is refused: a new subscription begins with a key frame. */
+  /** Subscribes anew after an invalid frame, because later frames can refer to it. */
   private refuse(bytes: ArrayBuffer, error: FrameError, wasWaiting: boolean): void {
     const number = frameNumber(bytes);
-    if (number !== undefined) this.acknowledge(number); // or it would wait for that
-    if (wasWaiting && error.code === 'missing_reference') return; // the key frame is on its way
+    if (number !== undefined) this.acknowledge(number); // the server waits for the acknowledgement
+    if (wasWaiting && error.code === 'missing_reference') return; // a key frame was requested
     const words = `an invalid frame (${error.code}): ${error.message}`;
     this.handlers.onFault?.(words);
     if (wasWaiting) this.connection.restart(words);

@@ -1,4 +1,4 @@
-/** What the client uses of a WebSocket: the browser's and the `ws` package's both have it. */
+/** The members of a WebSocket that the client uses; common to browsers and the `ws` package. */
 export interface Socket {
   binaryType: string;
   onopen: ((event: never) => void) | null;
@@ -16,7 +16,7 @@ export interface SocketClose {
   reason: string;
 }
 
-/** The close codes of PROTOCOL.md, and the one of a broken line, in words. */
+/** Texts for the close codes of PROTOCOL.md and of a lost connection. */
 const kCloseReasons: Readonly<Record<number, string>> = {
   1001: 'the server stops',
   1002: 'the server received an invalid message',
@@ -30,7 +30,7 @@ const kCloseReasons: Readonly<Record<number, string>> = {
   4010: 'this participant continues in another window',
 };
 
-/** Codes after which the same client is not wanted back. */
+/** Codes after which the client does not reconnect. */
 const kFinalCodes: ReadonlySet<number> = new Set([4003, 4010]);
 
 export function isFinal({ code }: SocketClose): boolean {

@@ -11,9 +11,9 @@ const kMostSize = 131064;
 const kMiddleOfGrid = 32768;
 export const kMostAttribute = 1 << 20;
 
-/** Particles that come: protocol/FRAMES.md, "New particles". Keeps its memory. */
+/** Added particles: protocol/FRAMES.md, "New particles". Reuses its memory. */
 export class AddedParticles {
-  /** Their places in the block, and their numbers; the first `count` count. */
+  /** Their indices in the block, and their numbers. The first `count` elements are valid. */
   places = new Uint32Array(0);
   numbers = new Uint32Array(0);
   count = 0;
@@ -132,7 +132,7 @@ export class AddedParticles {
     }
   }
 
-  /** A value that `known` ones before it with this sum predict; notes its size. */
+  /** Reads a value, predicted by the mean of `known` earlier values with this sum. Stores its size. */
   private readValue(
     symbols: SymbolReader,
     known: number,

@@ -1,21 +1,21 @@
 import { fitted } from './room.js';
 
-/** What a block is about; the values are those on the wire. */
+/** The kind of a block's body, with the values of the format. */
 export const BodyKind = { liquid: 0, deformable: 1, rigid: 2, vat: 3 } as const;
 export type BodyKind = (typeof BodyKind)[keyof typeof BodyKind];
 
 /** Speed, density, pressure, acceleration. */
 export const kAttributes = 4;
 const kNoAttributes: readonly boolean[] = [false, false, false, false];
-/** Of these the check covers three in all frames, and acceleration where frames have it. */
+/** The checksum covers three attributes in all frames, and acceleration if present. */
 const kAlwaysChecked = 3;
 
-/** A body's part of a frame in whole steps. Its columns keep their memory. */
+/** The quantised data of one body. Reuses the memory of its columns. */
 export class BlockData {
   body = 0;
   kind: BodyKind = BodyKind.liquid;
   count = 0;
-  /** Whether `numbers` has the particles' numbers; otherwise they are 0, 1, 2, ... */
+  /** Whether `numbers` contains the particle numbers; otherwise they are 0, 1, 2, ... */
   isNumbered = false;
   numbers = new Uint32Array(0);
   positions = new Uint16Array(0);
@@ -37,7 +37,7 @@ export class BlockData {
     return this.attributes[q]!;
   }
 
-  /** Columns for so many particles with these numbers, which are 0, 1, 2, ... if not given. */
+  /** Sets the number of particles, and their numbers (0, 1, 2, ... if absent). */
   resize(count: number, numbers?: Uint32Array): void {
     this.count = count;
     this.positions = fitted(Uint16Array, this.positions, 3 * count);
@@ -51,7 +51,7 @@ export class BlockData {
     for (let i = 0; i < count; ++i) this.numbers[i] = numbers[i]!;
   }
 
-  /** Columns for the same particles. */
+  /** Sets the particles of `other`. */
   resizeLike(other: BlockData): void {
     this.resize(other.count, other.isNumbered ? other.numbers : undefined);
   }
@@ -68,7 +68,7 @@ export class BlockData {
     this.orientationBits = other.orientationBits;
   }
 
-  /** The check of protocol/FRAMES.md goes on from `sum` with this block. */
+  /** Returns the checksum of protocol/FRAMES.md after this block, continued from `sum`. */
   addTo(sum: number): number {
     sum = mix(mix(sum, this.body), this.kind);
     if (!this.hasParticles) {

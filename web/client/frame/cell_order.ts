@@ -1,18 +1,18 @@
-/** Particles by the cells of a grid: protocol/FRAMES.md, "Order". Keeps its memory. */
+/** Particles sorted by the cells of a grid: protocol/FRAMES.md, "Order". Reuses its memory. */
 export class CellOrder {
-  /** Particles, cell by cell. */
+  /** Particle indices, cell by cell. */
   order = new Int32Array(0);
-  /** Of the cells with particles, from number 1 on: their particles in `order`, and their places. */
+  /** For each occupied cell, from number 1: its first index in `order`, and its place. */
   begins = new Int32Array(1);
   places = new Int32Array(1);
-  /** By place: the number of the cell there, 0 where it is empty. */
+  /** By place: the number of the cell, 0 if it is empty. */
   numbers = new Int32Array(0);
   cellCount = 0;
   row = 0;
   layer = 0;
   private placeOf = new Int32Array(0);
 
-  /** False where the box of all cells would be too large for so few particles. */
+  /** Returns false if the box of all cells is too large for the number of particles. */
   sort(positions: Uint16Array, count: number, shift: number): boolean {
     this.cellCount = 0;
     this.reserve(count);
@@ -44,7 +44,7 @@ export class CellOrder {
     }
   }
 
-  /** Leaves begins[c + 1] at the begin of cell c; filling in moves it to its end. */
+  /** Sets begins[c + 1] to the first index of cell c. Filling moves it to the end of the cell. */
   private listCells(placeCount: number, count: number): void {
     const { numbers, begins, places } = this;
     let begin = 0;
@@ -85,7 +85,7 @@ export class CellOrder {
 
 type Box = [number, number, number, number, number, number];
 
-/** The least cell, and how many there are along each axis with an empty layer around. */
+/** Returns the smallest cell, and the cells per axis including an empty layer around them. */
 function boxOf(positions: Uint16Array, count: number, shift: number): Box {
   let x0 = 65535;
   let y0 = 65535;

@@ -36,7 +36,7 @@ export class ParticleChanges {
   private numbers = new Uint32Array(0);
   private readonly moved = Array.from({ length: kAttributes }, () => false);
   private readonly factors = [0, 0, 0];
-  /** Of the three attributes that are read at a time. */
+  /** Which of the three attributes of a pass are read. */
   private readonly lanes = [false, false, false];
 
   constructor(private readonly symbols: SymbolReader) {}
@@ -90,7 +90,7 @@ export class ParticleChanges {
     }
   }
 
-  /** Finds the places of those that stay and of those that come, by their numbers. */
+  /** Finds the indices of remaining and added particles by their numbers. */
   private mergeNumbers(first: BlockData, block: BlockData): void {
     const { newPlaces, added } = this;
     this.numbers = fitted(Uint32Array, this.numbers, first.count + added.count);
@@ -165,7 +165,7 @@ export class ParticleChanges {
     }
   }
 
-  /** The three attributes from `begin` on, as far as there are any and they have changed. */
+  /** Reads those of the three attributes from `begin` on that exist and have changed. */
   private readAttributes(matched: Matched, block: BlockData, begin: number): void {
     const { symbols, cells, kept, moved, lanes, factors } = this;
     for (let q = 0; q < 3; ++q) lanes[q] = moved[begin + q] === true;
@@ -182,7 +182,7 @@ export class ParticleChanges {
     }
   }
 
-  /** Of how many particles. */
+  /** Returns the number of particles. */
   private predictAttributes(matched: Matched, begin: number): number {
     const { ends, values, targets } = this.kept;
     const { second, secondPlaces, newPlaces } = matched;

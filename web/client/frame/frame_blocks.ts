@@ -7,7 +7,7 @@ import type { FrameScale } from './header.js';
 import type { SymbolReader } from './symbols.js';
 
 const kMostPlace = 2 ** 28;
-/** Out of 4096, that a block has changed: where the one before has not, and where it has. */
+/** Probabilities, of 4096, that a block has changed, if the previous block is unchanged or changed. */
 const kAfterUnchanged = 256;
 const kAfterChanged = 3584;
 

@@ -9,7 +9,7 @@ export type FrameErrorCode =
   | 'truncated'
   | 'extra_bytes';
 
-/** Why bytes are not a frame. */
+/** The reason why a frame is invalid. */
 export class FrameError extends Error {
   constructor(
     readonly code: FrameErrorCode,

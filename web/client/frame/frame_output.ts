@@ -4,14 +4,14 @@ import type { FrameData } from './frame_ring.js';
 import type { FrameHeader, FrameScale } from './header.js';
 import { kGrowth } from './room.js';
 
-/** Positions of a liquid or deformable body: x, y, z of each particle in grid steps. */
+/** Positions of a liquid or deformable body: x, y, z of each particle in quanta. */
 export interface GridBlock {
   kind: typeof BodyKind.liquid | typeof BodyKind.deformable;
   body: number;
   positions: Uint16Array<ArrayBuffer>;
-  /** Of the particles, rising; undefined: 0, 1, 2, ... */
+  /** Particle numbers, ascending; undefined: 0, 1, 2, ... */
   numbers: Uint32Array<ArrayBuffer> | undefined;
-  /** Speed, density, pressure and acceleration in their quanta; undefined where the block has none. */
+  /** Speed, density, pressure and acceleration in their quanta; undefined if absent. */
   attributes: (Int32Array<ArrayBuffer> | undefined)[];
 }
 
@@ -25,7 +25,7 @@ export interface PoseBlock {
   orientation: [number, number, number, number];
 }
 
-/** Displacement of the vat from its place at time 0 [m]. */
+/** Displacement of the vat since time 0 [m]. */
 export interface VatBlock {
   kind: typeof BodyKind.vat;
   body: 0;
@@ -36,14 +36,14 @@ export type FrameBlock = GridBlock | PoseBlock | VatBlock;
 
 export interface Frame {
   header: FrameHeader;
-  /** Frames that the server left out for this client so far. */
+  /** Number of frames that the server has omitted for this client. */
   dropped: number;
   blocks: FrameBlock[];
-  /** Holds all columns of all blocks: transferring it takes the frame to another thread. */
+  /** The memory of all columns. Transferring it moves the frame to another thread. */
   storage: ArrayBuffer;
 }
 
-/** A frame to decode to; `storage` is used where it has the room. */
+/** Returns a frame to decode to. It uses `storage` if it is large enough. */
 export function emptyFrame(storage = new ArrayBuffer(0)): Frame {
   const header: FrameHeader = {
     playing: false,
@@ -64,7 +64,7 @@ export function emptyFrame(storage = new ArrayBuffer(0)): Frame {
   return { header, dropped: 0, blocks: [], storage };
 }
 
-/** Writes the blocks in place of those that are there; makes only what does not fit. */
+/** Replaces the blocks of a frame. Allocates only if the existing memory is too small. */
 export function writeBlocks(data: FrameData, frame: Frame): void {
   let bytes = 0;
   for (let b = 0; b < data.blockCount; ++b) bytes += bytesOf(data.block(b));

@@ -4,7 +4,7 @@ import type { FrameScale } from './header.js';
 
 const kMostKept = 16;
 
-/** A frame in whole steps, on which later ones may build. */
+/** A quantised frame, to which later frames can refer. */
 export class FrameData {
   epoch = 0;
   number = 0;
@@ -28,28 +28,28 @@ export class FrameData {
   }
 }
 
-/** The last 16 frames from the last key frame on, and one that is being decoded. */
+/** The last 16 frames since the last key frame, and the frame that is being decoded. */
 export class FrameRing {
   private readonly frames = Array.from({ length: kMostKept + 1 }, () => new FrameData());
   private next = 0;
-  /** Of those before `next`, so many may be referred to. */
+  /** The number of possible references before `next`. */
   private known = 0;
 
-  /** To be filled; what it was is no frame any more. */
+  /** The frame to decode to. Its previous content is discarded. */
   get free(): FrameData {
     return this.frames[this.next]!;
   }
 
-  /** @throws FrameError where it is not there. */
+  /** @throws FrameError if the frame is not stored. */
   find(number: number, epoch: number): FrameData {
     for (let back = 1; back <= this.known; ++back) {
       const frame = this.frames[(this.next + this.frames.length - back) % this.frames.length]!;
       if (frame.number === number && frame.epoch === epoch) return frame;
     }
-    throw new FrameError('missing_reference', `frame ${number} is not there`);
+    throw new FrameError('missing_reference', `frame ${number} is not stored`);
   }
 
-  /** The free one is a frame now; with a key frame all others are forgotten. */
+  /** Stores the free frame. A key frame discards all others. */
   keep(isKey: boolean): void {
     this.known = isKey ? 1 : Math.min(this.known + 1, kMostKept);
     this.next = (this.next + 1) % this.frames.length;

@@ -1,13 +1,13 @@
 import { FrameError } from './frame_error.js';
 
-/** What the integers of frames stand for; that of a key frame serves those that build on it. */
+/** The quantisation of a frame. Delta frames use that of their key frame. */
 export interface FrameScale {
   /** A position is origin + quantum * integer, per axis [m]. */
   readonly origin: readonly [number, number, number];
   readonly quantum: number;
   /**
-   * Steps of speed [m/s], density [kg/m^3], pressure [Pa] and acceleration [m/s^2]; 0 where frames
-   * have none.
+   * Quanta of speed [m/s], density [kg/m^3], pressure [Pa] and acceleration [m/s^2]; 0 if frames do
+   * not contain the attribute.
    */
   readonly attributeQuanta: readonly [number, number, number, number];
 }
@@ -16,13 +16,13 @@ export interface FrameHeader extends FrameScale {
   playing: boolean;
   /** The session runs slower than its set speed. */
   slow: boolean;
-  /** Level of detail, 0 to 3, and whether there is more beyond a region. */
+  /** Level of detail, 0 to 3, and whether the frame is restricted to a region. */
   detail: number;
   region: boolean;
   epoch: number;
-  /** Counts the session's frames that show something new. */
+  /** Counts the session's frames with new content. */
   number: number;
-  /** This client gets every stride-th number. */
+  /** This client receives every stride-th number. */
   stride: number;
   tick: number;
   /** Simulation time [s]. */
@@ -35,22 +35,22 @@ export interface FrameHeader extends FrameScale {
 
 const kMagic = 0x46544156; // "VATF", little-endian
 const kVersion = 2;
-const kKnownFlags = 31; // of all frames
-const kAccelerationFlag = 32; // of key frames: a fourth quantum
+const kKnownFlags = 31; // allowed in all frames
+const kAccelerationFlag = 32; // key frames only: the scale has a fourth quantum
 
-/** As the header says, also of a frame that is refused; undefined where it has no header. */
+/** The number in the header, also of an invalid frame; undefined if the header is incomplete. */
 export function frameNumber(buffer: ArrayBuffer): number | undefined {
   if (buffer.byteLength < HeaderBytes.kBytes) return undefined;
   return new DataView(buffer).getUint32(12, true);
 }
 
-/** The bytes of a header as far as all frames have it, and of a key frame's scale behind it. */
+/** The header of a frame, followed by the scale of a key frame. */
 export class HeaderBytes {
   static readonly kBytes = 52;
   private static readonly kKeyBytes = 108;
   private readonly view: DataView;
 
-  /** @throws FrameError where they are none. */
+  /** @throws FrameError if the header is invalid. */
   constructor(buffer: ArrayBuffer) {
     this.view = new DataView(buffer);
     this.need(HeaderBytes.kBytes);
@@ -79,7 +79,7 @@ export class HeaderBytes {
     return this.view.getUint8(7);
   }
 
-  /** How much lower the numbers of the references are; 0 where there is none. */
+  /** The differences between the frame's number and those of its references; 0 if absent. */
   get distances(): [number, number] {
     return [this.view.getUint16(16, true), this.view.getUint16(18, true)];
   }
@@ -88,7 +88,7 @@ export class HeaderBytes {
     return this.view.getUint32(20, true);
   }
 
-  /** Of a key frame. @throws FrameError where it is not there or none. */
+  /** Reads the scale of a key frame. @throws FrameError if it is incomplete or invalid. */
   readScale(): FrameScale {
     this.need(this.symbolsBegin);
     const at = (k: number) => this.view.getFloat64(HeaderBytes.kBytes + 8 * k, true);
@@ -107,7 +107,7 @@ export class HeaderBytes {
     return scale;
   }
 
-  /** All that the header says. */
+  /** Writes all header fields. */
   write(into: FrameHeader, scale: FrameScale): void {
     const { view } = this;
     const flags = view.getUint8(6);
@@ -136,7 +136,7 @@ export class HeaderBytes {
     }
     const version = view.getUint8(4);
     if (version !== kVersion) {
-      throw new FrameError('bad_version', `version ${version} where ${kVersion} is known`);
+      throw new FrameError('bad_version', `version is ${version}, must be ${kVersion}`);
     }
     const type = view.getUint8(5);
     if (type !== 1 && type !== 2) {

@@ -2,26 +2,26 @@ import type { BlockData } from './block_data.js';
 import type { CellOrder } from './cell_order.js';
 import { kGrowth } from './room.js';
 
-/** The place of what is not there. */
+/** The index of an absent particle. */
 export const kNone = -1;
 
-/** The particles of the first reference, and where they are in the other frames. */
+/** The particles of the first reference, and their indices in the other frames. */
 export interface Matched {
   first: BlockData;
   second: BlockData | undefined;
   cells: CellOrder;
-  /** By particle of the first reference: its place in the second, and in the new block. */
+  /** By particle of the first reference: its index in the second reference and in the new block. */
   secondPlaces: Int32Array;
   newPlaces: Int32Array;
 }
 
-/** The particles that stay, cell by cell. Keeps its memory. */
+/** The remaining particles, cell by cell. Reuses its memory. */
 export class KeptParticles {
-  /** By cell: where its particles end. */
+  /** By cell: the end of its particles. */
   ends = new Int32Array(1);
-  /** Their places in the new block. */
+  /** Their indices in the new block. */
   targets = new Int32Array(0);
-  /** Three of each: first what is predicted, then what it is. */
+  /** Three values per particle: first the predictions, then the decoded values. */
   values = new Int32Array(0);
 
   reserve(count: number): void {

@@ -5,14 +5,14 @@ import { kGrowth } from './room.js';
 
 const kMostStep = 8191;
 const kMostCounted = 63;
-/** In place of a step that is not known. */
+/** Marks an unknown step. */
 const kNoStep = 1 << 30;
 
-/** Predicts positions: protocol/FRAMES.md, "Positions". Keeps its memory. */
+/** Predicts positions: protocol/FRAMES.md, "Positions". Reuses its memory. */
 export class Motion {
-  /** Steps since the second reference, three of each particle that stays. */
+  /** Steps since the second reference, three per remaining particle. */
   private steps = new Int32Array(0);
-  /** By cell: sums of steps and their count; and the mean step around it [eighths]. */
+  /** By cell: sums of steps and their count; and the mean step of its neighbourhood [eighths]. */
   private sums = new Int32Array(0);
   private means = new Int32Array(0);
   /** The sums of three columns of nine cells, along x. */
@@ -34,7 +34,7 @@ export class Motion {
     this.means = new Int32Array(3 * (room + 1));
   }
 
-  /** Notes where particles are and have come from, and sums up the steps of each cell. */
+  /** Stores positions and steps of the particles, and sums the steps of each cell. */
   private gather(
     { first, second, cells, secondPlaces, newPlaces }: Matched,
     { ends, targets, values }: KeptParticles,
@@ -95,7 +95,7 @@ export class Motion {
     }
   }
 
-  /** Cells follow one another along x: of the 27 around each, 18 are known from the one before. */
+  /** Computes the mean steps. Along x, 18 of the 27 neighbours are known from the previous cell. */
   private findMeans({ cells: { places, cellCount, numbers, row, layer } }: Matched): void {
     const { columns, means } = this;
     let [low, middle, high] = [0, 4, 8];
@@ -122,7 +122,7 @@ export class Motion {
     }
   }
 
-  /** The nine cells with the same x as this place and next to it. */
+  /** Sums the nine cells with the same x as this place. */
   private sumColumn(numbers: Int32Array, place: number, row: number, layer: number, to: number) {
     const { sums, columns } = this;
     let x = 0;
@@ -177,7 +177,7 @@ export class Motion {
   }
 }
 
-// Short, to be compiled in place.
+// Short functions, which the engine compiles inline.
 
 function put(array: Int32Array, at: number, x: number, y: number, z: number): void {
   array[at] = x;

@@ -8,18 +8,18 @@ import type { SymbolReader } from './symbols.js';
 /** 65536 / n, rounded down. */
 export const kInverses = Int32Array.from({ length: 2048 }, (_, n) => (n === 0 ? 0 : 65536 / n));
 
-/** The class for residuals of which the mean magnitude is `size` / 2048. */
+/** Returns the class for residuals with a mean magnitude of `size` / 2048. */
 export function classOfSize(size: number): number {
   return rowOfSize(size) - 3;
 }
 
-/** By sixteenths of a size, which is below 2 ** 19: where its row begins in `kinds`. */
+/** By size / 16, for sizes below 2 ** 19: the begin of its row in `kinds`. */
 const kRowBegins = Uint16Array.from({ length: 1 << 15 }, (_, k) => rowOfSize(k << 4) << 3);
 const kRows = 56;
-/** Behind them: the row of what is read first. */
+/** The last row: values without context. */
 const kFirstRow = kRows << 3;
 
-/** Of a cell: three sums of residuals, three of their sizes, the count; and the next one's place. */
+/** Bits of the index of a cell's eight elements: residual sums, size sums, count, next place. */
 const kSumBits = 3;
 const kMostCounted = 63;
 const kMostResidual = 8184;
@@ -28,9 +28,9 @@ const kTableMask = (1 << kTableBits) - 1;
 const kSlotMask = (1 << kSlotBits) - 1;
 const kResidualMask = (1 << kResidualBits) - 1;
 
-/** Which values are read, and within what bounds they have to be. */
+/** Which values are read, and their bounds. */
 export interface Wanted {
-  /** By lane: whether anything is read. */
+  /** By lane: whether it is read. */
   readonly lanes: readonly boolean[];
   readonly least: number;
   readonly span: number;
@@ -42,15 +42,15 @@ export interface Wanted {
  */
 export class Neighbourhood {
   private sums = new Int32Array(0);
-  /** Of kCases what the row of a size stands for, and behind these what is read first. */
+  /** The elements of kCases for each row of sizes, followed by those of values without context. */
   private readonly kinds = new Uint16Array(8 * (kRows + 1));
 
   /**
    * Turns predictions [eighths], three of each particle cell by cell, into values. The particles of
    * cell c end before `ends[c]`.
    *
-   * Half the time of a frame is spent here. So the three lanes stand side by side with all they
-   * need in variables, nothing is called, and what chance would decide is no branch.
+   * Decoding spends half of its time here. Therefore the three lanes are unrolled, their state is in
+   * variables, no function is called, and unpredictable decisions do not branch.
    */
   // eslint-disable-next-line max-lines-per-function
   read(
@@ -76,7 +76,7 @@ export class Neighbourhood {
     let k = 0;
     for (let c = 1; c <= cellCount; ++c) {
       const place = places[c]!;
-      const a = numbers[place - 1]! << kSumBits; // that without particles, number 0, has zeros
+      const a = numbers[place - 1]! << kSumBits; // number 0, the empty cell, contains zeros
       const b = numbers[place - row]! << kSumBits;
       const d = numbers[place - layer]! << kSumBits;
       const left0 = (sums[a]! + sums[b]! + sums[d]!) | 0;
@@ -86,7 +86,7 @@ export class Neighbourhood {
       const size1 = (sums[a + 4]! + sums[b + 4]! + sums[d + 4]! + 8) | 0;
       const size2 = (sums[a + 5]! + sums[b + 5]! + sums[d + 5]! + 8) | 0;
       const known = (sums[a + 6]! + sums[b + 6]! + sums[d + 6]! + 1) | 0;
-      // The neighbours' sums and, four times, those of the cell so far.
+      // The neighbours' sums plus four times the cell's sums.
       let e0 = left0;
       let e1 = left1;
       let e2 = left2;
@@ -106,7 +106,7 @@ export class Neighbourhood {
         const m0 = (p0 + (Math.imul(e0, inverse) >> 16)) | 0;
         const m1 = (p1 + (Math.imul(e1, inverse) >> 16)) | 0;
         const m2 = (p2 + (Math.imul(e2, inverse) >> 16)) | 0;
-        const f0 = (m0 + 4) & 7; // the fraction, from 0 on
+        const f0 = (m0 + 4) & 7; // the fraction plus 4
         const f1 = (m1 + 4) & 7;
         const f2 = (m2 + 4) & 7;
         let r0 = 0;
@@ -120,7 +120,7 @@ export class Neighbourhood {
           r0 = residuals[(table << kSlotBits) | slot]!;
           const range = ranges[(table << kResidualBits) | (r0 & kResidualMask)]!;
           s0 = (Math.imul(range >>> 16, s0 >> kSlotBits) + slot - (range & 0xffff)) | 0;
-          const more = (s0 - kLeastState) >> 31; // -1 where the lane needs a word
+          const more = (s0 - kLeastState) >> 31; // -1 if the lane needs a word
           s0 = (s0 << (more & 16)) | (words[next]! & more);
           next = (next - more) | 0;
           if (kind > kTableMask || r0 === kEscape) {
@@ -139,7 +139,7 @@ export class Neighbourhood {
           r1 = residuals[(table << kSlotBits) | slot]!;
           const range = ranges[(table << kResidualBits) | (r1 & kResidualMask)]!;
           s1 = (Math.imul(range >>> 16, s1 >> kSlotBits) + slot - (range & 0xffff)) | 0;
-          const more = (s1 - kLeastState) >> 31; // -1 where the lane needs a word
+          const more = (s1 - kLeastState) >> 31; // -1 if the lane needs a word
           s1 = (s1 << (more & 16)) | (words[next]! & more);
           next = (next - more) | 0;
           if (kind > kTableMask || r1 === kEscape) {
@@ -158,7 +158,7 @@ export class Neighbourhood {
           r2 = residuals[(table << kSlotBits) | slot]!;
           const range = ranges[(table << kResidualBits) | (r2 & kResidualMask)]!;
           s2 = (Math.imul(range >>> 16, s2 >> kSlotBits) + slot - (range & 0xffff)) | 0;
-          const more = (s2 - kLeastState) >> 31; // -1 where the lane needs a word
+          const more = (s2 - kLeastState) >> 31; // -1 if the lane needs a word
           s2 = (s2 << (more & 16)) | (words[next]! & more);
           next = (next - more) | 0;
           if (kind > kTableMask || r2 === kEscape) {
@@ -169,8 +169,8 @@ export class Neighbourhood {
             next = symbols.next;
           }
         }
-        if (next > wordCount) endsEarly(); // other words were read in place of what is not there
-        const t0 = (f0 - 4) >> 31; // -1 turns the residual
+        if (next > wordCount) endsEarly(); // words beyond the end were read
+        const t0 = (f0 - 4) >> 31; // -1 negates the residual
         const t1 = (f1 - 4) >> 31;
         const t2 = (f2 - 4) >> 31;
         const v0 = (((m0 + 4) >> 3) + (r0 ^ t0) - t0) | 0;
@@ -226,7 +226,7 @@ function rowOfSize(size: number): number {
   return (octave << 2) + ((least >> (octave + 4)) & 3);
 }
 
-// Short, to be compiled in place.
+// Short functions, which the engine compiles inline.
 
 function bounded(residual: number): number {
   if (residual > kMostResidual) return kMostResidual;

@@ -1,9 +1,9 @@
-/** How residuals are distributed: protocol/FRAMES.md, "Residuals". */
+/** The distributions of residuals: protocol/FRAMES.md, "Residuals". */
 
 export const kTables = 24;
 export const kClasses = 68;
 export const kLeastKeyClass = 14;
-/** Of 4096 parts, by which all probabilities are counted. */
+/** All probabilities are multiples of 1 / 4096. */
 export const kScale = 4096;
 
 // 65536 / (1 + exp(-k / 8)).
@@ -35,17 +35,17 @@ function partBelow(eighths: number, steepness: number): number {
   return eighths < 0 ? 65536 - part : part;
 }
 
-/** First low bits, then the table and the place in it: what `kCases` has for a prediction. */
+/** Elements of `kCases` contain the number of low bits, the table, and the position in it. */
 const kPlaces = 2;
 export const kTableBits = 8;
-/** States are kept modulo 2 ** 12 in slots; residuals of a table modulo 2 ** 6. */
+/** A slot is a state modulo 2 ** 12. The residuals of a table are stored modulo 2 ** 6. */
 export const kSlotBits = 12;
 export const kResidualBits = 6;
-/** Stands for what lies beyond the table; also modulo 2 ** 6 no residual in one. */
+/** The escape symbol; modulo 2 ** 6 it differs from all residuals of a table. */
 export const kEscape = 32;
 const kResidualMask = (1 << kResidualBits) - 1;
 
-/** By class and fraction, 8 of them from -4 on: low bits << 8 | table and place. */
+/** By class and fraction (8 values from -4): low bits << 8 | table and position. */
 export const kCases = Uint16Array.from({ length: 8 * kClasses }, (_, k) => {
   const c = k >> 3;
   const lowBits = c < kTables ? 0 : 1 + ((c - kTables) >> 2);
@@ -55,8 +55,8 @@ export const kCases = Uint16Array.from({ length: 8 * kClasses }, (_, k) => {
 });
 
 /**
- * By table and place: the residual of each slot, or kEscape; and for each of these its frequency
- * and where it starts, in 16 bits each.
+ * Returns, by table and position, the residual of each slot or kEscape; and its frequency and start,
+ * 16 bits each.
  */
 function makeTables(): { residuals: Int8Array; ranges: Int32Array } {
   const residuals = new Int8Array((kPlaces * kTables) << kSlotBits);

@@ -5,10 +5,10 @@ interface ColumnType<T extends Column> {
   new (buffer: ArrayBuffer, offset: number, length: number): T;
 }
 
-/** How much more room is made than is needed, so that it need not be made again soon. */
+/** The ratio of allocated to required memory, which makes reallocations rare. */
 export const kGrowth = 1.5;
 
-/** A column of this length in the room of the old one, if that has enough; zeros where it grew. */
+/** Returns a column of this length, in the old memory if it is large enough. New elements are 0. */
 export function fitted<T extends Column>(type: ColumnType<T>, old: T, length: number): T {
   if (old.length === length) return old;
   const size = type.BYTES_PER_ELEMENT;

@@ -8,24 +8,24 @@ const kMostResidualBits = 30;
 const kTableMask = (1 << kTableBits) - 1;
 const kSlotMask = (1 << kSlotBits) - 1;
 const kResidualMask = (1 << kResidualBits) - 1;
-/** So many words may be read before anybody looks whether they are there. */
+/** The number of words that can be read before the end of the data is checked. */
 const kReadAhead = 3;
 
 /** The entropy decoder of protocol/FRAMES.md, "Symbols". */
 export class SymbolReader {
-  /** Which word is read next, and of which; behind `wordCount` there are some without meaning. */
+  /** Index of the next word, and the words. Words from `wordCount` on are undefined. */
   next = 0;
   words = new Uint16Array(0);
   wordCount = 0;
   readonly states = new Int32Array(3);
-  /** Without a word. */
+  /** Bytes after the last complete word. */
   private oddBytes = 0;
   private most = 0;
 
-  /** The symbols begin at `offset`, which is even. */
+  /** Starts reading at `offset`, which must be even. */
   start(buffer: ArrayBuffer, offset: number): void {
     const bytes = buffer.byteLength - offset;
-    // Where there are typed arrays, they are little-endian.
+    // Typed arrays are little-endian on all supported machines.
     const words = new Uint16Array(buffer, offset, bytes >> 1);
     this.wordCount = words.length;
     this.oddBytes = bytes & 1;
@@ -42,12 +42,12 @@ export class SymbolReader {
       if (state < kLeastState) badBlock('its states are out of range');
   }
 
-  /** Whether there can be so many things that take a bit or more each. */
+  /** Returns whether the input can contain `count` items of at least one bit. */
   mayHold(count: number): boolean {
     return count <= this.most;
   }
 
-  /** All symbols have been read. */
+  /** Checks the state after the last symbol. */
   end(): void {
     const left = 2 * (this.wordCount - this.next) + this.oddBytes;
     if (left !== 0) {
@@ -66,7 +66,7 @@ export class SymbolReader {
     return (state & 4095) >> rest;
   }
 
-  /** True in `chances` of 4096 cases. */
+  /** Reads a flag that is true with probability `chances` / 4096. */
   flag(chances: number): boolean {
     const state = this.states[0]!;
     const slot = state & 4095;
@@ -76,7 +76,7 @@ export class SymbolReader {
     return value;
   }
 
-  /** The lowest `count` bits of a number, however many. */
+  /** Reads `count` bits, lowest first, without a limit of `count`. */
   longBits(count: number, lane = 0): number {
     let value = 0;
     for (let done = 0; done < count; done += 12) {
@@ -92,7 +92,7 @@ export class SymbolReader {
     return this.longBits(length - 1, lane) + 2 ** (length - 1);
   }
 
-  /** What a prediction left; it was `fraction` eighths above its whole part. */
+  /** Reads a residual. `fraction` is the prediction minus its integer part [eighths]. */
   residual(residualClass: number, fraction: number, lane: number): number {
     const kind = kCases[(residualClass << 3) | (fraction + 4)]!;
     const table = kind & kTableMask;
@@ -105,7 +105,7 @@ export class SymbolReader {
     return fraction < 0 ? -value : value;
   }
 
-  /** The residual of which the table gave `value`, with what lies beyond, and its low bits. */
+  /** Returns the residual for the table's `value`, after reading an escape and the low bits. */
   completed(kind: number, value: number, lane: number): number {
     if (this.next > this.wordCount) endsEarly();
     const lowBits = kind >> kTableBits;
