@@ -39,7 +39,7 @@ import './panel/dialogs.css';
 import './people/people.css';
 import './panel/phone.css';
 
-/** Joins the stream from the server, the drawn world and the panel. */
+/** Connects the server's stream, the drawn world and the panel. */
 export class App {
   private readonly canvas = element('view', HTMLCanvasElement);
   private readonly stream = new Stream(location.href, (report) => this.handle(report));
@@ -95,7 +95,7 @@ export class App {
   private readonly hint = new Hint();
   private shownTime = 0;
   private shownTick = 0;
-  /** Of the link by which this page was opened; taken once there is something to see. */
+  /** The camera pose of the page's link; applied to the first description. */
   private linkedPose = linkedPose(location.href);
   private description: SessionDescription | undefined;
   private clockOffset: number | undefined;
@@ -107,7 +107,7 @@ export class App {
     new Sheet();
     this.addKeys();
     this.company.people.subscribe(() => this.summary.showPeople(this.company.people));
-    watchGraphics(this.canvas, () => this.view.paint()); // its colours are lost too
+    watchGraphics(this.canvas, () => this.view.paint()); // the colours are lost with the context
     window.addEventListener('popstate', () => this.stream.go(chosenSession(location.href)));
     // Hidden pages are not drawn.
     document.addEventListener('visibilitychange', () => this.stream.watch(!document.hidden));
@@ -165,28 +165,28 @@ export class App {
     this.controls.handle(event);
   }
 
-  /** What a message about this offers to do. */
+  /** Returns the action that a message about the event offers. */
   private answerTo({ event, params }: Event): Remedy | undefined {
     if (event !== 'control.requested') return undefined;
     return { label: 'Give control', act: () => this.company.giveControl(params.participant) };
   }
 
-  /** A scene or its bodies have changed, or the session is entered anew. */
+  /** Called after a change of the scene or its bodies, and after joining. */
   private describe(description: SessionDescription): void {
     const isEntry = this.canvas.dataset.joined !== 'true';
     const isNew =
       description.scene !== this.description?.scene ||
       description.session !== this.description.session;
-    // A view that the user has chosen is kept while the scene stays.
+    // The user's view remains until another scene is loaded.
     if (isNew) this.stage.reframe();
     if (isNew) this.inspector.close();
-    // A reset, or a state that was saved.
+    // A reset, or a saved state.
     const isEarlier = description.tick < this.shownTick;
     this.shownTick = description.tick;
     this.grabber.describe(description, isNew || isEarlier);
     this.description = description;
     this.document.forget();
-    this.playout.skip(); // what was there before
+    this.playout.skip(); // discards frames of the previous description
     this.view.describe(description);
     this.controls.describe(description, isNew, isEarlier);
     this.summary.describe(description);
@@ -215,7 +215,7 @@ export class App {
     this.links.enable(isJoined);
   }
 
-  /** To another session; undefined: the server's first. */
+  /** Switches to another session; undefined: the server's first. */
   private go(session: string | undefined): void {
     history.pushState(undefined, '', addressOf(location.href, session));
     this.stream.go(session);
@@ -246,7 +246,7 @@ export class App {
     return this.description?.bodies.find(({ body }) => body === id)?.name ?? `body ${id}`;
   }
 
-  /** What the server refuses is said; that the line is down is seen from the connection's state. */
+  /** Reports a rejected request. The connection's state shows a lost connection. */
   private refuse(error: unknown): void {
     if (!(error instanceof RequestError)) throw error;
     if (error.kind === 'disconnected') return;

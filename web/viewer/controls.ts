@@ -17,17 +17,17 @@ import { ask } from './stream/desk';
 import type { Desk } from './stream/desk';
 import type { View } from './view/view';
 
-/** What the controls need of the page around them. */
+/** The page's functions that the controls use. */
 export interface Surroundings {
   readonly document: SceneDocument;
   nameOfBody(body: number): string;
-  /** Whether the pointer places something, and is not to take bodies. */
+  /** Reports whether the pointer places a body, so that it does not grab others. */
   placing(isPlacing: boolean): void;
-  /** To another session; undefined: the server's first. */
+  /** Switches to another session; undefined: the server's first. */
   go(session: string | undefined): void;
 }
 
-/** All by which the session is worked: playback, scenes, what is kept, parameters. */
+/** The controls of the session: playback, scenes, saved items, parameters. */
 export class Controls {
   private readonly playback: Playback;
   private readonly gallery = new Gallery((scene) => this.load(scene));
@@ -42,7 +42,7 @@ export class Controls {
   private readonly kept: Kept;
   private readonly replay: ReplayBar;
   private isReplay = false;
-  /** Where the user was before the replay. */
+  /** The session before the replay. */
   private live: string | undefined;
 
   constructor(
@@ -100,13 +100,13 @@ export class Controls {
     });
   }
 
-  /** The server was entered, for the first time or again. */
+  /** Called after each connection to the server. */
   enter(): void {
     void this.listScenes();
     void ask(this.desk, 'server.info', {}).then((info) => info && this.kept.showServer(info));
   }
 
-  /** `isNew`: another scene, or another session; `isEarlier`: a reset, or a state that was saved. */
+  /** `isNew`: another scene or session; `isEarlier`: a reset or a saved state. */
   describe(description: SessionDescription, isNew: boolean, isEarlier: boolean): void {
     this.isReplay = description.replay !== undefined;
     if (!this.isReplay) this.live = description.session;
@@ -131,7 +131,7 @@ export class Controls {
     if (event.event === 'session.closed' && this.isReplay) this.surroundings.go(this.live);
   }
 
-  /** In a replay, what was recorded cannot be changed. */
+  /** Enables the controls. A replay cannot be changed. */
   enable(isJoined: boolean): void {
     const isLive = isJoined && !this.isReplay;
     this.playback.enable(isJoined, isLive);
@@ -146,12 +146,12 @@ export class Controls {
     this.kept.enable(isJoined, this.isReplay);
   }
 
-  /** A frame of this tick is shown. */
+  /** Displays the tick of the current frame. */
   showTick(tick: number): void {
     this.replay.showTick(tick);
   }
 
-  /** Once in each animation frame. */
+  /** Called once per animation frame. */
   update(): void {
     this.replay.update();
   }

@@ -19,7 +19,7 @@ const kShapes: Readonly<Record<BodyChoice['shape'], string>> = {
   mesh: 'shape from a file …',
 };
 
-/** What is to be added: kind, shape, material and size. */
+/** The form for a new body: kind, shape, material and size. */
 export class AddForm {
   readonly element: HTMLElement;
   private readonly kind = picker('add-kind', 'Kind', kKinds);
@@ -38,9 +38,9 @@ export class AddForm {
   private readonly file = make('input', { id: 'add-file', type: 'file', accept: '.obj,.stl' });
   private readonly placeButton: HTMLButtonElement;
   private mesh: MeshShape | undefined;
-  /** With the materials that can be added. */
+  /** The scene, including the materials that can be added. */
   private scene: Scene | undefined;
-  /** Those that it has already. */
+  /** Names of the materials that the scene has. */
   private known: ReadonlySet<string> = new Set();
   private isEnabled = false;
 
@@ -90,7 +90,7 @@ export class AddForm {
     this.show();
   }
 
-  /** Undefined where the scene is not known, or a file is not chosen yet. */
+  /** Undefined if the scene is unknown or no file is chosen. */
   private get choice(): BodyChoice | undefined {
     const shape = this.shape.value as BodyChoice['shape'];
     if (!this.material.value || (shape === 'mesh' && !this.mesh)) return undefined;
@@ -125,7 +125,7 @@ export class AddForm {
   }
 
   private async read(file: File | undefined): Promise<void> {
-    this.file.value = ''; // so that the same file can be picked again
+    this.file.value = ''; // allows the same file to be chosen again
     if (!file) return;
     const read = await readMesh(file);
     if ('fault' in read) {

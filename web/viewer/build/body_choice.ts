@@ -1,24 +1,24 @@
 import type { BodyKindName, Scene, SceneBody, SceneMaterial, Vector } from '../../client/index';
 import type { MeshShape } from './mesh_file';
 
-/** What a user wants to add. */
+/** The user's choice of a new body. */
 export interface BodyChoice {
   kind: BodyKindName;
   shape: 'sphere' | 'box' | 'mesh';
   material: string;
-  /** Its longest side [m]. */
+  /** The longest side [m]. */
   size: number;
-  /** Of a mesh: its longest side is 1. */
+  /** The mesh, if the shape is a mesh. Its longest side is 1. */
   mesh?: MeshShape;
 }
 
-/** Where a scene tells of none [m]. */
+/** The default spacing [m]. */
 export const kSpacing = 0.05;
 
-/** Over the spacing: how far a liquid's particles feel each other, as the catalogue has it. */
+/** The support radius of liquids divided by the spacing, as in the catalogue. */
 const kSupportInSpacings = 2;
 
-/** The materials of which a body of this kind can be. */
+/** Returns the materials for bodies of this kind. */
 export function materialsFor({ materials }: Scene, kind: BodyKindName): SceneMaterial[] {
   switch (kind) {
     case 'liquid':
@@ -30,7 +30,7 @@ export function materialsFor({ materials }: Scene, kind: BodyKindName): SceneMat
   }
 }
 
-/** The distance between particles [m]: that of the scene's bodies of this material, kind, or any. */
+/** Returns the spacing [m] of the scene's bodies of this material, of this kind, or of any body. */
 export function spacingFor(scene: Scene, kind: BodyKindName, material: string): number {
   const filled = scene.bodies.filter(({ spacing }) => spacing !== undefined);
   const alike = filled.find((body) => body.kind === kind && body.material === material);
@@ -40,7 +40,7 @@ export function spacingFor(scene: Scene, kind: BodyKindName, material: string): 
   return filled.find((body) => body.kind === kind)?.spacing ?? filled[0]?.spacing ?? kSpacing;
 }
 
-/** About how many particles it will have. */
+/** Returns the approximate number of particles. */
 export function particlesOf(scene: Scene, choice: BodyChoice): number {
   const { kind, shape, material, size } = choice;
   const { dimensions = 3 } = scene;
@@ -50,7 +50,7 @@ export function particlesOf(scene: Scene, choice: BodyChoice): number {
   return Math.max(Math.round(share * across ** dimensions), 1);
 }
 
-/** The body, as the server takes it; `taken`: names that it cannot have. */
+/** Returns the body in the format of the protocol. `taken` are the names in use. */
 export function makeBody(
   scene: Scene,
   choice: BodyChoice,
@@ -68,7 +68,7 @@ export function makeBody(
   };
 }
 
-/** Everything of a scene in two dimensions is in the plane y = 0. */
+/** Projects a vector to the plane y = 0 if the scene is two-dimensional. */
 export function inWorld({ dimensions }: Scene, [x, y, z]: Vector): Vector {
   return [x, dimensions === 2 ? 0 : y, z];
 }
@@ -80,7 +80,7 @@ function shapeOf({ shape, size, mesh }: BodyChoice): SceneBody['shape'] {
   return { type: 'mesh', vertices, triangles: mesh.triangles, source: mesh.name };
 }
 
-/** The name itself, or with the first number that makes it another. */
+/** Returns the name, with the first free number if it is taken. */
 export function freeName(name: string, taken: ReadonlySet<string>): string {
   if (!taken.has(name)) return name;
   let number = 2;

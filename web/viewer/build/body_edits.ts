@@ -7,18 +7,18 @@ import type { BodyRecord } from './body_record';
 import type { Edits } from './edits';
 import type { SceneDocument } from './scene_document';
 
-/** A body that is there: its id changes where it is removed and added again. */
+/** An existing body. Its id changes if it is removed and added again. */
 interface Living {
   id: number;
 }
 
-/** A material that the scene has not, and how it meets others where that is not as usual. */
+/** A new material of the scene, and its interfaces that differ from the default. */
 export interface FreshMaterial {
   material: SceneMaterial;
   interfaces: readonly SceneInterface[];
 }
 
-/** Adds, removes and remakes bodies, each so that it can be undone. */
+/** Adds, moves, removes and remakes bodies. Each edit can be undone. */
 export class BodyEdits {
   constructor(
     private readonly desk: Desk,
@@ -26,7 +26,7 @@ export class BodyEdits {
     private readonly edits: Edits,
   ) {}
 
-  /** With a material that the scene has not, if there is one: it stays where this is undone. */
+  /** Adds a body, and its material if it is new. Undo does not remove the material. */
   async add(body: SceneBody, fresh?: FreshMaterial): Promise<void> {
     const living: Living = { id: 0 };
     if (fresh && !(await this.bring(fresh))) return;
@@ -49,7 +49,7 @@ export class BodyEdits {
     });
   }
 
-  /** To where its centre of mass is to be; it rests there. */
+  /** Moves a body's centre of mass to a position. The body is then at rest. */
   async move(body: number, name: string, position: Vector): Promise<void> {
     const state = await ask(this.desk, 'state.query', { bodies: [body] });
     const [now] = state?.bodies ?? [];
@@ -69,7 +69,7 @@ export class BodyEdits {
     });
   }
 
-  /** The body is made anew as it is, of another material. */
+  /** Replaces the body by one of another material, with the same shape and motion. */
   async remake(id: number, name: string, material: string): Promise<void> {
     const before = await this.record(id, name);
     if (!before) {
@@ -80,7 +80,7 @@ export class BodyEdits {
     const swap = async (to: BodyRecord): Promise<boolean> =>
       (await this.take(living)) && (await this.put(to, living));
     if (!(await swap(after))) {
-      await this.put(before, living); // as it was
+      await this.put(before, living); // restores the body
       return;
     }
     this.edits.add({
@@ -110,7 +110,7 @@ export class BodyEdits {
     return (await ask(this.desk, 'world.remove_body', { body })) !== undefined;
   }
 
-  /** As it is now; undefined where the scene does not tell how it was made. */
+  /** Returns the body's record; undefined if the scene does not describe the body. */
   private async record(id: number, name: string): Promise<BodyRecord | undefined> {
     const scene = await this.document.get();
     const made = scene?.bodies.find((body) => body.name === name);

@@ -2,7 +2,7 @@ import type { BodyDescription, Scene } from '../../client/index';
 import { make, makeButton } from '../panel/elements';
 import { materialsFor } from './body_choice';
 
-/** More than these are not listed: they are found in the picture. */
+/** The maximum number of listed bodies. Others can be selected in the picture. */
 const kMostListed = 40;
 
 export interface BodyActions {
@@ -11,7 +11,7 @@ export interface BodyActions {
   move(body: BodyDescription): void;
 }
 
-/** The bodies of the scene, with what can be done to each. */
+/** The list of the scene's bodies, with the actions for each. */
 export class BodyList {
   readonly element = make('ul', { id: 'bodies', className: 'kept', ariaLabel: 'Bodies' });
   private bodies: readonly BodyDescription[] = [];
@@ -54,7 +54,7 @@ export class BodyList {
     return item;
   }
 
-  /** A picker where there is something to pick. */
+  /** Returns a picker of materials if the body can have more than one. */
   private materialOf(body: BodyDescription): HTMLElement | undefined {
     const { scene } = this;
     const isMade = scene?.bodies.some(({ name }) => name === body.name);

@@ -1,12 +1,12 @@
 import type { BodyState, Params, Scene, SceneBody, Vector } from '../../client/index';
 
-/** A body as it was at a time: how to make it again. */
+/** The data that restores a body. */
 export type BodyRecord = Params<'world.add_body'>;
 
-/** So many particles have room in a message, with their velocities. */
+/** The maximum number of particles, with velocities, in a message. */
 export const kMostParticles = 12_000;
 
-/** Where a body is, and how it moves, as the server takes it; undefined where it is too large. */
+/** Returns the motion of a body in the format of the protocol; undefined if it is too large. */
 function motionOf(state: BodyState): BodyRecord['state'] {
   const { center_of_mass, orientation, velocity, angular_velocity } = state;
   if (center_of_mass && orientation && velocity && angular_velocity) {
@@ -16,13 +16,13 @@ function motionOf(state: BodyState): BodyRecord['state'] {
   return { positions: state.positions, velocities: state.velocities };
 }
 
-/** Taps and drains have changed which particles it has. */
+/** Returns whether emitters or drains can have changed the body's particles. */
 function hasFlowed({ emitters = [], drains = [] }: Scene, made: SceneBody): boolean {
   if (made.kind !== 'liquid') return false;
   return drains.length > 0 || emitters.some(({ body }) => body === made.name);
 }
 
-/** The same as particles, each where it is. */
+/** Returns the body as a list of particles at their present positions. */
 function asParticles(made: SceneBody, { positions, velocities }: BodyState): SceneBody {
   const { name, kind, material, spacing, radius } = made;
   return {
@@ -35,7 +35,7 @@ function asParticles(made: SceneBody, { positions, velocities }: BodyState): Sce
   };
 }
 
-/** The body as the scene describes it, and as it is now; `isWhole`: nothing of that is lost. */
+/** Returns the body's description and state. `isWhole` is true if they are complete. */
 export function recordOf(
   scene: Scene,
   made: SceneBody,
@@ -47,7 +47,7 @@ export function recordOf(
   return { record: { body: made, state: motion }, isWhole: true };
 }
 
-/** In its first shape, but where it is now. */
+/** Returns the body in its initial shape at its present position. */
 function shifted(made: SceneBody, positions: readonly Vector[]): SceneBody {
   if (made.shape.type === 'particles') return made;
   const { center } = made.shape as { center?: Vector };

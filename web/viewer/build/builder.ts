@@ -18,7 +18,7 @@ import type { SceneDocument } from './scene_document';
 import { addPlacingKeys } from './placing_keys';
 import './build.css';
 
-/** The section in which a scene is built: bodies are added, moved, made anew, deleted; with undo. */
+/** The section for building a scene: bodies are added, moved, remade and deleted, with undo. */
 export class Builder {
   private readonly section = element('build-details', HTMLDetailsElement);
   private readonly edits = new Edits(() => this.showEdits());
@@ -33,7 +33,7 @@ export class Builder {
   private description: SessionDescription | undefined;
   private isEnabled = false;
 
-  /** `placing`: whether the pointer places something, and is not to take bodies. */
+  /** `placing` reports whether the pointer places a body, so that it does not grab others. */
   constructor(
     private readonly desk: Desk,
     private readonly document: SceneDocument,
@@ -79,7 +79,7 @@ export class Builder {
     this.showEdits();
   }
 
-  /** `isNew`: another scene or session, or the same from an earlier time on. */
+  /** `isNew`: another scene or session, or an earlier time of the same. */
   describe(description: SessionDescription, isNew: boolean): void {
     this.description = description;
     if (isNew) this.edits.clear();
@@ -87,7 +87,7 @@ export class Builder {
     void this.look();
   }
 
-  /** Asks for the scene where somebody looks. */
+  /** Requests the scene if the section is open. */
   private async look(): Promise<void> {
     const { description } = this;
     if (!this.section.open || !description || description.replay) return;
@@ -146,7 +146,7 @@ export class Builder {
     redoButton.title = edits.toRedo === undefined ? '' : `Redo: ${edits.toRedo} (Ctrl+Y)`;
   }
 
-  /** As everywhere; keys of the page are plain ones. */
+  /** Adds the usual key combinations. All other keys of the page have no modifiers. */
   private addUndoKeys(): void {
     window.addEventListener('keydown', (event) => {
       const key = event.key.toLowerCase();

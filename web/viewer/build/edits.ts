@@ -1,6 +1,6 @@
-/** Something that was done, and can be undone; both tell whether they were. */
+/** An edit that can be undone and redone. Both functions return whether they succeeded. */
 export interface Edit {
-  /** What was done, as in “added ball”. */
+  /** The text of the edit, such as “added ball”. */
   words: string;
   undo(): Promise<boolean>;
   redo(): Promise<boolean>;
@@ -8,23 +8,23 @@ export interface Edit {
 
 const kMost = 100;
 
-/** What was done, to be undone and done again. */
+/** The list of edits for undo and redo. */
 export class Edits {
   private done: Edit[] = [];
   private undone: Edit[] = [];
   private last = Promise.resolve();
 
-  /** `changed`: there is something else to undo. */
+  /** `changed` is called after each change of the list. */
   constructor(private readonly changed: () => void) {}
 
-  /** It was done just now. */
+  /** Adds an edit that has just been executed. */
   add(edit: Edit): void {
     this.done = [...this.done, edit].slice(-kMost);
     this.undone = [];
     this.changed();
   }
 
-  /** Another scene: nothing of what was done is there. */
+  /** Clears the list, after a change of the scene. */
   clear(): void {
     this.done = [];
     this.undone = [];
@@ -54,8 +54,8 @@ export class Edits {
   }
 
   /**
-   * One after the other. What cannot be (un)done any more, as of a body that others removed, is
-   * forgotten.
+   * Executes an edit after the previous ones. An edit that fails, for example because another user
+   * has removed the body, is deleted from the list.
    */
   private queue(act: () => Promise<void>): Promise<void> {
     this.last = this.last.then(act).then(() => this.changed());

@@ -16,13 +16,13 @@ import type { BodyChoice } from './body_choice';
 const kGood = new Color('#2f86e0');
 const kBad = new Color('#d63a3a');
 
-/** What is placed; `body`: of one that is there already, which is moved. */
+/** The object that is placed. `body` is the id of an existing body that is moved. */
 export interface Thing extends Pick<BodyChoice, 'shape' | 'mesh'> {
   footprint: Footprint;
   body?: number;
 }
 
-/** What is about to be placed, over all else: blue where there is room, red where there is none. */
+/** The preview of the placed object, drawn over the scene: blue if its position is free, else red. */
 export class Ghost {
   readonly group = new Group();
   private readonly material = new MeshBasicMaterial({
@@ -30,7 +30,7 @@ export class Ghost {
     opacity: 0.45,
     depthTest: false,
   });
-  /** Of the middle of its box. */
+  /** Offset of the centre of its box. */
   private readonly offset = new Vector3();
   private readonly mesh = new Mesh<BufferGeometry, MeshBasicMaterial>(
     new BufferGeometry(),
@@ -62,7 +62,7 @@ export class Ghost {
   }
 }
 
-/** Of size 1. */
+/** Returns the geometry with a longest side of 1. */
 function geometryOf({ shape, mesh }: Thing): BufferGeometry {
   if (shape === 'sphere') return new SphereGeometry(0.5, 32, 20);
   if (shape === 'box' || !mesh) return new BoxGeometry(1, 1, 1);

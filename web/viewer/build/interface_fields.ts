@@ -10,7 +10,7 @@ export const kLaws: Readonly<Record<Law, string>> = {
   sph: 'the liquid’s pressure',
 };
 
-/** The walls, as interfaces name them. */
+/** The name of the walls in interfaces. */
 export const kVat = 'vat';
 
 type Field = ValueSpec & { name: string; usual?: number };
@@ -35,7 +35,7 @@ const kReach = { ...field('reach', 'Reach', 'thresholds', 1.1, 4), usual: 2 };
 const kRestitution = field('restitution', 'Restitution', 'separation speed / approach speed', 0, 1);
 const kAngle = { ...field('contact_angle', 'Contact angle', 'degrees', 30, 150), usual: 90 };
 
-/** The constants of an interface, as SCENE.md has them. */
+/** Returns the constants of an interface that SCENE.md defines. */
 export function fieldsOf(scene: Scene, interface_: SceneInterface): readonly Field[] {
   const { law = 'penalty' } = interface_;
   const isTense = scene.materials.some(({ liquid }) => (liquid?.surface_tension ?? 0) > 0);
@@ -50,13 +50,13 @@ export function fieldsOf(scene: Scene, interface_: SceneInterface): readonly Fie
   return [kStiffness, loss, kFriction, kThreshold, ...angle];
 }
 
-/** Undefined where it is left out. */
+/** Returns a constant; undefined if it is absent. */
 export function valueOf(interface_: SceneInterface | undefined, name: string): number | undefined {
   const value = (interface_ as Record<string, unknown> | undefined)?.[name];
   return typeof value === 'number' ? value : undefined;
 }
 
-/** The same with another value, or without one. */
+/** Returns the interface with another value of a constant, or without it. */
 export function withConstant(
   interface_: SceneInterface,
   name: string,
@@ -69,14 +69,14 @@ export function withConstant(
 
 type Pair = readonly [string, string];
 
-/** What the scene says of two materials; undefined where they meet as all others do. */
+/** Returns the scene's interface of two materials; undefined if the default applies. */
 export function ownInterface(scene: Scene, [a, b]: Pair): SceneInterface | undefined {
   return scene.interfaces?.find(
     ({ materials: [c, d] }) => (a === c && b === d) || (a === d && b === c),
   );
 }
 
-/** How two materials meet. */
+/** Returns the interface of two materials. */
 export function interfaceOf(scene: Scene, pair: Pair): SceneInterface {
   const own = ownInterface(scene, pair);
   if (own) return own;
@@ -86,7 +86,7 @@ export function interfaceOf(scene: Scene, pair: Pair): SceneInterface {
   return { ...(scene.default_interface ?? { stiffness: 1000, damping: 1 }), materials };
 }
 
-/** The same two by another law, with what the laws have in common. */
+/** Returns the interface with another law. Keeps the constants that both laws have. */
 export function withLaw(scene: Scene, interface_: SceneInterface, law: Law): SceneInterface {
   const { materials } = interface_;
   const friction = valueOf(interface_, 'friction');

@@ -14,7 +14,7 @@ import type { Law } from './interface_fields';
 import type { ParameterForm, Change } from './parameter_forms';
 import { ValueField } from './value_field';
 
-/** How two materials push each other where they meet; changed while it runs. */
+/** The form for the interface of two materials in the running scene. */
 export class InterfaceForm implements ParameterForm {
   readonly element: HTMLElement;
   private readonly first = make('select', { id: 'contact-first', ariaLabel: 'One material' });
@@ -25,7 +25,7 @@ export class InterfaceForm implements ParameterForm {
   private readonly rows = make('div');
   private readonly reset: HTMLButtonElement;
   private fields: ValueField[] = [];
-  /** Of which pair and law the fields are. */
+  /** The pair and law of the displayed fields. */
   private shown = '';
   private scene: Scene | undefined;
   private initial: Scene | undefined;
@@ -127,7 +127,7 @@ export class InterfaceForm implements ParameterForm {
   }
 }
 
-/** As the scene was loaded; undefined of materials that came later. */
+/** Returns the interface in the loaded scene; undefined for materials added later. */
 function initialOf(initial: Scene, pair: [string, string]): SceneInterface | undefined {
   const isKnown = (name: string): boolean =>
     name === kVat || initial.materials.some((material) => material.name === name);
@@ -150,7 +150,7 @@ function noteOf(scene: Scene, [a, b]: [string, string], now: SceneInterface): st
   return now.law === 'sph' ? 'The default of liquids in this scene.' : 'The default of this scene.';
 }
 
-/** What is chosen stays, where it is still there. */
+/** Replaces the options. Keeps the selection if it still exists. */
 function fill(picker: HTMLSelectElement, names: readonly string[]): void {
   const chosen = picker.value;
   const words = (name: string): string => (name === kVat ? 'the vat’s walls' : name);

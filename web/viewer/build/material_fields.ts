@@ -1,12 +1,12 @@
 import type { SceneMaterial } from '../../client/index';
 
-/** A constant of a material that can be changed while it runs. */
+/** A constant of a material that can change in a running scene. */
 export interface MaterialField {
-  /** Where it is in the material. */
+  /** The path of the member in the material. */
   path: readonly string[];
   label: string;
   unit: string;
-  /** As SCENE.md has them. */
+  /** The range in SCENE.md. */
   min: number;
   max: number;
 }
@@ -42,7 +42,7 @@ const kFields: readonly MaterialField[] = [
   { path: ['tearing_strain'], label: 'Tearing strain', unit: '', min: 1e-6, max: 1e6 },
 ];
 
-/** The constants that this material has. */
+/** Returns the constants that this material has. */
 export function fieldsOf(material: SceneMaterial): readonly MaterialField[] {
   return kFields.filter(({ path }) => valueAt(material, path) !== undefined);
 }
@@ -56,7 +56,7 @@ export function valueAt(material: SceneMaterial, path: readonly string[]): numbe
   return typeof at === 'number' ? at : undefined;
 }
 
-/** The same material with another value there. */
+/** Returns the material with another value at the path. */
 export function withValue(
   material: SceneMaterial,
   path: readonly string[],

@@ -4,13 +4,13 @@ import { fieldsOf, valueAt, withValue } from './material_fields';
 import type { Change, ParameterForm } from './parameter_forms';
 import { ValueField } from './value_field';
 
-/** The constants of the scene's materials; changed while it runs. */
+/** The form for the constants of materials in the running scene. */
 export class MaterialForm implements ParameterForm {
   readonly element: HTMLElement;
   private readonly picker = make('select', { id: 'material', ariaLabel: 'Material' });
   private readonly rows = make('div');
   private fields: ValueField[] = [];
-  /** Of which material and constants the fields are. */
+  /** The material and constants of the displayed fields. */
   private shown = '';
   private materials: readonly SceneMaterial[] = [];
   private initial: readonly SceneMaterial[] = [];

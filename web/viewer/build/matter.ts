@@ -2,7 +2,7 @@ import { formatCount, formatMass } from '../panel/format';
 import { densityOf, massOf } from './measures';
 import type { SceneDocument } from './scene_document';
 
-/** Rows for the inspector: what the scene tells about a body; none where the server does not give it. */
+/** Returns the inspector's rows about a body; empty if the server does not supply the scene. */
 export async function matterOf(
   document: SceneDocument,
   name: string,

@@ -1,9 +1,9 @@
 import type { Scene, SceneBody, SceneShape, Vector } from '../../client/index';
 
-/** SCENE.md's default. */
+/** The default in SCENE.md [kg/m³]. */
 const kDensity = 1000;
 
-/** Of a shape that is filled [m³]; undefined where the scene does not tell it. */
+/** Returns the volume of a shape [m³]; undefined if the scene does not define it. */
 export function volumeOf(shape: SceneShape): number | undefined {
   switch (shape.type) {
     case 'box':
@@ -19,7 +19,7 @@ export function volumeOf(shape: SceneShape): number | undefined {
   }
 }
 
-/** By the divergence theorem: tetrahedra from the origin to each triangle, with their signs. */
+/** Returns the volume by the divergence theorem: the sum of signed tetrahedra from the origin. */
 export function meshVolume(vertices: readonly Vector[], triangles: readonly Vector[]): number {
   let sum = 0;
   for (const corners of triangles) {
@@ -32,17 +32,17 @@ export function meshVolume(vertices: readonly Vector[], triangles: readonly Vect
   return Math.abs(sum) / 6;
 }
 
-/** Of the material of a body [kg/m³]. */
+/** Returns the density of a material [kg/m³]. */
 export function densityOf({ materials }: Scene, material: string): number {
   return materials.find(({ name }) => name === material)?.density ?? kDensity;
 }
 
-/** Of a body with so many particles now [kg], as SCENE.md says; undefined where it does not tell. */
+/** Returns the mass of a body with this number of particles [kg]; undefined if it is unknown. */
 export function massOf(scene: Scene, body: SceneBody, particles: number): number | undefined {
   const { shape, spacing, mass, kind } = body;
   if (shape.type === 'particles' && shape.masses) return shape.masses.reduce((a, b) => a + b, 0);
   if (kind !== 'liquid' && mass !== undefined) return mass;
-  if (mass !== undefined) return undefined; // some of it may have gone or come
+  if (mass !== undefined) return undefined; // the number of particles can have changed
   const density = densityOf(scene, body.material);
   const perParticle = spacing === undefined ? undefined : density * spacing ** 3;
   if (kind === 'liquid' || shape.type === 'particles') {

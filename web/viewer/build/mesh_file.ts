@@ -1,24 +1,24 @@
 import type { Vector } from '../../client/index';
 import { meshVolume } from './measures';
 
-/** A closed surface about the origin, whose longest side is 1. */
+/** A closed surface centred at the origin, with a longest side of 1. */
 export interface MeshShape {
   name: string;
   vertices: Vector[];
   triangles: [number, number, number][];
-  /** Over that of its cube. */
+  /** Volume divided by the volume of its cube. */
   volume: number;
 }
 
-/** What a message may hold: `message_values` of the protocol, with room for the rest of a body. */
+/** The limit `message_values` of the protocol, minus the other members of a body. */
 const kMostValues = 95_000;
-/** Of the longest side: corners as near are the same. Files have seven digits at most. */
+/** Corners closer than this share of the longest side are merged. Files have at most 7 digits. */
 const kTolerance = 1e-6;
 
-/** A mesh of an .obj or .stl file; or in words why it is none. */
+/** Reads a mesh from an .obj or .stl file. Returns the reason if it is invalid. */
 export async function readMesh(file: File): Promise<MeshShape | { fault: string }> {
   const { name } = file;
-  const { mergeCorners, parseCorners } = await import('./mesh_parser'); // few need it
+  const { mergeCorners, parseCorners } = await import('./mesh_parser'); // loaded on demand
   const corners = parseCorners(await file.arrayBuffer(), /\.stl$/i.test(name));
   if (corners.length < 3 || !corners.flat().every(Number.isFinite)) {
     return { fault: `“${name}” contains no triangles. The file must be .obj or .stl.` };
@@ -27,13 +27,13 @@ export async function readMesh(file: File): Promise<MeshShape | { fault: string 
   if (!fitted) return { fault: `“${name}” is a single point.` };
   const { vertices, triangles } = mergeCorners(fitted, kTolerance);
   if (4 * (vertices.length + triangles.length) > kMostValues) {
-    const most = Math.floor(kMostValues / 6); // closed surfaces have half as many vertices
+    const most = Math.floor(kMostValues / 6); // a closed surface has half as many vertices as triangles
     return { fault: `“${name}” has too many triangles. About ${most} are possible.` };
   }
   return { name: name.slice(0, 64), vertices, triangles, volume: meshVolume(vertices, triangles) };
 }
 
-/** About the origin, with a longest side of 1; undefined: it has no size. */
+/** Centres and scales the mesh to a longest side of 1; undefined if its size is 0. */
 function fit(places: readonly Vector[]): Vector[] | undefined {
   const [least, most]: [Vector, Vector] = [
     [Infinity, Infinity, Infinity],

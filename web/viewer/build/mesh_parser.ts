@@ -5,8 +5,8 @@ import { mergeVertices } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { Vector } from '../../client/index';
 
 /**
- * The triangles of an .obj file or, `isStl`, of an .stl file: the corners of one after the other;
- * none where the file ends too early. Corners that it does not have are NaN.
+ * Returns the corners of all triangles of an .obj file or, if `isStl`, of an .stl file. Returns none
+ * if the file is incomplete. References to absent vertices give NaN.
  */
 export function parseCorners(bytes: ArrayBuffer, isStl: boolean): Vector[] {
   try {
@@ -34,7 +34,7 @@ function cornersOf(geometry: BufferGeometry): Vector[] {
   ]);
 }
 
-/** Corners within `tolerance` are one vertex. */
+/** Merges corners within `tolerance` to one vertex. */
 export function mergeCorners(
   corners: readonly Vector[],
   tolerance: number,

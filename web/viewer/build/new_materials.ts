@@ -8,15 +8,15 @@ import type {
 import * as shipped from '../../../protocol/scenes/sliding-vat-liquid.json';
 import { kSpacing, materialsFor } from './body_choice';
 
-/** A shipped scene that has a body of each kind, and that its steps follow well. */
+/** A catalogue scene that has a body of each kind and is stable at its step. */
 const kModel = shipped as unknown as Scene;
 
 const kKinds: readonly BodyKindName[] = ['liquid', 'deformable', 'rigid'];
 
-/** As SCENE.md has them. */
+/** The defaults in SCENE.md. */
 const kDefaults = { step: 0.001, density: 1000, stiffness: 1000, damping: 1 };
 
-/** A particle's mass [kg], the distance to the next [m], and a step [s]. */
+/** A particle's mass [kg], the spacing [m], and the step [s]. */
 interface Grain {
   mass: number;
   spacing: number;
@@ -29,7 +29,7 @@ interface Spring {
   damping?: number;
 }
 
-/** The scene with the materials that can be added: those of the model whose names it has not. */
+/** Returns the scene with the model's materials whose names are not in use. */
 export function withNewMaterials(scene: Scene): Scene {
   const taken = new Set(scene.materials.map(({ name }) => name));
   const added = kModel.materials.filter(({ name }) => !taken.has(name));
@@ -37,30 +37,30 @@ export function withNewMaterials(scene: Scene): Scene {
 }
 
 /**
- * How bodies of a new material meet others. Where what the scene has for all is stiffer for these
- * particles and steps than in the model, as stiff as there.
+ * Returns the interfaces of a new material. Their stiffness, relative to particle mass and step, is
+ * at most that of the model.
  */
 export function newInterfaces(scene: Scene, material: SceneMaterial): SceneInterface[] {
   const { law = 'penalty', ...usual } = scene.default_interface ?? {};
   const isGas = scene.pressure_solver === 'gas';
-  if (law !== 'penalty' || (material.liquid && !isGas)) return []; // liquids by their pressure
+  if (law !== 'penalty' || (material.liquid && !isGas)) return []; // liquids interact by pressure
   const { stiffness = kDefaults.stiffness } = usual as Partial<Spring>;
   const [from, to] = [grainOf(kModel, material.name), grainFor(scene, material)];
   const limit = scaled(kModel.default_interface as Spring, from, to);
   if (stiffness <= limit.stiffness) return [];
   const meets = ({ liquid }: SceneMaterial): boolean => isGas || !liquid;
   const others = scene.materials.filter(meets).map(({ name }) => name);
-  if (!material.liquid) others.push(material.name); // a liquid is one with itself
+  if (!material.liquid) others.push(material.name); // a liquid has no interface with itself
   if (scene.vat) others.push('vat');
   return [...new Set(others)].map((other) => ({ materials: [material.name, other], ...limit }));
 }
 
-/** The same material for the particles and steps of this scene. */
+/** Scales a material to the particles and the step of this scene. */
 function suited(scene: Scene, material: SceneMaterial): SceneMaterial {
   const [from, to] = [grainOf(kModel, material.name), grainFor(scene, material)];
   const made = structuredClone(material);
   if (made.liquid) {
-    // Sound is to get no further in a step, of supports, than in the model; so is viscosity.
+    // The Courant numbers of sound and viscosity, per support radius, do not exceed the model's.
     const support = supportFor(scene, to.spacing);
     const way = (support / made.liquid.support_radius) * (from.step / to.step);
     made.liquid.support_radius = support;
@@ -76,7 +76,7 @@ function suited(scene: Scene, material: SceneMaterial): SceneMaterial {
   return made;
 }
 
-/** Of a body as stiff as in the model, but no stiffer than its steps follow there. */
+/** Returns springs as stiff as in the model, limited by the model's stability number. */
 function asStiff(scene: Scene, spring: Spring, from: Grain, to: Grain): Spring {
   const size = scene.dimensions === 2 ? 1 / from.spacing : to.spacing / from.spacing;
   const most = scaled(spring, from, to);
@@ -85,7 +85,7 @@ function asStiff(scene: Scene, spring: Spring, from: Grain, to: Grain): Spring {
   return { stiffness: rounded(spring.stiffness * size), damping: rounded(damping) };
 }
 
-/** With the same stiffness and damping by mass and step. */
+/** Returns springs with the same stiffness and damping relative to mass and step. */
 function scaled({ stiffness, damping = 0 }: Spring, from: Grain, to: Grain): Required<Spring> {
   const mass = to.mass / from.mass;
   const rate = from.step / to.step;
@@ -95,7 +95,7 @@ function scaled({ stiffness, damping = 0 }: Spring, from: Grain, to: Grain): Req
   };
 }
 
-/** Of the model's bodies of a material. */
+/** Returns the grain of the model's bodies of a material. */
 function grainOf(scene: Scene, material: string): Grain {
   const body = scene.bodies.find((one) => one.material === material);
   const spacing = body?.spacing ?? kSpacing;
@@ -103,7 +103,7 @@ function grainOf(scene: Scene, material: string): Grain {
   return grain(scene, density, spacing);
 }
 
-/** Of bodies of this material in a scene that has none. */
+/** Returns the grain for bodies of a material that the scene does not use. */
 function grainFor(scene: Scene, material: SceneMaterial): Grain {
   const kind = kKinds.find((one) => materialsFor({ ...scene, materials: [material] }, one).length);
   const isLiquid = kind === 'liquid';
@@ -118,7 +118,7 @@ function grain(scene: Scene, density = kDefaults.density, spacing: number): Grai
   return { mass: density * spacing ** (scene.dimensions ?? 3), spacing, step };
 }
 
-/** That of the scene's liquids, which have to share one, or as in the model. */
+/** Returns the support radius of the scene's liquids, which share one, or that of the model. */
 function supportFor(scene: Scene, spacing: number): number {
   const there = scene.materials.find(({ liquid }) => liquid)?.liquid;
   const { liquid } = kModel.materials.find((one) => one.liquid)!;
@@ -126,7 +126,7 @@ function supportFor(scene: Scene, spacing: number): number {
   return there?.support_radius ?? rounded((spacing * liquid!.support_radius) / ofModel.spacing);
 }
 
-/** To three digits, as people write constants. */
+/** Rounds to three significant digits. */
 function rounded(value: number): number {
   return Number(value.toPrecision(3));
 }

@@ -14,12 +14,12 @@ const kIntegrators: Readonly<Record<Integrator, string>> = {
   explicit_euler: 'Euler, explicit',
 };
 
-/** As SCENE.md has them [s]. */
+/** The defaults in SCENE.md; times in s. */
 const kDefaults = { integrator: 'velocity_verlet', step: 0.001, tick: 0.02 } as const;
 const kLongest = 0.1;
 const kMostSteps = 10_000;
 
-/** How the motion is stepped: integrator and length of steps; changed while it runs. */
+/** The form for integrator and step of the running scene. */
 export class NumericsForm implements ParameterForm {
   readonly element: HTMLElement;
   private readonly integrator = make('select', { id: 'integrator' });

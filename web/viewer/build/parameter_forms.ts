@@ -7,18 +7,18 @@ import { MaterialForm } from './material_form';
 import { NumericsForm } from './numerics_form';
 import type { SceneDocument } from './scene_document';
 
-/** A part of the section in which the scene's constants are changed. */
+/** A form of the section for the scene's constants. */
 export interface ParameterForm {
   readonly element: HTMLElement;
   enable(enabled: boolean): void;
-  /** `initial`: as it was loaded. */
+  /** `initial` is the scene as it was loaded. */
   show(scene: Scene, initial: Scene): void;
 }
 
-/** Changes something, and shows it; tells what is wrong with it, if anything. */
+/** Executes a change and displays the result. Returns an error text if it was rejected. */
 export type Change<M extends MethodName> = (params: Params<M>) => Promise<string | undefined>;
 
-/** Materials, what happens where they meet, and time steps: with units, ranges and a way back. */
+/** The forms for materials, interfaces and steps, with units, ranges and reset. */
 export class ParameterForms {
   private readonly section = element('parameters-details', HTMLDetailsElement);
   private readonly forms: readonly ParameterForm[];
@@ -43,13 +43,13 @@ export class ParameterForms {
     for (const form of this.forms) form.enable(enabled);
   }
 
-  /** `isNew`: another scene or session, or the same from an earlier time on. */
+  /** `isNew`: another scene or session, or an earlier time of the same. */
   describe(isNew: boolean): void {
     if (isNew) this.initial = undefined;
     void this.look();
   }
 
-  /** Asks for the scene where somebody looks. */
+  /** Requests the scene if the section is open. */
   private async look(): Promise<void> {
     if (!this.section.open || !this.isEnabled) return;
     const scene = await this.document.get();
@@ -61,7 +61,7 @@ export class ParameterForms {
   private async asLoaded(present: Scene): Promise<Scene> {
     return this.desk.request('scene.get', {}).then(
       ({ scene }) => scene,
-      () => present, // a scene that no message holds: there is no way back, and nothing to say
+      () => present, // a scene that exceeds a message has no reset
     );
   }
 

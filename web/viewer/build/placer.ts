@@ -4,10 +4,10 @@ import type { World } from '../view/world';
 import { Ghost } from './ghost';
 import type { Thing } from './ghost';
 
-/** A press that moves further turns the view instead [px]. */
+/** A press that moves further rotates the view [px]. */
 const kStill = 6;
 
-/** Lets the user choose a place in the picture: the thing follows the pointer until it is put down. */
+/** Lets the user choose a position: the object follows the pointer until it is placed. */
 export class Placer {
   private readonly ghost = new Ghost();
   private thing: Thing | undefined;
@@ -15,7 +15,7 @@ export class Placer {
   private pressed: { x: number; y: number } | undefined;
   private put: (place: Vector3) => void = () => undefined;
 
-  /** `ended`: nothing is being placed any more. `full`: there is no room where it was to be. */
+  /** `ended` is called at the end of placing, `full` if the position is not free. */
   constructor(
     private readonly stage: Stage,
     private readonly world: World,
@@ -33,7 +33,7 @@ export class Placer {
     return this.thing !== undefined;
   }
 
-  /** Begins in the middle, from where keys can put it down as well. */
+  /** Begins at the centre of the scene, from where keys can also place the object. */
   begin(thing: Thing, put: (place: Vector3) => void): void {
     this.thing = thing;
     this.put = put;
@@ -54,7 +54,7 @@ export class Placer {
     this.ended();
   }
 
-  /** Puts it where it is, if there is room. */
+  /** Places the object if its position is free. */
   confirm(): void {
     const { thing, place } = this;
     if (!thing || !place) return;
@@ -63,7 +63,7 @@ export class Placer {
     this.end();
   }
 
-  /** By keys [m]. */
+  /** Moves the object [m]. */
   shift(by: Vector3): void {
     if (this.place) this.moveTo(this.place.clone().add(by));
   }
@@ -71,7 +71,7 @@ export class Placer {
   private press(event: PointerEvent): void {
     if (!this.thing || event.button !== 0 || !event.isPrimary) return;
     this.pressed = { x: event.clientX, y: event.clientY };
-    // A finger drags it, and puts it down where it is lifted; a mouse that drags turns the view.
+    // A finger drags the object and places it when lifted. A dragging mouse rotates the view.
     if (event.pointerType !== 'mouse') this.stage.turnable = false;
     this.move(event);
   }
@@ -96,7 +96,7 @@ export class Placer {
     if (place) this.moveTo(place);
   }
 
-  /** As near as it can be inside. */
+  /** Moves the object to the nearest position inside the scene. */
   private moveTo(place: Vector3): void {
     const { min, max } = this.world.extent;
     const { box } = this.thing!.footprint;

@@ -3,10 +3,10 @@ import type { Keys } from '../panel/keys';
 import type { View } from '../view/view';
 import type { Placer } from './placer';
 
-/** Of the height of the scene: how far a key moves what is placed. */
+/** The displacement by a key, relative to the height of the scene. */
 const kStep = 0.04;
 
-/** To the right, up, and away, as the camera sees it. */
+/** Directions in camera axes: right, up, away. */
 const kWays: Readonly<Record<string, readonly [number, number, number]>> = {
   arrowleft: [-1, 0, 0],
   arrowright: [1, 0, 0],
@@ -16,7 +16,7 @@ const kWays: Readonly<Record<string, readonly [number, number, number]>> = {
   pagedown: [0, 0, -1],
 };
 
-/** Keys that move what is placed, put it down, or leave it; before all others while it lasts. */
+/** Adds the keys that move, place or cancel the object. While placing, they precede other keys. */
 export function addPlacingKeys(keys: Keys, placer: Placer, { stage, world }: View): void {
   const isEnabled = (): boolean => placer.isPlacing;
   keys.add({

@@ -8,16 +8,16 @@ import type { World } from '../view/world';
 import { placeFor } from './room';
 import type { SceneDocument } from './scene_document';
 
-/** Between two drops while the button is held [ms]. */
+/** The interval of drops while the button is held [ms]. */
 const kPeriodMs = 450;
 
-/** A drop's radius over the distance between its particles. */
+/** A drop's radius divided by its spacing. */
 const kDropInSpacings = 2.4;
 
-/** Downwards [m/s]. */
+/** The initial downward speed [m/s]. */
 const kDropSpeed = 0.8;
 
-/** Pours liquid: through the scene's emitters, and in drops wherever there is a liquid. */
+/** Pours liquid: through the scene's emitters, and as drops if the scene has a liquid. */
 export class Pour {
   private readonly row = element('pour-row', HTMLElement);
   private readonly drop = makeButton('Pour', () => undefined);
@@ -26,7 +26,7 @@ export class Pour {
   private isEnabled = false;
   private timer: number | undefined;
   private isBusy = false;
-  /** A drop has come of which no description tells yet. */
+  /** Whether a drop was added that no description contains yet. */
   private isAwaited = false;
   private poured = 0;
 
@@ -43,7 +43,7 @@ export class Pour {
     for (const type of ['pointerup', 'pointercancel', 'pointerleave', 'blur'] as const) {
       drop.addEventListener(type, () => this.end());
     }
-    // By the keyboard: one drop.
+    // A click by keyboard adds one drop.
     drop.addEventListener('click', ({ detail }) => detail === 0 && void this.pour());
     keys.add({
       keys: ['p'],
@@ -65,16 +65,16 @@ export class Pour {
     this.row.hidden = true;
   }
 
-  /** `isEarlier`: a reset, which opens and closes taps, or a state that was saved. */
+  /** `isEarlier`: a reset, which also resets emitters, or a saved state. */
   describe(description: SessionDescription, isEarlier: boolean): void {
     const before = this.description;
     this.description = description;
     this.isAwaited = false;
-    // Descriptions also come with every tilt of gravity and every drop.
+    // Each change of gravity and each drop also sends a description.
     if (isEarlier || !before || liquidsOf(description) !== liquidsOf(before)) void this.look();
   }
 
-  /** What can be poured is told by the scene. */
+  /** Requests the scene, which defines the available liquids. */
   private async look(): Promise<void> {
     const scene = await this.document.get();
     if (this.description?.replay || !this.isEnabled) return;
@@ -93,7 +93,7 @@ export class Pour {
     return activeElement instanceof HTMLElement ? activeElement.dataset.emitter : undefined;
   }
 
-  /** A body of the liquid that is poured. */
+  /** An existing body of the poured liquid. */
   private get example(): SceneBody | undefined {
     return this.scene?.bodies.find(
       ({ kind, spacing }) => kind === 'liquid' && spacing !== undefined,
@@ -124,13 +124,13 @@ export class Pour {
     this.timer = undefined;
   }
 
-  /** The drop before is seen, so that there is no other where it is. */
+  /** Whether the previous drop is displayed, so that the next one does not overlap it. */
   private get isReady(): boolean {
     const isDrawn = element('view', HTMLCanvasElement).dataset.tick !== undefined;
     return this.isEnabled && !this.isBusy && !this.isAwaited && isDrawn;
   }
 
-  /** One drop; of those that are asked for while one is under way, none. */
+  /** Adds one drop. Ignores requests while another is pending. */
   private async pour(): Promise<void> {
     const { example } = this;
     if (!example || !this.isReady) return;
@@ -166,7 +166,7 @@ export class Pour {
   }
 }
 
-/** More taps than these would take the room of all else. */
+/** The maximum number of displayed emitters. */
 const kMostTaps = 4;
 
 function foldedWhereMany(taps: readonly HTMLElement[], open: boolean): readonly HTMLElement[] {
@@ -175,7 +175,7 @@ function foldedWhereMany(taps: readonly HTMLElement[], open: boolean): readonly 
   return [make('details', { open }, make('summary', {}, `${taps.length} taps`), places)];
 }
 
-/** Changes where there is something else to pour. */
+/** Returns a key that changes with the available liquids. */
 function liquidsOf({ session, scene, bodies }: SessionDescription): string {
   const liquids = bodies.filter(({ kind }) => kind === 'liquid').map(({ material }) => material);
   return JSON.stringify([session, scene, [...new Set(liquids)]]);

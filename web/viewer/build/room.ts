@@ -2,12 +2,12 @@ import { Vector3 } from 'three';
 import { ballOf } from '../view/footprint';
 import type { World } from '../view/world';
 
-/** So many places along each axis are tried. */
+/** The number of tried positions per axis. */
 const kPlaces = 7;
 
 /**
- * The middle of a free ball of this radius [m] right below the top, as near to the middle as there
- * is one.
+ * Returns the centre of a free ball of this radius [m] directly below the top, as close to the
+ * centre of the scene as possible.
  */
 export function placeFor(world: World, radius: number): Vector3 | undefined {
   const { min, max } = world.extent;

@@ -1,6 +1,6 @@
 import { make, makeButton } from '../panel/elements';
 
-/** A number that can be changed, with its unit and range. */
+/** An editable number with its unit and range. */
 export interface ValueSpec {
   id: string;
   label: string;
@@ -8,14 +8,14 @@ export interface ValueSpec {
   min: number;
   max: number;
   isWhole?: boolean;
-  /** What there is without a number; where there has to be one, nothing. */
+  /** The text for an absent number; undefined if the number is required. */
   otherwise?: string;
 }
 
-/** Tells what is wrong with it; undefined: it is so now. */
+/** Sets the value. Returns an error text, or undefined after success. */
 export type SetValue = (value: number | undefined) => Promise<string | undefined>;
 
-/** A field for a number: label and unit, range, the way back, and below it what is wrong. */
+/** A number field: label, unit, range, reset, and an error text below. */
 export class ValueField {
   readonly element: HTMLElement;
   private readonly input: HTMLInputElement;
@@ -42,12 +42,12 @@ export class ValueField {
     this.element = make('div', { className: 'parameter' }, words, input, reset, fault);
   }
 
-  /** `initial`: as the scene was loaded; `unit`: in place of the usual words. */
+  /** `initial` is the value of the loaded scene. `unit` replaces the unit's text. */
   show(value: number | undefined, initial: number | undefined, unit = this.spec.unit): void {
     this.value = value;
     this.initial = initial;
     this.unit.textContent = unit;
-    // What is being written stays.
+    // A text that is being edited does not change.
     if (document.activeElement !== this.input) this.input.value = this.text;
     const hasWay = initial !== undefined || this.spec.otherwise !== undefined;
     this.reset.hidden = !hasWay || initial === value;
@@ -67,7 +67,7 @@ export class ValueField {
     const isLeftOut = input.value === '' && !input.validity.badInput;
     const isGood = input.checkValidity() && (!isLeftOut || spec.otherwise !== undefined);
     const value = isLeftOut ? undefined : input.valueAsNumber;
-    input.blur(); // so that the keys play and pause again
+    input.blur(); // returns the keys to the page
     if (isGood) return this.apply(value);
     const kind = spec.isWhole ? 'whole number' : 'number';
     this.refuse(`The value must be a ${kind} from ${spec.min} to ${spec.max}.`);
@@ -79,7 +79,7 @@ export class ValueField {
     this.fault.hidden = true;
   }
 
-  /** It is as it was, and that is said. */
+  /** Restores the value and displays the error. */
   private refuse(words: string): void {
     this.input.value = this.text;
     this.fault.textContent = words;

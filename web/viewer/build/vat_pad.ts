@@ -6,10 +6,10 @@ import { ask } from '../stream/desk';
 import type { Desk } from '../stream/desk';
 import { Newest } from '../stream/newest';
 
-/** Of the vat's longest side: how far it goes at the pad's edge. */
+/** The displacement at the pad's edge, relative to the vat's longest side. */
 const kReach = 0.4;
 
-/** Of that reach: how far an arrow key shifts. */
+/** The displacement by an arrow key, relative to that. */
 const kStep = 0.2;
 
 const kArrows: Readonly<Record<string, Place>> = {
@@ -19,7 +19,7 @@ const kArrows: Readonly<Record<string, Place>> = {
   ArrowDown: [0, -1],
 };
 
-/** Slides the vat by hand: it follows a small ball, and goes back to its own motion once let go. */
+/** Slides the vat by a pad. After release, the vat returns to its scripted motion. */
 export class VatPad {
   private readonly row = element('slide-row', HTMLElement);
   private readonly pad = new BallPad(
@@ -30,7 +30,7 @@ export class VatPad {
   );
   private readonly newest: Newest<Vector>;
   private longest = 0;
-  /** From -1 to 1 along x and y. */
+  /** Position of the ball, -1 to 1 along x and y. */
   private at: Place = [0, 0];
   private isEnabled = false;
 

@@ -5,17 +5,17 @@ import type { History } from './history';
 import type { ChartPlan, SeriesName } from './series';
 
 const kHeight = 112;
-/** At the size of the font. */
+/** The width of a digit [px] at the font size. */
 const kDigitWidth = 6.5;
 const kBesideNumbers = 14;
 const kFont = '11px system-ui, sans-serif';
 
-/** Of the longest number, with what is beside it. */
+/** Returns the width of the longest number, including its margin [px]. */
 function widthOf(_: uPlot, numbers: string[] | null): number {
   return kBesideNumbers + kDigitWidth * Math.max(0, ...(numbers ?? []).map((text) => text.length));
 }
 
-/** One chart with its title and the newest values; loaded once curves are asked for. */
+/** A chart with title and newest values; loaded on demand. */
 export class Chart {
   readonly element: HTMLElement;
   private readonly newest = make('output');
@@ -45,7 +45,7 @@ export class Chart {
     this.place.dataset.samples = String(this.plot.data[0].length);
   }
 
-  /** In the colours that the page has now. */
+  /** Redraws in the page's present colours. */
   repaint(): void {
     this.plot.redraw(false, true);
   }

@@ -11,17 +11,17 @@ import { StageBar } from './stage_bar';
 import { profileBetween } from './stage_words';
 import './curves.css';
 
-/** Between two questions for the session's figures, while somebody looks at them [ms]. */
+/** The interval of requests for the session's figures while the section is open [ms]. */
 const kPeriodMs = 1000;
 
-/** What the page itself knows of the stream. */
+/** Figures of the stream that the page measures. */
 export interface StreamFigures {
   /** [s] */
   age: number | undefined;
   bytesPerSecond: number;
 }
 
-/** The section of curves over time and of what a tick is spent on. */
+/** The section of curves over time and of the computing time per stage. */
 export class Curves {
   private readonly section = element('curves-details', HTMLDetailsElement);
   private readonly place = element('curves-place', HTMLElement);
@@ -50,7 +50,7 @@ export class Curves {
     if (!isJoined) this.before = undefined;
   }
 
-  /** `isNew`: another scene, or another session. */
+  /** `isNew`: another scene or session. */
   describe({ tick_seconds: tickSeconds }: SessionDescription, isNew: boolean): void {
     this.tickSeconds = tickSeconds;
     if (!isNew) return;
@@ -69,7 +69,7 @@ export class Curves {
     });
   }
 
-  /** Asks and draws, where somebody looks. */
+  /** Requests the figures and draws them if the section is open. */
   private async look(): Promise<void> {
     if (!this.section.open || document.hidden) return;
     await this.load();
@@ -83,7 +83,7 @@ export class Curves {
     if (profile) this.stages.show(profile, this.tickSeconds, this.status?.speed ?? 1);
   }
 
-  /** Undefined where it fails: the connection's state tells why, and the next look is soon. */
+  /** Requests the figures; undefined after a failure, which the next request repeats. */
   private async ask(): Promise<SessionStats | undefined> {
     try {
       return await this.desk.request(
@@ -91,7 +91,7 @@ export class Curves {
         this.hasDiagnostics ? { diagnostics: true } : {},
       );
     } catch (error) {
-      // A server that is older than this page knows no such parameter.
+      // An older server does not know this parameter.
       if (error instanceof RequestError && error.kind === 'invalid_params') {
         this.hasDiagnostics = false;
       }
@@ -99,7 +99,7 @@ export class Curves {
     }
   }
 
-  /** The library that draws comes once it is needed. */
+  /** Loads the charting library on demand. */
   private async load(): Promise<void> {
     if (this.charts || this.isLoading) return;
     this.isLoading = true;

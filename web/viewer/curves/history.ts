@@ -1,7 +1,7 @@
-/** So many samples are kept. */
+/** The maximum number of stored samples. */
 const kMost = 600;
 
-/** Values over simulated time, each of some series; those that are not known are gaps. */
+/** Values of several series over simulated time. Unknown values are gaps. */
 export class History<Name extends string> {
   private times: number[] = [];
   private values: Record<Name, (number | null)[]>;
@@ -10,7 +10,7 @@ export class History<Name extends string> {
     this.values = this.none();
   }
 
-  /** At `time` [s]; a time before the last one begins anew, and the same once more adds to it. */
+  /** Adds values at `time` [s]. An earlier time clears the history; the same time merges values. */
   add(time: number, values: Partial<Record<Name, number>>): void {
     const last = this.times.at(-1);
     if (last !== undefined && time < last) this.clear();
@@ -29,18 +29,18 @@ export class History<Name extends string> {
     this.values = this.none();
   }
 
-  /** The times, and behind them the values of each of these series, as uPlot takes them. */
+  /** Returns the times and the values of each series in the format of uPlot. */
   columns(names: readonly Name[]): [number[], ...(number | null)[][]] {
     return [this.times, ...names.map((name) => this.values[name])];
   }
 
-  /** The newest value that is known. */
+  /** Returns the newest known value. */
   newest(name: Name): number | undefined {
     const known = this.values[name].filter((value) => value !== null);
     return known.at(-1);
   }
 
-  /** Leaves out every other sample of the older half: the beginning stays in sight. */
+  /** Removes every other sample of the older half, so that the beginning remains visible. */
   private thin(): void {
     const half = Math.floor(this.times.length / 2);
     const stays = (_: unknown, n: number): boolean => n >= half || n % 2 === 0;

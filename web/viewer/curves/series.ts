@@ -2,7 +2,7 @@ import type { Diagnostics } from '../../client/index';
 import { formatQuantity } from '../view/colour/quantity';
 import { formatBytes, formatFactor, formatMilliseconds } from '../panel/format';
 
-/** What is drawn over time. */
+/** The names of the curves. */
 export type SeriesName =
   | 'kinetic'
   | 'gravitational'
@@ -17,7 +17,7 @@ export type SeriesName =
 
 export interface ChartPlan {
   title: string;
-  /** What it means, for who has never seen it. */
+  /** The explanation for newcomers. */
   explanation: string;
   series: readonly { name: SeriesName; label: string; colour: string }[];
   format(value: number): string;
@@ -74,7 +74,7 @@ export const kSeries: readonly SeriesName[] = kCharts.flatMap(({ series }) =>
   series.map(({ name }) => name),
 );
 
-/** The figures that the server measures for who asks, as series. */
+/** Converts the server's diagnostics to series. */
 export function diagnosticSeries({
   kinetic_energy: kinetic,
   gravitational_energy: gravitational,

@@ -5,10 +5,10 @@ import type { TickProfile } from './stage_words';
 const kColours = ['#3f87d9', '#e08a3c', '#3aa876', '#a86cc9', '#d4577a', '#8f9a45', '#5f8f9c'];
 const kRest = '#8a96a3';
 
-/** Smaller shares are not worth a line of their own. */
+/** Smaller shares are combined. */
 const kLeastShare = 0.02;
 
-/** What a tick was spent on, as a bar and in words. */
+/** The computing time of a tick by stage, as a bar and as text. */
 export class StageBar {
   readonly element: HTMLElement;
   private readonly bar = make('div', { id: 'stage-bar', ariaHidden: 'true' });

@@ -1,6 +1,6 @@
 import type { SessionStats } from '../../client/index';
 
-/** What stages of a step are about, in words, and which belong to it. */
+/** Groups of stages: their text, and the stages that belong to them. */
 const kGroups: Readonly<Record<string, readonly string[]>> = {
   'finding neighbours': ['find_pairs', 'list_neighbours', 'sort_liquid', 'sort_solids'],
   'forces in liquids': [
@@ -47,28 +47,28 @@ const kGroups: Readonly<Record<string, readonly string[]>> = {
 
 const kOther = 'other work';
 
-/** Of the time of a tick. */
+/** A part of the time of a tick. */
 export interface Part {
   words: string;
   /** [s] per tick. */
   seconds: number;
-  /** Of all. */
+  /** Share of the total. */
   share: number;
 }
 
 export interface TickProfile {
   /** Wall time of a tick [s]. */
   seconds: number;
-  /** Those with the most first. */
+  /** The parts in descending order. */
   parts: Part[];
 }
 
-/** What ticks between two looks at a session's figures were spent on; undefined: there were none. */
+/** Returns the mean time per tick between two requests by part; undefined without ticks. */
 export function profileBetween(
   before: SessionStats | undefined,
   now: SessionStats,
 ): TickProfile | undefined {
-  const isSame = before !== undefined && now.ticks >= before.ticks; // or begun anew
+  const isSame = before !== undefined && now.ticks >= before.ticks; // false after a restart of the count
   const ticks = now.ticks - (isSame ? before.ticks : 0);
   if (ticks <= 0) return undefined;
   const earlier = new Map(
@@ -93,7 +93,7 @@ function wordsOf(stage: string): string {
   return found?.[0] ?? kOther;
 }
 
-/** Whether the server is fast enough, and where the time goes; `tickSeconds`: simulated in a tick. */
+/** Returns a text on the server's speed and its main costs. `tickSeconds`: simulated time per tick. */
 export function profileInWords(
   { seconds, parts }: TickProfile,
   tickSeconds: number,

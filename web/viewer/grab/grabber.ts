@@ -8,26 +8,26 @@ import { Held } from './held';
 
 interface Grip {
   held: Held;
-  /** Undefined: the keyboard's. */
+  /** The pointer's id; undefined: the keyboard. */
   pointer: number | undefined;
   body: number;
   particle: number;
-  /** Through the particle when it was taken, parallel to the picture. */
+  /** The plane through the particle at the start of the grab, parallel to the picture. */
   plane: Plane;
   target: Vector3;
-  /** Where and when it was pressed [px, ms]. */
+  /** Position and time of the press [px, ms]. */
   pressed: { x: number; y: number; at: number };
 }
 
-/** A press that is shorter than this and stays where it is, is a click [ms, px]. */
+/** A shorter press without motion is a click [ms, px]. */
 const kClickMs = 350;
 const kClickPixels = 5;
 
-/** Pulls bodies with the pointer: a press on a particle takes it, elsewhere it turns the view. */
+/** Pulls bodies with the pointer: a press on a particle grabs it, elsewhere it rotates the view. */
 export class Grabber {
   private grip: Grip | undefined;
   private enabled = false;
-  /** The pointer is for something else. */
+  /** Whether the pointer has another use. */
   isPaused = false;
 
   constructor(
@@ -39,7 +39,7 @@ export class Grabber {
     private readonly clicked: (body: number, particle: number) => void,
   ) {
     const { canvas } = stage;
-    // In the capture phase: this comes before the camera's controls and can keep a press from them.
+    // The capture phase precedes the camera's controls, so that a grab can consume the press.
     canvas.addEventListener('pointerdown', (event) => this.press(event), { capture: true });
     canvas.addEventListener('pointermove', (event) => this.move(event));
     for (const type of ['pointerup', 'pointercancel'] as const) {
@@ -47,30 +47,30 @@ export class Grabber {
     }
   }
 
-  /** Without a session there is nothing to take; what is held is let go. */
+  /** Enables grabbing. Disabling releases the held body. */
   enable(enabled: boolean): void {
     this.enabled = enabled;
     if (!enabled) this.release();
   }
 
-  /** Lets go where the session has let go: it began `anew`, or the body is no more. */
+  /** Ends the grab if the session has ended it: it began `anew`, or the body was removed. */
   describe({ bodies }: SessionDescription, anew: boolean): void {
     const isThere = bodies.some(({ body }) => body === this.grip?.body);
     if (anew || !isThere) this.release();
   }
 
-  /** Lets go, as when the pointer is lifted. */
+  /** Ends the grab. */
   release(): void {
     this.grip?.held.end();
     this.forget();
   }
 
-  /** Puts the marker where the held particle is drawn now. */
+  /** Moves the marker to the held particle. */
   update(): void {
     if (!this.grip) return;
     const { body, particle, target } = this.grip;
     const held = this.world.particle(body, particle);
-    if (!held) return; // not in the frame, or not drawn yet
+    if (!held) return; // absent from the frame, or not drawn yet
     this.marker.show(held.position, target, held.radius);
   }
 
@@ -85,17 +85,17 @@ export class Grabber {
     this.hold(picked, event.pointerId, pressed);
   }
 
-  /** Takes a particle where it is, to be moved by `shift`. */
+  /** Grabs a particle at its position; `shift` moves its target. */
   take(picked: Picked): void {
     if (this.enabled && !this.grip) this.hold(picked, undefined, { x: 0, y: 0, at: -Infinity });
   }
 
-  /** Whether something is held that `take` took. */
+  /** Whether a grab by `take` is active. */
   get isByHand(): boolean {
     return this.grip !== undefined && this.grip.pointer === undefined;
   }
 
-  /** Pulls what is held to elsewhere [m]. */
+  /** Moves the target of the grab [m]. */
   shift(by: Vector3): void {
     if (this.grip) this.pull(this.grip.target.clone().add(by));
   }
@@ -158,7 +158,7 @@ export class Grabber {
     this.report();
   }
 
-  /** Says on the canvas what is held and where it is pulled to. */
+  /** Writes the held body and the target to the canvas's data attributes. */
   private report(): void {
     const { dataset } = this.stage.canvas;
     delete dataset.heldBody;

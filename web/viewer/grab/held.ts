@@ -1,13 +1,12 @@
 import type { Vector } from '../../client/index';
 import type { Request } from '../stream/stream';
 
-/** Well within the time after which the server ends a grab that nobody moves [ms]. */
+/** The interval of renewal [ms], shorter than the server's time-out of idle grabs. */
 export const kRenewal = 5000;
 
 /**
- * One grab as the server sees it. Moves are sent one at a time: while one is unanswered only the
- * newest target is kept, so that a fast mouse does not flood a slow line. A pointer that holds still
- * sends its target again from time to time: it still holds.
+ * A grab on the server. While a move is unanswered, only the newest target is stored, so that fast
+ * pointers do not flood slow connections. A resting pointer repeats its target to renew the grab.
  */
 export class Held {
   private grab: number | undefined;
@@ -17,7 +16,7 @@ export class Held {
   private target: Vector;
   private readonly renewal: ReturnType<typeof setInterval>;
 
-  /** `failed` is told once if the server refuses; the grab is over then. */
+  /** `failed` is called once if the server rejects the grab, which then ends. */
   constructor(
     private readonly request: Request,
     start: { body: number; particle: number; target: Vector },

@@ -4,7 +4,7 @@ import type { Stage } from '../view/stage';
 import type { World } from '../view/world';
 import type { Grabber } from './grabber';
 
-/** Of the height of the scene: how far a key pulls. */
+/** The displacement by a key, relative to the height of the scene. */
 const kStep = 0.03;
 
 type Way = 'right' | 'up' | 'away';
@@ -18,11 +18,11 @@ const kWays: Readonly<Record<string, readonly [Way, number]>> = {
   pagedown: ['away', -1],
 };
 
-/** Takes bodies by keys: one after the other is held, and pulled by the arrows. */
+/** Grabs bodies by keys: a key selects the next body, arrows pull it. */
 export class KeyGrab {
   private body: number | undefined;
 
-  /** `bodies`: their ids. `say` tells what is held, for who does not see it. */
+  /** `bodies` returns ids. `say` announces the held body to screen readers. */
   constructor(
     keys: Keys,
     private readonly grabber: Grabber,

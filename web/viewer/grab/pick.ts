@@ -6,11 +6,11 @@ export interface Line {
 
 export interface Hit {
   particle: number;
-  /** From the line's origin to the sphere's surface. */
+  /** Distance from the line's origin to the sphere's surface. */
   distance: number;
 }
 
-/** The sphere that the line meets first; `centers` has x, y, z of each, in the line's units. */
+/** Returns the first sphere on the line. `centers` contains x, y, z of each in the line's units. */
 export function nearestSphere(
   { origin, direction }: Line,
   centers: ArrayLike<number>,

@@ -8,12 +8,12 @@ import './kept.css';
 
 export interface KeptActions {
   load(scene: string): void;
-  /** Scenes were saved or deleted. */
+  /** Called after scenes were saved or deleted. */
   scenesChanged(): void;
   go(session: string): void;
 }
 
-/** The section of what is kept: moments, scenes and recordings. */
+/** The section of saved states, scenes and recordings. */
 export class Kept {
   private readonly section = element('kept-details', HTMLDetailsElement);
   private readonly note = make('p', { id: 'kept-note', className: 'soft', hidden: true });
@@ -31,7 +31,7 @@ export class Kept {
     this.section.addEventListener('toggle', () => {
       if (!this.section.open || !this.isEnabled) return;
       void this.states.refresh();
-      actions.scenesChanged(); // others save too
+      actions.scenesChanged(); // other users save scenes too
     });
   }
 

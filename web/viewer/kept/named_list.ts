@@ -1,26 +1,26 @@
 import { element, make, makeButton } from '../panel/elements';
 
-/** One thing that is kept, and what can be done with it. */
+/** A saved item and its actions. */
 export interface KeptEntry {
   name: string;
-  /** Who kept it, and when. */
+  /** Author and time. */
   words: string;
   use(): void;
-  /** None where it is another's. */
+  /** Deletes the item; undefined if it belongs to another user. */
   remove?: () => void;
 }
 
-/** How long a first press on “Delete” waits for the second [ms]. */
+/** The time for the second press on “Delete” [ms]. */
 const kArmedMs = 4000;
 
-/** A form that keeps something under a name, and the list of what is kept. */
+/** A form that saves an item under a name, and the list of saved items. */
 export class NamedList {
   private readonly list: HTMLElement;
   private readonly name: HTMLInputElement;
   private readonly keepButton: HTMLButtonElement;
   private isEnabled = false;
 
-  /** `use`: the word on the button of each; `none`: told where there is nothing. */
+  /** `use`: the text on each item's button; `none`: the text of an empty list. */
   constructor(
     private readonly id: string,
     title: string,
@@ -60,7 +60,7 @@ export class NamedList {
     this.enable(this.isEnabled);
   }
 
-  /** What was written was kept. */
+  /** Clears the input after saving. */
   clear(): void {
     this.name.value = '';
   }
@@ -75,7 +75,7 @@ export class NamedList {
   }
 }
 
-/** Deletes at the second press, since nothing brings it back. */
+/** Returns a button that deletes at the second press, because deletion cannot be undone. */
 function removeButton(name: string, remove: () => void): HTMLButtonElement {
   const button = makeButton('×', () => {
     if (button.dataset.armed === 'true') return remove();
@@ -90,7 +90,7 @@ function removeButton(name: string, remove: () => void): HTMLButtonElement {
   return button;
 }
 
-/** When something was kept, as this place writes it. */
+/** Returns a time in the user's locale. */
 export function whenInWords(seconds: number): string {
   const date = new Date(1000 * seconds);
   const isToday = date.toDateString() === new Date().toDateString();

@@ -1,15 +1,15 @@
 import { RequestError } from '../../client/index';
 import type { Request } from '../stream/stream';
 
-/** Of a file, before it is written in base64: well within what a server takes in one message. */
+/** Bytes of a part before base64 coding; below the server's message limit. */
 const kPartBytes = 256 * 1024;
 
 const kPiece = 8192;
 
-/** What a server takes in all [bytes]. */
+/** The server's size limit [bytes]. */
 const kMostBytes = 256 * 1024 * 1024;
 
-/** Why a file is no recording, in words; undefined where it may be one: the server looks closer. */
+/** Returns the reason why a file cannot be a recording, or undefined. The server checks the rest. */
 export function faultOfRecording(name: string, size: number): string | undefined {
   if (size === 0) return `“${name}” is empty.`;
   if (size > kMostBytes) return `“${name}” is too large. A recording has at most 256 MiB.`;
@@ -17,8 +17,8 @@ export function faultOfRecording(name: string, size: number): string | undefined
 }
 
 /**
- * Sends a recording part by part and tells its number on the server; `tell` hears which share is
- * there. Waits where the server asks for it, and throws what it refuses.
+ * Sends a recording in parts and returns its number on the server. `tell` receives the share that
+ * was sent. Waits after rate limiting; throws other errors.
  */
 export async function sendRecording(
   file: Blob,
@@ -37,7 +37,7 @@ export async function sendRecording(
   return recording;
 }
 
-/** Asks again for as long as the server says that it comes too soon. */
+/** Repeats a request while the server limits its rate. */
 async function patiently<T>(act: () => Promise<T>): Promise<T> {
   for (;;) {
     try {
@@ -50,7 +50,7 @@ async function patiently<T>(act: () => Promise<T>): Promise<T> {
   }
 }
 
-/** `btoa` takes characters for bytes, and a call has only so many arguments. */
+/** Converts in parts, because `btoa` reads characters and calls have a limit of arguments. */
 async function toBase64(part: Blob): Promise<string> {
   const bytes = new Uint8Array(await part.arrayBuffer());
   const pieces: string[] = [];

@@ -4,7 +4,7 @@ import { ask } from '../stream/desk';
 import type { Desk } from '../stream/desk';
 import { faultOfRecording, sendRecording } from './recording_file';
 
-/** Recordings: this session's as a file or a replay, and those of files. */
+/** Recordings: the session's as a file or a replay, and replays of files. */
 export class Recordings {
   private readonly exporter = makeButton('Download', () => void this.export());
   private readonly watcher = makeButton('Watch it again', () => void this.openOwn());
@@ -20,7 +20,7 @@ export class Recordings {
   private isLive = false;
   private readonly progress = make('p', { id: 'recording-progress', className: 'soft' });
 
-  /** `go`: to the session that shows it. */
+  /** `go` switches to the session of a replay. */
   constructor(
     private readonly desk: Desk,
     private readonly session: () => string,
@@ -32,7 +32,7 @@ export class Recordings {
     this.progress.role = 'status';
     this.input.addEventListener('change', () => {
       void this.import(this.input.files?.[0]);
-      this.input.value = ''; // so that the same file can be picked again
+      this.input.value = ''; // allows the same file to be chosen again
     });
     const own = make('div', { className: 'row' }, this.exporter, this.watcher);
     const other = make('div', { className: 'row' }, this.opener);
@@ -48,14 +48,14 @@ export class Recordings {
     this.enable(false, false);
   }
 
-  /** What is shown can be recorded; `isReplay`: it is a recording already. */
+  /** Enables recording. `isReplay`: the session is a replay. */
   enable(enabled: boolean, isReplay: boolean): void {
     this.isLive = enabled && !isReplay;
     this.opener.disabled = !enabled;
     this.write();
   }
 
-  /** Whether the server records what happens in its sessions. */
+  /** Shows whether the server records its sessions. */
   showServer(records: boolean): void {
     this.records = records;
     this.write();

@@ -4,7 +4,7 @@ import type { Desk } from '../stream/desk';
 import { NamedList, whenInWords } from './named_list';
 import { SceneKeys } from './scene_keys';
 
-/** The scenes that users have saved, which any session can load. */
+/** The users' saved scenes, which any session can load. */
 export class SavedScenes {
   readonly list = new NamedList(
     'own-scenes',
@@ -14,14 +14,14 @@ export class SavedScenes {
   );
   private readonly keys = new SceneKeys();
 
-  /** `changed`: there is another list of scenes. */
+  /** `changed` is called after a change of the list. */
   constructor(
     private readonly desk: Desk,
     private readonly load: (name: string) => void,
     private readonly changed: () => void,
   ) {}
 
-  /** Of all scenes, those of users. */
+  /** Shows the users' scenes among all scenes. */
   show(scenes: readonly SceneEntry[]): void {
     const own = scenes.filter(({ saved_by: by }) => by !== undefined);
     this.list.show(

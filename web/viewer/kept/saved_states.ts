@@ -3,7 +3,7 @@ import { ask } from '../stream/desk';
 import type { Desk } from '../stream/desk';
 import { NamedList, whenInWords } from './named_list';
 
-/** The states of this session that were saved: back to one as often as one likes. */
+/** The saved states of this session. Each can be restored repeatedly. */
 export class SavedStates {
   readonly list = new NamedList(
     'states',

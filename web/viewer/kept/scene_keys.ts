@@ -1,6 +1,6 @@
 const kShelf = 'vat.scene_keys';
 
-/** The secrets by which this browser may replace or delete the scenes that it has saved. */
+/** The keys with which this browser can replace or delete its saved scenes. */
 export class SceneKeys {
   private keys = read();
 
@@ -21,7 +21,7 @@ export class SceneKeys {
     try {
       localStorage.setItem(kShelf, JSON.stringify(keys));
     } catch {
-      // A browser that stores nothing forgets them with the page.
+      // Without storage, the keys are lost with the page.
     }
   }
 }
@@ -34,6 +34,6 @@ function read(): Readonly<Record<string, string>> {
       Object.entries(found).filter((pair): pair is [string, string] => typeof pair[1] === 'string'),
     );
   } catch {
-    return {}; // nothing that we wrote
+    return {}; // not written by this page
   }
 }

@@ -5,26 +5,26 @@ import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import { kLayers } from '../view/layers';
 
-/** Pairs of particles, flat as the protocol has them, and a value of each pair. */
+/** Pairs of particles as a flat list, and one value per pair. */
 export interface Linked {
   pairs: readonly number[];
   values: readonly number[];
 }
 
-/** Where a particle of a body is drawn; undefined where it is not. */
+/** Returns the drawn position of a particle; undefined if it is not drawn. */
 export type PlaceOf = (body: number, particle: number) => Vector3 | undefined;
 
 const kCold = new Color('#1c5fd4');
 const kEven = new Color('#8f99a5');
 const kWarm = new Color('#d92f2f');
 
-/** Blue below zero, red above, grey at it; `most` is what has the full colour. */
+/** Returns blue for negative, red for positive values, grey at zero. `most` has the full colour. */
 export function colourOf(value: number, most: number): Color {
   const share = most > 0 ? Math.min(Math.abs(value) / most, 1) : 0;
   return kEven.clone().lerp(value < 0 ? kCold : kWarm, Math.sqrt(share));
 }
 
-/** Lines between particles, coloured by a value, over all else. */
+/** Lines between particles, coloured by a value, drawn over the scene. */
 export class LinkLines {
   private readonly material: LineMaterial;
   private lines: LineSegments2 | undefined;
@@ -42,7 +42,7 @@ export class LinkLines {
     });
   }
 
-  /** Draws them where the particles are now, and tells how many there are. */
+  /** Draws the lines at the present positions, and returns their number. */
   show({ pairs, values }: Linked, placeOf: PlaceOf, most: number): number {
     const places: number[] = [];
     const colours: number[] = [];

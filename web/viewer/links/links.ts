@@ -6,13 +6,13 @@ import type { ViewSettings } from '../view/settings';
 import type { View } from '../view/view';
 import { LinkLines } from './link_lines';
 
-/** Between two questions, while springs or contacts are shown [ms]. */
+/** The interval of requests while springs or contacts are shown [ms]. */
 const kPeriodMs = 200;
 
-/** More lines than this hide one another. */
+/** The maximum number of lines; more would hide one another. */
 const kMost = 4000;
 
-/** Springs by their strain and contacts by their force: asked for while they are shown. */
+/** Displays springs by strain and contacts by force. They are requested while they are shown. */
 export class Links {
   private readonly springs: LinkLines;
   private readonly contacts: LinkLines;
@@ -31,7 +31,7 @@ export class Links {
     window.setInterval(() => void this.ask(), kPeriodMs);
   }
 
-  /** Takes its place among the view's options. */
+  /** Inserts its controls into the view's options. */
   mount(): void {
     element('view-options', HTMLElement).append(this.words);
   }
@@ -41,12 +41,12 @@ export class Links {
     this.newest = undefined;
   }
 
-  /** Other bodies may have the numbers of those that were there. */
+  /** Discards the lines, because new bodies can have the ids of removed ones. */
   describe(): void {
     this.newest = undefined;
   }
 
-  /** A frame is shown: what is linked has moved. */
+  /** Moves the lines to the positions of the current frame. */
   follow(): void {
     if (this.newest) this.draw();
   }
@@ -67,7 +67,7 @@ export class Links {
       this.newest = await this.desk.request('state.connections', { most: kMost });
       this.draw();
     } catch (error) {
-      // Once: the same would be refused again and again.
+      // Switched off, because repeated requests would also be rejected.
       this.view.settings.change({ springs: false, contacts: false });
       this.desk.refuse(error);
     } finally {

@@ -1,17 +1,17 @@
 import { element } from './elements';
 
-const kHalf = 37; // the pad's radius without the ball's [px]
+const kHalf = 37; // the pad's radius minus the ball's [px]
 
-/** Within the unit disc, to the right and up. */
+/** A position in the unit disc: right, up. */
 export type Place = readonly [number, number];
 
-/** A round pad on which a small ball is dragged. */
+/** A round pad with a ball that is dragged. */
 export class BallPad {
   readonly area: HTMLElement;
   private readonly ball: HTMLElement;
   private dragging = false;
 
-  /** By the id of the pad; the ball's is that with "-ball". */
+  /** `id` is the pad's element; the ball's has the suffix "-ball". */
   constructor(
     id: string,
     private readonly isEnabled: () => boolean,

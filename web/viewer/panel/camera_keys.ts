@@ -2,7 +2,7 @@ import { turned } from '../view/pose';
 import type { Pose } from '../view/pose';
 import type { Keys } from './keys';
 
-/** What a camera must have to be worked by keys. */
+/** The camera functions that keys control. */
 export interface Camera {
   readonly canvas: HTMLElement;
   pose: Pose;
@@ -18,7 +18,7 @@ const kTurns: Readonly<Record<string, readonly [right: number, up: number]>> = {
   arrowdown: [0, -kStep],
 };
 
-/** Turns and zooms the view by keys; arrows only where the picture has the focus. */
+/** Adds keys that rotate and zoom the view. Arrows act only if the picture has the focus. */
 export function addCameraKeys(keys: Keys, camera: Camera, home: () => void): void {
   keys.add({
     keys: Object.keys(kTurns),

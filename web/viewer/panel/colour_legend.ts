@@ -4,16 +4,16 @@ import type { ColourScale, Meaning } from '../view/colour/colour_scale';
 
 const kTicks = 5;
 
-/** Between two changes of its numbers, which are read, not watched [ms]. */
+/** The update interval of the numbers [ms], for readability. */
 const kPeriodMs = 250;
 
-/** Which colour means which number, beside the picture. */
+/** The legend of colours beside the picture. */
 export class ColourLegend {
   readonly element = document.createElement('figure');
   private readonly title = document.createElement('figcaption');
   private readonly bar = document.createElement('div');
   private readonly ticks = document.createElement('ol');
-  /** To be written. */
+  /** The next meaning to display. */
   private meaning: Meaning | undefined;
   private writtenAt = -Infinity;
 

@@ -5,10 +5,10 @@ import { lossInWords } from './quality';
 
 const kConnected = 'Connected';
 
-/** A first picture that comes within this time needs no words before [ms]. */
+/** No text is shown if the first picture arrives within this time [ms]. */
 const kSoonMs = 1500;
 
-/** The connection's state in words, and a button with a count-down to the next attempt. */
+/** The connection's state as text, and a button with a count-down to the next attempt. */
 export class ConnectionLine {
   private readonly line = element('connection', HTMLElement);
   private readonly text = element('connection-text', HTMLElement);
@@ -18,7 +18,7 @@ export class ConnectionLine {
   private hasPicture = false;
   private absence: number | undefined;
 
-  /** `goToFirst`: to the server's first session; `isNamed`: whether the page's address has another. */
+  /** `goToFirst` switches to the first session. `isNamed`: whether the page's address names one. */
   constructor(
     retryNow: () => void,
     goToFirst: () => void,
@@ -30,7 +30,7 @@ export class ConnectionLine {
 
   show(state: ConnectionState): void {
     window.clearInterval(this.countdown);
-    // An open line is worth nothing before the session has answered.
+    // The state remains "connecting" until the session replies.
     this.line.dataset.state = state.name === 'open' ? 'connecting' : state.name;
     this.retry.hidden = state.name !== 'waiting' && !isEnded(state);
     this.first.hidden = state.name !== 'waiting' || !this.isNamed();
@@ -40,13 +40,13 @@ export class ConnectionLine {
     this.explainAbsence(state);
   }
 
-  /** The session has answered. */
+  /** Called after the session's reply. */
   join(): void {
     this.line.dataset.state = 'open';
     this.text.textContent = kConnected;
   }
 
-  /** Says where this viewer does not get all frames: the line, or what draws here, is too slow. */
+  /** Shows whether this viewer receives fewer frames because its connection or graphics are slow. */
   showFrame(header: FrameHeader): void {
     this.hasPicture = true;
     window.clearTimeout(this.absence);
@@ -57,7 +57,7 @@ export class ConnectionLine {
     if (this.text.textContent !== text) this.text.textContent = text;
   }
 
-  /** Where there is no picture at all, not even an old one, the middle of the page says why. */
+  /** Shows the reason in the middle of the page if there has been no picture yet. */
   private explainAbsence(state: ConnectionState): void {
     if (this.hasPicture) return;
     window.clearTimeout(this.absence);
@@ -71,7 +71,7 @@ export class ConnectionLine {
     }
   }
 
-  /** On the button: a text that is read out must not change every second. */
+  /** Counts down on the button, because a text for screen readers must not change every second. */
   private countDown(retryMs: number): void {
     const end = performance.now() + retryMs;
     const show = (): void => {
@@ -83,7 +83,7 @@ export class ConnectionLine {
   }
 }
 
-/** For good, by the server. */
+/** Returns whether the server has closed the connection permanently. */
 function isEnded(state: ConnectionState): boolean {
   return state.name === 'closed' && state.reason !== undefined;
 }

@@ -5,20 +5,20 @@ import { formatSeconds } from './format';
 import { FrameMeter } from './frame_meter';
 import { qualityInWords } from './quality';
 
-/** Figures that change with every frame are written this often, so that they can be read. */
+/** The update interval of figures that change with every frame [ms], for readability. */
 const kReadableMs = 250;
 
 function field(id: string): HTMLElement {
   return element(id, HTMLElement);
 }
 
-/** A figure as text for people, and as a plain number in `data-value`. */
+/** Writes a figure as formatted text, and as a number to `data-value`. */
 function write(target: HTMLElement, value: number, text: string): void {
   target.dataset.value = String(value);
   target.textContent = text;
 }
 
-/** The figures at the panel's end. */
+/** The figures at the end of the panel. */
 export class Counters {
   private readonly tick = field('tick');
   private readonly time = field('time');
@@ -37,39 +37,39 @@ export class Counters {
     window.setInterval(() => this.writeRates(), kReadableMs);
   }
 
-  /** A frame came in. */
+  /** Counts a received frame. */
   addFrame(bytes: number): void {
     this.meter.add(this.now(), bytes);
     this.lastBytes = bytes;
   }
 
-  /** A frame is drawn; `clockOffset` is how far the server's clock is ahead of ours [s]. */
+  /** Displays a drawn frame. `clockOffset`: the server's time minus the local time [s]. */
   showFrame({ header, dropped }: Frame, clockOffset: number | undefined): void {
     this.showTick(header.tick, header.time);
     this.showRate(header.realTimeFactor, header.slow);
     write(this.dropped, dropped, formatCount(dropped));
     this.quality.textContent = qualityInWords(header);
-    // Half a round trip of error can make a young frame seem to come from the future.
+    // The error of the offset, half a round trip, can make the age negative.
     this.age =
       clockOffset === undefined
         ? undefined
         : Math.max(0, this.now() + clockOffset - header.published);
   }
 
-  /** Without a line to the server, nothing is known of the frames to come. */
+  /** Clears the rates after a loss of the connection. */
   clearRates(): void {
     this.age = undefined;
     this.lastBytes = 0;
   }
 
-  /** How old the picture is [s], as far as that is known, and what comes. */
+  /** The age of the picture [s], if known, and the rate of received bytes. */
   get figures(): { age: number | undefined; bytesPerSecond: number } {
     return { age: this.age, bytesPerSecond: this.meter.bytesPerSecond(this.now()) };
   }
 
   showStatus(status: SessionStatus): void {
     this.showTick(status.tick, status.time);
-    // Whether it is slow is told by frames: where it changes, one comes.
+    // Frames report slowness, because each change of it sends a frame.
     this.showRate(status.real_time_factor, this.rate.dataset.slow === 'true');
     write(this.particles, status.particles, formatCount(status.particles));
   }

@@ -1,20 +1,20 @@
 import { element, onPress } from './elements';
 
-/** How far a device leans, as browsers tell it [degrees]: to the right, and its top away from us. */
+/** The inclination of a device [degrees]: to the right, and of its top away from the user. */
 export interface Lean {
   right: number;
   away: number;
 }
 
-/** Browsers that ask the user first have this. */
+/** The function of browsers that require the user's permission. */
 interface Asking {
   requestPermission?: () => Promise<'granted' | 'denied'>;
 }
 
-/** Without a word for so long, the device does not tell how it is held [ms]. */
+/** Without an event for this time, the device has no sensor [ms]. */
 const kSilenceMs = 2000;
 
-/** As the picture is turned on the device: sensors know nothing of that. */
+/** Converts to the axes of the rotated screen. Sensors use the axes of the device. */
 export function leanOf(beta: number, gamma: number, screenAngle: number): Lean {
   switch (screenAngle) {
     case 90:
@@ -28,7 +28,7 @@ export function leanOf(beta: number, gamma: number, screenAngle: number): Lean {
   }
 }
 
-/** Tilts gravity by how the device is held, from where it is held as this is switched on. */
+/** Tilts gravity with the device, relative to its inclination when the function is enabled. */
 export class DeviceTilt {
   private readonly button = element('gravity-device', HTMLButtonElement);
   private start: Lean | undefined;

@@ -1,19 +1,19 @@
-/** The page's element with this id, which index.html must have. */
+/** Returns the element of index.html with this id. */
 export function element<T extends HTMLElement>(id: string, type: new () => T): T {
   const found = document.getElementById(id);
   if (!(found instanceof type)) throw new Error(`index.html has no ${type.name} #${id}`);
   return found;
 }
 
-/** A button that keeps no focus after a click, so that the space bar still plays and pauses. */
+/** Adds an action. A click removes the button's focus, so that the space bar plays and pauses. */
 export function onPress(button: HTMLButtonElement, action: () => void): void {
   button.addEventListener('click', ({ detail }) => {
-    if (detail > 0) button.blur(); // detail is 0 for a click made by the keyboard
+    if (detail > 0) button.blur(); // detail is 0 for clicks by keyboard
     action();
   });
 }
 
-/** A new element with these properties and this content. */
+/** Creates an element with properties and content. */
 export function make<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   properties: Partial<HTMLElementTagNameMap[K]> = {},
@@ -24,7 +24,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** A new button with this text; see `onPress`. */
+/** Creates a button with this text; see `onPress`. */
 export function makeButton(text: string, action: () => void, label?: string): HTMLButtonElement {
   const made = make('button', { type: 'button', ...(label && { ariaLabel: label }) }, text);
   onPress(made, action);

@@ -1,11 +1,11 @@
 import type { RequestError } from '../../client/index';
 
-/** Faults of a list that are told. */
+/** The maximum number of displayed errors of a list. */
 const kMostFaults = 3;
 
 /**
- * What to do, by the error's kind. The server's own hints are for who writes a client, and of kinds
- * without one here the message says all.
+ * The advice for users by the error's kind. The server's hints address developers of clients. Other
+ * kinds need no advice.
  */
 const kAdvice: Readonly<Record<string, string>> = {
   disconnected: 'Try again once the page is connected.',
@@ -22,7 +22,7 @@ const kAdvice: Readonly<Record<string, string>> = {
   timed_out: 'The server is busy, or the connection is slow. Try again.',
 };
 
-/** What the server refused, in words, and what to do. */
+/** Returns the error as text, with advice. */
 export function describeError(error: RequestError): string {
   const { kind, data } = error;
   const list = (data?.errors ?? [])
@@ -34,12 +34,12 @@ export function describeError(error: RequestError): string {
   return sentence(parts.join('; ')) + (advice === undefined ? '' : ` ${advice}`);
 }
 
-/** The role that it takes is that of another: who watches may ask for control. */
+/** Returns whether the error requires a higher role, which viewers can request. */
 export function needsControl({ kind, data }: RequestError): boolean {
   return kind === 'not_allowed' && data?.role === 'viewer' && data.least_role === 'controller';
 }
 
-/** Messages name methods, which who uses the page does not know. */
+/** Returns the message without the method, which users do not know. */
 function whatHappened(error: RequestError): string {
   const { kind, message, data } = error;
   if (kind === 'method_not_found') {
@@ -63,7 +63,7 @@ function adviceFor({ kind, data }: RequestError): string | undefined {
   return undefined;
 }
 
-/** The same beside the field that is at fault, where its place in the message says nothing more. */
+/** Returns the error as text beside its field, without the field's path. */
 export function describeFault(error: RequestError): string {
   const faults = (error.data?.errors ?? []).slice(0, kMostFaults).map(({ message }) => message);
   return faults.length > 0 ? sentence(capital(faults.join('; '))) : describeError(error);

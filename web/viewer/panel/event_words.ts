@@ -2,7 +2,7 @@ import type { Event, SessionDescription } from '../../client/index';
 import { describeGuard } from './notices';
 import type { Notice } from './notices';
 
-/** What an event means to who uses the page; undefined where other parts of the page show it. */
+/** Returns an event as text; undefined if other parts of the page display it. */
 export function eventInWords(
   { event, params }: Event,
   description?: SessionDescription,
@@ -27,12 +27,12 @@ export function eventInWords(
         level: 'error',
         text: `The restored session differs from its log and is paused: ${params.reason}. Reset it, or choose a scene.`,
       };
-    case 'grab.ended': // the marker is gone once the grab is
-    case 'session.description': // comes as a report of its own
+    case 'grab.ended': // the marker disappears with the grab
+    case 'session.description': // reported separately
     case 'session.status':
     case 'session.configured':
     case 'presence.changed':
-    case 'replay.ended': // the bar of the replay tells these
+    case 'replay.ended': // displayed in the bar of the replay
     case 'replay.diverged':
     case 'replay.people':
       return undefined;

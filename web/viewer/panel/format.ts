@@ -1,8 +1,8 @@
-/** Numbers as the panel shows them. */
+/** Formats of the panel's numbers. */
 
 const kThinSpace = '\u202f';
 
-/** A whole number with its thousands set apart. */
+/** Formats an integer with separated thousands. */
 export function formatCount(count: number): string {
   return Math.round(count)
     .toString()
@@ -13,7 +13,7 @@ export function formatSeconds(seconds: number): string {
   return `${seconds.toFixed(2)} s`;
 }
 
-/** A factor of real time. */
+/** Formats a factor of real time. */
 export function formatFactor(factor: number): string {
   return `${factor.toFixed(2)} ×`;
 }
@@ -28,7 +28,7 @@ export function formatMilliseconds(seconds: number): string {
   return `${Math.round(1000 * seconds)} ms`;
 }
 
-/** A small length [m], with two digits. */
+/** Formats a small length [m] with two digits. */
 export function formatLength(metres: number): string {
   const millimetres = 1000 * metres;
   if (millimetres >= 0.1) return `${Number(millimetres.toPrecision(2))} mm`;

@@ -1,18 +1,18 @@
 const kWindowSeconds = 2;
 
-/** Counts the bytes of frames over the last seconds. */
+/** Measures the rate of received bytes over the last seconds. */
 export class FrameMeter {
   private arrivals: { at: number; bytes: number }[] = [];
   private started: number | undefined;
 
-  /** A frame of `bytes` arrived at `at` [s]. */
+  /** Counts a frame of `bytes`, received at `at` [s]. */
   add(at: number, bytes: number): void {
     this.started ??= at;
     this.arrivals.push({ at, bytes });
     this.forget(at);
   }
 
-  /** Bytes per second up to `at` [s]. */
+  /** Returns the bytes per second until `at` [s]. */
   bytesPerSecond(at: number): number {
     this.forget(at);
     if (this.started === undefined) return 0;

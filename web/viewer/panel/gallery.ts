@@ -1,14 +1,14 @@
 import type { SceneEntry } from '../../client/index';
 import { element, onPress } from './elements';
 
-/** Where the pictures of scenes are, which scripts/gallery.ts took. */
+/** The addresses of the scenes' pictures, made by scripts/gallery.ts. */
 const kPictures = import.meta.glob<string>('../scenes/*.webp', {
   eager: true,
   query: '?url',
   import: 'default',
 });
 
-/** The scenes with their pictures, to choose from. */
+/** The dialog of scenes with pictures. */
 export class Gallery {
   private readonly dialog = element('gallery', HTMLDialogElement);
   private readonly items = element('gallery-list', HTMLElement);
@@ -35,7 +35,7 @@ export class Gallery {
     this.mark(this.current);
   }
 
-  /** The scene that is shown now. */
+  /** Marks the current scene. */
   mark(scene: string): void {
     this.current = scene;
     for (const button of this.items.querySelectorAll('button')) {

@@ -3,7 +3,7 @@ import { Newest } from '../stream/newest';
 import { BallPad } from './ball_pad';
 import { element, onPress } from './elements';
 
-/** How strong gravity is [m/s²] and how far it leans from straight down [degrees]. */
+/** Strength of gravity [m/s²] and its angles from vertical [degrees]. */
 export interface Tilt {
   strength: number;
   x: number;
@@ -13,14 +13,14 @@ export interface Tilt {
 const kMostTilt = 60;
 const kRadians = Math.PI / 180;
 
-/** Gravity of this strength along (tan x, tan y, -1). */
+/** Returns gravity of this strength along (tan x, tan y, -1). */
 export function gravityOf({ strength, x, y }: Tilt): Vector {
   const [sx, sy] = [Math.tan(x * kRadians), Math.tan(y * kRadians)];
   const scale = strength / Math.hypot(sx, sy, 1);
   return [sx * scale, sy * scale, -scale].map((value) => value + 0) as Vector;
 }
 
-/** The inverse of gravityOf, as far as gravity goes down. */
+/** Returns the inverse of gravityOf for downward gravity. */
 export function tiltOf([x, y, z]: Vector): Tilt {
   const strength = Math.hypot(x, y, z);
   const lean = (side: number): number =>
@@ -30,7 +30,7 @@ export function tiltOf([x, y, z]: Vector): Tilt {
   return { strength, x: lean(x), y: lean(y) };
 }
 
-/** Gravity by a slider and a small ball that is dragged, or two sliders. */
+/** The control of gravity: a slider of strength, and a pad or two sliders of direction. */
 export class Gravity {
   private readonly strength = element('gravity', HTMLInputElement);
   private readonly text = element('gravity-text', HTMLOutputElement);
@@ -50,7 +50,7 @@ export class Gravity {
   private isEnabled = false;
   private readonly newest: Newest<Vector>;
 
-  /** `send` resolves once the server has answered; meanwhile only the newest is kept. */
+  /** `send` resolves after the server's reply. Until then, only the newest value is stored. */
   constructor(send: (gravity: Vector) => Promise<unknown>) {
     this.newest = new Newest(send);
     for (const slider of [this.strength, this.sliders.x, this.sliders.y]) {
@@ -67,15 +67,15 @@ export class Gravity {
     }
   }
 
-  /** What the session has; `isNew` where a scene was loaded. */
+  /** Displays the session's gravity. `isNew`: a scene was loaded. */
   describe(gravity: Vector, isNew: boolean): void {
     if (isNew) this.initial = gravity;
-    if (this.pad.isDragging || this.newest.isBusy) return; // the newest is on its way
+    if (this.pad.isDragging || this.newest.isBusy) return; // a newer value is pending
     this.tilt = tiltOf(gravity);
     this.show();
   }
 
-  /** Leans it by so much along the two ways on the ground, each a unit vector. */
+  /** Tilts gravity along horizontal unit vectors. */
   lean(parts: readonly { degrees: number; along: readonly [number, number] }[]): void {
     const sum = (axis: 0 | 1): number =>
       parts.reduce((total, { degrees, along }) => total + degrees * along[axis], 0);

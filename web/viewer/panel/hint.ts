@@ -1,9 +1,9 @@
 import { element } from './elements';
 
-/** Long enough to read it twice. */
+/** The display time [ms], sufficient for reading twice. */
 const kShownMs = 20_000;
 
-/** How to use the pointer: fades once it was used on the scene, or after a while. */
+/** The help on the pointer. It fades after the first use or after a time. */
 export class Hint {
   private readonly stage = element('stage', HTMLElement);
 
@@ -13,7 +13,7 @@ export class Hint {
     }
   }
 
-  /** The scene is there to be used. */
+  /** Shows the help, with the first picture. */
   begin(): void {
     window.setTimeout(() => this.fade(), kShownMs);
   }

@@ -2,19 +2,19 @@ import type { SessionDescription } from '../../client/index';
 import { element } from './elements';
 import { formatCount } from './format';
 
-/** Where a particle is now, and when that is in simulated time. */
+/** Position of a particle, and the simulated time. */
 export interface Sample {
   position: { x: number; y: number; z: number };
   radius: number;
-  /** How many its body has now. */
+  /** Number of particles of its body. */
   particles: number;
   time: number;
 }
 
-/** Between two changes of the numbers [ms]. */
+/** The update interval of the numbers [ms]. */
 const kPeriodMs = 250;
 
-/** The numbers of one particle, which was clicked, and of its body. */
+/** The figures of a clicked particle and of its body. */
 export class Inspector {
   private readonly card = element('inspector', HTMLElement);
   private chosen: { body: number; particle: number } | undefined;
@@ -23,7 +23,7 @@ export class Inspector {
   private writtenAt = -Infinity;
   private known: [string, string][] | undefined;
 
-  /** `matter`: the rows of what the scene tells about a body, by its name and number of particles. */
+  /** `matter` returns rows about a body, from its name and number of particles. */
   constructor(
     private readonly sample: (body: number, particle: number) => Sample | undefined,
     private readonly matter: (name: string, particles: number) => Promise<[string, string][]>,
@@ -41,7 +41,7 @@ export class Inspector {
     this.card.hidden = true;
   }
 
-  /** Writes what is so now. */
+  /** Updates the figures. */
   update(description: SessionDescription | undefined): void {
     const { chosen } = this;
     const now = performance.now();
@@ -49,7 +49,7 @@ export class Inspector {
     this.writtenAt = now;
     const sample = this.sample(chosen.body, chosen.particle);
     const body = description?.bodies.find((candidate) => candidate.body === chosen.body);
-    if (!sample || !body) return this.close(); // it is gone
+    if (!sample || !body) return this.close(); // the particle was removed
     this.measure(sample);
     if (!this.known) void this.learn(body.name, sample.particles);
     const { x, y, z } = sample.position;
@@ -71,7 +71,7 @@ export class Inspector {
     if (chosen === this.chosen) this.known = rows;
   }
 
-  /** The mean speed since the last look; the way back through a reset is none. */
+  /** Measures the mean speed since the last update. A reset clears it. */
   private measure(sample: Sample): void {
     const { before } = this;
     this.before = sample;

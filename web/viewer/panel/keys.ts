@@ -1,17 +1,17 @@
 import { element, onPress } from './elements';
 
 export interface Key {
-  /** As `KeyboardEvent.key` gives it, in lower case. */
+  /** Values of `KeyboardEvent.key` in lower case. */
   keys: readonly string[];
-  /** For the list of keys, unless others tell of it. */
+  /** The text in the list of keys; undefined if it is not listed. */
   sign?: string;
   words?: string;
   act(key: string): void;
-  /** Again and again while it is held. */
+  /** Whether the action repeats while the key is held. */
   repeats?: boolean;
-  /** Only where this has the focus. */
+  /** The element that must have the focus. */
   on?: HTMLElement;
-  /** Whether it does something now; by default always. */
+  /** Whether the key is active; by default always. */
   isEnabled?(): boolean;
 }
 
@@ -46,10 +46,10 @@ export class Keys {
 
   private handle(event: KeyboardEvent): void {
     const { target, repeat } = event;
-    const pressed = event.key.toLowerCase(); // Caps Lock makes no difference
+    const pressed = event.key.toLowerCase(); // independent of Caps Lock
     const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
     if (!isPlain || isControl(target, pressed)) return;
-    if (document.querySelector('dialog[open]')) return; // Escape closes it
+    if (document.querySelector('dialog[open]')) return; // Escape closes the dialog
     const found = this.all.find(
       ({ keys, on, isEnabled }) =>
         keys.includes(pressed) && (!on || on === target) && (isEnabled?.() ?? true),
@@ -60,7 +60,7 @@ export class Keys {
   }
 }
 
-/** Whether the key means something to the control that has the focus. */
+/** Returns whether the focused control uses the key. */
 function isControl(target: EventTarget | null, key: string): boolean {
   if (target instanceof HTMLButtonElement) return key === ' ';
   if (target instanceof HTMLInputElement) {

@@ -8,10 +8,10 @@ import type { People } from '../people/people';
 import { now } from '../stream/clock';
 import { Summary } from './summary';
 
-/** Between two looks at the state that is told in words [ms]. */
+/** The update interval of the text [ms]. */
 const kPeriodMs = 500;
 
-/** Gathers what the live text of the page's state is about. */
+/** Collects the state for the live text. */
 export class LiveSummary {
   private readonly summary = new Summary();
   private isConnected = false;
@@ -54,13 +54,13 @@ export class LiveSummary {
     this.people = people;
   }
 
-  /** A body that is held by the keyboard. */
+  /** Sets the body that the keyboard holds. */
   showHeld(name: string | undefined): void {
     this.held = name;
     this.write();
   }
 
-  /** A frame is drawn. */
+  /** Called after drawing a frame. */
   showFrame({ slow }: FrameHeader): void {
     this.hasPicture = true;
     this.isSlow = slow;

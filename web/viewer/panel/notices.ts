@@ -11,23 +11,23 @@ export interface Notice {
   text: string;
 }
 
-/** What can be done about a message, by a button in it. */
+/** The action of a button in a message. */
 export interface Remedy {
   label: string;
   act(): void;
 }
 
 const kWarningMs = 15_000;
-/** Long enough to make up one's mind. */
+/** The display time of messages with an action [ms]. */
 const kOfferMs = 60_000;
 
-/** Messages over the scene, the newest first, a few at most; errors stay until dismissed. */
+/** Messages over the scene, the newest first, with a maximum number. Errors remain until dismissed. */
 export class Notices {
   private readonly list = element('notices', HTMLOListElement);
 
   add(level: Level, text: string, remedy?: Remedy): void {
     const newest = this.list.firstElementChild;
-    if (newest?.firstChild?.textContent === text) return; // said already
+    if (newest?.firstChild?.textContent === text) return; // already displayed
     const item = document.createElement('li');
     item.dataset.level = level;
     const dismiss = document.createElement('button');
@@ -61,7 +61,7 @@ const kCauses: Readonly<Record<GuardEvent['cause'], string>> = {
   too_many_pairs: 'was crushed',
 };
 
-/** What the guard of the simulation saw and did, in words. */
+/** Returns an event of the simulation's guard as text. */
 export function describeGuard(guard: GuardEvent, description?: SessionDescription): string {
   const body = description?.bodies.find((candidate) => candidate.body === guard.body);
   const name = body ? `“${body.name}”` : `body ${guard.body}`;

@@ -1,13 +1,13 @@
 import { element } from './elements';
 
-/** What can keep the scene from being shown, the gravest first. */
+/** Reasons why the scene cannot be shown, the most severe first. */
 const kCauses = ['page', 'graphics', 'server'] as const;
 
 export type Cause = (typeof kCauses)[number];
 
 const told = new Map<Cause, string>();
 
-/** Says in the middle of the scene why nothing can be drawn there; `undefined`: this is no cause. */
+/** Shows the reason in the middle of the scene; `undefined` removes the reason. */
 export function showObstacle(cause: Cause, text: string | undefined): void {
   if (text === undefined) told.delete(cause);
   else told.set(cause, text);
@@ -17,7 +17,7 @@ export function showObstacle(cause: Cause, text: string | undefined): void {
   obstacle.hidden = words === undefined;
 }
 
-/** Browsers take the graphics away from pages, for instance when the machine sleeps. */
+/** Handles the loss of the graphics context, for example when the machine sleeps. */
 export function watchGraphics(canvas: HTMLCanvasElement, redraw: () => void): void {
   canvas.addEventListener('webglcontextlost', () =>
     showObstacle(

@@ -33,7 +33,7 @@ export class Playback {
     this.addKeys(keys);
   }
 
-  /** `canReset`: the session can go back to its start by that. */
+  /** `canReset`: whether the session can be reset. */
   enable(enabled: boolean, canReset: boolean): void {
     this.enabled = enabled;
     for (const control of [this.playButton, this.stepButton, this.slider]) {
@@ -56,10 +56,10 @@ export class Playback {
 
   private writeSpeed(speed: number): void {
     this.speedText.value = formatFactor(speed);
-    this.slider.ariaValueText = `${speed.toFixed(2)} times real time`; // its value is a logarithm
+    this.slider.ariaValueText = `${speed.toFixed(2)} times real time`; // the value is logarithmic
   }
 
-  /** Plays what stands still, and the other way round. */
+  /** Switches between playing and pausing. */
   toggle(): void {
     if (this.playing) this.actions.pause();
     else this.actions.play();
@@ -103,7 +103,7 @@ export class Playback {
     });
   }
 
-  /** Half a doubling slower or faster. */
+  /** Changes the speed by a factor of √2. */
   private nudgeSpeed(direction: 1 | -1): void {
     this.slider.valueAsNumber += direction / 2;
     this.writeSpeed(sliderSpeed(this.slider.valueAsNumber));
@@ -112,8 +112,8 @@ export class Playback {
 }
 
 /**
- * The slider is logarithmic, in tenths of a doubling, and the speed is rounded less than that: a
- * slider set to the speed that it gave stays where it is.
+ * Returns the speed of a position of the slider, in tenths of an octave. The rounding of the speed is
+ * smaller than a step, so that setting the slider to this speed returns the same position.
  */
 export function sliderSpeed(position: number): number {
   const speed = 2 ** position;

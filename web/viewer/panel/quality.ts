@@ -9,12 +9,12 @@ const kParts = [
 
 const kSigns = ['⅛', '¼', '½'];
 
-/** Which of the session's frames a viewer gets. */
+/** Returns the share of received frames as text. */
 export function rateInWords(stride: number): string {
   return stride === 1 ? 'every frame' : `every ${ordinal(stride)} frame`;
 }
 
-/** What a viewer does not get, because the line, or what draws here, is too slow for it. */
+/** Returns the reductions for a slow viewer as text. */
 export function lossInWords({
   stride,
   detail,
@@ -26,7 +26,7 @@ export function lossInWords({
   return parts.join(', ');
 }
 
-/** What frames show of the session's state: how often, how exactly, how much. */
+/** Returns the rate, accuracy and level of detail of frames as text. */
 export function qualityInWords({
   stride,
   quantum,

@@ -1,10 +1,10 @@
 import type { Scene } from '../../client/index';
 import { element, onPress } from './elements';
 
-/** What a server takes in one message [bytes]. */
+/** The server's message limit [bytes]. */
 const kMostBytes = 4 * 1024 * 1024;
 
-/** A scene as a file's text has it, or in words why it is none; the server looks at the rest. */
+/** Reads a scene from a text, or returns the reason why it is invalid. The server checks the rest. */
 export function readScene(text: string, file: string): { scene: Scene } | { fault: string } {
   let value: unknown;
   try {
@@ -26,7 +26,7 @@ export interface SceneFileActions {
   refuse(words: string): void;
 }
 
-/** Loads a scene from a file that is dropped on the page or picked. */
+/** Loads a scene from a file that the user drops on the page or chooses. */
 export class SceneFile {
   private readonly button = element('scene-file', HTMLButtonElement);
   private readonly input = element('scene-file-input', HTMLInputElement);
@@ -36,7 +36,7 @@ export class SceneFile {
     onPress(this.button, () => this.input.click());
     this.input.addEventListener('change', () => {
       void this.take(this.input.files?.[0]);
-      this.input.value = ''; // so that the same file can be picked again
+      this.input.value = ''; // allows the same file to be chosen again
     });
     window.addEventListener('dragover', (event) => this.hover(event));
     window.addEventListener('dragleave', (event) => {
@@ -51,7 +51,7 @@ export class SceneFile {
 
   private hover(event: DragEvent): void {
     if (!event.dataTransfer?.types.includes('Files')) return;
-    event.preventDefault(); // or the browser would leave the page for the file
+    event.preventDefault(); // prevents the browser from opening the file
     this.dropHint.hidden = this.button.disabled;
   }
 

@@ -10,7 +10,7 @@ const kKindWords: Readonly<Record<BodyKindName, string>> = {
   rigid: 'rigid',
 };
 
-/** The scene picker, what the scene is, and what its colours mean. */
+/** The scene picker, the scene's description, and the legend of its colours. */
 export class Scenes {
   private readonly picker = element('scene', HTMLSelectElement);
   private readonly text = element('scene-text', HTMLElement);
@@ -29,7 +29,7 @@ export class Scenes {
     this.picker.addEventListener('pointerdown', () => (byKeyboard = false));
     this.picker.addEventListener('change', () => {
       load(this.picker.value);
-      if (!byKeyboard) this.picker.blur(); // so that the keys play, step and reset again
+      if (!byKeyboard) this.picker.blur(); // returns the keys to the page
     });
   }
 
@@ -38,7 +38,7 @@ export class Scenes {
     this.gallery.enable(enabled);
   }
 
-  /** Shows the scene that the session runs, also after a choice that was refused. */
+  /** Shows the session's scene, also after a rejected choice. */
   refresh(): void {
     if (this.current) this.describe(this.current);
   }
@@ -62,7 +62,7 @@ export class Scenes {
     this.explainColours(description);
   }
 
-  /** A scene that is not of the catalogue is named in the picker, but cannot be picked. */
+  /** Adds a scene outside the catalogue to the picker as a disabled entry. */
   private showStranger(title: string | undefined): void {
     this.stranger.textContent = title ?? '';
     if (title === undefined) this.stranger.remove();
@@ -82,7 +82,7 @@ export class Scenes {
   }
 }
 
-/** A dot for each colour that the bodies of a kind have. */
+/** Returns a dot for each colour of the bodies of a kind. */
 function swatches(kind: BodyKindName, bodies: number): HTMLElement[] {
   const colours = Array.from(
     { length: bodies },

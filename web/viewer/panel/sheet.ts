@@ -1,6 +1,6 @@
 import { element, onPress } from './elements';
 
-/** On a phone the panel is a sheet at the bottom, of which a button shows more or less. */
+/** The panel on phones: a sheet at the bottom, expanded by a button. */
 export class Sheet {
   private readonly panel = element('panel', HTMLElement);
   private readonly button = element('sheet', HTMLButtonElement);

@@ -3,31 +3,31 @@ import { formatFactor } from './format';
 
 export interface State {
   isConnected: boolean;
-  /** Not connected for good: the server has ended it. */
+  /** Whether the server has closed the connection permanently. */
   isEnded: boolean;
-  /** There is a picture, be it an old one. */
+  /** Whether there is a picture, even an old one. */
   hasPicture: boolean;
   playing: boolean;
   speed: number;
-  /** The server does not reach the speed that is set. */
+  /** Whether the server does not reach the set speed. */
   slow: boolean;
   factor: number;
   scene: string;
   people: number;
   role: string | undefined;
-  /** A body that is held by the keyboard. */
+  /** The body that the keyboard holds. */
   held?: string | undefined;
-  /** Without a new picture though there should be one [s]. */
+  /** The time without an expected picture [s]. */
   silentSeconds: number;
 }
 
-/** Of the speed that is set: what comes that near is not slow. */
+/** A larger share of the set speed is not slow. */
 const kNearly = 0.95;
 
-/** How long without a picture is worth a word [s]. */
+/** A longer time without a picture is reported [s]. */
 const kSilent = 3;
 
-/** The state in one or two sentences, which change only where it does, so they can be read out. */
+/** Returns the state in one or two sentences, for screen readers. They change only with the state. */
 export function summarise(state: State): string {
   if (!state.isConnected) return absent(state);
   const parts = [state.playing ? playing(state) : 'Paused'];
@@ -54,19 +54,19 @@ function absent({ isEnded, hasPicture }: State): string {
 function playing({ speed, slow, factor }: State): string {
   const wanted = speed === 1 ? 'in real time' : `at ${formatFactor(speed)}`;
   if (!slow || factor > kNearly * speed) return `Plays ${wanted}`;
-  // In steps of a tenth: a text that is read out must not change all the time.
+  // In steps of 0.1, because a text for screen readers must not change continually.
   return `Plays in slow motion, at about ${factor.toFixed(1)} ×. The server cannot compute faster`;
 }
 
-/** Whether only the pace is another, which is so all the time where a server is too slow. */
+/** Returns whether only the speed differs, which changes continually on a slow server. */
 export function onlyPaceDiffers(before: State, state: State): boolean {
   return summarise({ ...before, slow: false }) === summarise({ ...state, slow: false });
 }
 
-/** Least time between two words about the pace [ms]. */
+/** The minimum interval of texts about the speed [ms]. */
 const kPeriodMs = 2000;
 
-/** The live text of the page's state. */
+/** The live text of the page's state, for screen readers. */
 export class Summary {
   private readonly text = element('summary', HTMLElement);
   private shown: State | undefined;

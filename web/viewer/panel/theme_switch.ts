@@ -11,7 +11,7 @@ const kWords: Readonly<Record<Choice, string>> = {
   light: 'light',
 };
 
-/** Light, dark, or as the system: the attribute `data-theme` of the page, from which styles follow. */
+/** The choice of theme (light, dark, system), stored in the page's attribute `data-theme`. */
 export class ThemeSwitch {
   private readonly button = element('theme', HTMLButtonElement);
   private choice: Choice = stored();
@@ -26,7 +26,7 @@ export class ThemeSwitch {
     try {
       localStorage.setItem(kKey, this.choice);
     } catch {
-      // A browser that stores nothing forgets it with the page.
+      // Without storage, the choice is lost with the page.
     }
     this.show();
   }
@@ -45,6 +45,6 @@ function stored(): Choice {
     const found = localStorage.getItem(kKey);
     return found === 'light' || found === 'dark' ? found : 'system';
   } catch {
-    return 'system'; // browsers may forbid it
+    return 'system'; // browsers can deny access
   }
 }

@@ -30,10 +30,10 @@ const kWords: Words = {
   smooth: { auto: 'automatic', on: 'between frames', off: 'frame by frame' },
 };
 
-/** Between two looks at the delay, which changes all the time [ms]. */
+/** The update interval of the delay [ms]. */
 const kDelayPeriodMs = 500;
 
-/** The panel's section that says what is shown and how; the view's settings are what it changes. */
+/** The section for the view's settings. */
 export class ViewOptions {
   private readonly section = document.createElement('section');
   private readonly notice = words();
@@ -66,7 +66,7 @@ export class ViewOptions {
     );
   }
 
-  /** Takes its place in the page: the one kept for it, or the panel's end. */
+  /** Inserts the section into its placeholder, or at the end of the panel. */
   mount(): void {
     const place = document.getElementById('view-place') ?? element('panel', HTMLElement);
     place.append(this.section);
@@ -110,7 +110,7 @@ export class ViewOptions {
     return row(label, slider);
   }
 
-  /** The values at the ends of the map: both given, or as they come. */
+  /** Returns the controls for the ends of the colour map: fixed or automatic. */
   private range(): HTMLElement {
     const group = document.createElement('span');
     group.className = 'view-range';

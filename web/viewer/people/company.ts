@@ -7,7 +7,7 @@ import { People } from './people';
 import { PeopleList } from './people_list';
 import { Share } from './share';
 
-/** All that a page has for there being others: who is here, where they point, how they come. */
+/** The functions for several users: the list of participants, pointers, and sharing. */
 export class Company {
   readonly people = new People();
   readonly cursors: Cursors;
@@ -30,7 +30,7 @@ export class Company {
     });
     const { canvas } = view.stage;
     this.cursors = new Cursors(this.people, view.stage, view.world, (position) => {
-      // A pointer that is not told is no loss: the next one is on its way.
+      // A lost pointer position does not matter, because the next one follows.
       if (canvas.dataset.joined !== 'true') return;
       void desk.request('presence.point', position ? { position } : {}).catch(() => undefined);
     });
@@ -58,7 +58,7 @@ export class Company {
     this.call('control.request', {}, 'Your request was sent.');
   }
 
-  /** Owners keep what they may do; others watch from then on. */
+  /** Gives control to a participant. Owners keep their role; others become viewers. */
   giveControl(participant: number): void {
     this.call('control.hand_over', { participant });
   }
@@ -73,7 +73,7 @@ export class Company {
   }
 }
 
-/** What it means to us that our role is another one. */
+/** Returns the effect of a change of the user's role as text. */
 function changeInWords(
   before: RoleName | undefined,
   after: RoleName | undefined,

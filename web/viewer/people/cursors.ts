@@ -7,10 +7,10 @@ import { Labels } from './labels';
 import { personColour } from './people';
 import type { People } from './people';
 
-/** Between two messages of where we point [ms]; the server passes on ten a second. */
+/** The interval of pointer messages [ms]. The server forwards ten per second. */
 const kPeriodMs = 100;
 
-/** Shows where others point, and tells them where we do. */
+/** Displays the pointers of others, and sends the user's. */
 export class Cursors {
   private readonly labels: Labels;
   private last: Vector | undefined;
@@ -28,7 +28,7 @@ export class Cursors {
     stage.canvas.addEventListener('pointerleave', () => this.send(undefined));
   }
 
-  /** Puts the names where the camera sees them now. */
+  /** Moves the names to their present positions in the picture. */
   update(): void {
     const labels = this.people.others.flatMap(({ participant: key, pointer, name: text, away }) =>
       pointer && !away
@@ -47,7 +47,7 @@ export class Cursors {
     if (place) this.send([place.x, place.y, place.z]);
   }
 
-  /** Where nothing is under the pointer: as deep as the middle of the scene. */
+  /** Returns the plane through the scene's centre, for pointers at no particle. */
   private middle(): Plane {
     const middle = this.world.bounds.getCenter(new Vector3());
     return new Plane().setFromNormalAndCoplanarPoint(this.stage.viewDirection(), middle);

@@ -2,7 +2,7 @@ import { Vector3 } from 'three';
 import type { Vector } from '../../client/index';
 import type { Stage } from '../view/stage';
 
-/** A name at a place of the scene. */
+/** A name at a position in the scene. */
 export interface Label {
   key: number;
   text: string;
@@ -10,18 +10,18 @@ export interface Label {
   position: Vector;
 }
 
-/** Names over the picture, where the camera sees their places. */
+/** Names over the picture, at the projections of their positions. */
 export class Labels {
   private readonly shown = new Map<number, HTMLElement>();
 
-  /** `className`: of each label. */
+  /** `className` is the CSS class of each label. */
   constructor(
     private readonly layer: HTMLElement,
     private readonly stage: Stage,
     private readonly className = '',
   ) {}
 
-  /** These, where the camera sees them now, and no others. */
+  /** Replaces the labels. */
   show(labels: Iterable<Label>): void {
     const present = new Set<number>();
     for (const label of labels) {

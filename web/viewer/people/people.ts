@@ -1,19 +1,19 @@
 import type { Events, JoinedAs, Participant, SessionSettings } from '../../client/index';
 
-/** Colours that white text can be read on, by the participant's number. */
+/** Colours by participant number, with sufficient contrast to white text. */
 const kColours = ['#1f6fd0', '#b4371f', '#1d7a45', '#8a3fb0', '#8a5a00', '#0c7285', '#b0246a'];
 
 export function personColour(participant: number): string {
   return kColours[participant % kColours.length]!;
 }
 
-/** Who is in the session, as far as the server has told; who subscribes is told of each change. */
+/** The participants of the session. Subscribers are notified of each change. */
 export class People {
   private readonly byNumber = new Map<number, Participant>();
   private readonly listeners: (() => void)[] = [];
   private ours: number | undefined;
   private current: SessionSettings | undefined;
-  /** The session that was joined. */
+  /** The name of the session. */
   session = '';
 
   join({ participant, participants, settings, session }: JoinedAs): void {
@@ -56,12 +56,12 @@ export class People {
     return this.current;
   }
 
-  /** Whether we may change what happens in the session. */
+  /** Whether the user can control the session. */
   get isInControl(): boolean {
     return this.self !== undefined && this.self.role !== 'viewer';
   }
 
-  /** Whether we decide who may do what. */
+  /** Whether the user is the owner, who assigns roles. */
   get isOwner(): boolean {
     return this.self?.role === 'owner' || this.self?.role === 'admin';
   }

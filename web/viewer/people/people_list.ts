@@ -10,7 +10,7 @@ export interface PeopleActions {
   setRole(participant: number, role: 'viewer' | 'controller' | 'owner'): void;
   kick(participant: number): void;
   lock(locked: boolean): void;
-  /** In words, for the list of what people hold. */
+  /** Returns the name of a body, for the list of held bodies. */
   nameOfBody(body: number): string;
 }
 
@@ -21,7 +21,7 @@ const kRoles: Readonly<Record<RoleName, string>> = {
   admin: 'admin',
 };
 
-/** Who is here, what they may do and hold; and what can be done about it. */
+/** The list of participants with roles, held bodies and actions. */
 export class PeopleList {
   private readonly list = element('people', HTMLElement);
   private readonly count = element('people-count', HTMLElement);
@@ -60,7 +60,7 @@ export class PeopleList {
     this.write();
   }
 
-  /** Anew only where something is different: pointers move all the time. */
+  /** Updates the list if it has changed, because pointers move continually. */
   private write(): void {
     const { all, self } = this.people;
     const shown = all.map(({ participant, name, role, away, grabs }) =>

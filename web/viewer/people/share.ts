@@ -5,14 +5,14 @@ import { poseToText } from '../view/pose';
 import type { Pose } from '../view/pose';
 import type { People } from './people';
 
-/** What a link may carry beside the session. */
+/** Optional parts of a link. */
 export interface Outlook {
   readonly pose: Pose;
-  /** Settings of the view; empty where all are as usual. */
+  /** Settings of the view; empty if all have defaults. */
   readonly view: string;
 }
 
-/** The address by which another comes here. */
+/** Returns the address for other users. */
 export function shareLink(
   page: string,
   session: string,
@@ -28,12 +28,12 @@ export function shareLink(
   return url.href;
 }
 
-/** Whether an address is one at which no other machine finds this server. */
+/** Returns whether other machines cannot reach the server at this address. */
 export function isOfThisComputer(host: string): boolean {
   return host === 'localhost' || host === '[::1]' || host.startsWith('127.');
 }
 
-/** The dialog that makes a link to this session. */
+/** The dialog that creates a link to this session. */
 export class Share {
   private readonly dialog = element('share', HTMLDialogElement);
   private readonly opener = element('share-open', HTMLButtonElement);
@@ -79,7 +79,7 @@ export class Share {
     return `This link opens the same session${mayChange ? ', with permission to change it' : ''}.`;
   }
 
-  /** Owners invite; the link of others gives what the session gives to all. */
+  /** Creates an invitation for owners. The links of others grant the session's default role. */
   private async inviteAnew(): Promise<void> {
     const role = this.role.value as 'viewer' | 'controller';
     const answer = await ask(this.desk, 'session.invite', { role });
@@ -104,7 +104,7 @@ export class Share {
       await navigator.clipboard.writeText(this.link.value);
       this.copied.textContent = 'Copied.';
     } catch {
-      // Browsers allow it to secure pages only.
+      // Browsers restrict this function to secure pages.
       this.copied.textContent = 'The browser does not allow the page to copy. Press Ctrl+C.';
     }
   }

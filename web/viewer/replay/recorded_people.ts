@@ -4,7 +4,7 @@ import { Labels } from '../people/labels';
 import { personColour } from '../people/people';
 import type { Stage } from '../view/stage';
 
-/** Who took part when it was recorded: what they held, and where they drew it to. */
+/** The recorded participants: their held bodies and targets. */
 export class RecordedCompany {
   readonly list = make('ul', { id: 'replay-people', ariaLabel: 'Recorded participants' });
   private readonly labels: Labels;
@@ -23,7 +23,7 @@ export class RecordedCompany {
     this.update();
   }
 
-  /** Puts the names where the camera sees them now. */
+  /** Moves the names to their present positions in the picture. */
   update(): void {
     this.labels.show(
       this.people.flatMap(({ person: key, name: text, pointer }) =>

@@ -11,7 +11,7 @@ import './replay.css';
 
 export interface ReplayActions {
   togglePlaying(): void;
-  /** To the session that runs. */
+  /** Returns to the live session. */
   leave(): void;
   nameOfBody(body: number): string;
 }
@@ -21,7 +21,7 @@ interface Divergence {
   reason: string;
 }
 
-/** Over the picture of a session that shows a recording: where it is, who took part, the way back. */
+/** The bar over the picture of a replay: position, participants, return. */
 export class ReplayBar {
   private readonly bar = element('replay', HTMLElement);
   private readonly title = make('b');
@@ -51,7 +51,7 @@ export class ReplayBar {
     this.bar.append(head, row, this.words, this.company.list);
   }
 
-  /** Shown for a replay alone. */
+  /** Shows the bar if the session is a replay. */
   describe({ replay, tick_seconds: tickSeconds, name }: SessionDescription): void {
     const isNew = replay && (!this.replay || this.bar.hidden);
     this.replay = replay;
@@ -77,14 +77,14 @@ export class ReplayBar {
     else if (event === 'replay.ended') this.words.textContent = 'The recording has ended.';
   }
 
-  /** A frame of this tick is shown. */
+  /** Displays the tick of the current frame. */
   showTick(tick: number): void {
     const { replay, status } = this;
     if (!replay || status?.position === undefined || tick < status.tick) return;
     this.timeline.show(Math.min(status.position + tick - status.tick, replay.end));
   }
 
-  /** Puts the names of people where the camera sees their places now. */
+  /** Moves the names to their present positions in the picture. */
   update(): void {
     if (this.replay) this.company.update();
   }
@@ -99,7 +99,7 @@ export class ReplayBar {
     }
   }
 
-  /** What no event has told: of a replay that was there before we came, or has gone elsewhere. */
+  /** Requests the state of a replay, after joining and after a seek. */
   private async refresh(): Promise<void> {
     const info = await ask(this.desk, 'replay.info', {});
     if (!info || !this.replay) return;

@@ -1,14 +1,14 @@
 import { make } from '../panel/elements';
 import { formatSeconds } from '../panel/format';
 
-/** From the first to the last position of a recording [ticks], and how long a tick is [s]. */
+/** First and last position of a recording [ticks], and the duration of a tick [s]. */
 export interface Span {
   begin: number;
   end: number;
   tickSeconds: number;
 }
 
-/** Where a replay is, and where it differed from what was recorded; the slider goes anywhere. */
+/** The position of a replay and of its first difference. The slider seeks. */
 export class Timeline {
   readonly element: HTMLElement;
   private readonly slider = make('input', {
@@ -34,14 +34,14 @@ export class Timeline {
     this.slider.addEventListener('change', () => (this.isDragging = false));
   }
 
-  /** Of another recording. */
+  /** Sets the recording. */
   describe(span: Span): void {
     this.span = span;
     this.slider.max = String(span.end - span.begin);
     this.write();
   }
 
-  /** Where it is; a slider that is held stays in the hand. */
+  /** Shows the position, unless the user drags the slider. */
   show(position: number): void {
     if (this.isDragging) return;
     this.slider.valueAsNumber = position - this.span.begin;
@@ -49,7 +49,7 @@ export class Timeline {
     this.write();
   }
 
-  /** Where what was computed is not what was recorded; undefined: nowhere. */
+  /** Shows the first difference from the recording; undefined: none. */
   showDivergence(position: number | undefined): void {
     this.mark.hidden = position === undefined;
     const { begin, end } = this.span;

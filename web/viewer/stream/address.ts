@@ -1,4 +1,4 @@
-/** The address of this page with another session in it; undefined: the server's first. */
+/** Returns the page's address with another session; undefined: the server's first. */
 export function addressOf(page: string, session: string | undefined): string {
   const url = new URL(page);
   if (session === undefined) url.searchParams.delete('session');

@@ -3,20 +3,20 @@ import type { MethodName, Params, Result } from '../../client/index';
 import { describeFault } from '../panel/errors';
 import type { Request } from './stream';
 
-/** What the parts of the page that ask the server for something need. */
+/** Requests to the server, and messages to the user, for all parts of the page. */
 export interface Desk {
   readonly request: Request;
-  /** Tells the user what the server refused. */
+  /** Reports a rejected request to the user. */
   refuse(error: unknown): void;
-  /** Tells the user what cannot be done, and why. */
+  /** Reports a failure and its reason to the user. */
   fail(words: string): void;
-  /** Tells the user something for a while. */
+  /** Shows a temporary message. */
   say(words: string): void;
 }
 
 /**
- * What the server has against it, in words for who asked; undefined where it was done, or where the
- * line is down, which is seen elsewhere.
+ * Sends a request. Returns the error as text; undefined after success or without a connection, which
+ * the page reports elsewhere.
  */
 export async function attempt<M extends MethodName>(
   desk: Desk,
@@ -33,7 +33,7 @@ export async function attempt<M extends MethodName>(
   }
 }
 
-/** The answer; undefined where it was refused, which the user is told. */
+/** Sends a request and returns its result. Reports errors to the user and returns undefined. */
 export async function ask<M extends MethodName>(
   desk: Desk,
   method: M,

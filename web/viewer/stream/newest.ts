@@ -1,9 +1,9 @@
-/** Sends one value after another: while one is unanswered only the newest that comes is kept. */
+/** Sends values in order. While one is unanswered, only the newest is stored. */
 export class Newest<T> {
   private next: { value: T } | undefined;
   private busy = false;
 
-  /** `send` resolves once it is answered, whatever the answer. */
+  /** `send` resolves after any reply. */
   constructor(private readonly send: (value: T) => Promise<unknown>) {}
 
   get isBusy(): boolean {

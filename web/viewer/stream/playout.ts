@@ -1,28 +1,27 @@
 import type { Frame } from '../../client/index';
 import { PlayoutDelay } from './playout_delay';
 
-/** The server and the worker, as far as frames go back to them. */
+/** Functions of the server and the worker that frames are returned to. */
 export interface FrameGivers {
   acknowledge(number: number): void;
-  /** Takes a frame that is not needed any more. */
+  /** Takes back an unused frame. */
   reuse(frame: Frame): void;
 }
 
-/** A longer time than this without a frame is a rest, after which motion begins anew [s]. */
+/** After a longer time without a frame, motion restarts [s]. */
 const kRest = 0.25;
 
 /**
- * Shows frames at the times at which they were published, a little later, so that between two of
- * them the picture can be at every moment in between. Without `smooth`, or where the session stands
- * still, each is shown as it comes.
+ * Shows frames with a delay after their publication, so that the picture can be interpolated between
+ * frames. Without `smooth`, or while the session is paused, frames are shown on arrival.
  *
- * Frames are acknowledged once the page could draw them, shown or not: once the server's window is
- * full of unacknowledged ones, it sends no more.
+ * Frames are acknowledged in the next animation frame, shown or not. The server stops sending when
+ * its window of unacknowledged frames is full.
  */
 export class Playout {
   smooth = false;
   private readonly waiting: Frame[] = [];
-  /** The frame that the picture moves to, and the one that it comes from. */
+  /** The frame that the picture approaches, and the previous frame. */
   private shown: Frame | undefined;
   private before: Frame | undefined;
   private readonly delay = new PlayoutDelay();
@@ -30,21 +29,21 @@ export class Playout {
 
   constructor(private readonly givers: FrameGivers) {}
 
-  /** A frame came, at `now` [s]. */
+  /** Adds a frame that was received at `now` [s]. */
   put(frame: Frame, now: number): void {
     this.waiting.push(frame);
     this.newestNumber = frame.header.number;
     this.delay.add(frame.header.published, now);
   }
 
-  /** How much later than it could be the picture is, for the motion to be smooth [s]. */
+  /** The delay for smooth motion [s]. */
   get delaySeconds(): number {
     return this.smooth ? this.delay.seconds : 0;
   }
 
   /**
-   * Hands the frames that are due at `now` to `show`, in order, once in each animation frame; it
-   * returns whether it has taken the frame. All that came are acknowledged.
+   * Passes the frames that are due at `now` to `show`, in order. `show` returns whether it uses the
+   * frame. Acknowledges all received frames. Called once per animation frame.
    */
   advance(now: number, show: (frame: Frame) => boolean): void {
     if (this.newestNumber !== undefined) this.givers.acknowledge(this.newestNumber);
@@ -57,7 +56,7 @@ export class Playout {
     }
   }
 
-  /** How far the picture has come from the frame before (0) to the one shown (1). */
+  /** Returns the interpolation parameter: 0 at the previous frame, 1 at the shown frame. */
   phaseAt(now: number): number {
     const { before, shown } = this;
     if (!before || !shown) return 1;
@@ -66,14 +65,14 @@ export class Playout {
     return Math.min(Math.max((this.timeAt(now) - begin) / (end - begin), 0), 1);
   }
 
-  /** Drops and acknowledges what waits, and begins anew: what comes next is of another scene. */
+  /** Acknowledges and discards all frames. The next frame belongs to another scene. */
   skip(): void {
     const last = this.waiting.at(-1);
     if (last) this.givers.acknowledge(last.header.number);
     this.forget();
   }
 
-  /** Without a word to the server: the subscription that the frames belonged to has ended. */
+  /** Discards all frames without acknowledgement, because their subscription has ended. */
   forget(): void {
     for (const frame of this.waiting) this.givers.reuse(frame);
     if (this.before) this.givers.reuse(this.before);
@@ -81,14 +80,14 @@ export class Playout {
     this.before = this.newestNumber = undefined;
   }
 
-  /** The time of publication that is shown at `now`; what stands still is shown at once. */
+  /** Returns the publication time to show at `now`. A paused session has no delay. */
   private timeAt(now: number): number {
     const newest = this.waiting.at(-1) ?? this.shown;
     if (!this.smooth || !newest?.header.playing) return Infinity;
     return this.delay.timeAt(now);
   }
 
-  /** The next frame is due once the picture has reached the one that it moves to. */
+  /** Returns whether the picture has reached the shown frame, so that the next is due. */
   private isDue(time: number): boolean {
     return !this.shown || time >= this.shown.header.published;
   }

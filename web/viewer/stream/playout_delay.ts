@@ -1,22 +1,22 @@
-/** So many frames tell how late frames come. */
+/** The number of frames in the statistics. */
 const kWindow = 40;
 
-/** Later frames than this share are not waited for. */
+/** The share of frames that arrive in time. */
 const kShare = 0.9;
 
-/** Longer gaps between frames are rests and tell nothing [s]. */
+/** Longer gaps between frames are pauses and do not count [s]. */
 const kLongestGap = 0.25;
 
-/** The picture is at most this much later than it could be [s]. */
+/** The maximum delay [s]. */
 const kMost = 0.2;
 
-/** Seconds per second by which the delay changes, which cannot be seen; larger changes jump. */
+/** The rate at which the delay changes invisibly [s/s]. Larger changes are immediate. */
 const kSlew = 0.1;
 const kJump = 0.4;
 
 /**
- * How much later than published frames are shown, so that the next one is there in time: as late as
- * nearly all came lately, and the gap between two of them. The clocks of both sides may differ.
+ * The delay from publication to display, such that the next frame arrives in time: a quantile of the
+ * recent latencies plus the frame interval. The clocks of server and client can differ.
  */
 export class PlayoutDelay {
   private readonly lags = new Recent();
@@ -25,7 +25,7 @@ export class PlayoutDelay {
   private delay: number | undefined;
   private changed = 0;
 
-  /** A frame published at `published` by the server's clock came at `now` by ours. */
+  /** Adds a frame, published at `published` (server's clock), received at `now` (local clock). */
   add(published: number, now: number): void {
     const gap = published - (this.last ?? published);
     this.last = published;
@@ -33,7 +33,7 @@ export class PlayoutDelay {
     this.lags.add(now - published);
   }
 
-  /** The time of publication that is shown at `now`. */
+  /** Returns the publication time to show at `now`. */
   timeAt(now: number): number {
     const wanted = this.wanted;
     const elapsed = Math.max(now - this.changed, 0);
@@ -45,7 +45,7 @@ export class PlayoutDelay {
     return now - this.delay;
   }
 
-  /** Beyond the quickest way of a frame here. */
+  /** The delay beyond the smallest latency [s]. */
   get seconds(): number {
     return Math.max((this.delay ?? 0) - this.lags.at(0), 0);
   }
@@ -56,7 +56,7 @@ export class PlayoutDelay {
   }
 }
 
-/** The last numbers, by their order. */
+/** The most recent numbers, for quantiles. */
 class Recent {
   private readonly values: number[] = [];
 
@@ -65,7 +65,7 @@ class Recent {
     if (this.values.length > kWindow) this.values.shift();
   }
 
-  /** That below which a share of them is; 0 where there are none. */
+  /** Returns the quantile of a share; 0 without numbers. */
   at(share: number): number {
     const sorted = [...this.values].sort((a, b) => a - b);
     return sorted[Math.min(Math.floor(share * sorted.length), sorted.length - 1)] ?? 0;

@@ -2,10 +2,10 @@ import { RequestError } from '../../client/index';
 import type { Attributes, Frame, MethodName, Params, Result } from '../../client/index';
 import type { FromWorker, ToWorker } from './wire';
 
-/** What the worker reports by itself; replies to requests come as promises instead. */
+/** Reports of the worker. Replies to requests settle promises instead. */
 export type Report =
   | Exclude<FromWorker, { type: 'result' | 'refusal' | 'resume' }>
-  /** The worker was not loaded, or has failed. */
+  /** The worker could not be loaded or has failed. */
   | { type: 'broken' };
 
 export type Request = <M extends MethodName>(method: M, params: Params<M>) => Promise<Result<M>>;
@@ -17,7 +17,7 @@ interface Waiting {
 
 const kResumeKey = 'vat.resume';
 
-/** The page's end of the worker that holds the connection. */
+/** The page's interface to the worker that owns the connection. */
 export class Stream {
   private readonly worker = new Worker(new URL('./stream.worker.ts', import.meta.url), {
     type: 'module',
@@ -36,7 +36,7 @@ export class Stream {
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.handle(data);
   }
 
-  /** Connects now; also cuts short the wait before the next attempt. */
+  /** Connects now, also during the delay before the next attempt. */
   open(): void {
     this.post({
       type: 'open',
@@ -47,7 +47,7 @@ export class Stream {
     });
   }
 
-  /** Takes part in another session; undefined: in the server's first. */
+  /** Joins another session; undefined: the server's first. */
   go(session: string | undefined): void {
     this.session = session;
     this.post({ type: 'go', session });
@@ -65,22 +65,22 @@ export class Stream {
     this.post({ type: 'acknowledge', number });
   }
 
-  /** Gives back the memory of a frame, whose columns are gone with that. */
+  /** Returns the memory of a frame to the worker. Its columns become invalid. */
   reuse({ storage }: Frame): void {
     this.post({ type: 'reuse', storage }, [storage]);
   }
 
-  /** Whether frames are wanted; they are from the start. */
+  /** Subscribes or unsubscribes; initially subscribed. */
   watch(wanted: boolean): void {
     this.post({ type: 'watch', wanted });
   }
 
-  /** Asks for the newest frame once more, whole: it may have been coarse, or of fewer particles. */
+  /** Requests the newest frame in full detail. */
   refresh(): void {
     this.post({ type: 'refresh' });
   }
 
-  /** The values of particles that frames are to have, and how exactly; none from the start. */
+  /** Selects the attributes in frames and their maximum errors; initially none. */
   askFor(attributes: Attributes): void {
     this.post({ type: 'attributes', attributes });
   }
@@ -96,7 +96,7 @@ export class Stream {
       const { kind, message: text, code, data } = message.refusal;
       this.take(message.key)?.reject(new RequestError(kind, text, code, data));
     } else if (message.type === 'resume') {
-      // Of this tab, so that who reloads the page is who they were.
+      // Stored per tab, so that reloading the page resumes the participant.
       sessionStorage.setItem(kResumeKey, message.token);
     } else {
       this.onReport(message);
@@ -110,18 +110,18 @@ export class Stream {
   }
 }
 
-/** What the fragment of the page's address gives as `#ticket=` or `#invite=`; no request carries it. */
+/** Returns `#ticket=` or `#invite=` of the page's address. Requests do not contain the fragment. */
 export function givenToken(page: string): string | undefined {
   const given = new URLSearchParams(new URL(page).hash.slice(1));
   return given.get('ticket') ?? given.get('invite') ?? undefined;
 }
 
-/** The session that the page's address names with `?session=`. */
+/** Returns `?session=` of the page's address. */
 export function chosenSession(page: string): string | undefined {
   return new URL(page).searchParams.get('session') ?? undefined;
 }
 
-/** The server's WebSocket beside this page. */
+/** Returns the WebSocket address of the page's server. */
 export function streamUrl(page: string): string {
   const url = new URL('/ws', page);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';

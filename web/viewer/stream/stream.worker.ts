@@ -1,10 +1,10 @@
-/** Holds the connection and decodes frames, so that the page's thread only draws. */
+/** Owns the connection and decodes frames, so that the page's thread only draws. */
 import { emptyFrame, RequestError, Session } from '../../client/index';
 import type { Attributes, Frame, MethodName, Params } from '../../client/index';
 import { now } from './clock';
 import type { Entrance, FromWorker, Refusal, ToWorker } from './wire';
 
-/** A sixty-fourth of the distance between particles: less cannot be seen. */
+/** 1/64 of the spacing; smaller errors are not visible. */
 const kErrorInRadii = 1 / 32;
 
 let session: Session | undefined;
@@ -17,12 +17,12 @@ function post(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
 }
 
-/** Whether the server that this page came from answers at all. */
+/** Returns whether the page's server answers HTTP. */
 async function probe(): Promise<boolean> {
   try {
     return (await fetch('/healthz', { cache: 'no-store' })).ok;
   } catch {
-    return false; // fetch throws where nobody answers
+    return false; // fetch throws if the server is unreachable
   }
 }
 
@@ -47,9 +47,9 @@ function open(entrance: Entrance): void {
   session.open();
 }
 
-/** The memory of a frame goes to the page and comes back: see ToWorker, `reuse`. */
+/** Returns a frame. The page returns its memory: see ToWorker, `reuse`. */
 function frameFor(): Frame {
-  // One that was transferred is empty, and cannot be once more, though frames may need no memory.
+  // A transferred buffer is detached and must be replaced, also if the frame needs no memory.
   if (frame.storage.byteLength === 0) frame.storage = spare.pop() ?? new ArrayBuffer(0);
   return frame;
 }

@@ -2,12 +2,12 @@ import type { FrameHeader, SessionStatus } from '../../client/index';
 import { lossInWords } from '../panel/quality';
 
 /**
- * Who is too slow for a session's frames is sent coarser ones, of fewer particles. Where the session
- * stands still there is time for the whole picture, which has to be asked for.
+ * Requests full detail while the session is paused. The server sends coarser frames with fewer
+ * particles to slow clients, and a paused session leaves time for the complete picture.
  */
 export class WholePicture {
   private shown: FrameHeader | undefined;
-  /** For which it was asked. */
+  /** The tick of the last request. */
   private askedTick: number | undefined;
 
   constructor(private readonly ask: () => void) {}
@@ -16,7 +16,7 @@ export class WholePicture {
     this.shown = header;
   }
 
-  /** The server sends it twice a second. */
+  /** Receives the status, which the server sends twice per second. */
   showStatus({ playing, tick }: Pick<SessionStatus, 'playing' | 'tick'>): void {
     if (playing) this.askedTick = undefined;
     if (playing || this.shown?.tick !== tick || this.askedTick === tick) return;

@@ -9,7 +9,7 @@ import type {
   SessionDescription,
 } from '../../client/index';
 
-/** Where to enter, and what lets us in. */
+/** The server's address, the session and the tokens. */
 export interface Entrance {
   url: string;
   session: string | undefined;
@@ -17,19 +17,19 @@ export interface Entrance {
   resume: string | undefined;
 }
 
-/** Messages between the page and the worker that holds the connection. */
+/** Messages from the page to the worker that owns the connection. */
 export type ToWorker =
   | ({ type: 'open' } & Entrance)
-  /** To another session, by the same line; undefined: the server's first. */
+  /** Joins another session on the same connection; undefined: the server's first. */
   | { type: 'go'; session: string | undefined }
   | { type: 'request'; key: number; method: MethodName; params: object }
   | { type: 'acknowledge'; number: number }
-  /** Of a frame that is shown no more; it is transferred, like that of each frame. */
+  /** Returns the memory of an unused frame, by transfer. */
   | { type: 'reuse'; storage: ArrayBuffer }
   | { type: 'watch'; wanted: boolean }
-  /** The newest frame once more, whole. */
+  /** Requests the newest frame in full detail. */
   | { type: 'refresh' }
-  /** The values of particles that frames are to have, and how exactly. */
+  /** Selects the attributes in frames and their maximum errors. */
   | { type: 'attributes'; attributes: Attributes };
 
 export type FromWorker =
@@ -44,7 +44,7 @@ export type FromWorker =
   | { type: 'result'; key: number; result: unknown }
   | { type: 'refusal'; key: number; refusal: Refusal };
 
-/** A RequestError's fields: errors lose theirs between threads. */
+/** The fields of a RequestError, because errors lose them between threads. */
 export interface Refusal {
   kind: string;
   message: string;
