@@ -4,10 +4,11 @@ import sys
 
 import document_rules
 import folder_order
+import import_cycles
 import source_rules
 from tree import read_tree
 
-RULES = source_rules.RULES + folder_order.RULES + document_rules.RULES
+RULES = source_rules.RULES + folder_order.RULES + import_cycles.RULES + document_rules.RULES
 
 
 def main():

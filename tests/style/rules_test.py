@@ -9,6 +9,7 @@ import unittest
 
 import document_rules
 import folder_order
+import import_cycles
 import source_rules
 from tree import OUR_ENTRIES, Tree, read_tree
 
@@ -80,6 +81,13 @@ class SourceRules(RuleTest):
         self.refuses(rule, {"core/stage/a.h": '#include "core/model/b.h"\n'}, "core/model/b.h")
         self.refuses(rule, {"core/new/a.h": "\n"}, "FOLDER_ORDER does not have core/new")
         self.refuses(rule, {"core/model/a.h": '#include "core/new/b.h"\n'}, "core/new/b.h")
+
+    def test_import_cycles(self):
+        rule = import_cycles.import_cycles
+        accepted = {"web/a.ts": "import { b } from './c/b';\n", "web/c/b.ts": "export {};\n"}
+        self.accepts(rule, accepted)
+        self.refuses(rule, accepted | {"web/c/b.ts": "import type {\n  A,\n} from '../a.js';\n"},
+                     "web/a.ts", "web/c/b.ts")
 
     def test_determinism(self):
         rule = source_rules.determinism

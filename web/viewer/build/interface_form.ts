@@ -11,7 +11,7 @@ import {
   withLaw,
 } from './interface_fields';
 import type { Law } from './interface_fields';
-import type { ParameterForm, Change } from './parameter_forms';
+import type { ParameterForm, Change } from './parameter_form';
 import { ValueField } from './value_field';
 
 /** The form for the interface of two materials in the running scene. */

@@ -1,7 +1,7 @@
 import type { Scene, SceneMaterial } from '../../client/index';
 import { make } from '../panel/elements';
 import { fieldsOf, valueAt, withValue } from './material_fields';
-import type { Change, ParameterForm } from './parameter_forms';
+import type { Change, ParameterForm } from './parameter_form';
 import { ValueField } from './value_field';
 
 /** The form for the constants of materials in the running scene. */

@@ -1,6 +1,6 @@
 import type { Scene } from '../../client/index';
 import { make, makeButton } from '../panel/elements';
-import type { Change, ParameterForm } from './parameter_forms';
+import type { Change, ParameterForm } from './parameter_form';
 import { ValueField } from './value_field';
 
 type Numerics = NonNullable<Scene['numerics']>;

@@ -5,18 +5,8 @@ import type { Desk } from '../stream/desk';
 import { InterfaceForm } from './interface_form';
 import { MaterialForm } from './material_form';
 import { NumericsForm } from './numerics_form';
+import type { ParameterForm } from './parameter_form';
 import type { SceneDocument } from './scene_document';
-
-/** A form of the section for the scene's constants. */
-export interface ParameterForm {
-  readonly element: HTMLElement;
-  enable(enabled: boolean): void;
-  /** `initial` is the scene as it was loaded. */
-  show(scene: Scene, initial: Scene): void;
-}
-
-/** Executes a change and displays the result. Returns an error text if it was rejected. */
-export type Change<M extends MethodName> = (params: Params<M>) => Promise<string | undefined>;
 
 /** The forms for materials, interfaces and steps, with units, ranges and reset. */
 export class ParameterForms {

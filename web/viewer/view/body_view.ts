@@ -25,10 +25,10 @@ import { Skin } from './surface/skin';
 import type { Workshop } from './surface/workshop';
 import { splatDepthMaterial, splatMaterial } from './splat_material';
 
-/** Draw order: shadows on the floor, solids; of liquids the depth before the splats. */
+/** Draw order: shadows on the floor, then solids. Liquids draw the depth before the splats. */
 const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 
-/** Skins; together with particles one sees through them, and they are around the spheres. */
+/** Skins. Beside particles they are transparent and enclose the spheres. */
 const kSkins = {
   liquid: { wet: 1, opacity: 0.82, size: 1.5 },
   deformable: { wet: 0.15, opacity: 1, size: 1.2 },
@@ -39,18 +39,18 @@ const kVeil = { opacity: 0.4, size: 1.7 };
 const kGloss = { liquid: 0.6, deformable: 0.1, rigid: 0.35 };
 
 /**
- * One body's particles. The group's matrix takes the particles' own coordinates to the world: grid
- * steps for liquid and deformable bodies, body axes for rigid ones; so a new frame costs one upload
- * of the integers received, or of nothing but a pose.
+ * The particles of one body. The group's matrix converts their coordinates to world axes: quanta for
+ * liquid and deformable bodies, body axes for rigid bodies. Therefore a new frame uploads only the
+ * received integers or a pose.
  */
 export class BodyView {
   readonly group = new Group();
   readonly columns: ParticleColumns;
   readonly uniforms: BodyUniforms;
-  /** Of a rigid body. */
+  /** The motion of a rigid body; undefined for others. */
   readonly motion: RigidMotion | undefined;
   private readonly materials: ShaderMaterial[] = [];
-  /** Those of them that show a liquid, each in its style. */
+  /** The meshes of a liquid, with their styles. */
   private readonly styles: { mesh: Mesh; style: LiquidStyle }[] = [];
   private colouring: Choice<'colour'> = 'body';
   private readonly spheres: Mesh;
@@ -87,20 +87,20 @@ export class BodyView {
     return this.columns.count;
   }
 
-  /** Whether it can show this body too, the n-th of its kind. */
+  /** Returns whether it can show another body, the n-th of its kind. */
   isOf({ body, kind, radius }: BodyDescription, nthOfKind: number): boolean {
     const { description } = this;
     const isSame = body === description.body && kind === description.kind;
     return isSame && radius === description.radius && nthOfKind === this.nthOfKind;
   }
 
-  /** What comes next does not follow from what is shown: no motion leads there. */
+  /** Ends the interpolation: the next frame does not continue the motion. */
   rest(): void {
     this.columns.rest();
     this.motion?.rest();
   }
 
-  /** See ParticleColumns.show() for how long the block must stay as it is. */
+  /** Shows particles. See ParticleColumns.show() for the lifetime of the block. */
   showGrid(block: GridBlock, { origin, quantum, attributeQuanta }: FrameHeader): void {
     this.columns.show(block, { origin, quantum });
     const name = quantityOf(this.colouring);
@@ -119,7 +119,7 @@ export class BodyView {
     this.updateSkin();
   }
 
-  /** `seconds`: since the pose before. */
+  /** Shows a pose, `seconds` after the previous one. */
   showPose(block: PoseBlock, seconds: number): void {
     if (!this.motion) return;
     this.motion.add(block);
@@ -130,20 +130,20 @@ export class BodyView {
     this.updateSkin();
   }
 
-  /** Places a rigid body between its last two poses; others are by their shaders. */
+  /** Interpolates a rigid body between its last two poses. Shaders interpolate other bodies. */
   set phase(phase: number) {
     if (!this.motion) return;
     this.motion.matrixAt(phase, this.group.matrix);
     this.group.matrixWorldNeedsUpdate = true;
   }
 
-  /** What colours tell, from the next frame on. */
+  /** Sets the coloured quantity, from the next frame on. */
   set colour(colouring: Choice<'colour'>) {
     this.colouring = colouring;
     this.showColour(kColourSource.body);
   }
 
-  /** The least and the greatest value that colours tell; none: infinite and the other way round. */
+  /** Returns the range of the coloured quantity; without values, from infinity to -infinity. */
   valueRange(values: Int32Array | undefined): Range {
     const { value_quantum: quantum, linear } = this.uniforms;
     const range = { min: Infinity, max: -Infinity };
@@ -158,7 +158,7 @@ export class BodyView {
     return range;
   }
 
-  /** The particle that the ray meets first, by its number, and its distance in metres. */
+  /** Returns the number of the first particle on the ray, and its distance [m]. */
   pick(ray: Ray): Hit | undefined {
     if (!this.group.visible) return undefined;
     const scale = this.group.matrix.getMaxScaleOnAxis();
@@ -170,7 +170,7 @@ export class BodyView {
     return { particle: this.columns.numberAt(hit.particle), distance: hit.distance * scale };
   }
 
-  /** World position of the particle with this number; undefined where it is not shown. */
+  /** Returns the world position of a particle number; undefined if it is not shown. */
   positionOf(particle: number): Vector3 | undefined {
     const place = this.columns.placeOf(particle);
     return place === undefined ? undefined : this.positionAt(place);
@@ -182,7 +182,7 @@ export class BodyView {
     return new Vector3(at(0), at(1), at(2)).applyMatrix4(this.group.matrix);
   }
 
-  /** Whether none of its particles touches what has its middle there. */
+  /** Returns whether no particle touches a footprint centred at `middle`. */
   isFree(middle: Vector3, footprint: Footprint): boolean {
     if (!this.group.visible) return true;
     const { radius } = this.description;
@@ -194,7 +194,7 @@ export class BodyView {
     return true;
   }
 
-  /** Its particles about their mean place. */
+  /** Returns the particles relative to their mean position. */
   footprint(): Footprint {
     const places = Array.from({ length: this.count }, (_, i) => this.positionAt(i));
     const mean = places.reduce((sum, place) => sum.add(place), new Vector3());
@@ -203,7 +203,7 @@ export class BodyView {
     return cloudOf(places, this.description.radius);
   }
 
-  /** The particle next to the mean place of all. */
+  /** Returns the particle closest to the mean position. */
   middle(): { particle: number; position: Vector3 } | undefined {
     if (!this.group.visible || this.count === 0) return undefined;
     const places = Array.from({ length: this.count }, (_, i) => this.positionAt(i));
@@ -214,7 +214,7 @@ export class BodyView {
     return { particle: this.columns.numberAt(nearest), position: places[nearest]! };
   }
 
-  /** Makes the box hold all particles. */
+  /** Extends the box to contain all particles. */
   expand(box: Box3): void {
     if (!this.group.visible) return;
     for (let i = 0; i < this.count; ++i) box.expandByPoint(this.positionAt(i));
@@ -228,13 +228,13 @@ export class BodyView {
     for (const material of this.materials) material.dispose();
   }
 
-  /** How a liquid is drawn; of other bodies it changes nothing. */
+  /** Sets the style of a liquid. Does not affect other bodies. */
   set liquidStyle(chosen: LiquidStyle) {
     for (const { mesh, style } of this.styles) mesh.visible = style === chosen;
     this.updateSkin();
   }
 
-  /** How a deformable or rigid body is drawn; of a liquid it changes nothing. */
+  /** Sets the style of a deformable or rigid body. Does not affect liquids. */
   set solidStyle(chosen: Choice<'solids'>) {
     const { kind } = this.description;
     if (kind === 'liquid') return;
@@ -247,7 +247,7 @@ export class BodyView {
     this.updateSkin();
   }
 
-  /** A rigid body's skin moves with it; others need a new one. */
+  /** Updates the skin. A rigid body's skin moves with it; others are made anew. */
   private updateSkin(): void {
     if (!this.skin.mesh.visible || this.count === 0 || !this.group.visible) return;
     if (this.motion && this.hasSkin) return;
@@ -257,7 +257,7 @@ export class BodyView {
     this.skin.follow({ places, radius, values: this.values, size: this.skinSize });
   }
 
-  /** Particles without a value of what colours tell are grey. */
+  /** Sets the source of colours. Particles without a value are grey. */
   private showColour(source: number): void {
     const { kind } = this.description;
     this.uniforms.colour_source.value = source;
@@ -288,7 +288,7 @@ export class BodyView {
     layer: keyof typeof kLayers = 'scene',
   ): Mesh {
     const mesh = new Mesh(this.columns.geometry, material);
-    mesh.frustumCulled = false; // the geometry's own bounds say nothing about its instances
+    mesh.frustumCulled = false; // the geometry's bounds do not contain its instances
     mesh.renderOrder = order;
     mesh.layers.set(kLayers[layer]);
     this.group.add(mesh);

@@ -3,7 +3,7 @@ import type { ViewSettings } from './settings';
 
 const kAxes = ['x', 'y', 'z'] as const;
 
-/** Sets the plane p · xyz = w beyond which all is cut away, as the settings say, across the box. */
+/** Sets the clip plane p · xyz = w from the settings, at its position in the box. */
 export function setClipPlane(
   plane: Vector4,
   { clip, clipAt = 0.5, clipOther }: Pick<ViewSettings, 'clip' | 'clipAt' | 'clipOther'>,

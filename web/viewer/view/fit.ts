@@ -1,7 +1,7 @@
 import { Vector3 } from 'three';
 import type { Box3, PerspectiveCamera } from 'three';
 
-/** A place in the camera's axes: to the right, up, and back towards the eye. */
+/** A position in camera axes: right, up, and back towards the eye. */
 export interface Seen {
   right: number;
   up: number;
@@ -9,11 +9,11 @@ export interface Seen {
 }
 
 /**
- * The nearest place from which an eye that looks straight ahead has all the points in sight: each
- * within `side` to the right and left and `rise` up and down, per unit of distance.
+ * Returns the nearest eye position that has all points in view, with half-widths `side` and `rise` of
+ * the view per unit of distance.
  *
- * A point is in sight if |right - eye.right| <= side * (eye.back - point.back), and so for up; the
- * two bounds on each axis give the middle, the tighter axis the distance.
+ * A point is in view if |right - eye.right| <= side * (eye.back - point.back), and likewise for up.
+ * The two bounds of each axis give the centre, and the stricter axis gives the distance.
  */
 export function nearestEye(points: readonly Seen[], side: number, rise: number): Seen {
   const most = (value: (point: Seen) => number): number => Math.max(...points.map(value));
@@ -29,8 +29,8 @@ export function nearestEye(points: readonly Seen[], side: number, rise: number):
 }
 
 /**
- * Where a camera that looks from the direction `from`, a unit vector, must look at, and from how
- * far, to have the box in sight with a margin: 1.1 leaves a tenth more room than needed.
+ * Returns the target and the distance of a camera in the direction `from` (a unit vector) that has
+ * the box in view. `margin` 1.1 leaves 10 % more space than needed.
  */
 export function fitBox(
   box: Box3,

@@ -1,13 +1,13 @@
 import { Box3, Vector3 } from 'three';
 
-/** The room that something takes, about its middle. */
+/** The space of an object, relative to its centre. */
 export interface Footprint {
   readonly box: Box3;
-  /** Whether a particle there, of this radius, would touch it [m]. */
+  /** Returns whether a particle at `place` with this radius [m] touches the object. */
   touches(place: Vector3, radius: number): boolean;
 }
 
-/** Of their distance at first touch: nearer, as things at rest on each other are, is still beside. */
+/** Objects at rest on each other overlap slightly. Larger shares of the touching distance are free. */
 const kTouch = 0.9;
 
 export function ballOf(radius: number): Footprint {
@@ -17,13 +17,13 @@ export function ballOf(radius: number): Footprint {
   };
 }
 
-/** A cube with this side. */
+/** Returns a cube of this side [m]. */
 export function blockOf(side: number): Footprint {
   const box = cube(side / 2);
   return { box, touches: (place, other) => box.distanceToPoint(place) < other };
 }
 
-/** Particles of this radius. */
+/** Returns particles of this radius [m]. */
 export function cloudOf(places: readonly Vector3[], radius: number): Footprint {
   const cell = 2 * radius;
   const cells = new Map<string, Vector3[]>();

@@ -1,10 +1,10 @@
 import type { WebGLRenderer } from 'three';
 
-/** What the browser draws with. */
+/** The properties of the browser's graphics. */
 export interface Graphics {
-  /** The processor does the drawing. */
+  /** Whether the CPU draws. */
   isSoftware: boolean;
-  /** Pictures of exact numbers, which a clear liquid needs, can be drawn. */
+  /** Whether floating-point textures can be drawn, which the fluid style requires. */
   drawsToFloats: boolean;
 }
 

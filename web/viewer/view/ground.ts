@@ -11,7 +11,7 @@ const kVertexShader = /* glsl */ `
   }
 `;
 
-/** Lines one pixel wide, fading out with the distance from the middle. */
+/** Lines of one pixel, fading with the distance from the centre. */
 const kFragmentShader = /* glsl */ `
   in vec2 at;
   uniform vec2 middle;
@@ -30,14 +30,14 @@ const kFragmentShader = /* glsl */ `
   }
 `;
 
-/** 1, 2 or 5 times a power of ten, near `length`. */
+/** Returns the number 1, 2 or 5 times a power of ten that is near `length`. */
 export function roundLength(length: number): number {
   const power = 10 ** Math.floor(Math.log10(length));
   const digit = length / power;
   return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
-/** A grid that stays where it is, against which one sees the vat move. */
+/** A fixed grid, which makes the motion of the vat visible. */
 export class Ground {
   readonly mesh: Mesh<PlaneGeometry, ShaderMaterial>;
 
@@ -60,7 +60,7 @@ export class Ground {
     this.paint(look);
   }
 
-  /** Lies below the box and reaches well beyond it. */
+  /** Places the grid below the box, extending beyond it. */
   fit(box: Box3): void {
     const width = Math.max(box.max.x - box.min.x, box.max.y - box.min.y);
     const x = (box.min.x + box.max.x) / 2;

@@ -7,7 +7,7 @@ import { kLayers } from './layers';
 
 const kColour = '#ffb300';
 
-/** Shows the held particle, where it is pulled to, and the line between; seen through everything. */
+/** Shows the held particle, its target, and the line between them, drawn over the scene. */
 export class HeldMarker {
   readonly group = new Group();
   private readonly held = marker(0.55);

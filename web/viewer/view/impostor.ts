@@ -1,8 +1,8 @@
 import { Color, Vector3 } from 'three';
 import type { IUniform } from 'three';
-import type { LookUniforms } from './shared_uniforms';
+import type { LookUniforms } from './look_uniforms';
 
-/** Where a body's particles take their colours from. */
+/** Sources of the particles' colours. */
 export const kColourSource = {
   body: 0,
   /** The column `value`, in `value_quantum`. */
@@ -11,17 +11,17 @@ export const kColourSource = {
   motion: 2,
 };
 
-/** Of one body; all its materials share them. */
+/** The uniforms of one body, shared by its materials. */
 export interface BodyUniforms extends LookUniforms {
   colour: IUniform<Color>;
   colour_source: IUniform<number>;
   value_quantum: IUniform<number>;
-  /** Of a rigid body: velocity of its middle [m/s] and angular velocity [1/s], world axes. */
+  /** Rigid bodies: velocity of the centre [m/s] and angular velocity [rad/s], world axes. */
   linear: IUniform<Vector3>;
   angular: IUniform<Vector3>;
 }
 
-/** `moves`: by its particles, not as one; then it is the frames between which they are placed. */
+/** `moves`: whether particles move individually and are interpolated between frames. */
 export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean): BodyUniforms {
   return {
     ...look,
@@ -34,7 +34,7 @@ export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean):
   };
 }
 
-/** Where the instance is, in the frame of the model matrix, and whether that is cut away. */
+/** Position of the instance, in coordinates of the model matrix, and the test of the clip plane. */
 export const kPlaceOfParticle = /* glsl */ `
   in vec3 center;
   in vec3 before;
@@ -51,9 +51,9 @@ export const kPlaceOfParticle = /* glsl */ `
 `;
 
 /**
- * A square around each particle, turned to the eye and just large enough for the sphere's outline
- * in perspective. Instances give the centre in the frame of the model matrix: grid steps for bodies
- * on the frame's grid, body axes for rigid bodies.
+ * A square around each particle that faces the eye and covers the sphere's outline in perspective.
+ * Instances contain the centre in coordinates of the model matrix: quanta, or body axes for rigid
+ * bodies.
  */
 export const kImpostorVertexShader = /* glsl */ `
   ${kPlaceOfParticle}
@@ -87,7 +87,7 @@ export const kImpostorVertexShader = /* glsl */ `
     vec3 place = place_of_particle();
     vec3 world = (modelMatrix * vec4(place, 1.0)).xyz;
     if (is_clipped(world)) {
-      gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of every picture
+      gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
       return;
     }
     view_center = (modelViewMatrix * vec4(place, 1.0)).xyz;
@@ -102,7 +102,7 @@ export const kImpostorVertexShader = /* glsl */ `
   }
 `;
 
-/** Where the eye's ray meets the sphere: `inside` is 1 in its middle and 0 at the outline. */
+/** The intersection of the eye's ray and the sphere. `inside` is 1 at its centre, 0 at its outline. */
 export const kImpostorHit = /* glsl */ `
   flat in vec3 view_center;
   flat in vec3 base;

@@ -1,8 +1,8 @@
-/** What the camera draws in one go; all but the first two are of liquids. */
+/** The layers of the camera. All except the first two contain liquids. */
 export const kLayers = {
-  /** Everything that a liquid covers or shows through. */
+  /** Objects that a liquid covers or refracts. */
   scene: 0,
-  /** Marks that lie over all else. */
+  /** Marks over the scene. */
   marks: 1,
   splats: 2,
   fluidDepth: 3,

@@ -4,7 +4,7 @@ import { kLayers } from './layers';
 import { kSun } from './light';
 import { kScreenVertexShader, screenMesh } from './screen';
 
-/** Splats are soft, so they need fewer pixels than the canvas has. */
+/** Resolution relative to the canvas; splats are soft and need fewer pixels. */
 const kScale = 0.5;
 
 const kFragmentShader = /* glsl */ `
@@ -45,8 +45,8 @@ const kFragmentShader = /* glsl */ `
 `;
 
 /**
- * Draws the splats of all liquid bodies into textures of their own, and one smooth surface from
- * these over the canvas; `surface` belongs into the scene.
+ * Draws the splats of all liquid bodies to separate textures, and from these one smooth surface over
+ * the canvas. `surface` is part of the scene.
  */
 export class LiquidPass {
   readonly surface: Mesh<BufferGeometry, ShaderMaterial>;

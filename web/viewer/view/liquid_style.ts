@@ -1,21 +1,21 @@
 import type { Graphics } from './graphics';
 import type { Choice } from './settings';
 
-/** A surface around more would be seconds behind them. */
+/** The maximum number of particles of a meshed surface; more would take seconds. */
 const kMostInSurface = 20_000;
 
-/** How liquids are drawn. */
+/** The styles of liquids. */
 export type LiquidStyle = Exclude<Choice<'liquid'>, 'auto'>;
 
-/** The style that is drawn and, where it is not the best or the chosen one, why, in words. */
+/** The drawn style. If it is not the best or chosen one, the reason as text. */
 export interface StyleDecision {
   style: LiquidStyle;
   words: string | undefined;
 }
 
 /**
- * The best style that the graphics are good for, or the chosen one where that can be drawn at all;
- * `isSlow`: the fluid was tried and took too long.
+ * Returns the chosen style if the graphics support it, otherwise the best supported style. `isSlow`:
+ * the fluid style was too slow.
  */
 export function decideStyle(
   chosen: Choice<'liquid'>,

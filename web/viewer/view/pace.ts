@@ -1,14 +1,14 @@
 const kIntervals = 40;
 const kSlowMs = 50;
-/** A pause in drawing, not a slow picture. */
+/** A longer interval is a pause in drawing [ms]. */
 const kPauseMs = 1000;
 
-/** Tells whether pictures that follow one another take too long, from when each was drawn. */
+/** Detects slow drawing from the times of successive pictures. */
 export class Pace {
   private last: number | undefined;
   private intervals: number[] = [];
 
-  /** A picture was drawn at `at` [ms]; `follows`: in the animation frame after the last one's. */
+  /** Adds a picture drawn at `at` [ms]. `follows`: the previous animation frame was drawn too. */
   add(at: number, follows: boolean): void {
     const interval = at - (this.last ?? at);
     this.last = at;
@@ -17,7 +17,7 @@ export class Pace {
     if (this.intervals.length > kIntervals) this.intervals.shift();
   }
 
-  /** Half of the last pictures took longer than is smooth. */
+  /** Whether half of the last pictures were too slow for smooth motion. */
   get isSlow(): boolean {
     if (this.intervals.length < kIntervals) return false;
     const sorted = [...this.intervals].sort((a, b) => a - b);

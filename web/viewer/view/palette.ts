@@ -8,7 +8,7 @@ const kColours: Readonly<Record<BodyKindName, readonly string[]>> = {
   rigid: ['#e2553d', '#f0a030', '#c8567f', '#d9793a', '#e8c24a', '#a9573c', '#d84a5f', '#b98350'],
 };
 
-/** The colour of the n-th body of its kind. */
+/** Returns the colour of the n-th body of a kind. */
 export function bodyColour(kind: BodyKindName, n: number): Color {
   const colours = kColours[kind];
   return new Color(colours[n % colours.length]);

@@ -5,15 +5,15 @@ const kGrowth = 1.5;
 
 const kSquare = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
 
-/** Where the grid of a frame lies. */
+/** The grid of a frame. */
 type Grid = Pick<FrameHeader, 'origin' | 'quantum'>;
 
 /**
- * What the graphics know of a body's particles, by columns: where they are by the newest frame
- * (`center`) and by the one before (`before`), their numbers, and a value of each.
+ * The graphics columns of a body's particles: positions of the newest frame (`center`) and of the
+ * previous frame (`before`), numbers, and one value per particle.
  */
 export class ParticleColumns {
-  /** A square for each particle. */
+  /** One square per particle. */
   readonly geometry: InstancedBufferGeometry;
   private readonly geometries: InstancedBufferGeometry[] = [];
   private places: [Places, Places];
@@ -36,7 +36,7 @@ export class ParticleColumns {
     this.count = particles;
   }
 
-  /** A shape for each particle, of these corners and triangles. */
+  /** Returns instances of a shape with these corners and triangles. */
   shapedAs(corners: number[], triangles: number[]): InstancedBufferGeometry {
     const geometry = new InstancedBufferGeometry();
     geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
@@ -51,7 +51,7 @@ export class ParticleColumns {
     for (const geometry of this.geometries) geometry.dispose();
   }
 
-  /** How many particles there are now: a liquid body may grow and shrink. */
+  /** The present number of particles. That of a liquid can change. */
   get count(): number {
     return this.geometry.instanceCount;
   }
@@ -61,8 +61,8 @@ export class ParticleColumns {
   }
 
   /**
-   * Shows the block's positions as they are where their number stays: no copy is made, and they and
-   * their numbers must stay as they are until the call after the next.
+   * Shows the positions of a block. If the number of particles is unchanged, they are not copied:
+   * positions and numbers must not change until the second next call.
    */
   show(block: GridBlock, grid: Grid): void {
     const count = block.positions.length / 3;
@@ -81,29 +81,29 @@ export class ParticleColumns {
     this.attach();
   }
 
-  /** What is shown next does not follow from this. */
+  /** Ends the interpolation with the current frame. */
   rest(): void {
     this.grid = undefined;
   }
 
-  /** The values of the particles of the last block. */
+  /** Shows values for the particles of the last block. */
   showValues(values: Int32Array): void {
     (this.valueColumn.array as Int32Array).set(values);
     this.valueColumn.needsUpdate = true;
   }
 
-  /** Where the particle with this number is in the columns; undefined where it is not shown. */
+  /** Returns the index of a particle number; undefined if it is not shown. */
   placeOf(particle: number): number | undefined {
     const place = this.numbers ? placeIn(this.numbers, particle) : particle;
     return place !== undefined && place < this.count ? place : undefined;
   }
 
-  /** The number of the particle at this place. */
+  /** Returns the particle number at an index. */
   numberAt(place: number): number {
     return this.numbers?.[place] ?? place;
   }
 
-  /** Coordinates of all particles, in the columns' own units, at a phase from 0 to 1. */
+  /** Returns the coordinates of all particles, in units of the columns, at a phase from 0 to 1. */
   coordinates(phase: number): ArrayLike<number> {
     const newest = this.places[this.newest]!.array.subarray(0, 3 * this.count);
     const before = this.places[1 - this.newest]!.array;
@@ -115,12 +115,12 @@ export class ParticleColumns {
     return mixed;
   }
 
-  /** Coordinates by the newest frame, copied. */
+  /** Returns a copy of the newest coordinates. */
   newestPlaces(): Uint16Array | Float32Array {
     return this.places[this.newest]!.array.slice(0, 3 * this.count);
   }
 
-  /** Coordinate `i` of coordinates(). */
+  /** Returns coordinate `i` of coordinates(). */
   coordinate(i: number, phase: number): number {
     const newest = this.places[this.newest]!.array[i]!;
     const before = this.places[1 - this.newest]!.array[i]!;
@@ -131,20 +131,20 @@ export class ParticleColumns {
     return this.numberColumn.count;
   }
 
-  /** Whether the particles are those of the frame before, on the same grid. */
+  /** Returns whether the previous frame has the same particles and grid. */
   private follows(numbers: Uint32Array | undefined, count: number, grid: Grid): boolean {
     if (!this.grid || count !== this.count || !isSameGrid(this.grid, grid)) return false;
     if (!numbers || !this.numbers) return numbers === this.numbers;
     return numbers.every((number, i) => number === this.numbers![i]);
   }
 
-  /** Where the block's particles were before, on its grid; those that were not: where they are. */
+  /** Returns the previous positions on the new grid. New particles keep their positions. */
   private carriedOver(block: GridBlock, old: Column, grid: Grid): Uint16Array {
     const carried = block.positions.slice();
     const from = this.grid!;
     const scale = from.quantum / grid.quantum;
     const shift = from.origin.map((origin, q) => (origin - grid.origin[q]!) / grid.quantum);
-    let place = 0; // goes up with the numbers, which rise in both
+    let place = 0; // both lists of numbers ascend
     for (let i = 0; 3 * i < carried.length; ++i) {
       const number = block.numbers ? block.numbers[i]! : i;
       while (place < this.count && this.numberAt(place) < number) ++place;
@@ -157,10 +157,10 @@ export class ParticleColumns {
     return carried;
   }
 
-  /** Graphics buffers keep their length: longer ones take the place of the old, with room. */
+  /** Replaces the buffers by larger ones with reserve, because graphics buffers have a fixed length. */
   private grow(count: number): void {
     const room = Math.ceil(kGrowth * count);
-    this.dispose(); // frees the old buffers
+    this.dispose(); // releases the old buffers
     const old = this.places[this.newest]!.array;
     this.places = [newPlaces(room), newPlaces(room)];
     this.places[this.newest]!.set(old as Uint16Array);
@@ -177,7 +177,7 @@ export class ParticleColumns {
     }
   }
 
-  /** They are sent to the graphics only where they have changed. */
+  /** Uploads the numbers if they have changed. */
   private showNumbers(): void {
     const { numbers, count } = this;
     const shown = this.numberColumn.array as Uint32Array;
@@ -192,11 +192,11 @@ export class ParticleColumns {
 
 type Column = Uint16Array | Float32Array;
 
-/** One column of coordinates, in the graphics as long as it was made. */
+/** A column of coordinates with a graphics buffer of fixed length. */
 class Places {
   readonly attribute: InstancedBufferAttribute;
   private readonly room: number;
-  /** Takes positions that do not fill the graphics buffer. */
+  /** A copy for positions that do not fill the buffer. */
   private copies: Uint16Array | undefined;
 
   constructor(array: Column) {
@@ -223,7 +223,7 @@ function newPlaces(particles: number): Places {
   return new Places(new Uint16Array(3 * particles));
 }
 
-/** 0, 1, 2, ... */
+/** Returns the numbers 0, 1, 2, ... */
 function plainNumbers(count: number): InstancedBufferAttribute {
   return new InstancedBufferAttribute(
     new Uint32Array(count).map((_, i) => i),
@@ -235,7 +235,7 @@ function isSameGrid(a: Grid, b: Grid): boolean {
   return a.quantum === b.quantum && a.origin.every((origin, q) => origin === b.origin[q]);
 }
 
-/** Where a value is in rising ones. */
+/** Returns the index of a value in ascending values. */
 function placeIn(values: Uint32Array, value: number): number | undefined {
   let low = 0;
   let high = values.length;

@@ -1,19 +1,19 @@
 import { Spherical, Vector3 } from 'three';
 
-/** From where a camera looks, and at what; z is up. */
+/** Position and target of a camera; z is up. */
 export interface Pose {
   eye: Vector3;
   target: Vector3;
 }
 
-/** How close to straight down and to level a camera may be turned [rad]. */
+/** Minimum angle of a camera to vertical and to horizontal [rad]. */
 const kLeast = 0.02;
 const kMost = 0.495 * Math.PI;
 
-/** The pose after a turn to the right and up [rad] about what is looked at; `zoom` 2 is half as far. */
+/** Returns the pose after a rotation about the target [rad]. `zoom` 2 halves the distance. */
 export function turned({ eye, target }: Pose, right: number, up: number, zoom: number): Pose {
   const away = eye.clone().sub(target);
-  // Spherical has y up.
+  // In Spherical, y is up.
   const angles = new Spherical().setFromVector3(new Vector3(away.x, away.z, -away.y));
   angles.theta += right;
   angles.phi = Math.min(Math.max(angles.phi - up, kLeast), kMost);
@@ -22,12 +22,12 @@ export function turned({ eye, target }: Pose, right: number, up: number, zoom: n
   return { eye: new Vector3(x, -z, y).add(target), target: target.clone() };
 }
 
-/** For addresses: six numbers of five digits. */
+/** Returns the pose for addresses: six numbers of five digits. */
 export function poseToText({ eye, target }: Pose): string {
   return [...eye, ...target].map((value) => Number(value.toPrecision(5))).join(',');
 }
 
-/** Reads what poseToText wrote; undefined for anything else. */
+/** Reads a text of poseToText; undefined if it is invalid. */
 export function poseFromText(text: string): Pose | undefined {
   const parts = text.split(',').map(Number);
   const isGood = text !== '' && parts.length === 6 && parts.every(Number.isFinite);
@@ -37,7 +37,7 @@ export function poseFromText(text: string): Pose | undefined {
   return eye.distanceTo(target) > 0 ? { eye, target } : undefined;
 }
 
-/** The camera that the fragment of a page's address carries as `#camera=`. */
+/** Returns the camera in the fragment of the page's address, `#camera=`. */
 export function linkedPose(page: string): Pose | undefined {
   return poseFromText(new URLSearchParams(new URL(page).hash.slice(1)).get('camera') ?? '');
 }

@@ -2,17 +2,17 @@ import { Matrix4, Quaternion, Vector3 } from 'three';
 import type { PoseBlock } from '../../client/index';
 
 const kOne = new Vector3(1, 1, 1);
-/** For results that are not kept. */
+/** Temporary results. */
 const kPlace = new Vector3();
 const kTurn = new Quaternion();
 
-/** A rigid body between its last two poses. */
+/** The interpolated motion of a rigid body between its last two poses. */
 export class RigidMotion {
   private readonly place = [new Vector3(), new Vector3()] as const;
   private readonly turn = [new Quaternion(), new Quaternion()] as const;
   private isKnown = false;
 
-  /** The next pose; the last one is now that before. */
+  /** Adds a pose. The last pose becomes the previous one. */
   add({ position, orientation: [w, x, y, z] }: PoseBlock): void {
     this.place[0].copy(this.place[1]);
     this.turn[0].copy(this.turn[1]);
@@ -25,12 +25,12 @@ export class RigidMotion {
     this.isKnown = true;
   }
 
-  /** The next pose does not follow from this one. */
+  /** Ends the interpolation with the last pose. */
   rest(): void {
     this.isKnown = false;
   }
 
-  /** Body axes to the world, at a phase from 0 (the pose before) to 1. */
+  /** Writes the transformation from body to world axes, at a phase from 0 (previous pose) to 1. */
   matrixAt(phase: number, to: Matrix4): void {
     kPlace.lerpVectors(this.place[0], this.place[1], phase);
     to.compose(kPlace, kTurn.slerpQuaternions(this.turn[0], this.turn[1], phase), kOne);

@@ -1,7 +1,7 @@
 import { BufferGeometry, Float32BufferAttribute, Mesh } from 'three';
 import type { ShaderMaterial } from 'three';
 
-/** For materials of screenMesh(): `at` is 0 to 1 over the picture. */
+/** The vertex shader of screenMesh(): `at` is 0 to 1 over the picture. */
 export const kScreenVertexShader = /* glsl */ `
   out vec2 at;
   void main() {
@@ -10,7 +10,7 @@ export const kScreenVertexShader = /* glsl */ `
   }
 `;
 
-/** One triangle that covers the whole picture. */
+/** Returns a triangle that covers the picture. */
 export function screenMesh<M extends ShaderMaterial>(material: M): Mesh<BufferGeometry, M> {
   const triangle = new BufferGeometry();
   const corners = [-1, -1, 0, 3, -1, 0, -1, 3, 0];

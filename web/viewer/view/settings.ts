@@ -1,45 +1,45 @@
-/** What the view shows and how, as the user chose it. */
+/** The user's settings of the view. */
 export type ViewSettings = { -readonly [N in ChoiceName]: Choice<N> } & Record<
   SwitchName,
   boolean
 > &
   Record<NumberName, number | undefined>;
 
-/** What can be chosen, the first by default. */
+/** The choices; the first is the default. */
 export const kChoices = {
-  /** `auto`: the best that this machine draws fast enough. */
+  /** `auto`: the best style that this machine draws fast enough. */
   liquid: ['auto', 'fluid', 'surface', 'splats', 'particles'],
-  /** Of deformable and rigid bodies. */
+  /** Style of deformable and rigid bodies. */
   solids: ['particles', 'skin', 'both'],
   colour: ['body', 'kind', 'speed', 'density', 'pressure', 'force'],
   map: ['viridis', 'cividis', 'turbo', 'blue-red'],
-  /** The axis along which what lies beyond `clipAt` is cut away. */
+  /** The axis of the clip plane at `clipAt`. */
   clip: ['off', 'x', 'y', 'z'],
-  /** Motion between frames; `auto`: unless the processor draws. */
+  /** Interpolation between frames; `auto`: unless the CPU draws. */
   smooth: ['auto', 'on', 'off'],
 } as const;
 
-/** All off by default. */
+/** Switches, off by default. */
 export const kSwitches = [
   'clipOther',
-  /** Along the velocities of particles. */
+  /** Arrows along the velocities of particles. */
   'arrows',
-  /** And centres of mass, of rigid bodies. */
+  /** Axes and centres of mass of rigid bodies. */
   'axes',
-  /** As wide as particles feel each other. */
+  /** Search cells, one support radius wide. */
   'cells',
-  /** Of deformable bodies, by how far they are strained. */
+  /** Springs of deformable bodies, coloured by strain. */
   'springs',
-  /** Between bodies, by their forces. */
+  /** Contacts between bodies, coloured by force. */
   'contacts',
 ] as const;
 
-/** Undefined by default. */
+/** Numbers, undefined by default. */
 export const kNumbers = [
-  /** The values at the ends of the colour map; undefined: as they come. */
+  /** The values at the ends of the colour map; undefined: automatic. */
   'from',
   'to',
-  /** From 0 to 1 across the scene; undefined: in the middle. */
+  /** Position of the clip plane, 0 to 1 across the scene; undefined: the centre. */
   'clipAt',
 ] as const;
 
@@ -58,7 +58,7 @@ export function defaultSettings(): ViewSettings {
   ]) as unknown as ViewSettings;
 }
 
-/** In a few characters what differs from the defaults, such as "liquid:splats"; for addresses. */
+/** Returns the settings that differ from the defaults, such as "liquid:splats"; for addresses. */
 export function settingsToText(settings: ViewSettings): string {
   const usual = defaultSettings();
   const names = Object.keys(usual) as (keyof ViewSettings)[];
@@ -68,7 +68,7 @@ export function settingsToText(settings: ViewSettings): string {
     .join(',');
 }
 
-/** Reads what settingsToText wrote; what is unknown or wrong stays at its default. */
+/** Reads a text of settingsToText. Unknown or invalid settings keep their defaults. */
 export function settingsFromText(text: string): ViewSettings {
   const given = new Map<string, string>();
   for (const part of text.split(',')) {

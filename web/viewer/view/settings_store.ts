@@ -3,15 +3,15 @@ import type { ViewSettings } from './settings';
 
 const kKey = 'vat.view';
 
-/** Where settings are kept between visits: localStorage, or what stands in for it. */
+/** The storage of settings between visits: localStorage or a substitute. */
 export type Shelf = Pick<Storage, 'getItem' | 'setItem'>;
 
-/** The settings of this page's view; who subscribes is told of each change. */
+/** The settings of the view. Subscribers are notified of each change. */
 export class SettingsStore {
   private current: ViewSettings;
   private readonly listeners: ((settings: ViewSettings) => void)[] = [];
 
-  /** A link to this page may carry settings, as text; else they are those of the last visit. */
+  /** Uses the settings of the page's link, otherwise those of the last visit. */
   constructor(
     private readonly shelf: Shelf,
     linked?: string,
@@ -23,7 +23,7 @@ export class SettingsStore {
     return this.current;
   }
 
-  /** For links: what differs from the defaults; empty where nothing does. */
+  /** The settings that differ from the defaults, for links. */
   get text(): string {
     return settingsToText(this.current);
   }
@@ -33,19 +33,19 @@ export class SettingsStore {
     try {
       this.shelf.setItem(kKey, this.text);
     } catch {
-      // A browser that stores nothing forgets the settings with the page, as it is meant to.
+      // Without storage, the settings are lost with the page.
     }
     for (const tell of this.listeners) tell(this.current);
   }
 
-  /** Tells the settings now and after each change. */
+  /** Notifies a listener now and after each change. */
   subscribe(listener: (settings: Readonly<ViewSettings>) => void): void {
     this.listeners.push(listener);
     listener(this.current);
   }
 }
 
-/** The settings that the fragment of a page's address carries as `#view=`. */
+/** Returns the settings in the fragment of the page's address, `#view=`. */
 export function linkedSettings(page: string): string | undefined {
   return new URLSearchParams(new URL(page).hash.slice(1)).get('view') ?? undefined;
 }
@@ -54,6 +54,6 @@ function readShelf(shelf: Shelf): string {
   try {
     return shelf.getItem(kKey) ?? '';
   } catch {
-    return ''; // browsers may forbid it
+    return ''; // browsers can deny access
   }
 }

@@ -2,12 +2,12 @@ import { Color, CustomBlending, MinEquation, OneFactor, ShaderMaterial, Vector4 
 import { kPlaceOfParticle } from './impostor';
 import type { BodyUniforms } from './impostor';
 
-/** The floor that shadows fall on; one object serves all bodies. */
+/** The uniforms of the floor with shadows; one object for all bodies. */
 export interface FloorUniforms {
   floor_z: { value: number };
-  /** Least and greatest x and y: min x, min y, max x, max y. */
+  /** Bounds of the floor: min x, min y, max x, max y. */
   floor_bounds: { value: Vector4 };
-  /** Height above the floor at which a particle casts no shadow any more [m]. */
+  /** The height above the floor from which particles cast no shadow [m]. */
   reach: { value: number };
   floor_colour: { value: Color };
   shadow_colour: { value: Color };
@@ -38,7 +38,7 @@ const kVertexShader = /* glsl */ `
     spot = position.xy;
     at = world.xy + 2.2 * radius * position.xy;
     gl_Position = is_clipped(world)
-      ? vec4(2.0, 2.0, 2.0, 1.0) // outside of every picture
+      ? vec4(2.0, 2.0, 2.0, 1.0) // outside of the picture
       : projectionMatrix * viewMatrix * vec4(at, floor_z, 1.0);
   }
 `;
@@ -60,8 +60,8 @@ const kFragmentShader = /* glsl */ `
 `;
 
 /**
- * A soft dark spot on the floor below each particle; the darkest wins, so spots do not add up.
- * Not marked transparent: it is drawn after the floor and before all spheres.
+ * A soft shadow on the floor below each particle. The darkest value counts, so shadows do not add
+ * up. The material is not transparent, so that it is drawn after the floor and before all spheres.
  */
 export function shadowMaterial(
   radius: number,

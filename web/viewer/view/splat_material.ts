@@ -2,18 +2,18 @@ import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 't
 import { kImpostorHit, kImpostorVertexShader } from './impostor';
 import type { BodyUniforms } from './impostor';
 
-/** Of the splat's radius: how far below the surface of the nearest splat others still count. */
+/** Depth below the nearest splat within which others count, relative to the splat radius. */
 const kLayer = 0.6;
 
 const kDepth = /* glsl */ `
-    if (inside <= 0.65) discard; // the faint rim must not hide what is behind
+    if (inside <= 0.65) discard; // the faint rim must not hide objects behind
     vec3 point = (along - radius * (0.6 * sqrt(inside) - ${kLayer})) * ray;
     gl_FragDepth = depth_of(point);
     shape = tints = vec4(0.0);
   }
 `;
 
-/** Each splat is a lens; normal, depth and colour of lenses that overlap are blended. */
+/** Each splat is a lens. Normals, depths and colours of overlapping lenses are blended. */
 const kSplat = /* glsl */ `
     if (inside <= 0.0) discard;
     vec3 point = (along - 0.6 * radius * sqrt(inside)) * ray;
@@ -30,7 +30,7 @@ const kOutputs = /* glsl */ `
   layout(location = 1) out vec4 tints;
 `;
 
-/** Of a particle's radius: splats overlap, so that a liquid closes up to one surface. */
+/** Splat radius / particle radius. Splats overlap and form a closed surface. */
 const kSize = 2;
 
 function splatShader(uniforms: BodyUniforms, radius: number, shade: string): ShaderMaterial {
@@ -42,14 +42,14 @@ function splatShader(uniforms: BodyUniforms, radius: number, shade: string): Sha
   });
 }
 
-/** Writes depths only: just below the surface that the splats are to form. */
+/** Writes depths only, slightly below the surface of the splats. */
 export function splatDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
   const material = splatShader(body, radius, kDepth);
   material.colorWrite = false;
   return material;
 }
 
-/** Adds up what makes the surface: LiquidPass divides by the weights. */
+/** Sums the weighted properties of the surface. LiquidPass divides by the weights. */
 export function splatMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
   const material = splatShader(body, radius, kSplat);
   material.depthWrite = false;

@@ -13,11 +13,11 @@ import { graphicsOf } from './graphics';
 import type { Graphics } from './graphics';
 import type { Theme } from './theme';
 
-/** From where the first camera looks at the middle of the scene; z is up. */
+/** Direction of the initial camera from the centre of the scene; z is up. */
 const kFirstView = new Vector3(0.42, -1, 0.5).normalize();
 const kFirstMargin = 1.15;
 
-/** Renderer, camera and its controls. Draws when something has changed, at most once a frame. */
+/** Renderer, camera and its controls. Draws after changes, at most once per animation frame. */
 export class Stage {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
@@ -29,12 +29,12 @@ export class Stage {
   private fluidLook: FluidLook | undefined;
   private stale = true;
   private drewLast = false;
-  /** Told of each picture, when [ms] and whether one was drawn in the animation frame before. */
+  /** Called after each picture: its time [ms], and whether the previous animation frame was drawn. */
   onDrawn: (at: number, follows: boolean) => void = () => undefined;
-  /** What the first view shows; undefined once the user has turned it. */
+  /** The box in the initial view; undefined after the user has rotated it. */
   private framed: Box3 | undefined = new Box3();
 
-  /** `beforeDraw` runs once in each animation frame. */
+  /** `beforeDraw` is called once per animation frame. */
   constructor(
     readonly canvas: HTMLCanvasElement,
     shared: SharedUniforms,
@@ -48,7 +48,7 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
-    this.controls.maxPolarAngle = 0.495 * Math.PI; // the floor is not seen from below
+    this.controls.maxPolarAngle = 0.495 * Math.PI; // the camera stays above the floor
     this.controls.addEventListener('change', () => this.invalidate());
     this.controls.addEventListener('start', () => (this.framed = undefined));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
@@ -59,7 +59,7 @@ export class Stage {
     this.stale = true;
   }
 
-  /** Whether the pointer turns the view. */
+  /** Whether the pointer rotates the view. */
   set turnable(turnable: boolean) {
     this.controls.enabled = turnable;
   }
@@ -70,7 +70,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /** How liquids are drawn, and what they are like; undefined: there are none. */
+  /** Sets the style and appearance of liquids; undefined: there are none. */
   showLiquid(style: LiquidStyle, look: FluidLook | undefined): void {
     this.style = style;
     this.fluidLook = look;
@@ -78,24 +78,24 @@ export class Stage {
     this.invalidate();
   }
 
-  /** What this browser draws with. */
+  /** The properties of the browser's graphics. */
   get graphics(): Graphics {
     return graphicsOf(this.renderer);
   }
 
-  /** Goes back to the first view, of what `follow` is given next. */
+  /** Returns to the initial view of the next box of `follow`. */
   reframe(): void {
     this.framed = new Box3();
   }
 
-  /** Keeps the whole box in sight, until the user turns the view. */
+  /** Keeps the whole box in view until the user rotates it. */
   follow(box: Box3): void {
     if (!this.framed || box.isEmpty() || box.equals(this.framed)) return;
     this.framed.copy(box);
     this.showFramed();
   }
 
-  /** The line from the eye through a point of the window. */
+  /** Returns the ray from the eye through a point of the window. */
   rayThrough(clientX: number, clientY: number): Ray {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const point = new Vector2(
@@ -107,12 +107,12 @@ export class Stage {
     return caster.ray;
   }
 
-  /** Direction in which the camera looks. */
+  /** Returns the direction of view. */
   viewDirection(): Vector3 {
     return this.camera.getWorldDirection(new Vector3());
   }
 
-  /** From where the camera looks, and at what. */
+  /** The pose of the camera. */
   get pose(): Pose {
     return { eye: this.camera.position.clone(), target: this.controls.target.clone() };
   }

@@ -11,7 +11,7 @@ export interface Theme {
   wall: Color;
   /** Arrows. */
   mark: Color;
-  /** Mirrored by liquids: near the ground and overhead. */
+  /** The sky reflected by liquids: near the ground and overhead. */
   skyLow: Color;
   skyHigh: Color;
 }
@@ -28,7 +28,7 @@ const kProperties: Readonly<Record<keyof Theme, string>> = {
   skyHigh: '--view-sky-high',
 };
 
-/** The theme that the page's style gives, be it light or dark. */
+/** Returns the theme of the page's style, light or dark. */
 export function readTheme(): Theme {
   const probe = document.createElement('i');
   document.body.append(probe);
@@ -42,7 +42,7 @@ export function readTheme(): Theme {
   return theme as Record<keyof Theme, Color>;
 }
 
-/** Tells when the page's style may have become another: the system's or the page's own switch. */
+/** Notifies of possible changes of the page's style, by the system or by the page's switch. */
 export function watchTheme(onChange: () => void): void {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', onChange);
   new MutationObserver(onChange).observe(document.documentElement, { attributes: true });

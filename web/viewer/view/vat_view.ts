@@ -6,7 +6,7 @@ import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeome
 import type { Vector, VatDescription } from '../../client/index';
 import type { Theme } from './theme';
 
-/** The vat: edges, a floor, and far walls just tinted enough to be seen. */
+/** The vat: edges, a floor, and slightly tinted far walls. */
 export class VatView {
   readonly group = new Group();
   private readonly low: Vector3;
@@ -37,7 +37,7 @@ export class VatView {
 
     this.floor = new Mesh(new PlaneGeometry(size.x, size.y), new MeshBasicMaterial());
     this.floor.position.set(middle.x, middle.y, low.z);
-    this.floor.material.depthWrite = false; // spheres may dip into it by their drawn radius
+    this.floor.material.depthWrite = false; // drawn spheres can overlap the floor
 
     this.group.add(this.floor, this.walls, this.edges);
     this.paint(look);
@@ -49,18 +49,18 @@ export class VatView {
     this.floor.material.color.copy(look.floor);
   }
 
-  /** Moves the vat from its place at time 0. */
+  /** Moves the vat to a displacement from its position at time 0. */
   moveTo(offset: Vector): void {
     this.group.position.set(...offset);
   }
 
-  /** Where it is now. */
+  /** The present box. */
   get box(): Box3 {
     const { position } = this.group;
     return new Box3(this.low.clone().add(position), this.high.clone().add(position));
   }
 
-  /** Makes the box hold the vat where it is now. */
+  /** Extends the box to contain the vat at its present position. */
   expand(box: Box3): void {
     box.union(this.box);
   }

@@ -12,19 +12,19 @@ import { Stage } from './stage';
 import { readTheme, watchTheme } from './theme';
 import { World } from './world';
 
-/** Where frames come from, as far as it is told what they should hold. */
+/** The source of frames, which receives the requested attributes. */
 export interface FrameSource {
   askFor(attributes: Attributes): void;
 }
 
-/** What tells how frames follow one another; see Playout. */
+/** The timing of frames; see Playout. */
 export interface Motion {
   smooth: boolean;
   phaseAt(now: number): number;
   readonly delaySeconds: number;
 }
 
-/** The drawn world as the user wants it: the settings of the view, carried out. */
+/** The drawn world with the user's settings. */
 export class View {
   readonly settings = new SettingsStore(localStorage, linkedSettings(location.href));
   readonly stage: Stage;
@@ -38,7 +38,7 @@ export class View {
   private phase = 1;
   private surfaces = 0;
 
-  /** `beforeDraw` runs once in each animation frame. */
+  /** `beforeDraw` is called once per animation frame. */
   constructor(
     canvas: HTMLCanvasElement,
     private readonly source: FrameSource,
@@ -64,7 +64,7 @@ export class View {
     this.apply();
   }
 
-  /** Whether the frame is of the world described. */
+  /** Shows a frame. Returns whether it belongs to the described world. */
   show(frame: Frame): boolean {
     if (!this.world.show(frame)) return false;
     this.scale.settle();
@@ -73,25 +73,25 @@ export class View {
     return true;
   }
 
-  /** Moves the picture to what is to be seen at `now` [s]. */
+  /** Interpolates the picture to `now` [s]. */
   move(now: number): void {
     const phase = this.motion.phaseAt(now);
     if (phase !== this.phase || phase < 1) this.stage.invalidate();
     this.phase = this.world.phase = phase;
   }
 
-  /** How much later than it could be the picture is, for the motion to be smooth [s]. */
+  /** The delay for smooth motion [s]. */
   get delaySeconds(): number {
     return this.motion.delaySeconds;
   }
 
-  /** Tells, now and later, what explains the picture, and why it is not as it could be. */
+  /** Notifies of texts that explain the picture and its limitations, now and after changes. */
   onWords(listener: (words: string[]) => void): void {
     this.listeners.push(listener);
     this.apply();
   }
 
-  /** Draws everything in the colours of the theme. */
+  /** Applies the colours of the theme. */
   paint(): void {
     const look = readTheme();
     this.world.paint(look);
@@ -121,14 +121,14 @@ export class View {
     for (const tell of this.listeners) tell(all);
   }
 
-  /** A surface around particles is there, of those that are made beside the page. */
+  /** Draws after a worker has computed a surface. */
   private showSurface(): void {
     this.surfaces += 1;
     this.stage.canvas.dataset.surfaces = String(this.surfaces);
     this.stage.invalidate();
   }
 
-  /** Frames have the numbers that colours tell, and no others. */
+  /** Requests the attributes that colours show, and no others. */
   private askFor({ colour }: ViewSettings): void {
     const name = quantityOf(colour);
     const error = name && quantityError(name, this.world.height);
@@ -140,7 +140,7 @@ export class View {
     this.stage.invalidate();
   }
 
-  /** Weak graphics get the simpler liquid by themselves, until they are asked for the other. */
+  /** Selects the simpler liquid style on slow graphics, unless the user has chosen a style. */
   private watchPace(at: number, follows: boolean): void {
     if (this.isSlow || this.style !== 'fluid' || !this.world.fluid) return;
     this.pace.add(at, follows);

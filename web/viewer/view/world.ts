@@ -25,7 +25,7 @@ import type { SharedUniforms } from './shared_uniforms';
 import { Workshop } from './surface/workshop';
 import { VatView } from './vat_view';
 
-/** Of the vat's least width: as deep, a liquid has its full colour. */
+/** The depth with full colour, relative to the vat's smallest width. */
 const kClarity = 0.6;
 
 /** A particle under the pointer. */
@@ -35,14 +35,14 @@ export interface Picked {
   position: Vector3;
 }
 
-/** Where a particle is now, its radius, and how many its body has. */
+/** Position and radius of a particle, and the number of particles of its body. */
 export interface Shown {
   position: Vector3;
   radius: number;
   particles: number;
 }
 
-/** Everything that a session shows: its bodies, its vat, and the ground below. */
+/** The contents of a session: bodies, vat and ground. */
 export class World {
   readonly group = new Group();
   readonly marks = new Marks();
@@ -50,17 +50,17 @@ export class World {
   private bodies = new Map<number, BodyView>();
   private vat: VatView | undefined;
   private description: SessionDescription | undefined;
-  /** Where the vat has been or, without one, where the bodies were at first. */
+  /** The union of the vat's positions or, without a vat, the initial extent of the bodies. */
   private seen = new Box3();
   private style: LiquidStyle = 'splats';
   private solids: Choice<'solids'> = 'particles';
   private colouring: Choice<'colour'> = 'body';
   private readonly workshop = new Workshop();
-  /** Told when something has changed between frames. */
+  /** Called after changes between frames. */
   onChange: () => void = () => undefined;
-  /** Of the last frame [s]. */
+  /** Time of the last frame [s]. */
   private time: number | undefined;
-  /** Told what values the bodies of a frame have, of what colours tell. */
+  /** Receives the range of the coloured quantity in each frame. */
   onValues: (range: Range) => void = () => undefined;
 
   constructor(
@@ -72,7 +72,7 @@ export class World {
     this.paint(look);
   }
 
-  /** Shows what is described; what was there of the same scene stays in sight until it moves on. */
+  /** Shows a description. Bodies of the same scene remain visible until the next frame. */
   describe(description: SessionDescription): void {
     const { session, scene, vat } = description;
     const before = this.description;
@@ -99,7 +99,7 @@ export class World {
     this.marks.describe([...this.bodies.values()], this.height);
   }
 
-  /** The one that was there, where it is of the same body. */
+  /** Returns the existing view if it can show the body. */
   private viewOf(body: BodyDescription, nth: number, old: BodyView | undefined): BodyView {
     if (old?.isOf(body, nth)) {
       old.rest();
@@ -113,7 +113,7 @@ export class World {
     return view;
   }
 
-  /** Returns false for a frame of another epoch, which this world cannot show. */
+  /** Shows a frame. Returns false if it belongs to another epoch. */
   show(frame: Frame): boolean {
     if (frame.header.epoch !== this.description?.epoch) return false;
     const seconds = frame.header.time - (this.time ?? frame.header.time);
@@ -128,13 +128,13 @@ export class World {
     return true;
   }
 
-  /** Between the last two frames: 0 at the one before, 1 at the newest. */
+  /** Interpolates between the previous frame (0) and the newest (1). */
   set phase(phase: number) {
     this.shared.look.phase.value = phase;
     for (const view of this.bodies.values()) view.phase = phase;
   }
 
-  /** What colours tell, from the next frame on. */
+  /** Sets the coloured quantity, from the next frame on. */
   set colour(colour: Choice<'colour'>) {
     this.colouring = colour;
     for (const view of this.bodies.values()) view.colour = colour;
@@ -151,7 +151,7 @@ export class World {
     this.onValues(view.valueRange(values));
   }
 
-  /** What a camera should see; the slides of a vat are known only once they were seen. */
+  /** The box for the camera. It includes all previous positions of a moving vat. */
   get bounds(): Box3 {
     return this.seen;
   }
@@ -169,7 +169,7 @@ export class World {
     return nearest;
   }
 
-  /** Undefined once it or its body is gone. */
+  /** Returns a particle; undefined if it or its body was removed. */
   particle(body: number, particle: number): Shown | undefined {
     const view = this.bodies.get(body);
     const position = view?.positionOf(particle);
@@ -177,19 +177,19 @@ export class World {
     return of && position && { position, ...of };
   }
 
-  /** Whether no particle touches what has its middle there, but those of the body left out. */
+  /** Returns whether no particle, except those of one body, touches a footprint. */
   isFree(middle: Vector3, footprint: Footprint, except?: number): boolean {
     return [...this.bodies].every(
       ([body, view]) => body === except || view.isFree(middle, footprint),
     );
   }
 
-  /** The room that a body takes, about its middle. */
+  /** Returns the space of a body, relative to its centre. */
   footprintOf(body: number): Footprint | undefined {
     return this.bodies.get(body)?.footprint();
   }
 
-  /** The particle of a body that is next to its middle. */
+  /** Returns the particle closest to a body's centre. */
   middleOf(body: number): { particle: number; position: Vector3 } | undefined {
     return this.bodies.get(body)?.middle();
   }
@@ -203,37 +203,37 @@ export class World {
     this.shared.floor.shadow_colour.value.copy(look.shadow);
   }
 
-  /** Where what is shown is now: in the vat where there is one. */
+  /** The present extent: that of the vat if there is one. */
   get extent(): Box3 {
     return this.vat?.box ?? this.seen;
   }
 
-  /** How high what happens can be [m]. */
+  /** The height of the scene [m]. */
   get height(): number {
     const { min, max } = this.extent;
     return max.z > min.z ? max.z - min.z : 1;
   }
 
-  /** How liquids are drawn. */
+  /** Sets the style of liquids. */
   set liquidStyle(style: LiquidStyle) {
     this.style = style;
     for (const view of this.bodies.values()) view.liquidStyle = style;
   }
 
-  /** How deformable and rigid bodies are drawn. */
+  /** Sets the style of deformable and rigid bodies. */
   set solidStyle(style: Choice<'solids'>) {
     this.solids = style;
     for (const view of this.bodies.values()) view.solidStyle = style;
   }
 
-  /** How many particles liquids have. */
+  /** The number of liquid particles. */
   get liquidParticles(): number {
     return [...this.bodies.values()]
       .filter(({ description }) => description.kind === 'liquid')
       .reduce((sum, { count }) => sum + count, 0);
   }
 
-  /** Of the scene's liquids; undefined where there are none. */
+  /** The appearance of the scene's liquids; undefined without liquids. */
   get fluid(): FluidLook | undefined {
     const { vat, bodies = [] } = this.description ?? {};
     const radii = bodies.filter(({ kind }) => kind === 'liquid').map(({ radius }) => radius);
@@ -259,7 +259,7 @@ export class World {
     );
   }
 
-  /** Without a vat the bodies say, as they are now, where to look and where the ground is. */
+  /** Sets the camera's box and the ground from the bodies if there is no vat. */
   private settle(): void {
     for (const view of this.bodies.values()) view.expand(this.seen);
     if (!this.seen.isEmpty()) this.ground.fit(this.seen);

@@ -1,19 +1,19 @@
 import type { ViewSettings } from '../settings';
-import type { LookUniforms } from '../shared_uniforms';
+import type { LookUniforms } from '../look_uniforms';
 import { fillMapTexture, isDiverging } from './maps';
 import { quantityOf } from './quantity';
 import type { QuantityName } from './quantity';
 import { AutoRange } from './range';
 import type { Range } from './range';
 
-/** What colours mean at the moment. */
+/** The present meaning of colours. */
 export interface Meaning {
   quantity: QuantityName;
   map: ViewSettings['map'];
   range: Range;
 }
 
-/** Which number has which colour: the map, and the values at its ends, fixed or as they come. */
+/** The colour scale: a map, and the values at its ends, fixed or automatic. */
 export class ColourScale {
   private settings: Pick<ViewSettings, 'colour' | 'map' | 'from' | 'to'> | undefined;
   private auto = new AutoRange(false);
@@ -22,7 +22,7 @@ export class ColourScale {
 
   constructor(private readonly uniforms: LookUniforms) {}
 
-  /** Tells, after each change, what colours mean; undefined: no numbers. */
+  /** Notifies a listener after each change of the meaning; undefined: colours show no numbers. */
   subscribe(listener: (meaning: Meaning | undefined) => void): void {
     this.listeners.push(listener);
   }
@@ -35,13 +35,13 @@ export class ColourScale {
     this.show();
   }
 
-  /** Values of one body of a frame. */
+  /** Adds the range of one body of a frame. */
   add({ min, max }: Range): void {
     this.frame.min = Math.min(this.frame.min, min);
     this.frame.max = Math.max(this.frame.max, max);
   }
 
-  /** All bodies of a frame have been added. */
+  /** Updates the scale after the last body of a frame. */
   settle(): void {
     if (!this.settings || !quantityOf(this.settings.colour)) return;
     this.auto.add(this.frame);
@@ -49,7 +49,7 @@ export class ColourScale {
     this.show();
   }
 
-  /** The values to come are of another scene. */
+  /** Resets the automatic range for another scene. */
   forget(): void {
     this.auto = new AutoRange(isDiverging(this.settings?.map ?? 'viridis'));
   }

@@ -4,10 +4,10 @@ import type { Choice } from '../settings';
 type MapName = Choice<'map'>;
 
 /**
- * Colours at even steps, from the least value to the greatest. viridis: S. van der Walt and
- * N. Smith (2015, CC0), every sixteenth of its table. cividis: J. Nuñez, C. Anderton and R. Renslow,
- * PLoS ONE 13 (2018) e0199239; turbo: A. Mikhailov (Google, 2019, Apache 2.0); both as the
- * polynomials of d3-scale-chromatic give them. blue-red: RdBu of C. Brewer's ColorBrewer 2, reversed.
+ * Colours at equal steps, from the smallest to the largest value. viridis: S. van der Walt and
+ * N. Smith (2015, CC0), every sixteenth colour of its table. cividis: J. Nuñez, C. Anderton and
+ * R. Renslow, PLoS ONE 13 (2018) e0199239. turbo: A. Mikhailov (Google, 2019, Apache 2.0). Both use
+ * the polynomials of d3-scale-chromatic. blue-red: RdBu of C. Brewer's ColorBrewer 2, reversed.
  */
 const kStops: Readonly<Record<MapName, string>> = {
   viridis:
@@ -21,17 +21,17 @@ const kStops: Readonly<Record<MapName, string>> = {
 
 const kTextureWidth = 256;
 
-/** The map's colours, as CSS has them, at even steps from the least value to the greatest. */
+/** Returns the map's CSS colours at equal steps, from the smallest to the largest value. */
 export function mapStops(name: MapName): string[] {
   return kStops[name].split(' ').map((stop) => `#${stop}`);
 }
 
-/** Whether its middle is a value of its own, from which others differ to one side or the other. */
+/** Returns whether the map is diverging: its centre represents a reference value. */
 export function isDiverging(name: MapName): boolean {
   return name === 'blue-red';
 }
 
-/** Red, green, blue of the map at `at`, 0 to 1, each from 0 to 255. */
+/** Returns red, green and blue (0 to 255) of the map at `at` (0 to 1). */
 export function mapColour(name: MapName, at: number): [number, number, number] {
   const stops = mapStops(name).map((stop) => parseInt(stop.slice(1), 16));
   const place = Math.min(Math.max(at, 0), 1) * (stops.length - 1);
@@ -43,7 +43,7 @@ export function mapColour(name: MapName, at: number): [number, number, number] {
   return [mix(16), mix(8), mix(0)];
 }
 
-/** The map as a row of pixels. */
+/** Returns the map as a texture of one row. */
 export function mapTexture(): DataTexture {
   const texture = new DataTexture(new Uint8Array(4 * kTextureWidth), kTextureWidth, 1);
   texture.colorSpace = SRGBColorSpace;
@@ -60,5 +60,5 @@ export function fillMapTexture(texture: DataTexture, name: MapName): void {
   texture.needsUpdate = true;
 }
 
-/** Of particles that have no value of what is shown. */
+/** The colour of particles without a value. */
 export const kNoValue = new Color('#8c959e');

@@ -1,13 +1,13 @@
 import type { Attributes } from '../../../client/index';
 import type { Choice } from '../settings';
 
-/** What numbers of particles can be shown by colour. */
+/** The quantities that colours can show. */
 export type QuantityName = Exclude<Choice<'colour'>, 'body' | 'kind'>;
 
 export interface Quantity {
   title: string;
   unit: string;
-  /** Its column in frames. */
+  /** Index of the attribute in frames. */
   column: number;
 }
 
@@ -18,7 +18,7 @@ export const kQuantities: Readonly<Record<QuantityName, Quantity>> = {
   force: { title: 'Force per mass', unit: 'm/s²', column: 3 },
 };
 
-/** What frames call it. */
+/** Returns the attribute of the protocol. */
 export function attributeOf(name: QuantityName): keyof Attributes {
   return name === 'force' ? 'acceleration' : name;
 }
@@ -27,14 +27,14 @@ export function quantityOf(colour: Choice<'colour'>): QuantityName | undefined {
   return colour === 'body' || colour === 'kind' ? undefined : colour;
 }
 
-/** Gravity [m/s²] and density [kg/m³] that scenes have about; they only say how fine is enough. */
+/** Typical gravity [m/s²] and density [kg/m³], for the resolution of attributes. */
 const kGravity = 9.81;
 const kDensity = 1000;
 
-/** More steps than this between nothing and the most that a scene of this height has are not seen. */
+/** The number of distinguishable steps between zero and the typical maximum. */
 const kSteps = 200;
 
-/** How exactly frames should have the quantity, in a scene so high [m]: as well as colours tell. */
+/** Returns the required error of a quantity, for the resolution of colours and a scene height [m]. */
 export function quantityError(name: QuantityName, height: number): number {
   switch (name) {
     case 'speed':
@@ -48,7 +48,7 @@ export function quantityError(name: QuantityName, height: number): number {
   }
 }
 
-/** A number with three digits that mean something. */
+/** Formats a number with three significant digits. */
 export function formatQuantity(value: number): string {
   if (value === 0) return '0';
   const power = Math.floor(Math.log10(Math.abs(value)));

@@ -1,17 +1,17 @@
-/** From the least to the greatest value that colours tell apart. */
+/** The range of values that colours distinguish. */
 export interface Range {
   min: number;
   max: number;
 }
 
-/** Of its width: how much of what is left over goes away with each frame. */
+/** The share of the unused width that is removed per frame. */
 const kShrink = 0.04;
 
-/** Follows the values shown: widens at once, narrows slowly, so that colours do not flicker. */
+/** An automatic range. It widens immediately and narrows slowly, so that colours do not flicker. */
 export class AutoRange {
   private current: Range | undefined;
 
-  /** What of a diverging map's middle stands for 0 where values have both signs. */
+  /** If `isDiverging`, 0 is the centre of the range for values of both signs. */
   constructor(private readonly isDiverging: boolean) {}
 
   get range(): Range {
@@ -24,7 +24,7 @@ export class AutoRange {
   }
 
   add({ min, max }: Range): void {
-    if (!(min <= max)) return; // of no values
+    if (!(min <= max)) return; // no values
     const { current } = this;
     if (!current) this.current = { min, max };
     else {

@@ -29,7 +29,7 @@ const kSurface = /* glsl */ `
     return away * ray_at((vec2(place) + 0.5) / vec2(textureSize(depth, 0)));
   }
 
-  /** Along one direction, from the side on which the surface goes on more evenly. */
+  /** Returns the slope along one direction, from the side with the smaller step. */
   vec3 slope(ivec2 here, ivec2 aside, vec3 point) {
     float ahead = depth_at(here + aside);
     float back = depth_at(here - aside);
@@ -49,7 +49,7 @@ const kLight = /* glsl */ `
     vec3 colour = sum.rgb / sum.w;
     vec2 bent = at - normal.xy * 0.05 * min(sum.w / clarity, 1.0);
     bent = clamp(bent, 0.001, 0.999);
-    // What stands before the liquid is not seen through it.
+    // Objects in front of the liquid are not refracted.
     if (texture(behind_depth, bent).r < window_depth) bent = at;
     vec3 through = texture(behind, bent).rgb;
     mat3 to_world = transpose(mat3(viewMatrix));
@@ -91,7 +91,7 @@ const kLight = /* glsl */ `
   }
 `;
 
-/** The scene behind, and the liquid before it; writes the depths of both. */
+/** Composes the liquid and the scene behind it; writes the depths of both. */
 export function fluidCompositeMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kScreenVertexShader,

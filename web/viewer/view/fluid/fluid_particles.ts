@@ -11,13 +11,13 @@ const kDepth = /* glsl */ `
   }
 `;
 
-/** Of the particle's own radius: they overlap, so that a liquid closes up to one surface. */
+/** Drawn radius / particle radius. The spheres overlap and form a closed surface. */
 const kSize = 1.4;
 
-/** Spheres of that size over the cubes, two radii wide, that the particles stand for. */
+/** Volume of a drawn sphere / volume of a particle's cube, two radii wide. */
 const kShare = 8 / ((4 / 3) * Math.PI * kSize ** 3);
 
-/** What of the sphere lies before the scene behind; its colour counts by that. */
+/** The length of the ray in the sphere in front of the scene; it weights the colour. */
 const kThickness = /* glsl */ `
     if (inside <= 0.0) discard;
     float half_way = radius * sqrt(inside);
@@ -29,7 +29,7 @@ const kThickness = /* glsl */ `
   }
 `;
 
-/** Writes the distance along the view of the nearest point of each sphere [m]. */
+/** Writes the view distance of the nearest point of each sphere [m]. */
 export function fluidDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
@@ -39,7 +39,7 @@ export function fluidDepthMaterial(body: BodyUniforms, radius: number): ShaderMa
   });
 }
 
-/** Adds up how much liquid there is along each ray [m] and of which colour. */
+/** Sums the liquid thickness along each ray [m], and its colour. */
 export function fluidThicknessMaterial(
   body: BodyUniforms,
   radius: number,

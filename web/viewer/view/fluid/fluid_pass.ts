@@ -16,13 +16,13 @@ import type { Theme } from '../theme';
 import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 
-/** More rows than this are not worth their time: the surface is smooth. */
+/** The maximum number of rows of the textures; the surface is smooth, so more do not pay. */
 const kMostRows = 1000;
 
-/** Of the radius of a particle: how far apart places are that a smoothing averages over. */
+/** Spacing of the samples of each smoothing pass, relative to the particle radius. */
 const kSmoothing = [2, 1.3];
 
-/** What fluid materials of bodies need to know of the scene that they are drawn before. */
+/** Uniforms of the scene behind the liquid. */
 export interface BehindUniforms {
   behind_depth: IUniform<DepthTexture | null>;
   /** 1 / size of the thickness texture. */
@@ -33,19 +33,19 @@ export function behindUniforms(): BehindUniforms {
   return { behind_depth: { value: null }, texel: { value: new Vector2() } };
 }
 
-/** What a fluid is like where it is drawn. */
+/** The appearance of a fluid. */
 export interface FluidLook {
-  /** Radius of its particles [m]. */
+  /** Particle radius [m]. */
   radius: number;
-  /** Depth at which it has its full colour [m]. */
+  /** Depth with full colour [m]. */
   clarity: number;
-  /** 0: as clear as water; 1: paint, for colours that mean numbers. */
+  /** Opacity: 0 for clear water, 1 for paint, which shows coloured quantities. */
   paint: number;
 }
 
 /**
- * Liquids as one surface: depth of the nearest particle in each pixel, smoothed; thickness and
- * colour summed up along the ray; then refraction, absorption and reflection over the scene behind.
+ * Draws liquids as one surface: smoothed depth of the nearest particle per pixel, thickness and
+ * colour summed along the ray, then refraction, absorption and reflection over the scene behind.
  * After S. Green, "Screen space fluid rendering for games" (GDC 2010), with the filter of N. Truong
  * and C. Yuksel, "A narrow-range filter for screen-space fluid rendering" (2018).
  */
@@ -82,7 +82,7 @@ export class FluidPass {
     (this.composite.uniforms.sky_high!.value as Color).copy(look.skyHigh);
   }
 
-  /** Draws the whole scene with its liquids to the canvas. */
+  /** Draws the scene with its liquids to the canvas. */
   draw(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, look: FluidLook): void {
     this.resize(renderer);
     renderer.setRenderTarget(this.behind);
@@ -153,7 +153,7 @@ export class FluidPass {
     renderer.render(this.screen, camera);
   }
 
-  /** Over what the canvas shows, whose depths are known. */
+  /** Draws the marks over the canvas, with its depths. */
   private drawMarks(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera): void {
     renderer.autoClear = false;
     this.drawLayer(renderer, scene, camera, kLayers.marks);

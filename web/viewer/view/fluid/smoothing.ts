@@ -1,10 +1,10 @@
 import { ShaderMaterial, Vector2 } from 'three';
 import { kScreenVertexShader } from '../screen';
 
-/** Samples to each side at most; liquids seen from very near are smoothed less. */
+/** Maximum samples on each side. Close views are smoothed less. */
 const kMostSteps = 36;
 
-/** Of the particles' radius: depths farther off than that are another sheet of liquid. */
+/** Larger depth differences, in particle radii, belong to another sheet of liquid. */
 const kRange = 8;
 
 const kFragmentShader = /* glsl */ `
@@ -37,7 +37,7 @@ const kFragmentShader = /* glsl */ `
     for (int i = 1; i <= steps; ++i) {
       float a = depth_at(here + i * aside);
       float b = depth_at(here - i * aside);
-      // Both or none, so that an edge on one side does not pull the surface to the other.
+      // Both samples or none, so that an edge on one side does not displace the surface.
       if (min(a, b) <= 0.0 || min(a, b) < near) continue;
       float weight = exp(-0.5 * float(i * i) / (spread * spread));
       sum += weight * (min(a, far) + min(b, far));
@@ -49,7 +49,7 @@ const kFragmentShader = /* glsl */ `
   }
 `;
 
-/** Smooths depths along rows or columns and keeps the steps between sheets of liquid. */
+/** Smooths depths along rows or columns. Preserves steps between sheets of liquid. */
 export function smoothingMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kScreenVertexShader,

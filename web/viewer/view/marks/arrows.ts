@@ -5,7 +5,7 @@ import type { BodyUniforms } from '../impostor';
 import { kLayers } from '../layers';
 import type { ParticleColumns } from '../particle_columns';
 
-/** Across and along, of a shaft from 0 to 1 and of a head from 2 (its base) to 3 (its tip). */
+/** Corners (across, along): the shaft from 0 to 1, the head from 2 (base) to 3 (tip). */
 const kCorners = [
   [-1, 0, 1, 0, 1, 1, -1, 1],
   [-1, 2, 1, 2, 0, 3],
@@ -24,8 +24,8 @@ const kVertexShader = /* glsl */ `
   uniform vec3 angular;
 
   void main() {
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of every picture
-    // Scattered, for rows of them would hide one another.
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
+    // A scattered selection, because rows of arrows would hide one another.
     if (((number * 2654435761u) >> 8) % every != 0u || interval <= 0.0) return;
     vec3 place = place_of_particle();
     vec3 world = (modelMatrix * vec4(place, 1.0)).xyz;
@@ -55,12 +55,12 @@ const kFragmentShader = /* glsl */ `
   }
 `;
 
-/** Of all arrows. */
+/** The uniforms of all arrows. */
 export interface ArrowUniforms extends Record<string, IUniform> {
   ink: IUniform<Color>;
-  /** They point to where a particle would be after this time [s]. */
+  /** An arrow ends at the particle's extrapolated position after this time [s]. */
   seconds: IUniform<number>;
-  /** One of so many particles has one. */
+  /** Number of particles per arrow. */
   every: IUniform<number>;
 }
 
@@ -68,7 +68,7 @@ export function arrowUniforms(): ArrowUniforms {
   return { ink: { value: new Color() }, seconds: { value: 0 }, every: { value: 1 } };
 }
 
-/** An arrow along the velocity of each particle, over all else. */
+/** Returns arrows along the velocities of particles, drawn over the scene. */
 export function arrowMesh(
   columns: ParticleColumns,
   body: BodyUniforms,

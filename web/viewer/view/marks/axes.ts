@@ -4,18 +4,18 @@ import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import { kLayers } from '../layers';
 
-/** Of the axes x, y and z, as usual. */
+/** Colours of the axes x, y and z. */
 const kRed = [0.9, 0.12, 0.12];
 const kGreen = [0.1, 0.62, 0.16];
 const kBlue = [0.12, 0.3, 0.95];
 
-/** The centre of mass of a rigid body and its axes, over all else; in the body's own axes. */
+/** The centre of mass and the axes of a rigid body, drawn over the scene in body axes. */
 export class Axes {
   readonly group = new Group();
   private readonly lines: LineSegments2;
   private readonly dot: Mesh<SphereGeometry, MeshBasicMaterial>;
 
-  /** `size`: how far they reach [m]. */
+  /** `size` is the length of the axes [m]. */
   constructor(size: number) {
     const geometry = new LineSegmentsGeometry();
     geometry.setPositions([0, 0, 0, size, 0, 0, 0, 0, 0, 0, size, 0, 0, 0, 0, 0, 0, size]);

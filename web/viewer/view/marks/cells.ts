@@ -12,7 +12,7 @@ const kVertexShader = /* glsl */ `
   }
 `;
 
-/** Lines a pixel wide on each wall, but not along the wall's own axis. */
+/** Lines of one pixel on each wall, except along the wall's normal. */
 const kFragmentShader = /* glsl */ `
   in vec3 at;
   flat in vec3 facing;
@@ -28,7 +28,7 @@ const kFragmentShader = /* glsl */ `
   }
 `;
 
-/** Cells on the far walls of a box: as wide as the distance at which particles feel each other. */
+/** The search cells on the far walls of a box: one support radius wide. */
 export class Cells {
   readonly mesh: Mesh<BoxGeometry, ShaderMaterial>;
 
@@ -49,7 +49,7 @@ export class Cells {
     this.mesh.visible = false;
   }
 
-  /** Puts them into the box; they begin at its least corner. */
+  /** Fits the cells to the box, starting at its minimum corner. */
   fit(box: Box3, spacing: number): void {
     const { uniforms } = this.mesh.material;
     box.getCenter(this.mesh.position);

@@ -8,23 +8,23 @@ import { arrowMesh, arrowUniforms } from './arrows';
 import { Axes } from './axes';
 import { Cells } from './cells';
 
-/** More arrows than this hide one another. */
+/** The maximum number of arrows; more would hide one another. */
 const kMostArrows = 450;
 
-/** Of the height of the scene: how long the arrow of what has fallen from that height is. */
+/** Arrow length, relative to the scene's height, of a fall from that height. */
 const kArrowLength = 0.18;
 const kGravity = 9.81;
 
-/** Over a particle's radius: the support of its kernel, two distances between particles. */
+/** Support radius / particle radius: two spacings. */
 const kSupport = 4;
 
-/** Of one body; a rigid one has axes. */
+/** The marks of one body. Rigid bodies have axes. */
 interface BodyMarks {
   arrows: Mesh<BufferGeometry, Material>;
   axes: Axes | undefined;
 }
 
-/** What lies over the bodies to explain them: velocities, axes, and cells. */
+/** The marks over bodies: velocities, axes and cells. */
 export class Marks {
   readonly group = new Group();
   private readonly uniforms = arrowUniforms();
@@ -37,7 +37,7 @@ export class Marks {
     this.group.add(this.cells.mesh);
   }
 
-  /** Marks these bodies; the marks of others are gone with their groups. */
+  /** Adds marks to bodies. The marks of removed bodies disappear with their groups. */
   describe(bodies: readonly BodyView[], height: number): void {
     this.forgetAllBut(new Set(bodies));
     const particles = bodies.reduce((sum, { count }) => sum + count, 0);
@@ -60,7 +60,7 @@ export class Marks {
     this.cells.mesh.visible = settings.cells && this.support > 0;
   }
 
-  /** The scene has this extent now. */
+  /** Updates the extent of the scene. */
   follow(box: Box3): void {
     if (this.support > 0 && !box.isEmpty()) this.cells.fit(box, this.support);
   }
@@ -70,7 +70,7 @@ export class Marks {
     this.cells.paint(look.edge);
   }
 
-  /** What the marks mean, in words. */
+  /** The meaning of the marks as text. */
   get words(): string[] {
     const { arrows, cells } = this.settings ?? {};
     const seconds = Number(this.uniforms.seconds.value.toPrecision(1));

@@ -1,21 +1,20 @@
 /**
- * The triangles of marching cubes (W. Lorensen and H. Cline, 1987), made from what each face of the
- * cube shows, instead of from a table: W. Lorensen's has holes where neighbours decide otherwise.
- * Where two corners of a face across from each other are inside, they are kept apart; both cubes at
- * the face do so, and the surface is closed.
+ * The triangles of marching cubes (W. Lorensen and H. Cline, 1987), derived from the faces of the
+ * cube. The published table has holes at ambiguous faces. Here, two diagonally opposite inside
+ * corners of a face are separated by both adjacent cubes, so that the surface is closed.
  */
 
 /** Corner c of the cube is at (bit 0, bit 1, bit 2) of c. */
 const kCorners = 8;
 
-/** Edges as their two corners, the lower one first: along x, y and z. */
+/** Edges along x, y and z as pairs of corners, the lower one first. */
 export const kEdges: readonly (readonly [number, number])[] = [1, 2, 4].flatMap((axis) =>
   Array.from({ length: kCorners }, (_, corner) => corner)
     .filter((corner) => (corner & axis) === 0)
     .map((corner) => [corner, corner | axis] as const),
 );
 
-/** Corners of the six faces, in turn to the left as seen from outside. */
+/** Corners of the six faces, anticlockwise as seen from outside. */
 const kFaces: readonly (readonly number[])[] = [
   [0, 4, 6, 2],
   [1, 3, 7, 5],
@@ -30,7 +29,7 @@ function edgeBetween(a: number, b: number): number {
   return kEdges.findIndex(([first, second]) => first === low && second === high);
 }
 
-/** On one face: from the edge by which a run of inside corners is left to that by which it began. */
+/** Links, on one face, the edge after a run of inside corners to the edge before it. */
 function linkFace(face: readonly number[], inside: number, next: Map<number, number>): void {
   const isInside = (i: number): boolean => ((inside >> face[i & 3]!) & 1) === 1;
   for (let begin = 0; begin < 4; ++begin) {
@@ -42,7 +41,7 @@ function linkFace(face: readonly number[], inside: number, next: Map<number, num
   }
 }
 
-/** The edges that the corners of triangles are on, three by three, for the corners inside. */
+/** Returns the edges of the triangles' corners, three per triangle, for a set of inside corners. */
 function trianglesOf(inside: number): number[] {
   const next = new Map<number, number>();
   for (const face of kFaces) linkFace(face, inside, next);
@@ -61,7 +60,7 @@ function trianglesOf(inside: number): number[] {
   return triangles;
 }
 
-/** By the corners inside, one bit each. */
+/** The triangles, indexed by the inside corners, one bit each. */
 export const kTriangles: readonly (readonly number[])[] = Array.from({ length: 256 }, (_, inside) =>
   trianglesOf(inside),
 );

@@ -1,25 +1,25 @@
-/** Distances to a surface at the nodes of a grid: below 0 inside. */
+/** Distances to a surface at the nodes of a grid; negative inside. */
 export interface Field {
   /** Nodes along x, y and z; x runs fastest. */
   size: [number, number, number];
   origin: [number, number, number];
   step: number;
   distances: Float32Array;
-  /** Means of the particles' values near each node; of the same order. */
+  /** Means of the particles' values near each node, in the same order. */
   values: Float32Array | undefined;
 }
 
-/** Over a particle's radius: how far it counts. */
+/** Range of a particle / particle radius. */
 const kReach = 4;
 
-/** Over a particle's radius: distance of nodes, where memory allows. */
+/** Node spacing / particle radius, if memory permits. */
 const kStep = 1;
 const kMostNodes = 1_500_000;
 
 /**
- * The surface around particles after Y. Zhu and R. Bridson, "Animating sand as a fluid" (2005): at
- * each node, the distance to the weighted mean of the particles near it, less `size` times their
- * radius.
+ * Returns the surface field of particles after Y. Zhu and R. Bridson, "Animating sand as a fluid"
+ * (2005): at each node, the distance to the weighted mean of nearby particles minus `size` times
+ * their radius.
  */
 export function fieldAround(
   places: ArrayLike<number>,
@@ -56,7 +56,7 @@ export function fieldAround(
 
 type Grid = Pick<Field, 'size' | 'origin' | 'step'>;
 
-/** Nodes at whole steps, so that they stay where they are as particles move. */
+/** Returns nodes at multiples of the spacing, so that they remain fixed while particles move. */
 function gridAround(places: ArrayLike<number>, radius: number, reach: number): Grid {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];

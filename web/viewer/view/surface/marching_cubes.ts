@@ -1,7 +1,7 @@
 import { kEdges, kTriangles } from './cube_cases';
 import type { Field } from './field';
 
-/** Triangles whose corners are shared; normals point out. */
+/** Triangles with shared corners; normals point outwards. */
 export interface Surface {
   positions: Float32Array<ArrayBuffer>;
   normals: Float32Array<ArrayBuffer>;
@@ -9,7 +9,7 @@ export interface Surface {
   indices: Uint32Array<ArrayBuffer>;
 }
 
-/** The surface at which the field's distance is 0. */
+/** Returns the surface with distance 0. */
 export function marchingCubes(field: Field): Surface {
   const { size, distances } = field;
   const [nx, ny, nz] = size;
@@ -39,14 +39,14 @@ class MeshBuilder {
   private readonly positions: number[] = [];
   private readonly values: number[] = [];
   private readonly indices: number[] = [];
-  /** Which vertex is on the edge that begins at a node, along each axis; -1: none yet. */
+  /** The vertex on the edge from a node along each axis; -1: none yet. */
   private readonly vertices: Int32Array;
 
   constructor(private readonly field: Field) {
     this.vertices = new Int32Array(3 * field.distances.length).fill(-1);
   }
 
-  /** A corner of a triangle on the edge between two nodes, the first one lower. */
+  /** Adds a triangle corner on the edge between two nodes, the lower one first. */
   addCorner(low: number, high: number): void {
     const [nx, ny] = this.field.size;
     const axis = high - low === 1 ? 0 : high - low === nx ? 1 : 2;
@@ -81,7 +81,7 @@ class MeshBuilder {
   }
 }
 
-/** Means of the normals of the triangles around each vertex, by their areas. */
+/** Returns area-weighted means of the adjacent triangles' normals at each vertex. */
 function normalsOf(positions: Float32Array, indices: Uint32Array): Float32Array<ArrayBuffer> {
   const normals = new Float32Array(positions.length);
   for (let t = 0; t < indices.length; t += 3) {

@@ -8,14 +8,14 @@ import type { SurfaceJob, Workshop } from './workshop';
 
 type Job = Omit<SurfaceJob, 'key'>;
 
-/** A smooth surface around a body's particles, as new as it can be made. */
+/** A smooth surface around a body's particles, updated as fast as it can be computed. */
 export class Skin {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private isBusy = false;
   private next: Job | undefined;
   private isGone = false;
 
-  /** `onMade`: a surface is there to be drawn. */
+  /** `onMade` is called after each new surface. */
   constructor(
     private readonly workshop: Workshop,
     uniforms: BodyUniforms,
@@ -31,7 +31,7 @@ export class Skin {
     this.mesh.material.uniforms.opacity!.value = opacity;
   }
 
-  /** Particles have moved; of those told while a surface is made, the newest are next. */
+  /** Requests a surface for moved particles. During a computation, only the newest request is stored. */
   follow(job: Job): void {
     this.next = job;
     if (!this.isBusy) void this.work();

@@ -61,12 +61,12 @@ const kFragmentShader = /* glsl */ `
 `;
 
 export interface SkinLook {
-  /** 0 matt, 1 a liquid's. */
+  /** Gloss: 0 matt, 1 liquid. */
   wet: number;
   opacity: number;
 }
 
-/** Of surfaces that a body's particles are given. */
+/** Returns the material of surfaces around a body's particles. */
 export function skinMaterial(body: BodyUniforms, { wet, opacity }: SkinLook): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kVertexShader,

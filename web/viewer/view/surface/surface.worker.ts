@@ -1,4 +1,4 @@
-/** Makes surfaces around particles, so that the page's thread only draws them. */
+/** Computes surfaces around particles in a worker, so that the page's thread only draws. */
 import { fieldAround } from './field';
 import { marchingCubes } from './marching_cubes';
 import type { SurfaceJob } from './workshop';

@@ -1,16 +1,16 @@
 import type { Surface } from './marching_cubes';
 
-/** Particles to make a surface around; `radius` is in the units of the places. */
+/** Particles for a surface. `radius` has the units of the positions. */
 export interface SurfaceJob {
   key: number;
   places: Uint16Array | Float32Array;
   radius: number;
   values: Float32Array | undefined;
-  /** Over the radius: how far off single particles the surface is. */
+  /** Distance of the surface from a single particle / radius. */
   size: number;
 }
 
-/** Has surfaces made on another thread, which starts with the first one. */
+/** Computes surfaces in a worker, which starts at the first request. */
 export class Workshop {
   private worker: Worker | undefined;
   private readonly waiting = new Map<number, (surface: Surface) => void>();
