@@ -6,6 +6,8 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "server/cli/command.h"
 #include "tests/bench/document/markers.h"
@@ -44,32 +46,42 @@ std::map<std::string, std::string> case_titles() {
   return titles;
 }
 
-/// What each marker of the page stands for.
-Result<std::map<std::string, std::string>> make_contents(const fs::path& folder) {
-  const Result<Json> validation = read_document_rows(folder, "validate", "validation");
-  if (!validation) return validation.errors();
-  const Result<Json> cheapest = read_document_rows(folder, "accuracy", "cheapest");
-  if (!cheapest) return cheapest.errors();
-  const Result<Json> control = read_document_rows(folder, "accuracy", "control");
-  if (!control) return control.errors();
-  const Result<Json> solvers = read_document_rows(folder, "accuracy", "solvers");
-  if (!solvers) return solvers.errors();
-  const Result<Json> laws = read_document_rows(folder, "accuracy", "laws");
-  if (!laws) return laws.errors();
-  const Result<Json> stability = read_document_rows(folder, "stability", "stability");
-  if (!stability) return stability.errors();
-  try {
-    return std::map<std::string, std::string>{
-        {"cases", to_markdown(cases_table(validation.value(), case_titles()))},
-        {"limits", to_markdown(limits_table(validation.value()))},
-        {"methods", to_markdown(methods_table(cheapest.value()))},
-        {"solvers", to_markdown(solvers_table(solvers.value()))},
-        {"laws", to_markdown(laws_table(laws.value()))},
-        {"steps", to_markdown(steps_table(control.value()))},
-        {"counts", to_markdown(counts_table(stability.value()))}};
-  } catch (const std::exception& error) {
-    return Error{"bad_table", folder.string(), error.what()};
+/// The content of a marker: a table from the results of a command.
+struct Content {
+  const char* marker;
+  const char* command;
+  const char* name;  ///< of the result
+  Table (*make)(const Json& rows);
+};
+
+constexpr Content kContents[] = {
+    {"cases", "validate", "validation",
+     [](const Json& rows) { return cases_table(rows, case_titles()); }},
+    {"summary", "validate", "validation",
+     [](const Json& rows) { return summary_table(rows, case_titles()); }},
+    {"limits", "validate", "validation", limits_table},
+    {"methods", "accuracy", "cheapest", methods_table},
+    {"solvers", "accuracy", "solvers", solvers_table},
+    {"laws", "accuracy", "laws", laws_table},
+    {"steps", "accuracy", "control", steps_table},
+    {"counts", "stability", "stability", counts_table},
+    {"race", "race", "race", race_table}};
+
+/// Returns the contents of the markers that the page has.
+Result<std::map<std::string, std::string>> make_contents(const std::string& page,
+                                                         const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const Content& content : kContents) {
+    if (!has_marker(page, content.marker)) continue;
+    const Result<Json> rows = read_document_rows(folder, content.command, content.name);
+    if (!rows) return rows.errors();
+    try {
+      contents[content.marker] = to_markdown(content.make(rows.value()));
+    } catch (const std::exception& error) {
+      return Error{"bad_table", content.name, error.what()};
+    }
   }
+  return contents;
 }
 
 Status copy_picture(const fs::path& results, const fs::path& target) {
@@ -92,29 +104,35 @@ Status copy_picture(const fs::path& results, const fs::path& target) {
 Status write_document(const fs::path& results, const fs::path& page) {
   const Result<std::string> text = read_text(page);
   if (!text) return text.errors();
-  const Result<std::map<std::string, std::string>> contents = make_contents(results);
+  const Result<std::map<std::string, std::string>> contents = make_contents(text.value(), results);
   if (!contents) return contents.errors();
   const Result<std::string> filled = fill_markers(text.value(), contents.value());
   if (!filled) return filled.errors();
   for (const std::string& picture : pictures_of(text.value())) {
+    if (!picture.ends_with(".svg")) continue;  // not a result
     if (Status copied = copy_picture(results, page.parent_path() / picture); !copied) return copied;
   }
   return write_text(page, filled.value());
 }
 
 void add_document_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "document", "Fill tables and pictures of core/ACCURACY.md from the other commands' results");
+  CLI::App* command = app.add_subcommand("document",
+                                         "Fill tables and pictures of core/ACCURACY.md and "
+                                         "README.md from the other commands' results");
   const auto results = std::make_shared<std::string>(VAT_SOURCE_DIR "/build/bench");
-  const auto page = std::make_shared<std::string>(VAT_SOURCE_DIR "/core/ACCURACY.md");
+  const auto pages = std::make_shared<std::vector<std::string>>(
+      std::vector<std::string>{VAT_SOURCE_DIR "/core/ACCURACY.md", VAT_SOURCE_DIR "/README.md"});
   command->add_option("--results", *results, "Folder of the results")->capture_default_str();
-  command->add_option("--page", *page, "The page")->capture_default_str();
+  command->add_option("--page", *pages, "A page; may be given again")->take_all()->expected(1);
   command->footer(
       "Exit codes: 0 fine, 1 a result is missing or the page does not fit, 2 wrong usage.");
-  command->callback([results, page, &exit_code] {
-    const Status written = write_document(*results, *page);
-    exit_code = written ? kExitOk : fail("document", written.errors());
-    if (written) std::cout << "written to " << *page << '\n';
+  command->callback([results, pages, &exit_code] {
+    for (const std::string& page : *pages) {
+      const Status written = write_document(*results, page);
+      exit_code = written ? kExitOk : fail("document", written.errors());
+      if (!written) return;
+      std::cout << "written to " << page << '\n';
+    }
   });
 }
 

@@ -9,6 +9,7 @@
 #include "tests/bench/document.h"
 #include "tests/bench/fanout.h"
 #include "tests/bench/instructions.h"
+#include "tests/bench/race.h"
 #include "tests/bench/seeks.h"
 #include "tests/bench/soak.h"
 #include "tests/bench/speed.h"
@@ -36,6 +37,7 @@ int run_command(int argc, char** argv) {
   add_fanout_command(app, exit_code);
   add_seeks_command(app, exit_code);
   add_soak_command(app, exit_code);
+  add_race_command(app, exit_code);
   add_document_command(app, exit_code);
   try {
     app.parse(argc, argv);

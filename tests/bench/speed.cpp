@@ -17,7 +17,6 @@
 #include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/cases.h"
-#include "tests/bench/speed/peers.h"
 #include "tests/bench/speed/plots.h"
 #include "tests/bench/speed/skips.h"
 #include "tests/bench/speed/tables.h"
@@ -158,7 +157,6 @@ Status write_speed_results(const SpeedResults& results, const std::string& folde
   const auto& [rows, skips] = results;
   Status written = write_table(speed_table(rows, this_machine()), folder, "speed", "# Speed");
   if (written) written = write_table(stage_table(rows), folder, "stages", "# Time by stage");
-  if (written) written = write_part(peer_table(rows), folder, "peers", "# Beside the peer");
   if (written) written = write_part(skip_table(skips), folder, "skips", "# Work left out");
   if (!written) return written;
   return write_part(target_table(targets_of(rows, skips)), folder, "targets", "# Targets");

@@ -99,6 +99,10 @@ class Results {
           R"([{"part": "random", "scenes": 30, "not finite": 0, "aborts": 0, "outside": 0,
                "guard events": 5, "retries": 6, "wall stops": 0, "stopped": 0, "refused": 0,
                "faults": 0, "seconds": 1.5}])");
+    write("race/race.json",
+          R"([{"case": "10k-tait", "particles": 10648, "threads": 2, "vat [s/s]": 2.5,
+               "SPlisHSPlasH [s/s]": 10, "SPlisHSPlasH / vat": 4.125,
+               "density error of vat [%]": 0.25, "cpu": "C", "cores": 2}])");
     write("accuracy/P-time.svg", "<svg></svg>");
     write("page/page.md", kEmptyPage);
   }
@@ -172,6 +176,33 @@ TEST(BenchDocument, WritesTablesAndCopiesPictures) {
           "<!-- end counts -->\n"
           "![P](figures/P-time.svg)\n");
   EXPECT_EQ(read_file(results.file("page/figures/P-time.svg")), "<svg></svg>");
+}
+
+TEST(BenchDocument, FillsOnlyTheMarkersOfThePage) {
+  const Results results;
+  results.write("page/page.md",
+                "<!-- begin summary -->\n<!-- end summary -->\n<!-- begin race -->\n"
+                "<!-- end race -->\n![A](web/a.webp)\n");
+  ASSERT_TRUE(results.document());
+  EXPECT_EQ(read_file(results.file("page/page.md")),
+            "<!-- begin summary -->\n"
+            "| case | quantity | measured | reference and tolerance |\n"
+            "|---|---|---|---|\n"
+            "| " +
+                validation::all_cases().front().title +
+                " | y [m] | 2.75 | 2 +- 1 |\n"
+                "<!-- end summary -->\n"
+                "<!-- begin race -->\n"
+                "| dam break | particles | threads | vat [s] | SPlisHSPlasH [s] | ratio "
+                "| density error | machine |\n"
+                "|---|---|---|---|---|---|---|---|\n"
+                "| 10k-tait | 10648 | 2 | 2.5 | 10 | 4.12 | 0.25 % | C, 2 cores |\n"
+                "<!-- end race -->\n![A](web/a.webp)\n");
+}
+
+TEST(BenchDocument, ReadmeHasTheMarkersOfItsTables) {
+  const std::string page = read_file(fs::path(VAT_SOURCE_DIR) / "README.md");
+  EXPECT_TRUE(fill_markers(page, {{"summary", ""}, {"race", ""}}));
 }
 
 TEST(BenchDocument, MissingResultChangesNothing) {

@@ -11,7 +11,6 @@
 #include "tests/bench/speed/machine.h"
 #include "tests/bench/speed/measure.h"
 #include "tests/bench/speed/neighbours.h"
-#include "tests/bench/speed/peers.h"
 #include "tests/bench/speed/plots.h"
 #include "tests/bench/speed/scenes.h"
 #include "tests/bench/speed/skips.h"
@@ -103,15 +102,6 @@ TEST(BenchSpeedScenes, SizesAreThoseOfTheirNames) {
                 .value()
                 .particle_count(),
             10'648u);
-}
-
-TEST(BenchSpeedTables, PeerIsBesideItsCases) {
-  const Table table = peer_table({row("peer-dam-break-30k-tait", 4, 29'791, 2.7),
-                                  row("peer-dam-break-30k-tait", 2, 29'791, 2.7),
-                                  row("dam-break-30k-tait", 4, 31'250, 2.7)});
-  ASSERT_EQ(table.rows.size(), 1u);
-  EXPECT_THAT(to_csv(table), testing::HasSubstr("tait,29791,4,27,13.5,0.06,\"WCSPH, wall "
-                                                "particles\",54,0.45999999999999996,2\n"));
 }
 
 TEST(BenchSpeedTables, TargetsAreHeldAgainstWhatWasMeasured) {

@@ -41,6 +41,18 @@ TEST(Grab, PullsAsACriticallyDampedSpring) {
   }
 }
 
+// The target 0.9 m ahead in a box of 1 m is 0.1 m behind.
+TEST(Grab, PullsToTheNearestImageOfItsTarget) {
+  Scene scene = make_two_material_scene(IntegratorId::runge_kutta_4, kStep);
+  scene.periodic = Periodicity{{-0.5, -1, -1}, {0.5, 1, 1}, {true, false, false}};
+  scene.bodies = {make_block("block", BodyKind::deformable, "a", 1, Vec3::Zero(), Vec3::Zero())};
+  Simulation simulation = make_simulation(scene);
+  ASSERT_TRUE(simulation.grab_start(kHand, simulation.bodies()[0].id, 0, {0.9, 0, 0}).ok());
+  simulation.advance(100);
+  const Real phase = kFrequency * simulation.time();
+  EXPECT_NEAR(position_of(simulation, 0, 0).x(), -0.1 * (1 - (1 + phase) * std::exp(-phase)), 1e-9);
+}
+
 TEST(Grab, PullsNoHarderThanItsLimit) {
   Simulation simulation = make_block_of(BodyKind::rigid, 1);
   ASSERT_TRUE(simulation.grab_start(kHand, simulation.bodies()[0].id, 0, {1000, 0, 0}).ok());

@@ -29,7 +29,8 @@ const observer = await Observer.join(server.url);
 await observer.request('scene.load', { scene: kScene });
 await observer.request('control.pause', {});
 await observer.request('control.reset', {});
-await observer.request('control.step', { ticks: kFirstTick });
+for (let tick = 0; tick < kFirstTick; tick += 10)
+  await observer.request('control.step', { ticks: 10 });
 const viewer = await Viewer.open(`${server.url}#view=liquid:fluid,solids:skin`, {
   viewport: { width: 1000, height: 460 },
   colorScheme: 'light',

@@ -82,6 +82,10 @@ Result<std::string> fill_markers(const std::string& page,
   return filler.finish();
 }
 
+bool has_marker(const std::string& page, const std::string& name) {
+  return page.find("<!-- begin " + name + " -->\n") != std::string::npos;
+}
+
 std::vector<std::string> pictures_of(const std::string& page) {
   static const std::regex picture(R"(!\[[^\]]*\]\(([^)\s]+)\))");
   std::vector<std::string> targets;

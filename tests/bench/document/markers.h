@@ -15,6 +15,9 @@ namespace vat::bench {
 Result<std::string> fill_markers(const std::string& page,
                                  const std::map<std::string, std::string>& contents);
 
+/// Returns whether the page has the line `<!-- begin NAME -->`.
+bool has_marker(const std::string& page, const std::string& name);
+
 /// The targets of the page's pictures, `![...](TARGET)`, each once, in their order.
 std::vector<std::string> pictures_of(const std::string& page);
 

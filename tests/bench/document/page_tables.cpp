@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 #include <vector>
 
 namespace vat::bench {
@@ -66,6 +67,17 @@ Table cases_table(const Json& validation, const std::map<std::string, std::strin
     table.rows.push_back({name, titles.at(name), std::uint64_t{rows.size()},
                           cell_text(main, "metric"), main.at("measured").get<Real>(),
                           cell_text(main, "must be")});
+  }
+  return table;
+}
+
+Table summary_table(const Json& validation, const std::map<std::string, std::string>& titles) {
+  constexpr std::string_view kCases[] = {"DEF-1",   "RIG-1",       "RIG-7",      "LIQ-3-tait",
+                                         "LIQ-15i", "LIQ-12-tait", "INT-1-tait", "INT-5-tait"};
+  Table table{{"case", "quantity", "measured", "reference and tolerance"}, {}};
+  for (std::vector<Cell>& cells : cases_table(validation, titles).rows) {
+    if (std::ranges::find(kCases, std::get<std::string>(cells[0])) == std::end(kCases)) continue;
+    table.rows.push_back({std::move(cells[1]), std::move(cells[3]), cells[4], std::move(cells[5])});
   }
   return table;
 }
@@ -150,6 +162,22 @@ Table counts_table(const Json& stability) {
       cells.emplace_back(row.at(*column).get<std::uint64_t>());
     }
     table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table race_table(const Json& race) {
+  Table table{{"dam break", "particles", "threads", "vat [s]", "SPlisHSPlasH [s]", "ratio",
+               "density error", "machine"},
+              {}};
+  for (const Json& row : race) {
+    table.rows.push_back({cell_text(row, "case"), row.at("particles").get<std::uint64_t>(),
+                          row.at("threads").get<std::uint64_t>(), cell_number(row, "vat [s/s]"),
+                          cell_number(row, "SPlisHSPlasH [s/s]"),
+                          cell_number(row, "SPlisHSPlasH / vat"),
+                          cell_number(row, "density error of vat [%]") + " %",
+                          cell_text(row, "cpu") + ", " +
+                              std::to_string(row.at("cores").get<std::uint64_t>()) + " cores"});
   }
   return table;
 }

@@ -13,6 +13,8 @@ namespace vat::bench {
 /// One row a case: of its metrics the one that uses most of its tolerance, and the number of all;
 /// of cases without tolerances the first one. `titles` are the cases' by name.
 Table cases_table(const Json& validation, const std::map<std::string, std::string>& titles);
+/// The README's selection of these cases, without the number of metrics.
+Table summary_table(const Json& validation, const std::map<std::string, std::string>& titles);
 /// The metrics that the method cannot reach, and why.
 Table limits_table(const Json& validation);
 
@@ -29,5 +31,8 @@ Table solvers_table(const Json& solvers);
 
 /// Everything but the seconds.
 Table counts_table(const Json& stability);
+
+/// One row for each race: times of both programs, their ratio, and the machine.
+Table race_table(const Json& race);
 
 }  // namespace vat::bench
