@@ -57,8 +57,9 @@ std::string law_cell(const Json& row) {
 }  // namespace
 
 Table cases_table(const Json& validation, const std::map<std::string, std::string>& titles) {
-  Table table{
-      {"case", "what", "metrics", "the one nearest to its tolerance", "measured", "must be"}, {}};
+  Table table{{"case", "subject", "metrics", "metric closest to its tolerance", "measured",
+               "reference and tolerance"},
+              {}};
   for (const std::vector<Json>& rows : by_case(validation)) {
     const Json& main = *std::ranges::max_element(rows, [](const Json& a, const Json& b) {
       return std::pair(is_judged(a), share(a)) < std::pair(is_judged(b), share(b));
@@ -83,7 +84,7 @@ Table summary_table(const Json& validation, const std::map<std::string, std::str
 }
 
 Table limits_table(const Json& validation) {
-  Table table{{"case", "metric", "measured", "exact, or published", "why"}, {}};
+  Table table{{"case", "metric", "measured", "reference", "cause"}, {}};
   for (const Json& row : validation) {
     if (is_judged(row)) continue;
     table.rows.push_back({cell_text(row, "case"), cell_text(row, "metric"),
@@ -107,8 +108,9 @@ Table methods_table(const Json& cheapest) {
 }
 
 Table steps_table(const Json& control) {
-  Table table{{"problem", "error", "best fixed", "evaluations", "best adaptive", "its evaluations",
-               "time", "local: evaluations", "time"},
+  Table table{{"problem", "error", "best fixed", "evaluations", "best adaptive",
+               "adaptive: evaluations / fixed", "time / fixed", "local: evaluations / fixed",
+               "time / fixed"},
               {}};
   for (const Json& row : control) {
     if (row.at("its evaluations per particle").is_null()) continue;

@@ -127,14 +127,14 @@ std::vector<Case> free_spin_cases() {
   const std::string kind = "deformable";
   return {
       {"DEF-6a",
-       "two masses circle each other",
+       "two masses orbiting each other",
        kind,
        {"DEF-6a"},
        [](Sheet& sheet) {
          run_dumbbell(sheet);
          run_radial_swing(sheet);
        }},
-      {"DEF-6b", "cube of springs spins freely", kind, {"DEF-6b"}, run_cube},
+      {"DEF-6b", "freely rotating cube of springs", kind, {"DEF-6b"}, run_cube},
   };
 }
 

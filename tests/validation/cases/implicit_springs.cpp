@@ -98,7 +98,7 @@ void add_rigid_rows(Sheet& sheet) {
   const Vec3 corner = Eigen::AngleAxisd(omega.norm(), omega.normalized()) * Vec3(0.5, 0.5, 0.5) +
                       Vec3(0.3, -0.2, 0.1);
   const Real turn = omega.norm() * 5e-3;
-  sheet.add("distance of a corner from a rigid cube's at t = 1 s [m]",
+  sheet.add("distance of a corner to that of a rigid cube at t = 1 s [m]",
             std::sqrt(0.75) * omega.norm() * turn * turn / 12,
             (run.body().positions[7] - corner).norm(),
             at_most("midpoint rule: it turns by 2 tan(omega dt / 2)"), run);
@@ -108,7 +108,7 @@ void add_rigid_rows(Sheet& sheet) {
 
 std::vector<Case> implicit_spring_cases() {
   return {{"DEF-7",
-           "implicit springs in long steps",
+           "implicit springs with long steps",
            "deformable",
            {"DEF-1", "DEF-5", "DEF-6b"},
            [](Sheet& sheet) {

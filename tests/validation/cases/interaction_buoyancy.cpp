@@ -15,7 +15,7 @@ constexpr Real kBuoyancyRadius = 0.2;  // of the ball: four spacings [m]
 constexpr Real kVolume =
     4 * std::numbers::pi / 3 * kBuoyancyRadius * kBuoyancyRadius * kBuoyancyRadius;
 constexpr const char* kInterface =
-    "an interface of springs: its threshold, not the displaced liquid, sets the force";
+    "the threshold of the spring interface sets the force instead of the displaced liquid";
 
 /// The scene with `threshold` spacings between liquid and ball, the ball's centre at `height`, and
 /// without liquid in the ball.
@@ -86,7 +86,7 @@ void check_floating(Sheet& sheet, const char* ratio, Real threshold) {
       std::string("draft / diameter, density ratio ") + ratio + ", threshold " +
           buoyancy_text(threshold) + " dx",
       exact, sum / samples,
-      reported(std::string(kInterface) + "; and the liquid is denser at walls, its level lower"),
+      reported(std::string(kInterface) + "; the liquid is denser at walls, and its level is lower"),
       run);
 }
 
@@ -127,7 +127,7 @@ void run_release(Sheet& sheet) {
 
 std::vector<Case> interaction_buoyancy_cases() {
   return {{"INT-1", "floating ball", "interaction", {"INT-5"}, run_floating},
-          {"INT-3", "ball let go in a liquid", "interaction", {"INT-5"}, run_release},
+          {"INT-3", "ball released in a liquid", "interaction", {"INT-5"}, run_release},
           {"INT-5", "buoyancy of a held ball", "interaction", {"INT-5"}, run_held}};
 }
 

@@ -92,7 +92,7 @@ void run_pairings(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> interaction_impact_cases() {
-  return {{"INT-6", "rigid ball hits a dumbbell", "interaction", {"INT-6"}, run_impact},
+  return {{"INT-6", "impact of a rigid ball on a dumbbell", "interaction", {"INT-6"}, run_impact},
           {"INT-7", "momentum of every pairing", "interaction", {"INT-7"}, run_pairings}};
 }
 

@@ -47,7 +47,7 @@ void add_pendulum(Sheet& sheet) {
   }
 }
 
-/// A soft cloth that hangs from its corners falls into its shape.
+/// A soft cloth hanging from its corners falls into its shape.
 void add_cloth(Sheet& sheet) {
   for (const bool is_limited : {true, false}) {
     Scene scene = with_step(load_scene("DEF-3c"), 1e-4);
@@ -65,7 +65,7 @@ void add_cloth(Sheet& sheet) {
         greatest = std::max(greatest, length / rest - 1);
       }
     });
-    sheet.add(std::string("greatest strain of a cloth that falls, ") +
+    sheet.add(std::string("greatest strain of a falling cloth, ") +
                   (is_limited ? "limit 0.1" : "without limit"),
               is_limited ? 0.1 + 0.01 : 0.2, greatest,
               is_limited ? at_most("Provot: a tenth; a hundredth for turning springs")
@@ -139,14 +139,14 @@ void add_block(Sheet& sheet) {
 std::vector<Case> kept_length_cases() {
   const std::string kind = "deformable";
   return {{"DEF-10",
-           "springs with a limit of elongation",
+           "springs with limited elongation",
            kind,
            {"DEF-10", "DEF-3c"},
            [](Sheet& sheet) {
              add_pendulum(sheet);
              add_cloth(sheet);
            }},
-          {"DEF-11", "bodies that keep their volume", kind, {"DEF-11"}, [](Sheet& sheet) {
+          {"DEF-11", "bodies with constant volume", kind, {"DEF-11"}, [](Sheet& sheet) {
              add_breathing(sheet, 3);
              add_breathing(sheet, 2);
              add_block(sheet);

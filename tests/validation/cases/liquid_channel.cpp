@@ -190,11 +190,11 @@ void check_film(Sheet& sheet, PressureSolver solver) {
     const std::string of =
         std::string(", ") + to_string(solver) + ", " + std::to_string(viscosity) + " Pa s";
     const Real speed = mean_film_speed(run);
-    sheet.add("mean speed / that of theory" + of, 1, speed,
+    sheet.add("mean speed / theoretical mean speed" + of, 1, speed,
               within_relative(slack, "the viscosity of a lattice at rest"), run);
     Run shorter = sheet.start(with_step(scene, scene.numerics.step / 4));
     shorter.advance_to(0.4);
-    sheet.add("mean speed / that in steps a quarter as long" + of, 1,
+    sheet.add("mean speed / mean speed with a quarter of the step" + of, 1,
               speed / mean_film_speed(shorter),
               within_relative(1e-3, "steady: only the solve's tolerance is left"), shorter);
   }
@@ -209,14 +209,13 @@ void run_film(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> liquid_channel_cases() {
-  return {
-      {"LIQ-7", "flow between two plates", "liquid", {"LIQ-7"}, run_channel<PressureSolver::gas>},
-      {"LIQ-7-tait",
-       "flow of weakly compressible liquid between two plates",
-       "liquid",
-       {"LIQ-7-tait"},
-       run_channel<PressureSolver::tait>},
-      {"LIQ-19", "film of honey on a slope", "liquid", {"LIQ-19"}, run_film}};
+  return {{"LIQ-7", "channel flow", "liquid", {"LIQ-7"}, run_channel<PressureSolver::gas>},
+          {"LIQ-7-tait",
+           "channel flow of weakly compressible liquid",
+           "liquid",
+           {"LIQ-7-tait"},
+           run_channel<PressureSolver::tait>},
+          {"LIQ-19", "film of honey on a slope", "liquid", {"LIQ-19"}, run_film}};
 }
 
 }  // namespace vat::validation

@@ -12,8 +12,9 @@ namespace {
 
 constexpr Real kColumnDepth = 0.5;  // before it is compressed [m]
 constexpr const char* kWalls =
-    "the walls push, but are no part of the density: at the floor the liquid lacks neighbours";
-constexpr const char* kColumnAsked = "what the best explicit solvers reach with 20 layers";
+    "the walls exert forces, but do not contribute to the density, so the density at the floor is "
+    "too low";
+constexpr const char* kColumnAsked = "error of the best explicit solvers with 20 layers";
 
 /// Of the gas with a speed of sound of 10 m/s.
 Real gas_pressure(Real z) {
@@ -152,9 +153,9 @@ void run_tait_column(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> liquid_column_cases() {
-  return {{"LIQ-3", "column of liquid at rest", "liquid", {"LIQ-3"}, run_column_case},
+  return {{"LIQ-3", "liquid column at rest", "liquid", {"LIQ-3"}, run_column_case},
           {"LIQ-3-tait",
-           "column of weakly compressible liquid at rest",
+           "weakly compressible liquid column at rest",
            "liquid",
            {"LIQ-3-tait"},
            run_tait_column}};

@@ -100,7 +100,7 @@ void check_dam_break(Sheet& sheet, int layers) {
   const Tolerance target = within(0.04, "published target");
   const bool fine = layers >= 40;
   const std::string coarse =
-      "with few layers, the viscosity that keeps the method calm slows the front";
+      "the viscosity that stabilises the method slows the front at low resolution";
   sheet.add("RMS error of the front, experiment 0.175 later" + of, 0,
             front_error(seen.front, 0.175), fine ? target : reported(coarse), run);
   sheet.add("RMS error of the front, best delay up to 0.35" + of, 0, best_front_error(seen.front),
@@ -114,7 +114,8 @@ void check_dam_break(Sheet& sheet, int layers) {
             fitted_line(seen.front.times, seen.front.values, 2.2, 3.33).slope,
             reported("the experiment has friction on its floor"), run);
   sheet.add("RMS error of the height at the back" + of, 0, height_error(seen.height),
-            fine ? within(0.03, "published target") : reported("a layer is 0.025"), run);
+            fine ? within(0.03, "published target") : reported("the thickness of a layer is 0.025"),
+            run);
 }
 
 void run_dam_break_case(Sheet& sheet) {
@@ -129,16 +130,19 @@ void check_tait_dam_break(Sheet& sheet, int layers) {
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.005)));
   const DamBreak seen = watch_dam_break(run, spacing);
   const std::string of = ", a/dx = " + std::to_string(layers);
-  const std::string asked = "what the best explicit solvers reach";
+  const std::string asked = "error of the best explicit solvers";
   const std::string published =
       "/measured_yardsticks/dam_break_front/wcsph a~1dx=" + std::to_string(layers) + '/';
   sheet.add("RMS error of the front, best delay up to 0.35" + of, 0.015,
             best_front_error(seen.front), at_most(asked), run);
   sheet.add("RMS error of the height at the back" + of, 0.013, height_error(seen.height),
             at_most(asked), run);
-  sheet.add("RMS error of the front, no delay" + of, reference(published + "rms_noshift"),
-            front_error(seen.front, 0),
-            reported("same method elsewhere; the gate of the experiment takes time to open"), run);
+  sheet.add(
+      "RMS error of the front, no delay" + of, reference(published + "rms_noshift"),
+      front_error(seen.front, 0),
+      reported(
+          "published result of the same method; the gate of the experiment opens in a finite time"),
+      run);
 }
 
 void run_tait_dam_break(Sheet& sheet) {

@@ -283,7 +283,7 @@ void run_tait_shear(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> liquid_lattice_cases() {
-  return {{"LIQ-1", "sums of the density's kernel over lattices", "liquid", {"LIQ-1"}, run_sums},
+  return {{"LIQ-1", "lattice sums of the density kernel", "liquid", {"LIQ-1"}, run_sums},
           {"LIQ-2", "interpolation of a wave", "liquid", {"LIQ-1"}, run_interpolation},
           {"LIQ-4", "sound wave", "liquid", {"LIQ-4"}, run_sound},
           {"LIQ-5", "shear wave", "liquid", {"LIQ-5"}, run_shear},

@@ -206,7 +206,7 @@ std::vector<Case> liquid_solver_cases() {
   return {{"LIQ-3i", "column of incompressible liquid", "liquid", {"LIQ-3-tait"}, check_columns},
           {"LIQ-15i", "dam break of incompressible liquid", "liquid", {"LIQ-15"}, check_dam_breaks},
           {"INT-1i",
-           "ball that floats in incompressible liquid",
+           "ball floating in incompressible liquid",
            "interaction",
            {"INT-5"},
            run_solver_floating}};

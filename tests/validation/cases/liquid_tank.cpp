@@ -71,19 +71,21 @@ void check_standing_wave(Sheet& sheet, const std::string& name, int layers) {
   const Real period = reference(at + "T") / (1 - 0.194641 * steepness * steepness / 2);
   // Over whole periods, for the liquid at rest may be a little to one side.
   sheet.add("period [s]" + of, period, (seen.zeros.at(4) - seen.zeros[0]) / 2,
-            tait          ? within_relative(0.01, "what the best explicit solvers reach")
+            tait          ? within_relative(0.01, "error of the best explicit solvers")
             : layers > 20 ? within_relative(0.02, "published target")
-                          : reported("the layer at each wall is denser than the rest"),
+                          : reported("the layer at each wall is denser than the others"),
             run);
   const Real first = seen.extremes[1] + seen.extremes[2];
   const Real last = seen.extremes[3] + seen.extremes[4];
   const Real decay = std::log(first / last) / period;
-  sheet.add("viscosity that the decay shows [m2/s]" + of,
-            reference(std::string("/measured_yardsticks/standing_wave/") +
-                      (tait ? "wcsph" : "mcg03 corrected") + " N~1H=20/nu_eff"),
-            decay / reference(at + "deep_decay_amp_rate_per_nu"),
-            reported("same method elsewhere; the method's own viscosity is above the one set"),
-            run);
+  sheet.add(
+      "viscosity from the decay [m2/s]" + of,
+      reference(std::string("/measured_yardsticks/standing_wave/") +
+                (tait ? "wcsph" : "mcg03 corrected") + " N~1H=20/nu_eff"),
+      decay / reference(at + "deep_decay_amp_rate_per_nu"),
+      reported(
+          "published result of the same method; its numerical viscosity exceeds the set viscosity"),
+      run);
 }
 
 void run_standing_wave(Sheet& sheet, const std::string& name) {

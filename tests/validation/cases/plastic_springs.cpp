@@ -107,7 +107,7 @@ void add_chain(Sheet& sheet) {
       run.advance_to(run.simulation().time() + 0.02);
     }
     // The first spring bears ten masses of 0.1 kg: it tears at k 0.1 l0 = 10 N.
-    sheet.add(std::string("gravity at which it tears [m/s2], ") + way.name, 10, gravity,
+    sheet.add(std::string("gravity at tearing [m/s2], ") + way.name, 10, gravity,
               within(3 * kIncrement, "steps of the load_plastic, which swings by as much again"),
               run);
     sheet.add(std::string("torn springs, ") + way.name, 1,
@@ -115,7 +115,7 @@ void add_chain(Sheet& sheet) {
     const Real momentum = run.diagnostics().bodies[0].linear_momentum.z();
     run.advance_to(run.simulation().time() + 0.5);
     const Real gained = run.diagnostics().bodies[0].linear_momentum.z() - momentum;
-    sheet.add(std::string("acceleration of what falls [m/s2], ") + way.name, gravity,
+    sheet.add(std::string("acceleration of the falling part [m/s2], ") + way.name, gravity,
               -gained / 0.5 / 1, within(1e-11, "free fall of 1 kg, round-off"), run);
   }
 }
@@ -132,7 +132,7 @@ std::vector<Case> plastic_spring_cases() {
              add_stress_strain(sheet);
              add_push(sheet);
            }},
-          {"DEF-9", "chain that tears under its weight", kind, {"DEF-9"}, add_chain}};
+          {"DEF-9", "chain tearing under its weight", kind, {"DEF-9"}, add_chain}};
 }
 
 }  // namespace vat::validation

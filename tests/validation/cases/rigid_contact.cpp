@@ -267,7 +267,7 @@ void run_eccentric(Sheet& sheet) {
 
 std::vector<Case> rigid_contact_cases() {
   return {{"RIG-4", "ball bouncing on a floor", "rigid", {"RIG-4"}, run_bounce},
-          {"RIG-5", "two balls collide", "rigid", {"RIG-5"}, run_collisions},
+          {"RIG-5", "collision of two balls", "rigid", {"RIG-5"}, run_collisions},
           {"RIG-6", "stack of balls at rest", "rigid", {"RIG-6"}, run_contact_stack},
           {"RIG-8", "eccentric impact of a dumbbell", "rigid", {"RIG-8"}, run_eccentric}};
 }

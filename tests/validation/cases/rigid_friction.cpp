@@ -43,10 +43,10 @@ void check_stop(Sheet& sheet) {
   const Real step = run.simulation().step_size();
   while (speed_of(run) > deceleration / rate) run.advance_to(run.simulation().time() + step);
   // From mu g / rate on the speed falls as exp(-rate t) rather than evenly to zero.
-  sheet.add("time until it sticks [s]", of_reference("stop_time"), run.simulation().time(),
+  sheet.add("time until sticking [s]", of_reference("stop_time"), run.simulation().time(),
             within(1 / rate + step, "1 / sqrt(k/m) of the regularisation, and a step"), run);
   run.advance_to(1);
-  sheet.add("way to the stop [m]", of_reference("stop_distance"), run.body().positions[0].x(),
+  sheet.add("stopping distance [m]", of_reference("stop_distance"), run.body().positions[0].x(),
             within(deceleration / (rate * rate), "mu g m / k of the regularisation"), run);
   sheet.add("speed at 1 s [m/s]", 0, speed_of(run), within(1e-12, "exp(-rate t), to round-off"),
             run);
@@ -70,7 +70,7 @@ void check_slopes(Sheet& sheet) {
     (slips(sheet, middle) ? high : low) = middle;
   }
   Run run = sheet.start(block_on_slope(radians(30)));
-  sheet.add("steepest slope that holds [degrees]", of_reference("incline_critical_deg"), low,
+  sheet.add("greatest slope without sliding [degrees]", of_reference("incline_critical_deg"), low,
             within(2 * kAccuracy, "the bisection that finds it"), run);
   run.advance_to(0.5);
   const Real before = speed_of(run);
@@ -97,7 +97,7 @@ void check_rolling(Sheet& sheet) {
   const Tolerance arm = within_relative(1e-3, "overlap over radius, 2e-4, and how it is set up");
   Run run = sheet.start(ball(0, v0));
   run.advance_to(0.1);
-  sheet.add("time until it rolls, from its slip at 0.1 s [s]", of_reference("sphere_roll_time"),
+  sheet.add("time until rolling, from the slip at 0.1 s [s]", of_reference("sphere_roll_time"),
             0.1 * v0 / (v0 - slip_of(run)), arm, run);
   run.advance_to(0.5);
   sheet.add("speed of rolling [m/s]", of_reference("sphere_roll_speed"), speed_of(run), arm, run);

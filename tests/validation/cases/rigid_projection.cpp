@@ -150,7 +150,7 @@ void check_projected_stop(Sheet& sheet) {
   const Real start = pose_of(run).center_of_mass.x();
   run.advance_to(2);
   const Real deceleration = projected_of_reference("mu") * projected_of_reference("g");
-  sheet.add("way of a block to its stop [m]", projected_of_reference("stop_distance"),
+  sheet.add("stopping distance of a block [m]", projected_of_reference("stop_distance"),
             pose_of(run).center_of_mass.x() - start,
             within(deceleration * kFrame * kFrame, "mu g dt^2: it stops within a step"), run);
   sheet.add("speed at 2 s [m/s]", 0, pose_of(run).velocity.norm(), within(1e-6, "the solve"), run);
@@ -173,7 +173,7 @@ void check_slope(Sheet& sheet) {
   }
   Run run = sheet.start(
       projected_block_on_slope(projected_radians(30), kFrame, projected_of_reference("mu")));
-  sheet.add("steepest slope that holds a block [degrees]",
+  sheet.add("greatest slope without sliding of a block [degrees]",
             projected_of_reference("incline_critical_deg"), low,
             within(2 * kAccuracy, "the bisection that finds it"), run);
   run.advance_to(0.5);
@@ -201,9 +201,9 @@ void check_projected_rolling(Sheet& sheet) {
     return pose.velocity.x() - 0.05 * pose.angular_velocity.y();
   };
   while (slip() > 1e-6) run.advance_to(run.simulation().time() + 1e-3);
-  sheet.add("time until a ball rolls [s]", projected_of_reference("sphere_roll_time"),
+  sheet.add("time until rolling of a ball [s]", projected_of_reference("sphere_roll_time"),
             run.simulation().time(), within(1e-3, "one step"), run);
-  sheet.add("way until it rolls [m]", projected_of_reference("sphere_roll_distance"),
+  sheet.add("distance until rolling [m]", projected_of_reference("sphere_roll_distance"),
             pose_of(run).center_of_mass.x(), within(2e-3, "one step at 2 m/s"), run);
   run.advance_to(0.5);
   sheet.add("speed of rolling [m/s]", projected_of_reference("sphere_roll_speed"),
@@ -245,7 +245,7 @@ void run_projection(Sheet& sheet) {
 
 std::vector<Case> rigid_projection_cases() {
   return {{"RIG-9",
-           "contacts by projection, at long steps",
+           "contacts by projection with long steps",
            "rigid",
            {"RIG-4", "RIG-5", "RIG-6", "RIG-7", "RIG-8"},
            run_projection}};

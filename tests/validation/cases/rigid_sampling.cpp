@@ -129,8 +129,9 @@ void run_torque(Sheet& sheet) {
 }  // namespace
 
 std::vector<Case> rigid_sampling_cases() {
-  return {{"RIG-torque", "top with forces and torques", "rigid", {"RIG-torque"}, run_torque},
-          {"RIG-sampled", "inertia of sampled solids", "rigid", {"RIG-sampled"}, run_sampled}};
+  return {
+      {"RIG-torque", "top with external forces and torques", "rigid", {"RIG-torque"}, run_torque},
+      {"RIG-sampled", "inertia of sampled solids", "rigid", {"RIG-sampled"}, run_sampled}};
 }
 
 }  // namespace vat::validation

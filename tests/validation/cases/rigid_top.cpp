@@ -122,8 +122,7 @@ void run_middle_axis(Sheet& sheet) {
        {IntegratorId::velocity_verlet, IntegratorId::heun, IntegratorId::runge_kutta_4}) {
     Run run = sheet.start(heavy_top("RIG-2", integrator, 0.01));
     const Real zero = first_zero(run, 0.01);
-    sheet.add(std::string("time at which it has turned half over [s], step 0.01, ") +
-                  to_string(integrator),
+    sheet.add(std::string("time of the half turn [s], step 0.01, ") + to_string(integrator),
               reference("/rigid/RIG-2/first_zero_crossings_of_w2/0"), zero, within(1e-3, source),
               run);
   }
@@ -157,7 +156,7 @@ void run_symmetric(Sheet& sheet) {
 
 std::vector<Case> rigid_top_cases() {
   return {{"RIG-1", "free asymmetric top", "rigid", {"RIG-1"}, run_asymmetric},
-          {"RIG-2", "top about its middle axis", "rigid", {"RIG-2"}, run_middle_axis},
+          {"RIG-2", "top about its intermediate axis", "rigid", {"RIG-2"}, run_middle_axis},
           {"RIG-3", "free symmetric top", "rigid", {"RIG-3"}, run_symmetric}};
 }
 

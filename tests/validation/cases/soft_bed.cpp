@@ -152,7 +152,7 @@ void run_bed_bounce(Sheet& sheet) {
 
 std::vector<Case> soft_bed_cases() {
   return {{"INT-9",
-           "weakly compressible liquid that bounces on a soft bed",
+           "weakly compressible liquid bouncing on a soft bed",
            "interaction",
            {"INT-9"},
            run_bed_bounce}};

@@ -60,9 +60,10 @@ void run_cloth(Sheet& sheet) {
   add_length(sheet, rest, "height of the centre", reference(expected + "centre_z"), node(5, 5).z());
   const Vec3 edge = reference_vector(expected + "edge_mid");
   const Vec3 inner = reference_vector(expected + "q_node_2_2");
-  add_length(sheet, rest, "place of an edge's middle, inwards", edge.x(), node(0, 5).x());
-  add_length(sheet, rest, "place of an edge's middle, along", edge.y(), node(0, 5).y());
-  add_length(sheet, rest, "height of an edge's middle", edge.z(), node(0, 5).z());
+  add_length(sheet, rest, "inward displacement of an edge's centre", edge.x(), node(0, 5).x());
+  add_length(sheet, rest, "displacement of an edge's centre along the edge", edge.y(),
+             node(0, 5).y());
+  add_length(sheet, rest, "height of an edge's centre", edge.z(), node(0, 5).z());
   add_length(sheet, rest, "place of node (2, 2)", inner.x(), node(2, 2).x());
   add_length(sheet, rest, "height of node (2, 2)", inner.z(), node(2, 2).z());
 }
@@ -72,9 +73,9 @@ void run_cloth(Sheet& sheet) {
 std::vector<Case> static_cases() {
   const std::string kind = "deformable";
   return {
-      {"DEF-3a", "chain that hangs from one end", kind, {"DEF-3a"}, run_chain},
-      {"DEF-3b", "chain that hangs from both ends", kind, {"DEF-3b"}, run_catenary},
-      {"DEF-3c", "cloth that hangs from its corners", kind, {"DEF-3c"}, run_cloth},
+      {"DEF-3a", "chain hanging from one end", kind, {"DEF-3a"}, run_chain},
+      {"DEF-3b", "chain hanging from both ends", kind, {"DEF-3b"}, run_catenary},
+      {"DEF-3c", "cloth hanging from its corners", kind, {"DEF-3c"}, run_cloth},
   };
 }
 

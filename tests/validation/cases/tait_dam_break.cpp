@@ -13,7 +13,7 @@ namespace {
 // --- LIQ-16 ---
 
 const std::string kExperiment = "/data_series/spheric_test_2/";
-constexpr const char* kTaitDamAsked = "what the best explicit solvers reach";
+constexpr const char* kTaitDamAsked = "error of the best explicit solvers";
 
 /// Particles in the box of a body, as many as its spacing asks for, so that they fill it.
 ParticleShape fill(const BoxShape& box, Real spacing, Real density) {

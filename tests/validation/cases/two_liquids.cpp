@@ -134,7 +134,7 @@ void run_interfacial_wave(Sheet& sheet) {
 
 std::vector<Case> two_liquid_cases() {
   return {{"LIQ-18",
-           "two liquids swing at their interface",
+           "oscillating interface of two liquids",
            "liquid",
            {"LIQ-18"},
            run_interfacial_wave}};
