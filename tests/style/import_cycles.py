@@ -1,4 +1,4 @@
-"""Files of the client and the viewer import each other in one direction."""
+"""Files and folders of the client and the viewer import each other in one direction."""
 
 import graphlib
 import posixpath
@@ -7,17 +7,29 @@ import re
 IMPORT = re.compile(r"^(?:import|export)\b[^;]*?\bfrom '(\.[^']+)'", re.MULTILINE)
 
 
-def import_cycles(tree):
-    graph = {}
+def imports(tree):
+    """(importing file, imported file) of all relative imports."""
     for path, text in tree.matching(["web/"], (".ts",)):
-        targets = (posixpath.normpath(posixpath.join(posixpath.dirname(path), target))
-                   for target in IMPORT.findall(text))
-        graph[path] = {re.sub(r"\.js$", "", target) + ".ts" for target in targets}
+        for target in IMPORT.findall(text):
+            target = posixpath.normpath(posixpath.join(posixpath.dirname(path), target))
+            yield path, re.sub(r"\.js$", "", target) + ".ts"
+
+
+def cycles(edges, what):
+    graph = {}
+    for importing, imported in edges:
+        graph.setdefault(importing, set()).add(imported)
     try:
         graphlib.TopologicalSorter(graph).prepare()
     except graphlib.CycleError as error:
-        return ["imports form a cycle: " + " <- ".join(error.args[1])]
+        return [f"imports of {what} form a cycle: " + " <- ".join(error.args[1])]
     return []
+
+
+def import_cycles(tree):
+    edges = list(imports(tree))
+    folders = {tuple(map(posixpath.dirname, edge)) for edge in edges}
+    return cycles(edges, "files") or cycles((f for f in folders if f[0] != f[1]), "folders")
 
 
 RULES = (import_cycles,)

@@ -87,7 +87,9 @@ class SourceRules(RuleTest):
         accepted = {"web/a.ts": "import { b } from './c/b';\n", "web/c/b.ts": "export {};\n"}
         self.accepts(rule, accepted)
         self.refuses(rule, accepted | {"web/c/b.ts": "import type {\n  A,\n} from '../a.js';\n"},
-                     "web/a.ts", "web/c/b.ts")
+                     "files form a cycle", "web/a.ts", "web/c/b.ts")
+        self.refuses(rule, accepted | {"web/c/d.ts": "import { e } from '../e';\n"},
+                     "folders form a cycle", "web/c")
 
     def test_determinism(self):
         rule = source_rules.determinism

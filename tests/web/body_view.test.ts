@@ -3,9 +3,9 @@ import type { BufferAttribute, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../web/client/index';
 import type { FrameHeader, GridBlock } from '../../web/client/index';
-import { BodyView } from '../../web/viewer/view/body_view';
+import { BodyView } from '../../web/viewer/view/bodies/body_view';
 import { Workshop } from '../../web/viewer/view/surface/workshop';
-import { sharedUniforms } from '../../web/viewer/view/shared_uniforms';
+import { sharedUniforms } from '../../web/viewer/view/bodies/shared_uniforms';
 
 const header = { origin: [0, 0, 0], quantum: 1 } as unknown as FrameHeader;
 

@@ -1,6 +1,6 @@
 import { Box3, Vector3, Vector4 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { setClipPlane } from '../../web/viewer/view/clip';
+import { setClipPlane } from '../../web/viewer/view/base/clip';
 import { mapColour } from '../../web/viewer/view/colour/maps';
 import { formatQuantity, quantityError } from '../../web/viewer/view/colour/quantity';
 import { AutoRange } from '../../web/viewer/view/colour/range';

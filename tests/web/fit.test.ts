@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { nearestEye } from '../../web/viewer/view/fit';
-import type { Seen } from '../../web/viewer/view/fit';
+import { nearestEye } from '../../web/viewer/view/base/fit';
+import type { Seen } from '../../web/viewer/view/base/fit';
 
 const kSide = 0.5;
 const kRise = 0.3;

@@ -1,6 +1,6 @@
 import { Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { ballOf, blockOf, cloudOf } from '../../web/viewer/view/footprint';
+import { ballOf, blockOf, cloudOf } from '../../web/viewer/view/base/footprint';
 
 describe('the room that something takes', () => {
   it('of a ball', () => {

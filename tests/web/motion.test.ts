@@ -3,8 +3,8 @@ import type { BufferAttribute } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../web/client/index';
 import type { GridBlock, PoseBlock } from '../../web/client/index';
-import { ParticleColumns } from '../../web/viewer/view/particle_columns';
-import { RigidMotion } from '../../web/viewer/view/rigid_motion';
+import { ParticleColumns } from '../../web/viewer/view/particles/particle_columns';
+import { RigidMotion } from '../../web/viewer/view/particles/rigid_motion';
 
 const kGrid = { origin: [0, 0, 0] as [number, number, number], quantum: 1 };
 

@@ -6,7 +6,7 @@ import { FrameMeter } from '../../web/viewer/panel/frame_meter';
 import { describeGuard } from '../../web/viewer/panel/notices';
 import { sliderSpeed } from '../../web/viewer/panel/playback';
 import { chosenSession, givenToken, streamUrl } from '../../web/viewer/stream/stream';
-import { roundLength } from '../../web/viewer/view/ground';
+import { roundLength } from '../../web/viewer/view/base/ground';
 
 describe('numbers in words', () => {
   it.each([

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { nearestSphere } from '../../web/viewer/grab/pick';
+import { nearestSphere } from '../../web/viewer/view/base/pick';
 
 const kAlongX = { origin: { x: 0, y: 0, z: 0 }, direction: { x: 1, y: 0, z: 0 } };
 

@@ -251,7 +251,7 @@ describe('while it is in', () => {
     session.open();
     const socket = await enter();
     socket.receive(goldenBytes('v2-delta-one'));
-    expect(faults).toEqual([expect.stringMatching(/missing_reference.*frame 10 is not there/)]);
+    expect(faults).toEqual([expect.stringMatching(/missing_reference.*frame 10 is not stored/)]);
     socket.receive(goldenBytes('v2-delta-two'));
     expect(faults).toHaveLength(1);
     const acknowledged = { method: 'frames.ack' }; // or the server's window would stay full

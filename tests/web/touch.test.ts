@@ -6,7 +6,7 @@ import { gravityOf, tiltOf } from '../../web/viewer/panel/gravity';
 import { readScene } from '../../web/viewer/panel/scene_file';
 import { onlyPaceDiffers, summarise } from '../../web/viewer/panel/summary';
 import { shareLink } from '../../web/viewer/people/share';
-import { poseFromText, poseToText, turned } from '../../web/viewer/view/pose';
+import { poseFromText, poseToText, turned } from '../../web/viewer/view/base/pose';
 
 const kPose = { eye: new Vector3(1, -2, 1), target: new Vector3(0, 0, 0.5) };
 

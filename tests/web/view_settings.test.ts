@@ -1,9 +1,13 @@
 import { describe, expect, it } from 'vitest';
-import { decideStyle } from '../../web/viewer/view/liquid_style';
-import { Pace } from '../../web/viewer/view/pace';
-import { defaultSettings, settingsFromText, settingsToText } from '../../web/viewer/view/settings';
-import { linkedSettings, SettingsStore } from '../../web/viewer/view/settings_store';
-import type { Shelf } from '../../web/viewer/view/settings_store';
+import { decideStyle } from '../../web/viewer/view/base/liquid_style';
+import { Pace } from '../../web/viewer/view/base/pace';
+import {
+  defaultSettings,
+  settingsFromText,
+  settingsToText,
+} from '../../web/viewer/view/base/settings';
+import { linkedSettings, SettingsStore } from '../../web/viewer/view/base/settings_store';
+import type { Shelf } from '../../web/viewer/view/base/settings_store';
 
 function shelf(text: string | null = null): Shelf & { text: string | null } {
   return {

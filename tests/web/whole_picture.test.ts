@@ -1,6 +1,6 @@
 import { expect, it, vi } from 'vitest';
 import type { FrameHeader } from '../../web/client/index';
-import { WholePicture } from '../../web/viewer/stream/whole_picture';
+import { WholePicture } from '../../web/viewer/panel/whole_picture';
 
 const header = (change: Partial<FrameHeader>): FrameHeader =>
   ({ tick: 7, stride: 1, detail: 3, ...change }) as FrameHeader;

@@ -2,8 +2,8 @@ import { Color, Ray, Vector3 } from 'three';
 import { expect, it } from 'vitest';
 import { BodyKind } from '../../web/client/index';
 import type { Frame, SessionDescription } from '../../web/client/index';
-import { sharedUniforms } from '../../web/viewer/view/shared_uniforms';
-import type { Theme } from '../../web/viewer/view/theme';
+import { sharedUniforms } from '../../web/viewer/view/bodies/shared_uniforms';
+import type { Theme } from '../../web/viewer/view/base/theme';
 import { World } from '../../web/viewer/view/world';
 
 const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark', 'skyLow', 'skyHigh'];

@@ -13,8 +13,8 @@ import { Playback } from './panel/playback';
 import { SceneFile } from './panel/scene_file';
 import { Scenes } from './panel/scenes';
 import { ReplayBar } from './replay/replay_bar';
-import { ask } from './stream/desk';
-import type { Desk } from './stream/desk';
+import { ask } from './panel/desk';
+import type { Desk } from './panel/desk';
 import type { View } from './view/view';
 
 /** The page's functions that the controls use. */

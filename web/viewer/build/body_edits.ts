@@ -1,6 +1,6 @@
 import type { SceneBody, SceneInterface, SceneMaterial, Vector } from '../../client/index';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { inWorld } from './body_choice';
 import { mean, recordOf } from './body_record';
 import type { BodyRecord } from './body_record';

@@ -9,8 +9,8 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { Footprint } from '../view/footprint';
-import { kLayers } from '../view/layers';
+import type { Footprint } from '../view/base/footprint';
+import { kLayers } from '../view/base/layers';
 import type { BodyChoice } from './body_choice';
 
 const kGood = new Color('#2f86e0');

@@ -1,7 +1,7 @@
 import type { MethodName, Params, Scene } from '../../client/index';
 import { element } from '../panel/elements';
-import { attempt } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { attempt } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { InterfaceForm } from './interface_form';
 import { MaterialForm } from './material_form';
 import { NumericsForm } from './numerics_form';

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three';
-import { ballOf } from '../view/footprint';
+import { ballOf } from '../view/base/footprint';
 import type { World } from '../view/world';
 
 /** The number of tried positions per axis. */

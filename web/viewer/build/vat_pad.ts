@@ -2,8 +2,8 @@ import type { SessionDescription, Vector } from '../../client/index';
 import { BallPad } from '../panel/ball_pad';
 import type { Place } from '../panel/ball_pad';
 import { element } from '../panel/elements';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { Newest } from '../stream/newest';
 
 /** The displacement at the pad's edge, relative to the vat's longest side. */

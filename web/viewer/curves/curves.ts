@@ -1,8 +1,8 @@
 import { RequestError } from '../../client/index';
 import type { SessionDescription, SessionStats, SessionStatus } from '../../client/index';
 import { element, make } from '../panel/elements';
-import type { Desk } from '../stream/desk';
-import { watchTheme } from '../view/theme';
+import type { Desk } from '../panel/desk';
+import { watchTheme } from '../view/base/theme';
 import type { Chart } from './chart';
 import { History } from './history';
 import { diagnosticSeries, kCharts, kSeries } from './series';

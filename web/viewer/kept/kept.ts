@@ -1,6 +1,6 @@
 import type { SceneEntry, ServerInfo, SessionDescription } from '../../client/index';
 import { element, make } from '../panel/elements';
-import type { Desk } from '../stream/desk';
+import type { Desk } from '../panel/desk';
 import { Recordings } from './recordings';
 import { SavedScenes } from './saved_scenes';
 import { SavedStates } from './saved_states';

@@ -1,7 +1,7 @@
 import { RequestError } from '../../client/index';
 import { element, make, makeButton } from '../panel/elements';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { faultOfRecording, sendRecording } from './recording_file';
 
 /** Recordings: the session's as a file or a replay, and replays of files. */

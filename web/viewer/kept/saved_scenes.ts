@@ -1,6 +1,6 @@
 import type { SceneEntry } from '../../client/index';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { NamedList, whenInWords } from './named_list';
 import { SceneKeys } from './scene_keys';
 

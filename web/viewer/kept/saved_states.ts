@@ -1,6 +1,6 @@
 import { formatSeconds } from '../panel/format';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { NamedList, whenInWords } from './named_list';
 
 /** The saved states of this session. Each can be restored repeatedly. */

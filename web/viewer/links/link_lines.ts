@@ -3,7 +3,7 @@ import type { Scene, Vector3 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { kLayers } from '../view/layers';
+import { kLayers } from '../view/base/layers';
 
 /** Pairs of particles as a flat list, and one value per pair. */
 export interface Linked {

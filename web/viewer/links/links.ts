@@ -1,8 +1,8 @@
 import type { Result } from '../../client/index';
 import { element, make } from '../panel/elements';
-import type { Desk } from '../stream/desk';
+import type { Desk } from '../panel/desk';
 import { formatQuantity } from '../view/colour/quantity';
-import type { ViewSettings } from '../view/settings';
+import type { ViewSettings } from '../view/base/settings';
 import type { View } from '../view/view';
 import { LinkLines } from './link_lines';
 

@@ -1,5 +1,5 @@
-import { turned } from '../view/pose';
-import type { Pose } from '../view/pose';
+import { turned } from '../view/base/pose';
+import type { Pose } from '../view/base/pose';
 import type { Keys } from './keys';
 
 /** The camera functions that keys control. */

@@ -4,7 +4,7 @@ import type {
   SessionDescription,
   SessionStatus,
 } from '../../client/index';
-import type { People } from '../people/people';
+import type { People } from '../stream/people';
 import { now } from '../stream/clock';
 import { Summary } from './summary';
 

@@ -1,7 +1,7 @@
 import type { BodyKindName, SceneEntry, SessionDescription } from '../../client/index';
 import { element } from './elements';
 import { formatCount } from './format';
-import { bodyColour } from '../view/palette';
+import { bodyColour } from '../view/base/palette';
 import type { Gallery } from './gallery';
 
 const kKindWords: Readonly<Record<BodyKindName, string>> = {

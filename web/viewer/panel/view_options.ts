@@ -1,5 +1,11 @@
-import { kChoices } from '../view/settings';
-import type { Choice, ChoiceName, NumberName, SwitchName, ViewSettings } from '../view/settings';
+import { kChoices } from '../view/base/settings';
+import type {
+  Choice,
+  ChoiceName,
+  NumberName,
+  SwitchName,
+  ViewSettings,
+} from '../view/base/settings';
 import type { View } from '../view/view';
 import { ColourLegend } from './colour_legend';
 import { element } from './elements';

@@ -1,9 +1,9 @@
 import type { Event, MethodName, Params, RoleName } from '../../client/index';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import type { View } from '../view/view';
 import { Cursors } from './cursors';
-import { People } from './people';
+import { People } from '../stream/people';
 import { PeopleList } from './people_list';
 import { Share } from './share';
 

@@ -4,8 +4,8 @@ import { element } from '../panel/elements';
 import type { Stage } from '../view/stage';
 import type { World } from '../view/world';
 import { Labels } from './labels';
-import { personColour } from './people';
-import type { People } from './people';
+import { personColour } from '../stream/people';
+import type { People } from '../stream/people';
 
 /** The interval of pointer messages [ms]. The server forwards ten per second. */
 const kPeriodMs = 100;

@@ -1,7 +1,7 @@
 import type { Participant, RoleName } from '../../client/index';
 import { element, onPress } from '../panel/elements';
-import { personColour } from './people';
-import type { People } from './people';
+import { personColour } from '../stream/people';
+import type { People } from '../stream/people';
 
 export interface PeopleActions {
   rename(name: string): void;

@@ -1,9 +1,9 @@
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { element, onPress } from '../panel/elements';
-import { poseToText } from '../view/pose';
-import type { Pose } from '../view/pose';
-import type { People } from './people';
+import { poseToText } from '../view/base/pose';
+import type { Pose } from '../view/base/pose';
+import type { People } from '../stream/people';
 
 /** Optional parts of a link. */
 export interface Outlook {

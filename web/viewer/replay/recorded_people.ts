@@ -1,7 +1,7 @@
 import type { RecordedPeople } from '../../client/index';
 import { element, make } from '../panel/elements';
 import { Labels } from '../people/labels';
-import { personColour } from '../people/people';
+import { personColour } from '../stream/people';
 import type { Stage } from '../view/stage';
 
 /** The recorded participants: their held bodies and targets. */

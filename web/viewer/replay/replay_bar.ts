@@ -1,8 +1,8 @@
 import type { Event, SessionDescription, SessionStatus } from '../../client/index';
 import { element, make, makeButton } from '../panel/elements';
 import { formatSeconds } from '../panel/format';
-import { ask } from '../stream/desk';
-import type { Desk } from '../stream/desk';
+import { ask } from '../panel/desk';
+import type { Desk } from '../panel/desk';
 import { Newest } from '../stream/newest';
 import type { Stage } from '../view/stage';
 import { RecordedCompany } from './recorded_people';

@@ -3,7 +3,7 @@ import type { Vector3 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { kLayers } from './layers';
+import { kLayers } from './base/layers';
 
 const kColour = '#ffb300';
 

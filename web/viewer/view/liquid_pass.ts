@@ -1,8 +1,8 @@
 import { Color, HalfFloatType, ShaderMaterial, Vector2, WebGLRenderTarget } from 'three';
 import type { BufferGeometry, Mesh, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
-import { kLayers } from './layers';
-import { kSun } from './light';
-import { kScreenVertexShader, screenMesh } from './screen';
+import { kLayers } from './base/layers';
+import { kSun } from './base/light';
+import { kScreenVertexShader, screenMesh } from './base/screen';
 
 /** Resolution relative to the canvas; splats are soft and need fewer pixels. */
 const kScale = 0.5;

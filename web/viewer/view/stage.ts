@@ -1,17 +1,17 @@
 import { Box3, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import type { Ray } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { fitBox } from './fit';
-import type { Pose } from './pose';
+import { fitBox } from './base/fit';
+import type { Pose } from './base/pose';
 import { FluidPass } from './fluid/fluid_pass';
 import type { FluidLook } from './fluid/fluid_pass';
-import { kLayers } from './layers';
+import { kLayers } from './base/layers';
 import { LiquidPass } from './liquid_pass';
-import type { LiquidStyle } from './liquid_style';
-import type { SharedUniforms } from './shared_uniforms';
-import { graphicsOf } from './graphics';
-import type { Graphics } from './graphics';
-import type { Theme } from './theme';
+import type { LiquidStyle } from './base/liquid_style';
+import type { SharedUniforms } from './bodies/shared_uniforms';
+import { graphicsOf } from './base/graphics';
+import type { Graphics } from './base/graphics';
+import type { Theme } from './base/theme';
 
 /** Direction of the initial camera from the centre of the scene; z is up. */
 const kFirstView = new Vector3(0.42, -1, 0.5).normalize();

@@ -4,7 +4,7 @@ import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import type { Vector, VatDescription } from '../../client/index';
-import type { Theme } from './theme';
+import type { Theme } from './base/theme';
 
 /** The vat: edges, a floor, and slightly tinted far walls. */
 export class VatView {

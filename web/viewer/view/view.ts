@@ -1,15 +1,15 @@
 import type { Attributes, Frame, SessionDescription } from '../../client/index';
 import { ColourScale } from './colour/colour_scale';
 import { attributeOf, quantityError, quantityOf } from './colour/quantity';
-import { setClipPlane } from './clip';
-import { decideStyle } from './liquid_style';
-import type { LiquidStyle } from './liquid_style';
-import { Pace } from './pace';
-import type { ViewSettings } from './settings';
-import { linkedSettings, SettingsStore } from './settings_store';
-import { sharedUniforms } from './shared_uniforms';
+import { setClipPlane } from './base/clip';
+import { decideStyle } from './base/liquid_style';
+import type { LiquidStyle } from './base/liquid_style';
+import { Pace } from './base/pace';
+import type { ViewSettings } from './base/settings';
+import { linkedSettings, SettingsStore } from './base/settings_store';
+import { sharedUniforms } from './bodies/shared_uniforms';
 import { Stage } from './stage';
-import { readTheme, watchTheme } from './theme';
+import { readTheme, watchTheme } from './base/theme';
 import { World } from './world';
 
 /** The source of frames, which receives the requested attributes. */

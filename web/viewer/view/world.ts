@@ -11,17 +11,17 @@ import type {
   SessionDescription,
   Vector,
 } from '../../client/index';
-import { BodyView, isGrid } from './body_view';
+import { BodyView, isGrid } from './bodies/body_view';
 import { kQuantities, quantityOf } from './colour/quantity';
 import type { Range } from './colour/range';
 import type { FluidLook } from './fluid/fluid_pass';
-import type { Footprint } from './footprint';
-import { Ground } from './ground';
-import type { Theme } from './theme';
+import type { Footprint } from './base/footprint';
+import { Ground } from './base/ground';
+import type { Theme } from './base/theme';
 import { Marks } from './marks/marks';
-import type { LiquidStyle } from './liquid_style';
-import type { Choice } from './settings';
-import type { SharedUniforms } from './shared_uniforms';
+import type { LiquidStyle } from './base/liquid_style';
+import type { Choice } from './base/settings';
+import type { SharedUniforms } from './bodies/shared_uniforms';
 import { Workshop } from './surface/workshop';
 import { VatView } from './vat_view';
 

@@ -1,5 +1,5 @@
-import type { ViewSettings } from '../settings';
-import type { LookUniforms } from '../look_uniforms';
+import type { ViewSettings } from '../base/settings';
+import type { LookUniforms } from './look_uniforms';
 import { fillMapTexture, isDiverging } from './maps';
 import { quantityOf } from './quantity';
 import type { QuantityName } from './quantity';

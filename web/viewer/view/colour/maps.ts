@@ -1,5 +1,5 @@
 import { ClampToEdgeWrapping, Color, DataTexture, LinearFilter, SRGBColorSpace } from 'three';
-import type { Choice } from '../settings';
+import type { Choice } from '../base/settings';
 
 type MapName = Choice<'map'>;
 

@@ -1,5 +1,5 @@
 import type { Attributes } from '../../../client/index';
-import type { Choice } from '../settings';
+import type { Choice } from '../base/settings';
 
 /** The quantities that colours can show. */
 export type QuantityName = Exclude<Choice<'colour'>, 'body' | 'kind'>;

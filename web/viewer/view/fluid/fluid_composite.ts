@@ -1,6 +1,6 @@
 import { Color, ShaderMaterial } from 'three';
-import { kSun } from '../light';
-import { kScreenVertexShader } from '../screen';
+import { kSun } from '../base/light';
+import { kScreenVertexShader } from '../base/screen';
 
 const kSurface = /* glsl */ `
   in vec2 at;

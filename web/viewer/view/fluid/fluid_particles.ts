@@ -1,6 +1,6 @@
 import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 'three';
-import { kImpostorHit, kImpostorVertexShader } from '../impostor';
-import type { BodyUniforms } from '../impostor';
+import { kImpostorHit, kImpostorVertexShader } from '../particles/impostor';
+import type { BodyUniforms } from '../particles/impostor';
 import type { BehindUniforms } from './fluid_pass';
 
 const kDepth = /* glsl */ `

@@ -10,9 +10,9 @@ import {
   WebGLRenderTarget,
 } from 'three';
 import type { Color, IUniform, PerspectiveCamera, WebGLRenderer } from 'three';
-import { screenMesh } from '../screen';
-import { kLayers } from '../layers';
-import type { Theme } from '../theme';
+import { screenMesh } from '../base/screen';
+import { kLayers } from '../base/layers';
+import type { Theme } from '../base/theme';
 import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 

@@ -1,5 +1,5 @@
 import { ShaderMaterial, Vector2 } from 'three';
-import { kScreenVertexShader } from '../screen';
+import { kScreenVertexShader } from '../base/screen';
 
 /** Maximum samples on each side. Close views are smoothed less. */
 const kMostSteps = 36;

@@ -1,9 +1,9 @@
 import { Color, DoubleSide, Mesh, ShaderMaterial } from 'three';
 import type { BufferGeometry, IUniform } from 'three';
-import { kPlaceOfParticle } from '../impostor';
-import type { BodyUniforms } from '../impostor';
-import { kLayers } from '../layers';
-import type { ParticleColumns } from '../particle_columns';
+import { kPlaceOfParticle } from '../particles/impostor';
+import type { BodyUniforms } from '../particles/impostor';
+import { kLayers } from '../base/layers';
+import type { ParticleColumns } from '../particles/particle_columns';
 
 /** Corners (across, along): the shaft from 0 to 1, the head from 2 (base) to 3 (tip). */
 const kCorners = [

@@ -2,7 +2,7 @@ import { Group, Mesh, MeshBasicMaterial, SphereGeometry } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { kLayers } from '../layers';
+import { kLayers } from '../base/layers';
 
 /** Colours of the axes x, y and z. */
 const kRed = [0.9, 0.12, 0.12];

@@ -1,9 +1,9 @@
 import { Group } from 'three';
 import type { Box3, BufferGeometry, Material, Mesh } from 'three';
-import type { BodyView } from '../body_view';
-import { roundLength } from '../ground';
-import type { ViewSettings } from '../settings';
-import type { Theme } from '../theme';
+import type { BodyView } from '../bodies/body_view';
+import { roundLength } from '../base/ground';
+import type { ViewSettings } from '../base/settings';
+import type { Theme } from '../base/theme';
 import { arrowMesh, arrowUniforms } from './arrows';
 import { Axes } from './axes';
 import { Cells } from './cells';

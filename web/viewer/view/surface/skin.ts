@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, Mesh } from 'three';
 import type { ShaderMaterial } from 'three';
-import type { BodyUniforms } from '../impostor';
+import type { BodyUniforms } from '../particles/impostor';
 import type { Surface } from './marching_cubes';
 import { skinMaterial } from './skin_material';
 import type { SkinLook } from './skin_material';

@@ -1,7 +1,7 @@
 import { DoubleSide, ShaderMaterial } from 'three';
-import { kColourSource } from '../impostor';
-import type { BodyUniforms } from '../impostor';
-import { kSun } from '../light';
+import { kColourSource } from '../particles/impostor';
+import type { BodyUniforms } from '../particles/impostor';
+import { kSun } from '../base/light';
 
 const kVertexShader = /* glsl */ `
   in float amount;

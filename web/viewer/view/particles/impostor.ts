@@ -1,6 +1,6 @@
 import { Color, Vector3 } from 'three';
 import type { IUniform } from 'three';
-import type { LookUniforms } from './look_uniforms';
+import type { LookUniforms } from '../colour/look_uniforms';
 
 /** Sources of the particles' colours. */
 export const kColourSource = {

@@ -1,7 +1,7 @@
 import { RequestError } from '../../client/index';
 import type { MethodName, Params, Result } from '../../client/index';
-import { describeFault } from '../panel/errors';
-import type { Request } from './stream';
+import { describeFault } from './errors';
+import type { Request } from '../stream/stream';
 
 /** Requests to the server, and messages to the user, for all parts of the page. */
 export interface Desk {

@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
-import type { PoseBlock } from '../../client/index';
+import type { PoseBlock } from '../../../client/index';
 
 const kOne = new Vector3(1, 1, 1);
 /** Temporary results. */

@@ -1,5 +1,5 @@
 import { Color } from 'three';
-import type { BodyKindName } from '../../client/index';
+import type { BodyKindName } from '../../../client/index';
 
 /** Liquids blue, deformables green as in the paper's figures, rigid bodies in warm colours. */
 const kColours: Readonly<Record<BodyKindName, readonly string[]>> = {

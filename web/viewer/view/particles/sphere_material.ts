@@ -1,7 +1,7 @@
 import { ShaderMaterial } from 'three';
 import { kImpostorHit, kImpostorVertexShader } from './impostor';
 import type { BodyUniforms } from './impostor';
-import { kSun } from './light';
+import { kSun } from '../base/light';
 
 const kShade = /* glsl */ `
     float coverage = clamp(inside / fwidth(inside) + 0.5, 0.0, 1.0);

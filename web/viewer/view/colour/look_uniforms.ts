@@ -1,6 +1,6 @@
 import { Vector2, Vector4 } from 'three';
 import type { DataTexture, IUniform } from 'three';
-import { mapTexture } from './colour/maps';
+import { mapTexture } from './maps';
 
 /** Uniforms for the positions and colours of particles. */
 export interface LookUniforms extends Record<string, IUniform> {

@@ -1,5 +1,5 @@
 import { Float32BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from 'three';
-import type { FrameHeader, GridBlock } from '../../client/index';
+import type { FrameHeader, GridBlock } from '../../../client/index';
 
 const kGrowth = 1.5;
 

@@ -1,5 +1,5 @@
 import type { FrameHeader, SessionStatus } from '../../client/index';
-import { lossInWords } from '../panel/quality';
+import { lossInWords } from './quality';
 
 /**
  * Requests full detail while the session is paused. The server sends coarser frames with fewer

@@ -1,0 +1,17 @@
+import { behindUniforms } from '../fluid/fluid_pass';
+import type { BehindUniforms } from '../fluid/fluid_pass';
+import { lookUniforms } from '../colour/look_uniforms';
+import type { LookUniforms } from '../colour/look_uniforms';
+import { floorUniforms } from '../particles/shadow_material';
+import type { FloorUniforms } from '../particles/shadow_material';
+
+/** Uniforms of the materials of all bodies, changed in place. */
+export interface SharedUniforms {
+  floor: FloorUniforms;
+  behind: BehindUniforms;
+  look: LookUniforms;
+}
+
+export function sharedUniforms(): SharedUniforms {
+  return { floor: floorUniforms(), behind: behindUniforms(), look: lookUniforms() };
+}
