@@ -5,7 +5,7 @@
 #include "core/types.h"
 
 /// Every cap on what a scene can make grow, with the reason. The server has its own limits on
-/// clients and messages in server/limits.h.
+/// clients and messages in server/messages/limits.h.
 namespace vat {
 
 inline constexpr std::size_t kMaxParticles = 1'000'000;  // memory: up to 2 kB each with its pairs

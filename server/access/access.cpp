@@ -31,7 +31,7 @@ void AccessTokens::keep_in(TokenStore& store) {
   for (StoredToken& token : store.all()) {
     const auto left = std::chrono::duration_cast<SteadyClock::duration>(Seconds(token.ends - wall));
     Grant grant{read_role(token.role), std::move(token.session), true};
-    entries_.insert_or_assign(token.hash, Entry{std::move(grant), token.uses, now + left});
+    entries_.insert_or_assign(token.hash, ValidToken{std::move(grant), token.uses, now + left});
     ++issued_;
   }
 }
@@ -47,14 +47,14 @@ std::optional<std::string> AccessTokens::issue(Grant grant, std::optional<std::s
     const double ends = clock_.wall_time() + Seconds(time).count();
     store_->add({hash, to_string(grant.role), grant.session, uses, ends});
   }
-  entries_.insert_or_assign(hash, Entry{std::move(grant), uses, clock_.now() + time});
+  entries_.insert_or_assign(hash, ValidToken{std::move(grant), uses, clock_.now() + time});
   ++issued_;
   return token;
 }
 
 void AccessTokens::add(const TokenHash& token, Grant grant) {
   const std::lock_guard lock(mutex_);
-  entries_.insert_or_assign(token, Entry{std::move(grant), {}, {}});
+  entries_.insert_or_assign(token, ValidToken{std::move(grant), {}, {}});
 }
 
 void AccessTokens::remove(const TokenHash& token) {
@@ -79,16 +79,16 @@ std::optional<Grant> AccessTokens::use(const TokenHash& token) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(token);
   if (found == entries_.end()) return {};
-  Entry& entry = found->second;
+  ValidToken& entry = found->second;
   if (entry.end && *entry.end <= clock_.now()) return {};
   Grant grant = entry.grant;
   if (entry.uses) count_use(token, entry);
   return grant;
 }
 
-void AccessTokens::count_use(const TokenHash& token, Entry& entry) {
+void AccessTokens::count_use(const TokenHash& token, ValidToken& entry) {
   const std::size_t left = *entry.uses - 1;
-  // First, so that a use counts whatever ends the server.
+  // First, so that a use counts even if the server ends meanwhile.
   if (store_ != nullptr && left > 0) store_->set_uses(token, left);
   if (store_ != nullptr && left == 0) store_->remove(token);
   entry.uses = left;

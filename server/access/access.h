@@ -10,73 +10,74 @@
 
 #include "server/access/role.h"
 #include "server/access/token.h"
-#include "server/clock.h"
+#include "server/support/clock.h"
 
 namespace vat {
 
 class TokenStore;
 
 enum class AccessMode {
-  open,  ///< whoever connects is let in, as a controller
-  token  ///< a client has to show a token first
+  open,  ///< every connection becomes a controller
+  token  ///< clients must send a token first
 };
 const char* to_string(AccessMode mode);
 
 struct AccessSettings {
   AccessMode mode = AccessMode::open;
-  std::optional<TokenHash> admin;                 ///< of the admin token; absent: there is none
-  std::chrono::milliseconds enter_time{10'000};   ///< for the token; then the connection is closed
-  std::chrono::milliseconds refusal_delay{1000};  ///< of the answer to a wrong token
-  std::size_t max_wrong_tokens = 3;               ///< with so many the connection is closed
-  std::chrono::seconds ticket_time{60};           ///< for which a ticket is good
+  std::optional<TokenHash> admin;  ///< hash of the admin token; absent: none
+  std::chrono::milliseconds enter_time{
+      10'000};  ///< time for the token; the connection is closed afterwards
+  std::chrono::milliseconds refusal_delay{1000};  ///< delay of the answer to a wrong token
+  std::size_t max_wrong_tokens = 3;               ///< the connection is closed after so many
+  std::chrono::seconds ticket_time{60};           ///< validity of a ticket
 };
 
-/// What a client is let in with.
+/// Access of a connection.
 struct Grant {
   Role role = Role::none;
-  std::string session;         ///< the only one that is open to it; empty: all are
-  bool is_invitation = false;  ///< the role holds in the session, whatever is usual there
+  std::string session;         ///< the only accessible session; empty: all
+  bool is_invitation = false;  ///< the role replaces the session's default
 };
 
-/// The tokens that are good now, but for the admin's. Safe to use from any thread.
+/// Valid tokens, except the admin's. Safe to use from any thread.
 class AccessTokens {
  public:
-  /// At most so many that were issued are kept.
+  /// `max_issued`: greatest number of issued tokens.
   AccessTokens(std::size_t max_issued, const Clock& clock)
       : max_issued_(max_issued), clock_(clock) {}
 
-  /// From now on those that are issued are kept; those that are in the store are good again. Throws
-  /// StorageError, as all do that change what is kept; nothing has changed then.
+  /// Loads the tokens of the store, and stores issued tokens from now on. This and all functions
+  /// that change stored tokens throw StorageError, and then change nothing.
   void keep_in(TokenStore& store);
 
-  /// A new token, valid for `uses` uses (absent: any number) and for `time`. Absent if there are
-  /// too many tokens.
+  /// Returns a new token, valid for `uses` uses (absent: any number) and for `time`. Returns
+  /// nothing if there are too many tokens.
   std::optional<std::string> issue(Grant grant, std::optional<std::size_t> uses,
                                    std::chrono::seconds time);
-  /// A token that somebody else looks after, good until it is removed.
+  /// Adds a token whose owner removes it.
   void add(const TokenHash& token, Grant grant);
   void remove(const TokenHash& token);
-  /// Of a session that comes back, those that were issued are kept all the same.
+  /// Removes the session's tokens. If it `comes_back`, issued tokens stay stored.
   void remove_session(const std::string& session, bool comes_back);
-  /// What the token gives, and counts the use; nothing if it is not good.
+  /// Returns the token's grant and counts the use, or returns nothing if the token is invalid.
   std::optional<Grant> use(const TokenHash& token);
 
  private:
-  struct Entry {
+  struct ValidToken {
     Grant grant;
     std::optional<std::size_t> uses;
-    std::optional<SteadyClock::time_point> end;  // absent: it was not issued here
+    std::optional<SteadyClock::time_point> end;  // absent: not issued here
   };
   void remove_old();
-  void count_use(const TokenHash& token, Entry& entry);
+  void count_use(const TokenHash& token, ValidToken& entry);
 
   const std::size_t max_issued_;
   const Clock& clock_;
   std::mutex mutex_;
-  // Found by their hashes: what the time of a search could tell is of the hash, not of the token.
-  std::map<TokenHash, Entry> entries_;
+  // By hash: the duration of a search depends on the hash, and does not reveal a token.
+  std::map<TokenHash, ValidToken> entries_;
   std::size_t issued_ = 0;
-  TokenStore* store_ = nullptr;  // null: they end with the server
+  TokenStore* store_ = nullptr;  // null: tokens end with the server
 };
 
 }  // namespace vat

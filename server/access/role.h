@@ -4,13 +4,13 @@
 
 namespace vat {
 
-/// What a client may do; each role may do what those before it may.
+/// Role of a client. Each role includes the rights of those before it.
 enum class Role : std::uint8_t {
-  none,        ///< has not been let in
-  viewer,      ///< watches and asks
-  controller,  ///< changes what is simulated
-  owner,       ///< of a session: decides who may, and ends it
-  admin        ///< of the server: all, in every session
+  none,        ///< no token was sent yet
+  viewer,      ///< watches and reads
+  controller,  ///< changes the simulation
+  owner,       ///< of a session: sets roles, and closes it
+  admin        ///< of the server: all rights in all sessions
 };
 const char* to_string(Role role);
 

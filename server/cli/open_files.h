@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// Raises what this process may have open (RLIMIT_NOFILE) to `wanted`, or as far as the system
-/// allows. What it may have open then.
+/// Raises the limit of open files (RLIMIT_NOFILE) to `wanted`, or to the system's maximum. Returns
+/// the new limit.
 std::size_t raise_open_files(std::size_t wanted);
 
 }  // namespace vat

@@ -2,8 +2,7 @@
 
 namespace vat {
 
-/// Runs the command that the arguments of the program name. Returns the exit code of the program,
-/// one of those in server/cli/command.h.
+/// Runs the command of the arguments. Returns an exit code of server/cli/common/command.h.
 int run_command(int argc, char** argv);
 
 }  // namespace vat

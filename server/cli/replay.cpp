@@ -13,10 +13,11 @@
 #include <thread>
 
 #include "core/limits.h"
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "server/cli/replay_seeks.h"
+#include "server/messages/describe.h"
 #include "server/replay/replay_player.h"
-#include "server/session/describe.h"
+#include "server/rpc/method_table.h"
 
 namespace vat {
 namespace {
@@ -30,13 +31,13 @@ struct ReplayOptions {
   std::size_t seeks = 0;
 };
 
-/// What sessions share, for one that nobody joins.
-class LonelyEnvironment {
+/// Environment of a session without a server.
+class StandaloneEnvironment {
  public:
-  explicit LonelyEnvironment(const Catalogue& catalogue, InstructionSet instructions)
+  explicit StandaloneEnvironment(const Catalogue& catalogue, InstructionSet instructions)
       : runner_(std::max(1U, std::thread::hardware_concurrency())),
         environment_{catalogue,  limits_,        instructions, runner_, metrics_,
-                     resources_, frame_threads_, tokens_,      clock_} {
+                     resources_, frame_threads_, tokens_,      clock_,  session_methods()} {
     limits_.max_particles = kMaxParticles;
     limits_.max_springs = kMaxSprings;
     limits_.max_particle_steps_per_tick = kMaxParticles * kMaxStepsPerTick;
@@ -67,7 +68,7 @@ void print_place(const SessionCore& core, std::uint64_t hash) {
 }
 
 int play(const ReplayOptions& options, const Recording& recording, const Catalogue& catalogue) {
-  const LonelyEnvironment environment(catalogue, recording.instructions);
+  const StandaloneEnvironment environment(catalogue, recording.instructions);
   if (options.seeks > 0) {
     time_seeks(recording, environment.get(), options.seeks);
     return kExitOk;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "server/clock.h"
 #include "server/replay/replay_player.h"
+#include "server/support/clock.h"
 
 namespace vat {
 namespace {
@@ -33,8 +33,8 @@ std::string describe(std::vector<double>& times) {
 }
 
 void time_some(const Recording& recording, const SessionEnvironment& environment,
-               const std::shared_ptr<KeptMoments>& moments, std::size_t count) {
-  // Nothing is kept on the way, so that each finds what was there before.
+               const std::shared_ptr<MomentCache>& moments, std::size_t count) {
+  // Adds no moments, so that each seek finds the same ones.
   ReplayPlayer player(recording, environment);
   player.share(moments);
   SessionCore core("replay", {recording.name}, player.begin(), environment);
@@ -58,9 +58,9 @@ void time_some(const Recording& recording, const SessionEnvironment& environment
             << "; the state to begin at: " << describe(restoring) << std::endl;
 }
 
-/// What a server does beside who watches.
+/// Adds moments as a server does while a replay is viewed.
 void play_once(const Recording& recording, const SessionEnvironment& environment,
-               const std::shared_ptr<KeptMoments>& moments) {
+               const std::shared_ptr<MomentCache>& moments) {
   ReplayPlayer player(recording, environment);
   player.share(moments);
   SessionCore core("replay", {recording.name}, player.begin(), environment);
@@ -84,11 +84,11 @@ void time_seeks(const Recording& recording, const SessionEnvironment& environmen
   std::cout << recording.moments.size() << " moments recorded, "
             << static_cast<double>(bytes) / kMebibyte << " MiB, at most " << widest
             << " ticks apart; " << recording.hashes.size() << " hashes" << std::endl;
-  const ReplayPlayer::Keeping keeping;
-  const auto none = std::make_shared<KeptMoments>(Seconds(1e9), keeping.most_bytes);
+  const ReplayPlayer::CacheSettings keeping;
+  const auto none = std::make_shared<MomentCache>(Seconds(1e9), keeping.most_bytes);
   time_some(recording, environment, none, count);
 
-  const auto moments = std::make_shared<KeptMoments>(keeping.work, keeping.most_bytes);
+  const auto moments = std::make_shared<MomentCache>(keeping.work, keeping.most_bytes);
   const auto begin = CostClock::now();
   play_once(recording, environment, moments);
   std::cout << moments->count() << " moments filled in, "

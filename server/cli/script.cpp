@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
-#include "server/cli/option_checks.h"
-#include "server/cli/scene_argument.h"
+#include "server/cli/common/command.h"
+#include "server/cli/common/option_checks.h"
+#include "server/cli/common/scene_argument.h"
 #include "server/script/play_file.h"
 #include "server/script/player.h"
 
@@ -46,7 +46,7 @@ std::string check_url(const std::string& text) {
   }
 }
 
-/// Plays a file and says how that went. kExitOk also where it was passed over.
+/// Plays a file and prints the result. Returns kExitOk also for a skipped file.
 int play(const std::string& path, const script::PlaySettings& settings, bool& was_played) {
   was_played = true;
   try {

@@ -24,20 +24,20 @@
 #include <vector>
 
 #include "protocol/scene/scene_json.h"
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
+#include "server/cli/common/scene_argument.h"
 #include "server/cli/open_files.h"
-#include "server/cli/scene_argument.h"
 #include "server/cli/serve_access.h"
-#include "server/clock.h"
-#include "server/heap.h"
 #include "server/http/downloads.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
-#include "server/log_format.h"
-#include "server/net/transport.h"
-#include "server/session/session_server.h"
+#include "server/operations/heap.h"
+#include "server/operations/log_format.h"
+#include "server/rpc/session_server.h"
 #include "server/settings/serve_settings.h"
 #include "server/settings/setting_sources.h"
+#include "server/support/clock.h"
+#include "server/transport/transport.h"
 
 namespace vat {
 
@@ -48,7 +48,7 @@ namespace asio = boost::asio;
 /// Open files beside the connections: refused ones, HTTP requests, the log, the threads' own.
 constexpr std::size_t kOtherFiles = 512;
 
-/// The file's name, and what ./vat check and the tests take.
+/// Adds the file name and options for ./vat check and the tests.
 constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG", "VAT_FUZZ_SECONDS",
                                                 "VAT_KILLS"};
 
@@ -85,7 +85,7 @@ class StopSignal {
     io_.run();
     return drain_time_;
   }
-  /// As if one came, from any thread; the time that clients get.
+  /// Acts as a received signal, from any thread. Returns the time for clients.
   std::chrono::milliseconds request(std::optional<std::chrono::milliseconds> drain_time) {
     const auto given = drain_time.value_or(usual_drain_time_);
     asio::post(io_, [this, given] {
@@ -220,7 +220,7 @@ int load_and_serve(const ServeSettings& options) {
                std::move(viewer).value());
 }
 
-/// The settings, their table, and what the command line says of them.
+/// The settings, their table, and their values on the command line.
 struct CommandLine {
   ServeSettings settings;
   std::vector<Setting> table;

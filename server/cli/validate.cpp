@@ -8,8 +8,8 @@
 
 #include "core/numerics/cost_estimate.h"
 #include "core/simulation/simulation.h"
-#include "server/cli/command.h"
-#include "server/cli/scene_argument.h"
+#include "server/cli/common/command.h"
+#include "server/cli/common/scene_argument.h"
 
 namespace vat {
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/support/check.h"
 #include "server/access/token.h"
 
 namespace vat {
@@ -23,6 +24,7 @@ std::optional<Downloads::File> Downloads::take(std::string_view path, SteadyCloc
   const auto found = files_.find(path);
   if (found == files_.end()) return {};
   File file = std::move(found->second.file);
+  VAT_CHECK(bytes_ >= file.content.size());
   bytes_ -= file.content.size();
   files_.erase(found);
   return file;
@@ -35,8 +37,10 @@ std::size_t Downloads::forget_old(SteadyClock::time_point now) {
 }
 
 void Downloads::forget_old_locked(SteadyClock::time_point now) {
+  VAT_CHECK(mutex_.is_held());
   std::erase_if(files_, [&](const auto& entry) {
     if (entry.second.end > now) return false;
+    VAT_CHECK(bytes_ >= entry.second.file.content.size());
     bytes_ -= entry.second.file.content.size();
     return true;
   });

@@ -3,37 +3,37 @@
 #include <chrono>
 #include <cstddef>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "server/clock.h"
-#include "server/limits.h"
-#include "server/net/transport.h"
+#include "server/messages/limits.h"
+#include "server/support/clock.h"
+#include "server/support/owned_mutex.h"
+#include "server/transport/transport.h"
 
 namespace vat {
 
-/// Files that were made for one client each, for a while: whoever knows a file's path gets it,
-/// once. Safe to use from any thread.
+/// Files for one client each, which fetches them once by their unguessable path before they expire.
+/// Safe to use from any thread.
 class Downloads {
  public:
   static constexpr std::string_view kFolder = "/downloads/";
   static constexpr std::chrono::seconds kPatience{60};
 
   struct File {
-    std::string name;  ///< that a browser gives it
+    std::string name;  ///< suggested to the browser
     std::string content;
   };
 
-  /// `max_bytes`: of all that wait.
+  /// `max_bytes`: limit of all waiting files.
   explicit Downloads(std::size_t max_bytes = ServerLimits{}.max_download_bytes)
       : max_bytes_(max_bytes) {}
 
-  /// A path that nobody can guess; nothing where too much waits already.
+  /// Returns the path, or nothing if the limit would be exceeded.
   std::optional<std::string> add(File file, SteadyClock::time_point now);
   std::optional<File> take(std::string_view path, SteadyClock::time_point now);
-  /// Those that have waited long enough go; what the others take.
+  /// Removes expired files. Returns the bytes of the others.
   std::size_t forget_old(SteadyClock::time_point now);
 
  private:
@@ -44,12 +44,12 @@ class Downloads {
   void forget_old_locked(SteadyClock::time_point now);
 
   const std::size_t max_bytes_;
-  std::mutex mutex_;
+  OwnedMutex mutex_;
   std::map<std::string, Waiting, std::less<>> files_;
   std::size_t bytes_ = 0;
 };
 
-/// Answers GET for those files, and all else as `site` does.
+/// Returns a handler for GET of these files, which passes other requests to `site`.
 HttpHandler with_downloads(HttpHandler site, Downloads& downloads, const Clock& clock);
 
 }  // namespace vat

@@ -4,23 +4,22 @@
 #include <string>
 
 #include "server/http/static_files.h"
-#include "server/net/transport.h"
-#include "server/server_phase.h"
+#include "server/operations/server_phase.h"
+#include "server/transport/transport.h"
 
 namespace vat {
 
-/// Where the answers about the server come from.
+/// Sources of the answers about the server.
 struct SiteSources {
   std::function<std::string()> metrics;  ///< the text of "/metrics"
   std::function<ServerPhase()> phase;
   std::string version;  ///< the JSON of "/version"
 };
 
-/// Answers GET and HEAD for the viewer's files ("/" is "/index.html"), and for
-/// - "/healthz": 200 as long as the process answers;
-/// - "/readyz": 200 where the server takes new sessions, 503 while it starts, recovers or drains;
-/// - "/version" and "/metrics".
-/// Where there is no viewer, "/" says how to build it.
+/// Returns a handler for GET and HEAD of the viewer's files ("/" is "/index.html"), and of
+/// "/healthz": 200 while the process runs; "/readyz": 200 if the server admits sessions, 503 while
+/// it starts, recovers or drains; "/version" and "/metrics". Without a viewer, "/" describes how to
+/// build it.
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources);
 
 }  // namespace vat

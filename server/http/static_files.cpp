@@ -35,7 +35,7 @@ Result<std::vector<fs::path>> list_files(const fs::path& folder, const StaticFil
   return files;
 }
 
-/// Fails where the file has more than `max_size` bytes.
+/// Fails if the file has more than `max_size` bytes.
 Result<std::string> read_file(const fs::path& path, std::size_t max_size) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);

@@ -16,8 +16,8 @@ struct StaticFilesLimits {
   std::size_t max_bytes = 64 * 1024 * 1024;  ///< of all files together
 };
 
-/// The files of a folder, read once: a request can name only what was there at the start, so no
-/// path leads out of the folder, and a rebuild does not mix old files with new ones.
+/// Files of a folder, read once at the start. No path leads out of the folder, and a rebuild does
+/// not mix old and new files.
 class StaticFiles {
  public:
   struct File {
@@ -25,13 +25,13 @@ class StaticFiles {
     std::string content;
   };
 
-  /// Reads the regular files of the folder and its sub-folders; symbolic links and names that begin
-  /// with '.' are left out. A folder that does not exist is empty. Fails where something cannot be
-  /// read or a limit is passed.
+  /// Reads the regular files of the folder and its sub-folders, except symbolic links and names
+  /// that begin with '.'. A missing folder is empty. Fails if a file cannot be read or a limit is
+  /// exceeded.
   static Result<StaticFiles> read(const std::filesystem::path& folder,
                                   const StaticFilesLimits& limits = {});
 
-  /// The file at a path such as "/assets/main.js"; null where there is none.
+  /// Returns the file at a path such as "/assets/main.js", or null.
   const File* find(std::string_view path) const;
   bool empty() const { return files_.empty(); }
 
@@ -39,7 +39,7 @@ class StaticFiles {
   std::map<std::string, File, std::less<>> files_;
 };
 
-/// Content type by the ending of a file's name.
+/// Returns the content type for the ending of a file name.
 std::string content_type_of(const std::filesystem::path& name);
 
 }  // namespace vat

@@ -28,7 +28,7 @@ class NpyWriter final : public FrameWriter {
  public:
   explicit NpyWriter(OutputFile file) : file_(std::move(file)) {}
 
-  // The header is renewed with each frame, so that what a failed run leaves behind can be read.
+  // The header is rewritten with each frame, so that the file of a failed run can be read.
   Status write(const Simulation& simulation) override {
     if (frame_count_ > 0 && simulation.particle_count() != particle_count_) {
       return Error{"not_allowed", "", "an .npy file cannot hold a changing number of particles"};

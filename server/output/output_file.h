@@ -10,11 +10,11 @@
 namespace vat {
 
 /// A file that bears its name only once it is complete: until commit() it is called NAME.part, so
-/// that what a failed run leaves behind is never taken for a result. Devices and pipes are written
+/// that the file of a failed run is not taken for a result. Devices and pipes are written
 /// directly. The path of every error is the file's name.
 class OutputFile {
  public:
-  /// Creates NAME.part, or replaces what was there.
+  /// Creates or replaces NAME.part.
   static Result<OutputFile> create(const std::string& name);
 
   /// Adds bytes at the end.

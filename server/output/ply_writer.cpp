@@ -46,7 +46,7 @@ void append_body(std::string& bytes, const BodyView& body, std::uint32_t number)
   }
 }
 
-// Single precision: PLY is for looking at, and not every viewer takes doubles.
+// Single precision: PLY is for viewing, and not every viewer reads doubles.
 class PlyWriter final : public SeriesWriter {
  public:
   using SeriesWriter::SeriesWriter;

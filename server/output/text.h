@@ -22,7 +22,7 @@ void append_number(std::string& text, Number value) {
 /// Appends 16 hexadecimal digits.
 void append_hash(std::string& text, std::uint64_t hash);
 
-/// Appends a CSV field (RFC 4180): quoted only where it has to be.
+/// Appends a CSV field (RFC 4180), quoted only if necessary.
 void append_csv_field(std::string& text, std::string_view field);
 
 }  // namespace vat

@@ -6,7 +6,7 @@ namespace vat {
 
 /// Legacy VTK polydata in text: position [m] and velocity [m/s] of each particle, the body's place
 /// in the scene, its kind (the number of BodyKind), radius [m], density [kg/m^3] and pressure [Pa];
-/// the last two are 0 but for liquids.
+/// the last two are 0 except for liquids.
 ///
 /// `frame_count` is the number of times that will be written: it decides on the names of the files,
 /// see series_name(). Each file is created by its write(), which gives the errors; creating the

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/support/check.h"
 #include "server/access/token.h"
 
 namespace vat {
@@ -13,7 +14,7 @@ RpcError bad_part(std::string path, std::string message) {
 
 }  // namespace
 
-std::variant<Imports::Progress, RpcError> Imports::add(ConnectionId client, Part part,
+std::variant<Imports::Progress, RpcError> Imports::add(ConnectionId client, Chunk part,
                                                        SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   forget_old_locked(now);
@@ -26,19 +27,20 @@ std::variant<Imports::Progress, RpcError> Imports::add(ConnectionId client, Part
   }
   const auto found = files_.find(*part.name);
   if (found == files_.end() || found->second.client != client || found->second.recording) {
-    return bad_part("/recording", "must be that of a file that this connection has begun");
+    return bad_part("/recording", "must be a file that this connection has started");
   }
   File& file = found->second;
-  if (file.size != part.size) return bad_part("/size", "must stay the same");
+  if (file.size != part.size) return bad_part("/size", "must not change");
   if (part.offset != file.bytes.size()) {
     return bad_part("/offset",
-                    "must be where the part before ended, at " + std::to_string(file.bytes.size()));
+                    "must be the end of the previous part, " + std::to_string(file.bytes.size()));
   }
   if (part.bytes.size() > file.size - part.offset) {
-    return bad_part("/data", "must end with the file");
+    return bad_part("/data", "must not exceed the size of the file");
   }
   file.bytes.insert(file.bytes.end(), part.bytes.begin(), part.bytes.end());
   file.held = file.bytes.size();
+  VAT_CHECK(file.held <= file.size);
   file.end = now + kPatience;
   return Progress{*part.name, file.held, file.held == file.size};
 }
@@ -54,6 +56,7 @@ void Imports::put(const std::string& name, std::shared_ptr<const Recording> reco
                   SteadyClock::time_point now) {
   const std::lock_guard lock(mutex_);
   const auto found = files_.find(name);
+  VAT_CHECK(recording != nullptr);
   if (found == files_.end()) return;
   found->second.recording = std::move(recording);
   found->second.end = now + kPatience;
@@ -79,10 +82,12 @@ std::size_t Imports::forget_old(SteadyClock::time_point now) {
 }
 
 void Imports::forget_old_locked(SteadyClock::time_point now) {
+  VAT_CHECK(mutex_.is_held());
   std::erase_if(files_, [&](const auto& entry) { return entry.second.end < now; });
 }
 
 std::size_t Imports::held() const {
+  VAT_CHECK(mutex_.is_held());
   std::size_t sum = 0;
   for (const auto& [name, file] : files_) sum += file.held;
   return sum;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/replay/replay_player.h"
-#include "server/thread_time.h"
+#include "server/support/thread_time.h"
 
 namespace vat {
 namespace {
@@ -38,7 +38,7 @@ std::vector<Gap> find_gaps(const Recording& recording) {
 
 MomentFiller::MomentFiller(std::shared_ptr<const Recording> recording,
                            const SessionEnvironment& environment,
-                           std::shared_ptr<KeptMoments> moments)
+                           std::shared_ptr<MomentCache> moments)
     : recording_(std::move(recording)), moments_(std::move(moments)) {
   thread_ = std::thread([this, environment] {
     try {
@@ -46,7 +46,7 @@ MomentFiller::MomentFiller(std::shared_ptr<const Recording> recording,
     } catch (const Cancelled&) {
       return;
     } catch (const std::exception& error) {
-      // Who plays it there is told; what lies before can be gone to.
+      // A viewer that plays it there receives the error. Earlier positions remain usable.
       spdlog::info("a recording cannot be filled further: {}", error.what());
     }
     is_done_ = true;
@@ -61,16 +61,16 @@ MomentFiller::~MomentFiller() {
 void MomentFiller::run(const SessionEnvironment& shared) {
   setpriority(PRIO_PROCESS, 0, kFillerNiceness);  // of a thread, on Linux
   ThreadPoolRunner runner(1);
-  ServerMetrics metrics;  // these are not the ticks of a session
+  ServerMetrics metrics;  // not counted as ticks of a session
   ResourceBudget resources(kUnlimitedResources);
   const SessionEnvironment environment{
-      shared.catalogue, shared.limits,        shared.instructions, runner,      metrics,
-      resources,        shared.frame_threads, shared.tokens,       shared.clock};
+      shared.catalogue, shared.limits,        shared.instructions, runner,       metrics,
+      resources,        shared.frame_threads, shared.tokens,       shared.clock, shared.methods};
   ReplayPlayer player(*recording_, environment);
   player.share(moments_);
   SessionCore core("filling", {recording_->name}, player.begin(), environment);
   player.go_to_begin(core);
-  KeptMoments::Seconds work{0};
+  MomentCache::Seconds work{0};
   std::uint64_t ticks = 0;
   for (const Gap& gap : find_gaps(*recording_)) {
     const double expected = ticks == 0 ? 1 : static_cast<double>(gap.ticks()) / double(ticks);

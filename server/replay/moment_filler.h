@@ -4,20 +4,19 @@
 #include <memory>
 #include <thread>
 
-#include "server/replay/kept_moments.h"
-#include "server/session/session_environment.h"
+#include "server/replay/moment_cache.h"
+#include "server/session/core/session_environment.h"
 
 namespace vat {
 
-/// Plays a recording beside who watches it, on a thread that gives way to all others, and keeps
-/// moments where there are too few, so that going anywhere takes little time: the widest gaps
-/// first.
+/// Plays a recording on a thread of the lowest priority, and stores moments in its widest gaps
+/// first, so that seeks are fast.
 class MomentFiller {
  public:
-  /// What the environment is made of must outlive this.
+  /// The contents of `environment` must outlive this.
   MomentFiller(std::shared_ptr<const Recording> recording, const SessionEnvironment& environment,
-               std::shared_ptr<KeptMoments> moments);
-  /// Ends at the next tick.
+               std::shared_ptr<MomentCache> moments);
+  /// Ends the thread at its next tick.
   ~MomentFiller();
   MomentFiller(const MomentFiller&) = delete;
   MomentFiller& operator=(const MomentFiller&) = delete;
@@ -28,7 +27,7 @@ class MomentFiller {
   void run(const SessionEnvironment& environment);
 
   const std::shared_ptr<const Recording> recording_;
-  const std::shared_ptr<KeptMoments> moments_;
+  const std::shared_ptr<MomentCache> moments_;
   std::atomic<bool> cancelled_ = false;
   std::atomic<bool> is_done_ = false;
   std::thread thread_;

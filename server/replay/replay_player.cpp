@@ -5,10 +5,12 @@
 #include <string>
 #include <utility>
 
-#include "server/session/describe.h"
-#include "server/session/scene_loading.h"
+#include "core/support/check.h"
+#include "server/messages/describe.h"
+#include "server/session/core/scene_loading.h"
+#include "server/session/core/session_restore.h"
 #include "server/storage/compression.h"
-#include "server/thread_time.h"
+#include "server/support/thread_time.h"
 
 namespace vat {
 namespace {
@@ -21,7 +23,7 @@ namespace {
 
 ReplayPlayer::ReplayPlayer(const Recording& recording, const SessionEnvironment& environment)
     : recording_(recording), environment_(environment), hashes_(recording.hashes) {
-  set_keeping({});
+  set_cache({});
 }
 
 void ReplayPlayer::compare_moments() {
@@ -33,7 +35,7 @@ void ReplayPlayer::compare_moments() {
 
 Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
   Result<Simulation> simulation =
-      Simulation::load(decompress(moment.state, most_state_bytes(environment_.limits)),
+      Simulation::load(decompress(moment.state, max_state_bytes(environment_.limits)),
                        &environment_.runner, recording_.instructions);
   if (!simulation) fail_replay("state", simulation.errors().front().message);
   return std::move(simulation).value();
@@ -42,16 +44,7 @@ Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
 Simulation ReplayPlayer::load_scene(std::uint64_t sequence) const {
   const auto entry = std::ranges::find(recording_.log, sequence, &LogEntry::sequence);
   if (entry == recording_.log.end()) fail_replay("scene", "its entry is not there");
-  const Result<Json> params =
-      parse_json(entry->params, {entry->params.size(), kMaxMessageDepth, entry->params.size() + 1});
-  if (!params) fail_replay("scene", params.errors().front().message);
-  const auto value = params.value().find("scene");
-  if (value == params.value().end()) fail_replay("scene", "its entry has none");
-  const auto scene = read_client_scene(*value, environment_.catalogue);
-  if (const auto* error = std::get_if<RpcError>(&scene)) fail_replay("scene", error->message);
-  auto simulation = make_simulation(std::get<Scene>(scene), environment_, recording_.instructions);
-  if (const auto* error = std::get_if<RpcError>(&simulation)) fail_replay("scene", error->message);
-  return std::get<Simulation>(std::move(simulation));
+  return load_entry_scene(*entry, environment_, recording_.instructions);
 }
 
 Simulation ReplayPlayer::begin() const {
@@ -71,7 +64,7 @@ void ReplayPlayer::go_to_begin(SessionCore& core) {
                              .loaded = first.sequence,
                              .participants = write_participants(Participants()),
                              .snapshot = as_loaded};
-  core.resume(moment, std::move(simulation), as_loaded);
+  resume(core, moment, std::move(simulation), as_loaded);
   find_place(core);
 }
 
@@ -86,7 +79,7 @@ void ReplayPlayer::go_to(SessionCore& core, const RecordedMoment& moment) {
   if (const auto excess = core.run().admit(simulation)) {
     fail_replay("state", limit_reached(*excess).message);
   }
-  core.resume(read, std::move(simulation), scene_as_loaded(read.loaded));
+  resume(core, read, std::move(simulation), scene_as_loaded(read.loaded));
   find_place(core);
 }
 
@@ -98,9 +91,10 @@ const Snapshot& ReplayPlayer::scene_as_loaded(std::uint64_t sequence) {
 }
 
 void ReplayPlayer::find_place(const SessionCore& core) {
-  const std::uint64_t sequence = core.sequence();
+  const std::uint64_t sequence = core.history().sequence();
   const auto entry = std::ranges::upper_bound(recording_.log, sequence, {}, &LogEntry::sequence);
   next_entry_ = static_cast<std::size_t>(entry - recording_.log.begin());
+  VAT_CHECK(next_entry_ <= recording_.log.size());
   const auto hash =
       std::ranges::lower_bound(hashes_, std::pair(core.run().position(), sequence), {}, key_of);
   next_hash_ = static_cast<std::size_t>(hash - hashes_.begin());
@@ -108,25 +102,21 @@ void ReplayPlayer::find_place(const SessionCore& core) {
   work_ = work_.zero();
 }
 
-void ReplayPlayer::carry_out_here(SessionCore& core) {
+void ReplayPlayer::execute_here(SessionCore& core) {
   for (; next_entry_ < recording_.log.size(); ++next_entry_) {
     compare_here(core);
     const LogEntry& entry = recording_.log[next_entry_];
     if (entry.position != core.run().position()) return;
-    if (is_of_clock(entry.method)) {
-      core.apply(entry, [](SessionCore&, Participant&) -> ActionResult { return Json::object(); });
-    } else {
-      carry_out_again(core, entry);
-    }
+    repeat_recorded_entry(core, entry);
   }
   compare_here(core);
 }
 
 void ReplayPlayer::compare_here(const SessionCore& core) {
-  const auto here = std::pair(core.run().position(), core.sequence());
+  const auto here = std::pair(core.run().position(), core.history().sequence());
   for (; next_hash_ < hashes_.size() && key_of(hashes_[next_hash_]) <= here; ++next_hash_) {
     const RecordedHash& expected = hashes_[next_hash_];
-    if (key_of(expected) < here) continue;  // there is no such place
+    if (key_of(expected) < here) continue;  // the recording has no such position
     const std::uint64_t hash = core.run().simulation().state_hash();
     if (hash != expected.hash) {
       throw Diverged("at tick " + std::to_string(core.run().tick()) + " the state has the hash " +
@@ -150,18 +140,18 @@ std::shared_ptr<const RecordedMoment> ReplayPlayer::find_moment(std::uint64_t po
 }
 
 void ReplayPlayer::keep(const SessionCore& core) {
-  const SessionMoment moment = core.moment();
+  const SessionMoment moment = core.history().moment();
   kept_->add(
       {moment.position, moment.sequence, moment.fields(), compress(moment.snapshot.to_bytes())});
 }
 
 void ReplayPlayer::play_to(SessionCore& core, std::uint64_t position,
                            const std::atomic<bool>& cancelled) {
-  carry_out_here(core);
+  execute_here(core);
   while (core.run().position() < std::min(position, recording_.end)) {
     const auto begin = thread_time();
     run_to(core, core.run().position() + 1, cancelled);
-    carry_out_here(core);
+    execute_here(core);
     work_ += thread_time() - begin;
     const auto last = find_moment(core.run().position());
     const bool is_there = last != nullptr && last->position == core.run().position();

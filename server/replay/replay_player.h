@@ -10,54 +10,54 @@
 #include <utility>
 #include <vector>
 
-#include "server/replay/kept_moments.h"
-#include "server/replay/recording.h"
-#include "server/session/session_core.h"
-#include "server/session/session_recovery.h"
+#include "server/history/recording.h"
+#include "server/replay/log_replay.h"
+#include "server/replay/moment_cache.h"
+#include "server/session/core/session_core.h"
 
 namespace vat {
 
-/// Plays a recording in the core of a session: what changed it is carried out again, each entry at
-/// its position, by participants who are not here. Everything that fails throws Diverged, or
-/// StorageError, of kind corrupt, where the recording is not what a server writes.
+/// Plays a recording in the core of a session: repeats each logged command at its position. Throws
+/// Diverged if the state differs or a command is refused, and StorageError, of kind corrupt, if the
+/// recording is invalid.
 class ReplayPlayer {
  public:
-  /// The recording must outlive this; so must the environment, which must not have limits on
-  /// scenes: what was accepted once is accepted again.
+  /// Both must outlive this. The environment must have no limits on scenes, because what was
+  /// accepted before is accepted again.
   ReplayPlayer(const Recording& recording, const SessionEnvironment& environment);
 
-  /// What a core is to be made with, which go_to_begin() then takes where the recording begins.
+  /// Returns the simulation to make a core with. go_to_begin() then moves the core to the begin of
+  /// the recording.
   Simulation begin() const;
   void go_to_begin(SessionCore& core);
-  /// From now on the moments of the recording are compared with too, at some cost each.
+  /// Compares the states of the recording's moments too, at some cost each.
   void compare_moments();
-  /// Carries out what was done up to a position, and runs the ticks there. Where the recording
-  /// tells what the state was it is compared. Throws Cancelled.
+  /// Runs commands and ticks up to a position. Compares the state with the hashes of the recording.
+  /// Throws Cancelled.
   void play_to(SessionCore& core, std::uint64_t position, const std::atomic<bool>& cancelled);
-  /// Takes the core to a position, from the moment that is nearest before it. The greatest part of
-  /// its time is the work between two moments.
+  /// Moves the core to a position, from the nearest moment before it. The time is at most the work
+  /// between two moments.
   void seek(SessionCore& core, std::uint64_t position, const std::atomic<bool>& cancelled);
 
-  /// Where more work than this lies between moments of the recording, and it is played, further
-  /// ones are kept in memory, of so many bytes at most: beyond them every other one goes, and so
-  /// much more work lies between those that come.
-  struct Keeping {
-    KeptMoments::Seconds work{0.04};
+  /// Settings of the moments in memory: least work between two moments, and their greatest size.
+  /// See MomentCache.
+  struct CacheSettings {
+    MomentCache::Seconds work{0.04};
     std::size_t most_bytes = std::size_t{128} << 20;
   };
-  void set_keeping(const Keeping& keeping) {
-    kept_ = std::make_shared<KeptMoments>(keeping.work, keeping.most_bytes);
+  void set_cache(const CacheSettings& keeping) {
+    kept_ = std::make_shared<MomentCache>(keeping.work, keeping.most_bytes);
   }
-  /// The same, in a place that others use too.
-  void share(std::shared_ptr<KeptMoments> moments) { kept_ = std::move(moments); }
-  const KeptMoments& kept() const { return *kept_; }
+  /// Uses moments that others share.
+  void share(std::shared_ptr<MomentCache> moments) { kept_ = std::move(moments); }
+  const MomentCache& kept() const { return *kept_; }
 
-  /// The same as seek(), in parts: jumps to a moment if that is nearer, and plays nothing.
+  /// Starts a seek: jumps to a moment if that is nearer. Does not run ticks.
   void begin_seek(SessionCore& core, std::uint64_t position);
-  /// States are not compared up to the next seek.
+  /// Compares no states before the next seek.
   void stop_comparing() { next_hash_ = hashes_.size(); }
 
-  /// Told of each comparison that did not fail.
+  /// Called after each comparison with equal hashes.
   std::function<void(const RecordedHash&)> on_same;
 
  private:
@@ -65,17 +65,17 @@ class ReplayPlayer {
   const Snapshot& scene_as_loaded(std::uint64_t sequence);
   void go_to(SessionCore& core, const RecordedMoment& moment);
   Simulation load_state(const RecordedMoment& moment) const;
-  /// What comes after the sequence that the core has carried out.
+  /// Finds the next entry and hash after the core's sequence.
   void find_place(const SessionCore& core);
-  /// All that belongs to the core's position.
-  void carry_out_here(SessionCore& core);
+  /// Executes all entries of the core's position.
+  void execute_here(SessionCore& core);
   void compare_here(const SessionCore& core);
   std::shared_ptr<const RecordedMoment> find_moment(std::uint64_t position) const;
   void keep(const SessionCore& core);
 
   const Recording& recording_;
   const SessionEnvironment& environment_;
-  std::vector<RecordedHash> hashes_;  ///< of the recording, and of its moments
+  std::vector<RecordedHash> hashes_;  ///< of the recording and its moments
   std::size_t next_entry_ = 0;
   std::size_t next_hash_ = 0;
   std::uint64_t same_until_ = 0;  ///< tick of the last comparison
@@ -83,9 +83,9 @@ class ReplayPlayer {
     std::uint64_t sequence;
     Snapshot scene;
   };
-  std::optional<Loaded> loaded_;  ///< the scene that was wanted last
-  std::shared_ptr<KeptMoments> kept_;
-  KeptMoments::Seconds work_{0};  ///< since the last moment
+  std::optional<Loaded> loaded_;  ///< last requested scene
+  std::shared_ptr<MomentCache> kept_;
+  MomentCache::Seconds work_{0};  ///< since the last moment
 };
 
 }  // namespace vat

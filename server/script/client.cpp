@@ -24,7 +24,7 @@ class WebSocketClient final : public Client {
     try {
       stream_.next_layer().close_socket();
       operations_.run_out();  // ends the operations in flight, which refer to this
-    } catch (...) {           // nobody is left to tell
+    } catch (...) {           // no caller can handle it
     }
   }
 

@@ -21,16 +21,16 @@ struct Message {
   std::uint16_t close_code = 0;  ///< 0: the connection broke
 };
 
-/// One WebSocket connection as a script uses it.
+/// A WebSocket connection of a script.
 class Client {
  public:
   virtual ~Client() = default;
   virtual void send_text(const std::string& text) = 0;
   virtual void send_binary(const std::string& bytes) = 0;
   virtual void close() = 0;
-  /// Leaves what arrives in the socket until it is called again with true.
+  /// `wanted` false: leaves messages in the socket until the next call with true.
   virtual void read(bool wanted) = 0;
-  /// The next message, or nothing where none has come by the deadline. The last is `closed`.
+  /// Returns the next message, or nothing if none came by the deadline. The last is `closed`.
   virtual std::optional<Message> next(Deadline deadline) = 0;
 };
 
@@ -48,7 +48,7 @@ using Connect = std::function<Connected(const ConnectRequest&)>;
 /// The answer to GET for a path, as fetch_http() gives it.
 using Fetch = std::function<Json(const std::string& path, Deadline deadline)>;
 
-/// Connects to a server. Throws std::runtime_error where there is none, or none to be trusted.
+/// Connects to a server. Throws std::runtime_error if that fails or it is not trusted.
 Connected connect_websocket(const WebSocketUrl& url, const TlsTrust& trust,
                             const ConnectRequest& request, Deadline deadline);
 

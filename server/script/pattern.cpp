@@ -16,7 +16,7 @@ bool is_test(const Json& value) {
   return value.is_object() && !value.empty() && value.begin().key().rfind('$', 0) == 0;
 }
 
-/// The two operands of {"$key": [a, b]}, or none where `value` is not of that form.
+/// The two operands of {"$key": [a, b]}, or nothing if `value` has another form.
 const Json* operands(const Json& value, const char* key) {
   if (!value.is_object() || value.size() != 1 || !value.contains(key)) return nullptr;
   const Json& list = value[key];
@@ -72,7 +72,7 @@ bool is_near(const Json& value, const Json& wanted, double error) {
   return true;
 }
 
-/// A quaternion's four numbers, divided by its length; nothing where it is none.
+/// Returns the normalised quaternion, or nothing if the value is not one.
 std::optional<std::array<double, 4>> unit_quaternion(const Json& value) {
   if (!value.is_array() || value.size() != 4) return {};
   std::array<double, 4> numbers{};

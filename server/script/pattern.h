@@ -16,13 +16,13 @@ struct ScriptError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `value` with every captured name replaced by what it stands for: "$name" by the capture,
+/// Returns `value` with every captured name replaced by its value: "$name" by the capture,
 /// {"$add": [a, b]} by a sum, {"$repeat": [text, count]} by `text` so many times, {"$join": [...]}
 /// by one text. Throws ScriptError for a name without a capture.
 Json substitute(const Json& value, const Captures& captures);
 
-/// Why `value` does not match `pattern`, with its JSON pointer; nothing where it does. A match
-/// adds its captures.
+/// Returns the reason why `value` does not match `pattern`, with its JSON pointer, or nothing. A
+/// match adds its captures.
 ///
 /// An object matches one that has at least the pattern's members; a list one of equal length; other
 /// values must be equal. "$any" matches anything; "$name" matches anything the first time and an
@@ -33,7 +33,7 @@ Json substitute(const Json& value, const Captures& captures);
 ///   $type: "number", "string", "boolean", ...
 ///   $contains: a text with this part              $size: a text or list of this length
 ///   $has: a list with a matching element          $each: a list of matching elements only
-///   $absent: true where there must be no such member
+///   $absent: true if there must be no such member
 ///   $capture: keeps the value under a name in place of an earlier one, once all tests beside it
 ///   hold
 std::optional<std::string> mismatch(const Json& pattern, const Json& value, Captures& captures);

@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& words) {
 /// A folder for the server's files, as long as it runs.
 struct OwnFolder {
   OwnFolder() {
-    const std::string pattern = "vat-script-" + std::string(6, 'X');  // as mkdtemp wants it
+    const std::string pattern = "vat-script-" + std::string(6, 'X');  // as mkdtemp requires
     path = (std::filesystem::temp_directory_path() / pattern).string();
     if (mkdtemp(path.data()) == nullptr) throw std::runtime_error("no temporary folder");
   }

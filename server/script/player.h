@@ -11,36 +11,36 @@
 
 namespace vat::script {
 
-/// A script's line that was not met. The text names the line, what was expected and what came.
+/// A line of a script was not met. The text contains the line, the expectation and the received
+/// message.
 struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// Plays scripts. protocol/SCRIPTS.md lists the actions.
 ///
-/// Beside what the lines ask for, every message that comes must be a JSON-RPC object or a valid
-/// frame, and a client's frames must be numbered without a gap, each of the epoch that the last
-/// description named.
+/// In addition, every received message must be a JSON-RPC object or a valid frame. The frames of a
+/// client must be numbered without gaps, and belong to the epoch of the last description.
 class Player {
  public:
-  /// `patience`: how long a line waits for what it expects, where it does not say so itself.
+  /// `patience`: default time limit of a line.
   Player(Connect connect, std::chrono::milliseconds patience)
       : connect_(std::move(connect)), patience_(patience) {}
 
-  /// Makes a capture beforehand.
+  /// Defines a capture.
   void set(const std::string& name, Json value) { captures_[name] = std::move(value); }
 
-  /// For the lines that fetch; without it they are mistakes.
+  /// Sets the function for lines that fetch. Without it such lines are invalid.
   void fetch_by(Fetch fetch) { fetch_ = std::move(fetch); }
 
-  /// Writes what is sent and received; `transcript` must outlive this.
+  /// Records sent and received messages. `transcript` must outlive this.
   void record(Transcript& transcript) { transcript_ = &transcript; }
 
-  /// Throws Failure at the first line that is not met, and ScriptError for a mistake in a line.
+  /// Throws Failure at the first line that is not met, and ScriptError for an invalid line.
   void play(const std::vector<Line>& lines);
 
  private:
-  /// A client and what it received and no line has asked for yet.
+  /// A client, and its received messages that no line has taken yet.
   struct Peer {
     std::string connection;  ///< its name in the transcript
     std::unique_ptr<Client> client;
@@ -50,7 +50,7 @@ class Player {
     std::optional<Message> closed;
     FrameDecoder decoder;
     std::optional<std::uint64_t> epoch;  ///< of the last description
-    BodyNames names;                     ///< the same
+    BodyNames names;                     ///< from the last description
   };
   using Inbox = std::deque<Json> Peer::*;
 
@@ -72,16 +72,16 @@ class Player {
   std::string name_of(const Json& name) const;
   Peer& peer_of(const Json& line);
   Deadline deadline_of(const Json& line) const;
-  /// Takes one message into the inboxes; false where none came by the deadline.
+  /// Receives a message into the inboxes. Returns false if none came by the deadline.
   bool receive(Peer& peer, Deadline deadline);
   void send_text(Peer& peer, const std::string& text, const Json& line);
   /// Sends a request and waits for its reply.
   Json request(Peer& peer, const Json& method, const Json& params, const Json& line);
   void receive_text(Peer& peer, const std::string& text);
-  /// Keeps what a description tells of frames.
+  /// Stores the epoch and names of a description.
   static void learn_description(Peer& peer, const Json& content);
   void receive_frame(Peer& peer, const std::string& bytes);
-  /// The first element of the inbox that `wanted` holds for, taken out of it.
+  /// Removes and returns the first element of the inbox that satisfies `wanted`.
   template <class Wanted>
   std::optional<Json> take(Peer& peer, Inbox inbox, Deadline deadline, Wanted&& wanted);
   void require(const Json& pattern, const Json& value);

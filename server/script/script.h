@@ -7,19 +7,19 @@
 
 namespace vat::script {
 
-/// One line of a script, with its place.
+/// A line of a script, with its location.
 struct Line {
   std::string place;  ///< "file:line"
   Json action;
 };
 
-/// The lines of a `.jsonl` script; blank lines are skipped. Throws ScriptError, which names the
-/// line, where one is not a JSON object.
+/// Reads a `.jsonl` script. Skips blank lines. Throws ScriptError with the line that is not a JSON
+/// object.
 std::vector<Line> read_script(const std::string& path);
 
-/// What a Markdown document shows after the line `heading`: the first block that is fenced with
-/// ```jsonl, the lines of a script, or with ```text, an exchange whose lines begin with "> " (a
-/// client, which is connected first, sends) or "< " (it receives what matches).
+/// Reads the first block after the line `heading` of a Markdown document that is fenced with
+/// ```jsonl (lines of a script) or with ```text (an exchange; lines with "> " are sent by a
+/// connected client, lines with "< " must match what it receives).
 std::vector<Line> read_document(const std::string& path, const std::string& heading);
 
 }  // namespace vat::script

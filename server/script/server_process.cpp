@@ -17,7 +17,7 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kStartTime = std::chrono::seconds(30);  // a sanitizer build on a busy machine
-constexpr auto kStopTime = std::chrono::seconds(60);   // the same
+constexpr auto kStopTime = std::chrono::seconds(60);   // of a sanitizer build
 
 /// In "vat is at http://HOST:PORT/ ...", the line that the server prints when it is ready.
 struct Place {

@@ -8,13 +8,14 @@
 
 namespace vat::script {
 
-/// A client's side of TLS 1.2 and above. Throws std::runtime_error where the file cannot be used.
+/// Returns a client context for TLS 1.2 and later. Throws std::runtime_error if the file cannot be
+/// used.
 boost::asio::ssl::context make_client_context(const TlsTrust& trust);
 
-/// Has the handshake of `tls` ask for the server at `url`, and refuse another's certificate.
+/// Requests the server at `url` in the handshake of `tls`, and accepts only its certificate.
 void expect_server(SSL* tls, const WebSocketUrl& url);
 
-/// Why the handshake failed, and what to do.
+/// Returns the reason of a failed handshake, and a hint.
 std::string handshake_fault(SSL* tls, const WebSocketUrl& url,
                             const boost::system::error_code& failure);
 

@@ -28,7 +28,7 @@ void Transcript::closed(std::string_view connection, std::uint16_t code) {
 }
 
 void Transcript::write(const nlohmann::json& line) {
-  // What is not UTF-8 was not read as a message either.
+  // Invalid UTF-8 is not a message.
   const std::string text =
       line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
   const std::lock_guard lock(mutex_);

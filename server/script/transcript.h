@@ -9,17 +9,17 @@
 
 namespace vat::script {
 
-/// The text messages of some connections, written to a file as they go: a JSON object a line, with
-/// `connection` and `sent` or `received`, the message as it stood, or `closed`, the code; `wrong`
-/// is true where a message is sent to be refused. May be used by several threads.
+/// Messages of connections, written to a file: one JSON object per line with `connection` and
+/// `sent` or `received` (the message) or `closed` (the code). `wrong` is true if a message is
+/// expected to be refused. Safe to use from several threads.
 class Transcript {
  public:
-  /// Begins `folder`/`name`.jsonl anew. Throws std::runtime_error where it cannot be written.
+  /// Starts a new file `folder`/`name`.jsonl. Throws std::runtime_error if it cannot be written.
   Transcript(const std::string& folder, const std::string& name);
 
   void sent(std::string_view connection, std::string_view message, bool wrong = false);
   void received(std::string_view connection, std::string_view message);
-  /// The server has closed the connection, or it broke: code 0.
+  /// The server has closed the connection, or it broke (code 0).
   void closed(std::string_view connection, std::uint16_t code);
 
  private:

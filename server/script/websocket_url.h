@@ -4,25 +4,25 @@
 
 namespace vat::script {
 
-/// Where a WebSocket server listens.
+/// Address of a WebSocket server.
 struct WebSocketUrl {
   std::string host;  ///< a name or a numeric address, IPv6 without brackets
   std::string port = "80";
   std::string path = "/ws";
-  bool is_secure = false;  ///< over TLS
+  bool is_secure = false;  ///< uses TLS
 
-  /// As in an HTTP request's Host.
+  /// As in the header Host of an HTTP request.
   std::string authority() const;
 };
 
-/// Whose certificates are believed.
+/// Certificates that a client accepts.
 struct TlsTrust {
-  std::string authority_file;  ///< in PEM, in place of the system's; "": the system's
-  bool is_unchecked = false;   ///< whoever answers is believed
+  std::string authority_file;  ///< PEM file that replaces the system's; "": the system's
+  bool is_unchecked = false;   ///< accepts any certificate
 };
 
-/// Reads "ws://HOST[:PORT][/PATH]", or wss:// over TLS, by default at port 443. Throws
-/// std::invalid_argument, which tells what is wrong.
+/// Reads "ws://HOST[:PORT][/PATH]", or wss:// with TLS and the default port 443. Throws
+/// std::invalid_argument with the reason.
 WebSocketUrl read_websocket_url(const std::string& text);
 
 }  // namespace vat::script

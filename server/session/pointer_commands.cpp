@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <utility>
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// What a command is about: of those about the same thing the newest counts.
+/// Returns the target of a command: the grab, the body, or none.
 Json subject_of(const SessionCommand& command) {
   for (const char* name : {"grab", "body"}) {
     const auto subject = command.params.find(name);
@@ -18,26 +19,27 @@ Json subject_of(const SessionCommand& command) {
 }  // namespace
 
 void PointerCommands::add(ParticipantNumber participant, SessionCommand command,
-                          PendingReply caller) {
+                          PendingReply reply) {
+  VAT_CHECK(command.row != nullptr);
   const Json subject = subject_of(command);
-  Newest newest{participant, std::move(command), {}};
-  const auto before = std::ranges::find_if(waiting_, [&](const Newest& other) {
-    return other.participant == participant && other.command.rules == newest.command.rules &&
+  Latest latest{participant, std::move(command), {}};
+  const auto before = std::ranges::find_if(waiting_, [&](const Latest& other) {
+    return other.participant == participant && other.command.row == latest.command.row &&
            subject_of(other.command) == subject;
   });
   if (before != waiting_.end()) {
-    newest.callers = std::move(before->callers);
-    waiting_.erase(before);  // and not in its place: others may have come since
+    latest.replies = std::move(before->replies);
+    waiting_.erase(before);  // not replaced: later commands may wait already
   }
-  newest.callers.push_back(std::move(caller));
-  waiting_.push_back(std::move(newest));
+  latest.replies.push_back(std::move(reply));
+  waiting_.push_back(std::move(latest));
 }
 
 bool PointerCommands::has_of(ParticipantNumber participant) const {
-  return std::ranges::find(waiting_, participant, &Newest::participant) != waiting_.end();
+  return std::ranges::find(waiting_, participant, &Latest::participant) != waiting_.end();
 }
 
-std::vector<PointerCommands::Newest> PointerCommands::take() {
+std::vector<PointerCommands::Latest> PointerCommands::take() {
   return std::exchange(waiting_, {});
 }
 

@@ -3,30 +3,29 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/session/pending_reply.h"
-#include "server/session/session_core.h"
+#include "server/clients/pending_reply.h"
+#include "server/session/core/session_command.h"
 
 namespace vat {
 
-/// Commands that follow a pointer, as they wait for the next tick. Of those that one participant
-/// gives about one thing, the newest counts and is carried out for all: what comes many times a
-/// tick costs as much as once.
+/// Commands that follow a pointer and wait for the next tick. If a participant sends several for
+/// one target, only the latest is executed, and all are answered.
 class PointerCommands {
  public:
-  struct Newest {
+  struct Latest {
     ParticipantNumber participant = 0;
     SessionCommand command;
-    std::vector<PendingReply> callers;  ///< of this one and of those whose place it took
+    std::vector<PendingReply> replies;  ///< also of the commands that it replaces
   };
 
-  void add(ParticipantNumber participant, SessionCommand command, PendingReply caller);
+  void add(ParticipantNumber participant, SessionCommand command, PendingReply reply);
   bool empty() const { return waiting_.empty(); }
   bool has_of(ParticipantNumber participant) const;
-  /// Those that have waited, in the order in which they came.
-  std::vector<Newest> take();
+  /// Returns all waiting commands in order.
+  std::vector<Latest> take();
 
  private:
-  std::vector<Newest> waiting_;
+  std::vector<Latest> waiting_;
 };
 
 }  // namespace vat

@@ -1,3 +1,5 @@
+// Life of a session, and execution of its requests.
+
 #include "server/session/session.h"
 
 #include <spdlog/spdlog.h>
@@ -7,50 +9,31 @@
 #include <chrono>
 #include <exception>
 #include <utility>
-#include <vector>
+
+#include "core/support/check.h"
+#include "server/clients/answer_with.h"
+#include "server/session/session_archive.h"
 
 namespace vat {
 namespace {
 
-// A turn of the inbox ends after so much, so that ticks and other sessions get theirs.
+// A turn of the inbox ends after these, so that ticks and other sessions get their turns.
 constexpr std::size_t kCommandsPerTurn = 64;
 constexpr auto kTurnTime = std::chrono::milliseconds(10);
-// Shorter ones do not hold up others, and are not worth a line to wait in.
-constexpr auto kLongTick = std::chrono::milliseconds(5);
-constexpr auto kStatusInterval = std::chrono::milliseconds(500);
-
-double seconds(SteadyClock::duration time) {
-  return std::chrono::duration<double>(time).count();
-}
 
 }  // namespace
 
-Session::Session(std::string id, SessionSettings settings, Simulation simulation,
-                 ResourceShare share, const SessionEnvironment& environment,
+Session::Session(std::unique_ptr<SessionCore> core, std::unique_ptr<Playback> playback,
                  boost::asio::thread_pool& pool, SlowTickGate& slow_tick_gate)
-    : id_(id),
-      clock_(environment.clock),
+    : clock_(core->environment().clock),
       strand_(boost::asio::make_strand(pool.get_executor())),
-      core_(std::move(id), std::move(settings), std::move(simulation), std::move(share),
-            environment),
-      tick_timer_(environment.clock.make_timer(strand_)),
-      status_timer_(environment.clock.make_timer(strand_)),
-      presence_timer_(environment.clock.make_timer(strand_)),
+      core_(std::move(core)),
+      playback_(std::move(playback)),
+      tick_timer_(clock_.make_timer(strand_)),
+      status_timer_(clock_.make_timer(strand_)),
+      presence_timer_(clock_.make_timer(strand_)),
       slow_tick_gate_(slow_tick_gate) {
-  update_summary();
-}
-
-void Session::recover(SessionRecovery& recovery, Storage& storage,
-                      const SessionEnvironment& environment) {
-  recovery.finish(core_);
-  core_.set_environment(environment);
-  core_.run().move_share(environment.resources);
-  const std::uint64_t number = recovery.stored().number;
-  core_.keep_in(std::make_unique<SessionLog>(
-      storage, number,
-      SessionLog::Place{storage.sessions().last_sequence(number), core_.run().position(),
-                        core_.has_diverged()}));
-  core_.come_back(clock_.now());
+  VAT_CHECK(core_->playback() == playback_.get());
   update_summary();
 }
 
@@ -58,30 +41,31 @@ void Session::start() {
   schedule(&Session::status_turn);
 }
 
-void Session::close(End end, std::optional<PendingReply> caller) {
+void Session::close(End end, std::optional<PendingReply> reply) {
   {
     const std::lock_guard lock(mutex_);
     end_ = end;
-    closer_ = std::move(caller);
+    closing_ = std::move(reply);
   }
   schedule(&Session::close_turn);
 }
 
-void Session::join(PendingReply caller, std::uint64_t membership, JoinRequest join_request,
+void Session::join(PendingReply reply, std::uint64_t membership, JoinRequest request,
                    std::function<void()> undo) {
-  put({std::move(caller), Join{membership, std::move(join_request), std::move(undo)}});
+  add({std::move(reply), SessionInbox::Join{membership, std::move(request), std::move(undo)}});
 }
 
-void Session::disconnect(PendingReply caller) {
-  put({std::move(caller), Disconnect{}});
+void Session::disconnect(PendingReply reply) {
+  add({std::move(reply), SessionInbox::Disconnect{}});
 }
 
-void Session::leave(PendingReply caller) {
-  put({std::move(caller), Leave{}});
+void Session::leave(PendingReply reply) {
+  add({std::move(reply), SessionInbox::Leave{}});
 }
 
-void Session::post(PendingReply caller, SessionCommand command) {
-  put({std::move(caller), std::move(command)});
+void Session::post(PendingReply reply, SessionCommand command) {
+  VAT_CHECK(command.row != nullptr && command.action != nullptr);
+  add({std::move(reply), std::move(command)});
 }
 
 SessionSummary Session::summary() const {
@@ -91,19 +75,33 @@ SessionSummary Session::summary() const {
 
 void Session::post_behind(std::function<void()> task) {
   boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task)]() mutable {
-    self->core_.post_behind_frames(std::move(task));
+    self->core_->notifier().post_behind_frames(std::move(task));
   });
 }
 
-void Session::put(Item item) {
-  std::unique_lock lock(mutex_);
-  if (inbox_closed_) {
-    lock.unlock();
-    item.caller.answer(no_such_session(id_));
-    return;
+void Session::store_then(StoredTask task, const std::shared_ptr<PendingReply>& reply) {
+  boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task), reply] {
+    SessionHistory& history = self->core_->history();
+    SessionLog* const log = self->closed_ ? nullptr : history.log();
+    if (log == nullptr) {
+      reply->answer(no_such_session(self->id()));
+    } else if (history.divergence()) {
+      reply->answer(not_allowed("the session differs from its log"));
+    } else {
+      log->store_then(history.moment(), self->clock_.now(), task);
+    }
+  });
+}
+
+void Session::add(Item item) {
+  switch (inbox_.add(item)) {
+    case SessionInbox::Added::to_pending:
+      return;
+    case SessionInbox::Added::first:
+      return schedule(&Session::inbox_turn);
+    case SessionInbox::Added::refused:
+      return item.reply.answer(no_such_session(id()));
   }
-  inbox_.push_back(std::move(item));
-  if (!std::exchange(inbox_scheduled_, true)) schedule(&Session::inbox_turn);
 }
 
 void Session::schedule(void (Session::*turn)()) {
@@ -111,57 +109,37 @@ void Session::schedule(void (Session::*turn)()) {
 }
 
 void Session::run_turn(void (Session::*turn)()) {
+  VAT_CHECK(on_strand());
   if (closed_) return;
-  const ThreadPoolRunner::HelperReservation guest(core_.environment().runner);
+  const ThreadOwner::Hold hold(core_->owner());
+  const ThreadPoolRunner::HelperReservation reservation(core_->environment().runner);
   try {
     (this->*turn)();
-    end_turn();
+    finish_turn();
   } catch (const std::exception& error) {
-    spdlog::error("session {}: paused by a fault of the server: {}", id_, error.what());
-    core_.set_playing(false);
+    spdlog::error("session {}: paused by a fault of the server: {}", id(), error.what());
+    core_->set_playing(false);
     period_ = {};
     tick_timer_->cancel();
   }
   place_.reset();
 }
 
-bool Session::has_place() {
-  if (!is_long_ || place_ != nullptr) return true;
-  if (waits_for_place_) return false;
-  place_ = slow_tick_gate_.take([waiting = weak_from_this()](SlowTickGate::Place place) {
-    const auto self = waiting.lock();
-    if (self == nullptr) return;
-    boost::asio::post(self->strand_, [self, place = std::move(place)]() mutable {
-      self->waits_for_place_ = false;
-      self->place_ = std::move(place);
-      self->run_turn(&Session::place_turn);
-      self->place_.reset();  // of a session that is closed there was no turn
-    });
-  });
-  waits_for_place_ = place_ == nullptr;
-  return !waits_for_place_;
-}
-
-void Session::place_turn() {
-  step_turn();
-  tick_turn();
-}
-
-void Session::end_turn() {
+void Session::finish_turn() {
   if (closed_) return;
-  if (core_.take_interruption()) end_all_steps();
-  if (!tick_is_coming()) carry_out_pointers();
-  if (!seek_) core_.announce();
-  if (replay_ && !seek_) replay_->tell_people(core_, clock_.now());
+  if (core_->clock().take_interruption()) end_all_steps();
+  if (!tick_is_coming()) execute_pointers();
+  if (!seek_) core_->notifier().announce();
+  if (playback_ && !seek_) playback_->tell_people(*core_, clock_.now());
   follow_presence();
   note_emptiness(clock_.now());
   follow_clock();
   update_summary();
-  keep_moment();
+  store_progress();
 }
 
 void Session::update_summary() {
-  SessionSummary summary = core_.summary();
+  SessionSummary summary = core_->notifier().summary();
   summary.hibernating = hibernating_ && summary.playing;
   summary.empty_since = empty_since_;
   const std::lock_guard lock(mutex_);
@@ -169,324 +147,236 @@ void Session::update_summary() {
 }
 
 void Session::inbox_turn() {
-  core_.presence().touch();
+  core_->notifier().presence().touch();
   const auto end = CostClock::now() + kTurnTime;
-  std::optional<Item> item;
   for (std::size_t i = 0; i < kCommandsPerTurn && CostClock::now() < end; ++i) {
-    if (!take_item(item)) return;
+    std::optional<Item> item = inbox_.take();
+    if (!item) return;
     try {
-      carry_out(*std::move(item));
+      execute(*std::move(item));
     } catch (...) {
-      schedule(&Session::inbox_turn);  // for the commands that are left
+      schedule(&Session::inbox_turn);  // for the requests that are left
       throw;
     }
   }
   schedule(&Session::inbox_turn);
 }
 
-bool Session::take_item(std::optional<Item>& item) {
-  const std::lock_guard lock(mutex_);
-  if (inbox_.empty()) {
-    inbox_scheduled_ = false;
-    return false;
-  }
-  item.emplace(std::move(inbox_.front()));
-  inbox_.pop_front();
-  return true;
-}
-
-void Session::carry_out(Item item) {
-  if (std::holds_alternative<Leave>(item.task)) {
-    carry_out_leave(std::move(item.caller));
+void Session::execute(Item item) {
+  if (std::holds_alternative<SessionInbox::Leave>(item.task)) {
+    execute_leave(std::move(item.reply));
     return;
   }
-  if (std::holds_alternative<Disconnect>(item.task)) {
-    carry_out_disconnect(item.caller);
+  if (std::holds_alternative<SessionInbox::Disconnect>(item.task)) {
+    execute_disconnect(item.reply);
     return;
   }
-  if (const auto job = find_step(item.caller.client()->id()); job != steps_.end()) {
+  if (const auto job = find_step(item.reply.client()->id()); job != steps_.end()) {
     job->deferred.push_back(std::move(item));
-  } else if (const auto* join = std::get_if<Join>(&item.task)) {
-    carry_out_join(std::move(item.caller), *join);
+  } else if (const auto* join = std::get_if<SessionInbox::Join>(&item.task)) {
+    execute_join(std::move(item.reply), *join);
   } else {
-    carry_out_command(std::move(item.caller), std::get<SessionCommand>(std::move(item.task)));
+    execute_command(std::move(item.reply), std::get<SessionCommand>(std::move(item.task)));
   }
 }
 
-void Session::carry_out_join(PendingReply caller, const Join& join) {
-  carry_out_pointers();  // the connection may have been another participant's
-  auto joined = core_.join(caller.client(), join.membership, join.join_request, clock_.now());
+void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
+  execute_pointers();  // the connection may have been another participant's
+  auto joined = core_->people().join(reply.client(), join.membership, join.request, clock_.now());
   if (auto* error = std::get_if<RpcError>(&joined)) {
     join.undo();
-    caller.answer(std::move(*error));
+    reply.answer(std::move(*error));
     return;
   }
-  const auto& entry = std::get<Entry>(joined);
-  update_summary();  // before the answer, here as below: who has it finds in lists what was done
-  caller.answer(Json{{"tick", core_.run().tick()},
-                     {"session", id_},
-                     {"participant", entry.participant.number},
-                     {"name", entry.participant.name},
-                     {"role", to_string(entry.participant.role)},
-                     {"resume", entry.resume},
-                     {"resumed", entry.resumed},
-                     {"settings", core_.describe_settings()},
-                     {"participants", describe_participants(core_.participants())},
-                     {"description", core_.description()}});
+  const auto& [participant, resume, resumed] = std::get<JoinedParticipant>(joined);
+  update_summary();  // before the answer, as below: lists then show what was done
+  reply.answer(Json{{"tick", core_->run().tick()},
+                    {"session", id()},
+                    {"participant", participant.number},
+                    {"name", participant.name},
+                    {"role", to_string(participant.role)},
+                    {"resume", resume},
+                    {"resumed", resumed},
+                    {"settings", core_->people().describe_settings()},
+                    {"participants", describe_participants(core_->participants())},
+                    {"description", core_->notifier().description()}});
 }
 
-void Session::carry_out_leave(PendingReply caller) {
-  const ConnectionId client = caller.client()->id();
-  carry_out_pointers();
+void Session::execute_leave(PendingReply reply) {
+  const ConnectionId client = reply.client()->id();
+  execute_pointers();
   end_steps_of(client);
-  if (const Participant* participant = core_.participants().find_client(client)) {
-    core_.leave(participant->number);
+  if (const Participant* participant = core_->participants().find_client(client)) {
+    core_->people().leave(participant->number);
   }
   update_summary();
-  caller.answer(Json{{"tick", core_.run().tick()}});
+  reply.answer(Json{{"tick", core_->run().tick()}});
 }
 
-void Session::carry_out_disconnect(const PendingReply& caller) {
-  carry_out_pointers();
-  end_steps_of(caller.client()->id());
-  core_.disconnect(caller.client()->id(), clock_.now());
+void Session::execute_disconnect(const PendingReply& reply) {
+  execute_pointers();
+  end_steps_of(reply.client()->id());
+  core_->people().disconnect(reply.client()->id(), clock_.now());
+}
+
+void Session::execute_command(PendingReply reply, SessionCommand command) {
+  const Participant* participant = core_->participants().find_client(reply.client()->id());
+  if (participant == nullptr) {
+    reply.answer(not_joined());
+    return;
+  }
+  const MethodRow& row = *command.row;
+  if (auto error = refuse_role(row, participant->role)) {
+    reply.answer(*std::move(error));
+    return;
+  }
+  if (playback_ && row.changes_scene()) {
+    reply.answer(not_allowed("the session is a replay and cannot be changed"));
+    return;
+  }
+  if (row.is_logged() && row.rate_class == RateClass::pointer) {
+    pointers_.add(participant->number, std::move(command), std::move(reply));
+    return;
+  }
+  // Keeps the order: of commands of the session, and of all requests of this client.
+  const bool is_ordered = row.is_logged() || row.rate_class == RateClass::control;
+  if (is_ordered || pointers_.has_of(participant->number)) execute_pointers();
+  const ParticipantCommand by_participant{participant->number, command};
+  const auto begin = CostClock::now();
+  ActionResult result = std::move(core_->execute({&by_participant, 1}).front());
+  if (SessionLog* const log = core_->history().log()) log->add_work(CostClock::now() - begin);
+  if (core_->clock().take_interruption()) end_all_steps();
+  update_summary();
+  answer(std::move(reply), std::move(result));
+}
+
+void Session::answer(PendingReply reply, ActionResult result) {
+  if (const auto* run = std::get_if<RunTicks>(&result)) {
+    VAT_CHECK(run->count > 0);
+    steps_.push_back({std::move(reply), run->count, {}});
+    schedule_step();
+  } else if (std::holds_alternative<MakeRecording>(result)) {
+    export_recording(std::move(reply));
+  } else if (const auto* seek = std::get_if<SeekTo>(&result)) {
+    begin_seek(std::move(reply), seek->position);
+  } else if (auto* wanted = std::get_if<SaveState>(&result)) {
+    save(std::move(reply), std::move(*wanted));
+  } else if (auto* error = std::get_if<RpcError>(&result)) {
+    reply.answer(std::move(*error));
+  } else {
+    Json& content = std::get<Json>(result);
+    content["tick"] = core_->run().tick();
+    reply.answer(std::move(content));
+  }
+}
+
+void Session::export_recording(PendingReply reply) {
+  const auto pending = std::make_shared<PendingReply>(std::move(reply));
+  if (core_->environment().downloads == nullptr) {
+    pending->answer(not_allowed("this server offers no downloads"));
+    return;
+  }
+  // On the pool: the storage's thread has other sessions to store.
+  const auto make = [self = shared_from_this(), pending](Storage& storage, std::uint64_t number) {
+    boost::asio::post(self->strand_.get_inner_executor(), [self, pending, &storage, number] {
+      answer_with(*pending, "session " + self->id() + ": no recording", [&] {
+        return vat::export_recording(self->core_->environment(), self->id(), storage, number,
+                                     self->summary().tick);
+      });
+    });
+  };
+  SessionHistory& history = core_->history();
+  VAT_CHECK(history.log() != nullptr);
+  history.log()->store_then(history.moment(), clock_.now(), make);
+}
+
+void Session::save(PendingReply reply, SaveState save) {
+  // On the pool: the session continues meanwhile.
+  const auto pending = std::make_shared<PendingReply>(std::move(reply));
+  boost::asio::post(strand_.get_inner_executor(),
+                    [self = shared_from_this(), pending, save = std::move(save),
+                     moment = moment_to_save(*core_), &environment = core_->environment()] {
+                      answer_with(*pending, "session " + self->id() + ": not saved", [&] {
+                        return save_state(environment, self->id(), moment, save);
+                      });
+                    });
+}
+
+void Session::execute_pointers() {
+  if (pointers_.empty()) return;
+  VAT_CHECK(on_strand());
+  std::vector<PointerCommands::Latest> waiting = pointers_.take();
+  std::vector<ParticipantCommand> commands;
+  commands.reserve(waiting.size());
+  for (const auto& latest : waiting) commands.push_back({latest.participant, latest.command});
+  const std::vector<ActionResult> results = core_->execute(commands);
+  VAT_CHECK(results.size() == waiting.size());
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    for (PendingReply& reply : waiting[i].replies) answer(std::move(reply), results[i]);
+  }
+}
+
+Session::Steps::iterator Session::find_step(ConnectionId client) {
+  return std::ranges::find_if(
+      steps_, [&](const StepJob& job) { return job.reply.client()->id() == client; });
 }
 
 void Session::end_steps_of(ConnectionId client) {
   for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
 }
 
-void Session::carry_out_command(PendingReply caller, SessionCommand command) {
-  const Participant* participant = core_.participants().find_client(caller.client()->id());
-  if (participant == nullptr) {
-    caller.answer(not_joined());
-    return;
-  }
-  if (auto error = refuse_role(*command.rules, participant->role)) {
-    caller.answer(*std::move(error));
-    return;
-  }
-  if (replay_ && command.rules->is_logged && !is_of_clock(command.rules->method)) {
-    caller.answer(not_allowed("the session is a replay: what was done is done"));
-    return;
-  }
-  if (command.rules->is_logged && command.rules->message_class == MessageClass::pointer) {
-    pointers_.add(participant->number, std::move(command), std::move(caller));
-    return;
-  }
-  // What came before it: to the session, or from this client.
-  const bool is_in_order =
-      command.rules->is_logged || command.rules->message_class == MessageClass::control;
-  if (is_in_order || pointers_.has_of(participant->number)) carry_out_pointers();
-  const SessionCore::ParticipantCommand given{participant->number, command};
-  const auto begin = CostClock::now();
-  ActionResult result = std::move(core_.carry_out({&given, 1}).front());
-  if (core_.log() != nullptr) core_.log()->add_work(CostClock::now() - begin);
-  if (core_.take_interruption()) end_all_steps();
-  update_summary();
-  answer(std::move(caller), std::move(result));
-}
-
-void Session::answer(PendingReply caller, ActionResult result) {
-  if (const auto* run = std::get_if<RunTicks>(&result)) {
-    steps_.push_back({std::move(caller), run->count, {}});
-    schedule_step();
-  } else if (std::holds_alternative<MakeRecording>(result)) {
-    record(std::move(caller));
-  } else if (const auto* seek = std::get_if<SeekTo>(&result)) {
-    begin_seek(std::move(caller), seek->position);
-  } else if (auto* wanted = std::get_if<SaveState>(&result)) {
-    save(std::move(caller), std::move(*wanted));
-  } else if (auto* error = std::get_if<RpcError>(&result)) {
-    caller.answer(std::move(*error));
-  } else {
-    Json& reply = std::get<Json>(result);
-    reply["tick"] = core_.run().tick();
-    caller.answer(std::move(reply));
-  }
-}
-
-bool Session::tick_is_coming() const {
-  return core_.playing() || !steps_.empty();
-}
-
-void Session::carry_out_pointers() {
-  if (pointers_.empty()) return;
-  std::vector<PointerCommands::Newest> waiting = pointers_.take();
-  std::vector<SessionCore::ParticipantCommand> given;
-  given.reserve(waiting.size());
-  for (const auto& newest : waiting) given.push_back({newest.participant, newest.command});
-  const std::vector<ActionResult> results = core_.carry_out(given);
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    for (PendingReply& caller : waiting[i].callers) answer(std::move(caller), results[i]);
-  }
-}
-
-std::deque<Session::StepJob>::iterator Session::find_step(ConnectionId client) {
-  return std::ranges::find_if(
-      steps_, [&](const StepJob& job) { return job.caller.client()->id() == client; });
-}
-
-void Session::schedule_step() {
-  if (!std::exchange(step_scheduled_, true)) schedule(&Session::step_turn);
-}
-
-void Session::step_turn() {
-  step_scheduled_ = false;
-  if (steps_.empty() || seek_ || !has_place()) return;  // a seek's end goes on with them
-  run_tick(clock_.now(), false);
-  if (core_.take_interruption()) {
-    end_all_steps();
-  } else if (--steps_.front().ticks_left == 0) {
-    end_step(steps_.begin());
-  }
-  if (!steps_.empty()) schedule_step();
-}
-
-void Session::end_step(std::deque<StepJob>::iterator job) {
+void Session::end_step(Steps::iterator job) {
+  VAT_CHECK(job != steps_.end());
   StepJob ended = std::move(*job);
   steps_.erase(job);
   update_summary();
-  if (auto error = core_.reach()) {
-    ended.caller.answer(*std::move(error));
+  if (auto error = core_->history().reach()) {
+    ended.reply.answer(*std::move(error));
   } else {
-    ended.caller.answer(Json{{"tick", core_.run().tick()}});
+    ended.reply.answer(Json{{"tick", core_->run().tick()}});
   }
-  for (Item& item : ended.deferred) carry_out(std::move(item));
+  for (Item& item : ended.deferred) execute(std::move(item));
 }
 
 void Session::end_all_steps() {
-  // What was deferred may begin steps of its own, which stay.
+  // Deferred requests may start new steps, which stay.
   for (std::size_t count = steps_.size(); count > 0 && !steps_.empty(); --count) {
     end_step(steps_.begin());
   }
 }
 
-void Session::tick_turn() {
-  const auto now = clock_.now();
-  // A wait that was over when the clock was stopped or set: it could not be called off any more.
-  const bool stands_still = period_ == SteadyClock::duration::zero() || !core_.playing();
-  if (stands_still || seek_ || now < ticks_.due()) return;
-  if (!has_place()) return;
-  core_.environment().metrics.add_lateness(now - ticks_.due());
-  run_tick(now, true);
-  ticks_.tick_done(clock_.now());
-  wait_for_tick();
-}
-
-void Session::run_tick(SteadyClock::time_point now, bool timed) {
-  carry_out_pointers();
-  const auto due = timed ? ticks_.due() : now;
-  const auto begin = CostClock::now();
-  const bool done = replay_ ? replay_->tick(core_, now, timed) : core_.tick(now, timed);
-  const auto stepped = CostClock::now();
-  is_long_ = stepped - begin > kLongTick;
-  if (SessionLog* const log = core_.log()) {
-    log->add_work(stepped - begin);
-    const SessionRun& run = core_.run();
-    if (done && SessionLog::is_hash_due(run.simulation(), run.position())) {
-      log->add_hash(run.position(), run.simulation().state_hash());
-    }
-  }
-  if (!done) return;
-  update_summary();  // before the frames: who acknowledges one is told no earlier tick
-  core_.publish_tick();
-  spdlog::debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id_,
-                core_.run().tick(), seconds(stepped - begin), seconds(CostClock::now() - stepped),
-                seconds(now - due));
-}
-
-void Session::note_emptiness(SteadyClock::time_point now) {
-  if (!core_.is_empty()) {
-    empty_since_.reset();
-  } else if (!empty_since_) {
-    empty_since_ = now;
-  }
-  const auto after = core_.environment().limits.hibernate_after;
-  const bool hibernates = empty_since_ && after.count() > 0 && now - *empty_since_ >= after;
-  if (std::exchange(hibernating_, hibernates) && !hibernates) core_.forget_rate();
-}
-
-void Session::follow_clock() {
-  const auto wanted = core_.playing() && !hibernating_ && !seek_
-                          ? tick_period(core_.run().tick_seconds(), core_.speed())
-                          : SteadyClock::duration::zero();
-  if (wanted == period_) return;
-  period_ = wanted;
-  if (period_ == SteadyClock::duration::zero()) {
-    tick_timer_->cancel();
-    return;
-  }
-  ticks_.start(clock_.now(), period_);
-  wait_for_tick();
-}
-
-void Session::wait_for_tick() {
-  tick_timer_->start(ticks_.due(),
-                     [self = shared_from_this()] { self->run_turn(&Session::tick_turn); });
-}
-
-void Session::status_turn() {
-  wait_for_status();  // first, so that a fault does not end the statuses
-  core_.presence().touch();
-  carry_out_pointers();  // they are uses of what they move
-  core_.end_idle_grabs(clock_.now());
-  core_.end_absences(clock_.now());
-  core_.announce_status();
-  core_.close_silent(clock_.now());
-}
-
-void Session::wait_for_status() {
-  status_timer_->start(clock_.now() + kStatusInterval,
-                       [self = shared_from_this()] { self->run_turn(&Session::status_turn); });
-}
-
-void Session::follow_presence() {
-  if (!core_.presence().is_touched() || presence_waits_) return;
-  const auto now = clock_.now();
-  if (now >= core_.presence().due()) {
-    core_.tell_presence(now);
-    return;
-  }
-  presence_waits_ = true;
-  presence_timer_->start(core_.presence().due(), [self = shared_from_this()] {
-    self->presence_waits_ = false;
-    self->run_turn(&Session::presence_turn);
-  });
-}
-
 void Session::close_turn() {
+  VAT_CHECK(on_strand() && !closed_);
   closed_ = true;
   tick_timer_->cancel();
   status_timer_->cancel();
   presence_timer_->cancel();
-  std::deque<Item> items;
-  std::optional<PendingReply> closer;
-  End end = End::may_come_back;
+  std::deque<Item> items = inbox_.close();
+  std::optional<PendingReply> closing;
+  End end = End::resumable;
   {
     const std::lock_guard lock(mutex_);
-    inbox_closed_ = true;
     end = end_;
-    items.swap(inbox_);
-    closer.swap(closer_);
+    closing.swap(closing_);
   }
   end_log(end);
+  const RpcError error = no_such_session(id());
   if (seek_) {
-    for (PendingReply& waiting : seek_->callers) waiting.answer(no_such_session(id_));
+    for (PendingReply& reply : *seek_) reply.answer(error);
   }
   for (StepJob& job : steps_) {
-    job.caller.answer(no_such_session(id_));
-    for (Item& item : job.deferred) item.caller.answer(no_such_session(id_));
+    job.reply.answer(error);
+    for (Item& item : job.deferred) item.reply.answer(error);
   }
   steps_.clear();
-  for (auto& newest : pointers_.take()) {
-    for (PendingReply& pointer_caller : newest.callers) pointer_caller.answer(no_such_session(id_));
+  for (auto& latest : pointers_.take()) {
+    for (PendingReply& reply : latest.replies) reply.answer(error);
   }
-  for (Item& item : items) item.caller.answer(no_such_session(id_));
-  core_.show(nullptr);
-  replay_.reset();
-  core_.run().end();
-  if (closer) closer->answer(Json{{"tick", core_.run().tick()}});
+  for (Item& item : items) item.reply.answer(error);
+  core_->set_playback(nullptr);
+  playback_.reset();
+  core_->run().end();
+  if (closing) closing->answer(Json{{"tick", core_->run().tick()}});
 }
 
 }  // namespace vat

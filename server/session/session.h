@@ -8,64 +8,50 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "server/session/pending_reply.h"
+#include "server/session/core/playback.h"
+#include "server/session/core/session_core.h"
 #include "server/session/pointer_commands.h"
-#include "server/session/replay_run.h"
-#include "server/session/session_core.h"
-#include "server/session/session_recovery.h"
-#include "server/session/slow_tick_gate.h"
+#include "server/session/session_inbox.h"
+#include "server/session/ticks/slow_tick_gate.h"
+#include "server/session/ticks/tick_clock.h"
 
 namespace vat {
 
-/// A session at work: an inbox that any thread may post to, and a strand on the shared pool where
-/// commands are applied, ticks are run in time, and statuses are sent. Everything posted by one
-/// client is carried out and answered in its order.
+/// A running session: an inbox for requests from any thread, and a strand on the shared pool that
+/// executes them, runs ticks in time and sends events. Requests of one client are executed and
+/// answered in their order. See server/THREADS.md.
 ///
-/// The strand's work comes in short turns (some commands, or one tick), so that a session waits for
-/// others at most as long as their turns take; and for no long tick, as these have fewer places
-/// than the pool has threads.
-///
-/// Locks are taken in this order, and none is held while a scene is read, stepped or encoded: the
-/// directory's (who is where), a session's (its inbox and summary), a client's outbox or a
-/// session's frame feed, and that of the connection. So commands reach the inbox in the order of
-/// joins and leaves, and what a client has left cannot write to it. Turns take the later ones only;
-/// all else of a session is used on its strand alone.
+/// The strand works in short turns (some commands, or one tick), so that sessions wait for each
+/// other at most one turn. Slow ticks have fewer places than the pool has threads.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(std::string id, SessionSettings settings, Simulation simulation, ResourceShare share,
-          const SessionEnvironment& environment, boost::asio::thread_pool& pool,
-          SlowTickGate& slow_tick_gate);
+  /// `playback` is null except for a replay. The pool and the gate must outlive this.
+  Session(std::unique_ptr<SessionCore> core, std::unique_ptr<Playback> playback,
+          boost::asio::thread_pool& pool, SlowTickGate& slow_tick_gate);
 
-  /// Before start(): it is kept from now on.
-  void keep_in(std::unique_ptr<SessionLog> log) { core_.keep_in(std::move(log)); }
-  /// Before start(), in place of that: makes it what it was, and keeps it. It must have been made
-  /// with what the recovery began with.
-  void recover(SessionRecovery& recovery, Storage& storage, const SessionEnvironment& environment);
-  /// Before start(), in place of both: it shows a recording.
-  void show(std::unique_ptr<ReplayRun> replay);
   void start();
-  /// Writes down where it is; what is kept is then for `task`, on the storage's thread. Where it is
-  /// kept nowhere, or not any more, `caller` is told.
-  using KeptTask = std::function<void(Storage&, std::uint64_t session)>;
-  void keep_and(KeptTask task, const std::shared_ptr<PendingReply>& caller);
-  /// Ends all work soon, at most once: commands that are not carried out yet are answered by
-  /// no_such_session, and then the caller, if there is one, with the tick that was the last. Where
-  /// it is kept, it may come back from where it was.
-  enum class End { closed, may_come_back };
-  void close(End end, std::optional<PendingReply> caller);
+  /// Stores the session's state and then runs `task` on the storage's thread. If the session is
+  /// not stored, or diverged, answers `reply` with an error.
+  using StoredTask = std::function<void(Storage&, std::uint64_t session)>;
+  void store_then(StoredTask task, const std::shared_ptr<PendingReply>& reply);
+  /// Ends all work soon. Requests that are not executed yet are answered by no_such_session, and
+  /// then `reply`, if present, by the last tick. May be called once.
+  enum class End {
+    closed,     ///< for good
+    resumable,  ///< a stored session is recovered when the server starts again
+  };
+  void close(End end, std::optional<PendingReply> reply);
 
-  /// Answered with who it is then, and the description.
-  /// Where it is refused, `undo` is called first.
-  void join(PendingReply caller, std::uint64_t membership, JoinRequest join_request,
+  /// Answered with the participant and the session's description. Calls `undo` before a refusal.
+  void join(PendingReply reply, std::uint64_t membership, JoinRequest request,
             std::function<void()> undo);
-  /// The caller's connection has ended; its participant may be resumed for a while.
-  void disconnect(PendingReply caller);
-  void leave(PendingReply caller);
-  /// The participant's role has to be as the command's rules ask when its turn comes.
-  void post(PendingReply caller, SessionCommand command);
+  /// The connection has ended. Its participant can be resumed for a limited time.
+  void disconnect(PendingReply reply);
+  void leave(PendingReply reply);
+  /// The participant's role is checked when the command is executed.
+  void post(PendingReply reply, SessionCommand command);
 
   /// As of the last answer or turn.
   SessionSummary summary() const;
@@ -74,115 +60,97 @@ class Session : public std::enable_shared_from_this<Session> {
   void post_behind(std::function<void()> task);
 
  private:
-  struct Join {
-    std::uint64_t membership;
-    JoinRequest join_request;
-    std::function<void()> undo;
-  };
-  struct Leave {};
-  struct Disconnect {};
-  struct Item {
-    PendingReply caller;
-    std::variant<Join, Leave, Disconnect, SessionCommand> task;
-  };
-  /// A control.step under way. The later commands of its client wait for its end.
+  using Item = SessionInbox::Item;
+  /// A control.step that runs. Later requests of its client wait for its end.
   struct StepJob {
-    PendingReply caller;
+    PendingReply reply;
     std::uint64_t ticks_left;
     std::deque<Item> deferred;
   };
+  using Steps = std::deque<StepJob>;
 
-  /// A replay.seek under way: whoever asks for another place meanwhile is answered there too.
-  struct Seek {
-    std::vector<PendingReply> callers;
-  };
-
-  void put(Item item);
-  /// Runs a turn on the strand; what it throws is logged, and pauses the session.
+  bool on_strand() const { return strand_.running_in_this_thread(); }
+  const std::string& id() const { return core_->id(); }
+  void add(Item item);
+  /// Runs a turn on the strand. An exception is logged and pauses the session.
   void schedule(void (Session::*turn)());
   void run_turn(void (Session::*turn)());
-  void end_turn();
+  void finish_turn();
   void update_summary();
 
+  // Requests: session.cpp.
   void inbox_turn();
-  bool take_item(std::optional<Item>& item);
-  void carry_out(Item item);
-  void carry_out_join(PendingReply caller, const Join& join);
-  void carry_out_leave(PendingReply caller);
-  void carry_out_disconnect(const PendingReply& caller);
+  void execute(Item item);
+  void execute_join(PendingReply reply, const SessionInbox::Join& join);
+  void execute_leave(PendingReply reply);
+  void execute_disconnect(const PendingReply& reply);
+  void execute_command(PendingReply reply, SessionCommand command);
+  /// Answers, or starts the work that the result asks for.
+  void answer(PendingReply reply, ActionResult result);
+  void export_recording(PendingReply reply);
+  void save(PendingReply reply, SaveState save);
+  /// Whether commands that follow a pointer wait for the next tick.
+  bool tick_is_coming() const { return core_->clock().playing() || !steps_.empty(); }
+  void execute_pointers();
+  Steps::iterator find_step(ConnectionId client);
   void end_steps_of(ConnectionId client);
-  void carry_out_command(PendingReply caller, SessionCommand command);
-  void answer(PendingReply caller, ActionResult result);
-  /// Whether a tick is to come, before which commands that follow a pointer wait.
-  bool tick_is_coming() const;
-  /// Carries out those that have waited.
-  void carry_out_pointers();
-
-  void step_turn();
-  /// The ticks that waited for a place.
-  void place_turn();
-  /// Whether a tick may run now: at once, unless the last one took long and others have the places
-  /// for such. Then it comes back by place_turn().
-  bool has_place();
-  std::deque<StepJob>::iterator find_step(ConnectionId client);
-  /// Makes a recording of what is kept, and answers where it is.
-  void record(PendingReply caller);
-  /// Keeps the present state under a name, and answers then.
-  void save(PendingReply caller, SaveState save);
-  void schedule_step();
-  void begin_seek(PendingReply caller, std::uint64_t position);
-  void seek_turn();
-  void end_seek();
-  /// Answers the job and carries out what was deferred.
-  void end_step(std::deque<StepJob>::iterator job);
+  /// Answers the job and executes its deferred requests.
+  void end_step(Steps::iterator job);
   void end_all_steps();
+  void close_turn();
 
+  // Ticks and timers: session_ticks.cpp.
+  void schedule_step();
+  void step_turn();
   void tick_turn();
   void run_tick(SteadyClock::time_point now, bool timed);
-  void note_emptiness(SteadyClock::time_point now);
+  /// Ticks that waited for a place among the slow ones.
+  void place_turn();
+  /// Returns whether a tick may run now. If not, place_turn() runs it later.
+  bool has_place();
+  void begin_seek(PendingReply reply, std::uint64_t position);
+  void seek_turn();
+  void end_seek();
   void follow_clock();
   void wait_for_tick();
   void status_turn();
   void wait_for_status();
-  /// Notes where it is, from time to time.
-  void keep_moment();
-  void end_log(End end);
-  /// Tells of changes at once or, where others were told just before, later.
+  void note_emptiness(SteadyClock::time_point now);
+  /// Sends changed presence now or, if the last was sent shortly before, later.
   void follow_presence();
-  void presence_turn() {}  // what is due is told at the end of every turn
-  void close_turn();
+  void presence_turn() {}  // finish_turn() sends it
+  /// Stores the session's progress from time to time.
+  void store_progress();
+  void end_log(End end);
 
-  const std::string id_;
   Clock& clock_;
   boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
+  SessionInbox inbox_;
 
-  mutable std::mutex mutex_;  // guards what follows, as far as the summary
-  std::deque<Item> inbox_;
-  bool inbox_scheduled_ = false;
-  bool inbox_closed_ = false;
-  std::optional<PendingReply> closer_;  // is answered by the last turn
-  End end_ = End::may_come_back;
+  mutable std::mutex mutex_;             // guards the next three
+  std::optional<PendingReply> closing_;  // answered by the last turn
+  End end_ = End::resumable;
   SessionSummary summary_;
 
   // Used on the strand only.
-  SessionCore core_;
+  const std::unique_ptr<SessionCore> core_;
+  std::unique_ptr<Playback> playback_;
   TickClock ticks_;
   std::optional<SteadyClock::time_point> empty_since_;
   bool hibernating_ = false;
-  SteadyClock::duration period_{};  // of the clock; zero: it stands still
+  SteadyClock::duration period_{};  // of the tick timer; zero: it is off
   const std::unique_ptr<Timer> tick_timer_;
   const std::unique_ptr<Timer> status_timer_;
   const std::unique_ptr<Timer> presence_timer_;
   bool presence_waits_ = false;
   PointerCommands pointers_;
-  std::deque<StepJob> steps_;
+  Steps steps_;
   bool step_scheduled_ = false;
   SlowTickGate& slow_tick_gate_;
-  bool is_long_ = false;  // the last tick was
+  bool is_slow_ = false;  // the last tick was
   bool waits_for_place_ = false;
-  SlowTickGate::Place place_;          // during a turn only
-  std::unique_ptr<ReplayRun> replay_;  // null: what is simulated is new
-  std::optional<Seek> seek_;
+  SlowTickGate::Place place_;                      // during a turn only
+  std::optional<std::vector<PendingReply>> seek_;  // replies of a replay.seek that runs
   bool seek_scheduled_ = false;
   bool closed_ = false;
 };

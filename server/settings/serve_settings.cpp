@@ -6,7 +6,7 @@
 
 #include "core/limits.h"
 #include "core/support/instruction_set.h"
-#include "server/replay/recording.h"
+#include "server/history/recording.h"
 
 namespace vat {
 namespace {

@@ -11,38 +11,39 @@
 
 namespace vat {
 
-/// One setting of the server: its names, what it may be, and the way to its value, which lives
-/// elsewhere. `name` is that of its member in a configuration file, such as "max_connections".
+/// A setting of the server: names, range, and access to its value. `name` is its member in a
+/// configuration file, such as "max_connections".
 struct Setting {
   std::string name;
   std::string group;  ///< heading in the help
   std::string help;
-  std::string range;  ///< what it may be, such as "1 to 64" or "ADDRESS"
+  std::string range;  ///< allowed values, such as "1 to 64" or "ADDRESS"
   bool is_number = false;
-  std::string shown_default;  ///< where the value itself says nothing; else empty
-  /// What a value must be, where it is not; else empty.
+  std::string
+      shown_default;  ///< default for the help, if the value itself is not shown; else empty
+  /// Returns a description of the allowed values if the value is invalid, or an empty text.
   std::function<std::string(const Json&)> find_fault;
-  std::function<void(const Json&)> assign;  ///< a value without a fault
+  std::function<void(const Json&)> assign;  ///< sets a valid value
   std::function<Json()> value;
 };
 
-/// "--max-connections".
+/// Returns for example "--max-connections".
 std::string option_of(const Setting& setting);
-/// "VAT_MAX_CONNECTIONS".
+/// Returns for example "VAT_MAX_CONNECTIONS".
 std::string variable_of(const Setting& setting);
-/// The value as a member of a configuration file, from the text of an option or a variable. What
-/// is not a number where one must be stays text, which find_fault() then refuses.
+/// Returns the value of an option or variable as in a configuration file. An invalid number stays
+/// text, which find_fault() refuses.
 Json to_json(const Setting& setting, const std::string& text);
-/// The value as the text of an option.
+/// Returns the value as the text of an option.
 std::string to_text(const Json& value);
 
-/// What is wrong with a text; empty: nothing.
+/// Returns the fault of a text, or an empty text.
 using TextCheck = std::function<std::string(const std::string&)>;
 
-/// A text that the check allows; `what` stands for it in the help: "ADDRESS".
+/// A text that passes the check. `what` describes it in the help: "ADDRESS".
 Setting text_setting(std::string name, std::string& target, std::string what, std::string help,
                      TextCheck check = {});
-/// One of some words.
+/// One of several words.
 Setting word_setting(std::string name, std::string& target, std::vector<std::string> words,
                      std::string help);
 Setting whole_setting(std::string name, std::uint64_t min, std::uint64_t max, std::string help,
@@ -66,7 +67,7 @@ inline Setting number_setting(std::string name, double& target, double min, doub
       [&target] { return target; });
 }
 
-/// Times in seconds; the second kind may have a fraction.
+/// Times in seconds. The second kind may have a fraction.
 Setting time_setting(std::string name, std::chrono::seconds& target, std::uint64_t min,
                      std::uint64_t max, std::string help);
 Setting time_setting(std::string name, std::chrono::milliseconds& target, double min, double max,

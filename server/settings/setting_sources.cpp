@@ -47,7 +47,7 @@ std::string names_of(std::span<const Setting> settings) {
   return names;
 }
 
-/// Sets all, or nothing where there are errors.
+/// Sets all settings, or none if there are errors.
 Status apply(const std::vector<std::pair<const Setting*, Json>>& values, Errors errors,
              const std::string& source, SettingSources& sources) {
   if (!errors.empty()) return errors;

@@ -7,38 +7,37 @@
 
 #include "server/settings/setting.h"
 
-/// Settings come from a configuration file, from the environment, and from options; a later one of
-/// these counts more.
+/// Settings from a configuration file, the environment and options. Later sources replace earlier
+/// ones.
 namespace vat {
 
-/// Where each setting's value came from, by its name: "default", "file FILE", "environment",
-/// "option".
+/// Source of each setting by its name: "default", "file FILE", "environment", "option".
 using SettingSources = std::map<std::string, std::string>;
 
-/// Texts by the names of settings.
+/// Texts by name of setting.
 using SettingTexts = std::map<std::string, std::string>;
 
-/// The settings of a configuration file: one JSON object. Errors have JSON pointers as paths; an
-/// unknown name is told together with the nearest one, and all there are.
+/// Applies a configuration file: one JSON object. Errors have JSON pointers as paths. The error of
+/// an unknown name suggests the nearest one and lists all.
 Status apply_file(std::span<const Setting> settings, const std::string& file,
                   SettingSources& sources);
 
-/// Those of the variables VAT_*, given as "NAME=VALUE". The path of an error is the variable.
+/// Applies the variables VAT_*, given as "NAME=VALUE". The path of an error is the variable.
 Status apply_environment(std::span<const Setting> settings,
                          const std::vector<std::string>& environment, SettingSources& sources);
-/// Variables VAT_* that are no setting, each with the nearest one: "VAT_PROT, not VAT_PORT?". They
-/// are not refused, since others give variables such names.
+/// Returns the variables VAT_* that are no setting, each with the nearest one: "VAT_PROT, not
+/// VAT_PORT?". They are not errors, because other programs may use such names.
 std::vector<std::string> unknown_variables(std::span<const Setting> settings,
                                            const std::vector<std::string>& environment);
 
-/// Those of options, found to be good before.
+/// Applies options, which must be valid.
 void apply_options(std::span<const Setting> settings, const SettingTexts& texts,
                    SettingSources& sources);
 
-/// The settings in force, as a configuration file, and where each came from.
+/// Returns the current settings as a configuration file, with their sources.
 Json describe(std::span<const Setting> settings, const SettingSources& sources);
 
-/// A table for people, in Markdown.
+/// Returns a Markdown table of the settings.
 std::string settings_table(std::span<const Setting> settings);
 
 }  // namespace vat

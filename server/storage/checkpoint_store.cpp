@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/support/byte_io.h"
+#include "core/support/check.h"
 #include "server/storage/compression.h"
 #include "server/storage/schema.h"
 
@@ -37,18 +38,19 @@ CREATE TABLE hashes (
 
 constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;  // of 200 000 particles a third
 
-/// The one that leaves the smallest gap, the oldest of several; never the newest, and the oldest
-/// only where there are but two.
-std::size_t find_needless(const std::vector<CheckpointPlace>& places) {
-  std::size_t needless = 0;
+/// Returns the index of the checkpoint whose removal leaves the smallest gap, the oldest of
+/// several. Never the newest, and the oldest only of two.
+std::size_t find_redundant(const std::vector<CheckpointPlace>& places) {
+  VAT_CHECK(places.size() > 1);
+  std::size_t redundant = 0;
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 1; i + 1 < places.size(); ++i) {
     const std::uint64_t gap = places[i + 1].position - places[i - 1].position;
     if (gap >= least) continue;
     least = gap;
-    needless = i;
+    redundant = i;
   }
-  return needless;
+  return redundant;
 }
 
 }  // namespace
@@ -85,6 +87,7 @@ std::vector<CheckpointPlace> CheckpointStore::places(std::uint64_t session) {
 }
 
 std::vector<CheckpointPlace> CheckpointStore::places_locked(std::uint64_t session) {
+  VAT_CHECK(mutex_.is_held());
   std::vector<CheckpointPlace> places;
   Statement query = database_.prepare(
       "SELECT number, position, sequence, length(state) FROM checkpoints WHERE session = ?"
@@ -98,14 +101,16 @@ std::vector<CheckpointPlace> CheckpointStore::places_locked(std::uint64_t sessio
 }
 
 void CheckpointStore::thin(std::uint64_t session) {
+  VAT_CHECK(mutex_.is_held());
   std::vector<CheckpointPlace> places = places_locked(session);
   const auto add = [](std::size_t sum, const CheckpointPlace& place) { return sum + place.bytes; };
   std::size_t bytes = std::accumulate(places.begin(), places.end(), std::size_t{0}, add);
   while (bytes > session_bytes_ && places.size() > 1) {
-    const std::size_t needless = find_needless(places);
-    remove_row(places[needless].row);
-    bytes -= places[needless].bytes;
-    places.erase(places.begin() + static_cast<std::ptrdiff_t>(needless));
+    const std::size_t redundant = find_redundant(places);
+    VAT_CHECK(redundant + 1 < places.size() && bytes >= places[redundant].bytes);
+    remove_row(places[redundant].row);
+    bytes -= places[redundant].bytes;
+    places.erase(places.begin() + static_cast<std::ptrdiff_t>(redundant));
   }
 }
 
@@ -146,6 +151,7 @@ void CheckpointStore::write_hashes(std::uint64_t session, std::span<const TickHa
 }
 
 void CheckpointStore::insert_hashes(std::uint64_t session, std::span<const TickHash> hashes) {
+  VAT_CHECK(mutex_.is_held() && !hashes.empty());
   std::vector<std::uint8_t> bytes;
   ByteWriter writer(bytes);
   for (const TickHash& one : hashes) {
@@ -167,6 +173,7 @@ std::vector<TickHash> CheckpointStore::hashes(std::uint64_t session, std::uint64
 }
 
 std::vector<TickHash> CheckpointStore::hashes_locked(std::uint64_t session, std::uint64_t from) {
+  VAT_CHECK(mutex_.is_held());
   std::vector<TickHash> hashes;
   Statement query =
       database_.prepare("SELECT list FROM hashes WHERE session = ? AND last >= ? ORDER BY last");

@@ -7,10 +7,10 @@
 
 namespace vat {
 
-/// A zstd frame with a checksum.
+/// Returns a zstd frame with a checksum.
 std::vector<std::uint8_t> compress(std::span<const std::uint8_t> bytes);
 
-/// Throws StorageError, of kind corrupt, for what is damaged or holds more than `max_bytes`.
+/// Throws StorageError, of kind corrupt, if the frame is damaged or has more than `max_bytes`.
 std::vector<std::uint8_t> decompress(std::span<const std::uint8_t> frame, std::size_t max_bytes);
 
 }  // namespace vat

@@ -14,7 +14,7 @@
 namespace vat {
 namespace {
 
-constexpr int kOwnerOnly = 0700;  // sessions are nobody else's business
+constexpr int kOwnerOnly = 0700;  // sessions are private
 
 StorageError::Kind kind_of(int error) {
   switch (error) {

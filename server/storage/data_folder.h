@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// A folder that holds all that a server keeps, made where there is none, and locked: one server a
-/// folder. Throws StorageError, of kind locked where another process has it.
+/// Folder of a server's data. Created if it is missing, and locked for one server. Throws
+/// StorageError, of kind locked if another process uses it.
 class DataFolder {
  public:
   explicit DataFolder(std::string path);

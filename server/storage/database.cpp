@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-constexpr int kBusyTimeout = 10'000;  // [ms] for the mover of the log, which writes for moments
+constexpr int kBusyTimeout = 10'000;  // [ms] for move_log(), which locks briefly
 
 StorageError::Kind kind_of_code(int code) {
   switch (code & 0xff) {
@@ -48,7 +49,7 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
   if (opened != SQLITE_OK) fail(path_, connection, opened);
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_busy_timeout(connection, kBusyTimeout);
-  if (mode == Mode::look) {
+  if (mode == Mode::read) {
     sqlite3_db_config(connection, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
     execute("PRAGMA query_only = 1");
   }
@@ -90,7 +91,7 @@ void Database::use_log() {
 std::size_t Database::move_log(bool wait) {
   const int mode = wait ? SQLITE_CHECKPOINT_RESTART : SQLITE_CHECKPOINT_PASSIVE;
   const int code = sqlite3_wal_checkpoint_v2(connection_.get(), nullptr, mode, nullptr, nullptr);
-  // Busy: what readers still need stays in the log, for the next time.
+  // Busy: pages that readers need stay in the log until the next call.
   if (code != SQLITE_OK && (code & 0xff) != SQLITE_BUSY) fail(path_, connection_.get(), code);
   std::error_code missing;
   const auto bytes = std::filesystem::file_size(path_ + "-wal", missing);
@@ -111,6 +112,7 @@ Statement::Statement(Database& database, std::string_view sql) : database_(&data
 }
 
 void Statement::check(int code) {
+  VAT_CHECK(database_ != nullptr);
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
   sqlite3* connection = database_->connection_.get();
   const std::string message = database_->path_ + ": " + sqlite3_errmsg(connection);
@@ -161,6 +163,7 @@ void Statement::run() {
 }
 
 std::int64_t Statement::integer(int column) const {
+  VAT_CHECK(column < sqlite3_column_count(statement_.get()));
   return sqlite3_column_int64(statement_.get(), column);
 }
 
@@ -179,12 +182,13 @@ std::string_view Statement::text(int column) const {
 
 std::span<const std::uint8_t> Statement::bytes(int column) const {
   const void* data = sqlite3_column_blob(statement_.get(), column);
+  VAT_CHECK(column < sqlite3_column_count(statement_.get()));
   const int size = sqlite3_column_bytes(statement_.get(), column);
   return {static_cast<const std::uint8_t*>(data), static_cast<std::size_t>(size)};
 }
 
 void Statement::reset() {
-  sqlite3_reset(statement_.get());  // tells again what step() has told
+  sqlite3_reset(statement_.get());  // returns the result of step() again
   sqlite3_clear_bindings(statement_.get());
 }
 
@@ -197,6 +201,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::commit() {
+  VAT_CHECK(open_);
   database_.execute("COMMIT");
   open_ = false;
 }

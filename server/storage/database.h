@@ -17,33 +17,33 @@ namespace vat {
 
 class Statement;
 
-/// One connection to an SQLite database; used by one thread at a time. Everything here throws
+/// Connection to an SQLite database. Used by one thread at a time. All functions throw
 /// StorageError.
 class Database {
  public:
   enum class Mode {
-    create,  ///< read and write; made where there is none
-    look     ///< the file stays as it is, whatever happens
+    create,  ///< read and write; created if missing
+    read     ///< read only
   };
 
   Database(const std::string& path, Mode mode);
 
   const std::string& path() const { return path_; }
 
-  /// Statements without results.
+  /// Runs statements without results.
   void execute(const char* sql);
   Statement prepare(std::string_view sql);
-  /// The only number of a query's only row.
+  /// Returns the number in the only row of a query.
   std::int64_t number(std::string_view sql);
   std::int64_t last_row() const;
-  /// Ends a transaction, if there is one, without effect.
+  /// Ends a transaction, if any, without effect.
   void roll_back() noexcept;
 
-  /// Writes go to a log beside the file, which survives the end of the process at any moment, and
-  /// from there to the file only by move_log().
+  /// Uses a write-ahead log, which survives the end of the process at any moment. Only move_log()
+  /// copies it into the file.
   void use_log();
-  /// Moves what the log holds into the file, as far as no reader needs it there, while others may
-  /// write. Where `wait`, writers wait, and the log begins anew. Returns the bytes of the log.
+  /// Copies the log into the file, as far as no reader needs it. If `wait`, writers wait and the
+  /// log starts anew. Returns the bytes of the log.
   std::size_t move_log(bool wait);
 
  private:
@@ -55,8 +55,8 @@ class Database {
   std::unique_ptr<sqlite3, Close> connection_;
 };
 
-/// A prepared statement, used again and again. Parameters and columns count from 0; texts and bytes
-/// that are bound must live until the statement has run.
+/// A prepared statement. Parameters and columns count from 0. Bound texts and bytes must live until
+/// the statement has run.
 class Statement {
  public:
   Statement(Database& database, std::string_view sql);
@@ -67,12 +67,12 @@ class Statement {
   Statement& bind(int parameter, std::string_view text);
   Statement& bind(int parameter, std::span<const std::uint8_t> bytes);
 
-  /// Runs to the next row; false at the end, when it is ready to be bound and run anew.
+  /// Runs to the next row. Returns false at the end; the statement can then be bound again.
   bool step();
-  /// Runs a statement that gives no rows.
+  /// Runs a statement without rows.
   void run();
 
-  // Of the present row.
+  // Column of the current row.
   std::int64_t integer(int column) const;
   std::uint64_t count(int column) const { return static_cast<std::uint64_t>(integer(column)); }
   double real(int column) const;
@@ -93,7 +93,7 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-/// What is written between construction and commit() is kept as a whole or not at all.
+/// Writes between construction and commit() are stored together or not at all.
 class Transaction {
  public:
   explicit Transaction(Database& database);

@@ -7,14 +7,13 @@
 
 namespace vat {
 
-/// The database of all that is small and must not be lost: sessions and their logs, the hashes of
-/// tokens, scenes that users have saved. Its parts share the connection, and the mutex that whoever
-/// uses it holds.
+/// Database of small data that must not be lost: sessions, their logs, hashes of tokens, saved
+/// scenes. Its users share the connection and hold the mutex while they use it.
 struct MainDatabase {
-  /// The name of one that is in memory alone.
+  /// Name of a database in memory.
   static constexpr const char* kInMemory = ":memory:";
 
-  /// Opens it, or makes it, or takes an older one to the present version; see open_database().
+  /// Opens, creates or upgrades it; see open_database().
   explicit MainDatabase(const std::string& path);
 
   std::mutex mutex;

@@ -14,16 +14,16 @@ constexpr const char* kWriteScene =
 
 }  // namespace
 
-std::optional<SavedExcess> SavedScenes::find_excess(const SavedScene& scene,
+std::optional<LimitExcess> SavedScenes::find_excess(const SavedScene& scene,
                                                     const SavedSceneLimits& limits) {
-  // One that is replaced counts no more.
+  // A replaced one does not count.
   Statement query = main_->database.prepare(
       "SELECT count(*), coalesce(sum(bytes), 0), coalesce(sum(address = ?1), 0),"
       " coalesce(sum(iif(address = ?1, bytes, 0)), 0) FROM scenes WHERE name <> ?2");
   query.bind(0, std::string_view(scene.address)).bind(1, std::string_view(scene.entry.name));
   if (!query.step()) return {};
   const std::size_t bytes = scene.scene.size();
-  const SavedExcess limit[] = {{"scenes_per_address", limits.per_address},
+  const LimitExcess limit[] = {{"scenes_per_address", limits.per_address},
                                {"scene_bytes_per_address", limits.bytes_per_address},
                                {"scenes_in_all", limits.in_all},
                                {"scene_bytes_in_all", limits.bytes_in_all}};
@@ -36,7 +36,7 @@ std::optional<SavedExcess> SavedScenes::find_excess(const SavedScene& scene,
   return {};
 }
 
-std::optional<SavedExcess> SavedScenes::write(const SavedScene& scene,
+std::optional<LimitExcess> SavedScenes::write(const SavedScene& scene,
                                               const SavedSceneLimits& limits) {
   const std::lock_guard lock(main_->mutex);
   if (auto excess = find_excess(scene, limits)) return excess;

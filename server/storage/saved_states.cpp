@@ -55,17 +55,17 @@ std::size_t bytes_of(const SavedState& state) {
 SavedStates::SavedStates(const std::string& path)
     : database_(open_database(path, {kStateApplication, kStateSteps})) {}
 
-std::optional<SavedExcess> SavedStates::find_excess(const std::string& session,
+std::optional<LimitExcess> SavedStates::find_excess(const std::string& session,
                                                     const SavedState& state,
                                                     const SavedStateLimits& limits) {
-  // One that is replaced counts no more.
+  // A replaced one does not count.
   Statement query = database_.prepare(
       "SELECT coalesce(sum(session = ?1), 0), coalesce(sum(iif(session = ?1, bytes, 0)), 0),"
       " coalesce(sum(bytes), 0) FROM states WHERE session <> ?1 OR name <> ?2");
   query.bind(0, std::string_view(session)).bind(1, std::string_view(state.entry.name));
   if (!query.step()) return {};
   const std::size_t bytes = bytes_of(state);
-  const SavedExcess limit[] = {{"states_per_session", limits.per_session},
+  const LimitExcess limit[] = {{"states_per_session", limits.per_session},
                                {"state_bytes_per_session", limits.bytes_per_session},
                                {"state_bytes_in_all", limits.bytes_in_all}};
   const std::size_t wanted[] = {query.count(0) + 1, query.count(1) + bytes, query.count(2) + bytes};
@@ -75,7 +75,7 @@ std::optional<SavedExcess> SavedStates::find_excess(const std::string& session,
   return {};
 }
 
-std::optional<SavedExcess> SavedStates::write(const std::string& session, const SavedState& state,
+std::optional<LimitExcess> SavedStates::write(const std::string& session, const SavedState& state,
                                               const SavedStateLimits& limits) {
   const std::lock_guard lock(mutex_);
   if (auto excess = find_excess(session, state, limits)) return excess;

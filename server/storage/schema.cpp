@@ -14,9 +14,9 @@ void check_health(Database& database) {
   throw StorageError(StorageError::Kind::corrupt, database.path() + " is damaged: " + verdict);
 }
 
-/// Refuses what this program must not touch.
+/// Refuses files that this program must not change.
 void inspect(const std::string& path, const Schema& schema) {
-  Database database(path, Database::Mode::look);
+  Database database(path, Database::Mode::read);
   const std::int64_t version = database.number("PRAGMA user_version");
   const std::int64_t application = database.number("PRAGMA application_id");
   if (application != std::int64_t{schema.application}) {

@@ -8,17 +8,16 @@
 
 namespace vat {
 
-/// What a database file holds, and how older ones become what this program reads.
+/// Content of a database file, and upgrades from older versions.
 struct Schema {
-  std::uint32_t application = 0;  ///< marks the file as one of this sort
-  /// Statements that lead from each version to the next: an empty file has version 0, and this
-  /// program reads the version that is their number.
+  std::uint32_t application = 0;  ///< identifies the kind of file
+  /// Statements that upgrade from each version to the next. An empty file has version 0; the
+  /// current version is their number.
   std::span<const char* const> steps;
 };
 
-/// Opens a database of the present version: makes it where there is none, and takes an older one
-/// there, in one transaction. A file that is damaged, of another sort or newer is refused, and
-/// stays as it is.
+/// Opens a database of the current version. Creates a missing one, and upgrades an older one in one
+/// transaction. Throws StorageError for a damaged, newer or other file, and leaves it unchanged.
 Database open_database(const std::string& path, const Schema& schema);
 
 }  // namespace vat

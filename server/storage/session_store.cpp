@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <limits>
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -9,25 +10,25 @@ namespace {
 constexpr const char* kInsertEntry =
     "INSERT INTO log (session, sequence, position, tick, participant, method, params)"
     " VALUES (?, ?, ?, ?, ?, ?, ?)";
-constexpr const char* kWriteBeat =
+constexpr const char* kWriteProgress =
     "UPDATE sessions SET position = ?, tick = ?, sequence = ?, hash = ?, epoch = ?, playing = ?,"
     " speed = ?, participants = ?, reached = max(reached, ?1) WHERE number = ?";
 constexpr const char* kWriteReached =
     "UPDATE sessions SET reached = max(reached, ?) WHERE number = ?";
 constexpr std::size_t kEntriesAtOnce = 500;  // read or removed while commands wait
 
-std::optional<SessionProgress> to_beat(const Statement& row, int column) {
+std::optional<SessionProgress> to_progress(const Statement& row, int column) {
   if (row.is_null(column)) return {};
-  SessionProgress beat;
-  beat.position = row.count(column);
-  beat.tick = row.count(column + 1);
-  beat.sequence = row.count(column + 2);
-  beat.hash = std::bit_cast<std::uint64_t>(row.integer(column + 3));
-  beat.epoch = static_cast<std::uint32_t>(row.integer(column + 4));
-  beat.playing = row.integer(column + 5) != 0;
-  beat.speed = row.real(column + 6);
-  beat.participants = row.text(column + 7);
-  return beat;
+  SessionProgress progress;
+  progress.position = row.count(column);
+  progress.tick = row.count(column + 1);
+  progress.sequence = row.count(column + 2);
+  progress.hash = std::bit_cast<std::uint64_t>(row.integer(column + 3));
+  progress.epoch = static_cast<std::uint32_t>(row.integer(column + 4));
+  progress.playing = row.integer(column + 5) != 0;
+  progress.speed = row.real(column + 6);
+  progress.participants = row.text(column + 7);
+  return progress;
 }
 
 LogEntry to_log_entry(const Statement& row) {
@@ -51,12 +52,13 @@ SessionStore::SessionStore(const std::string& path)
       database_(main_->database),
       mover_(path, Database::Mode::create),
       insert_entry_(database_, kInsertEntry),
-      write_beat_(database_, kWriteBeat),
+      write_progress_(database_, kWriteProgress),
       write_reached_(database_, kWriteReached) {
   mover_.use_log();
 }
 
 std::uint64_t SessionStore::create(const StoredSession& session, const LogEntry& first) {
+  VAT_CHECK(first.sequence == 1);
   const std::lock_guard lock(mutex_);
   Transaction transaction(database_);
   database_.prepare("INSERT INTO sessions (name, instruction_set, settings) VALUES (?, ?, ?)")
@@ -79,7 +81,7 @@ std::vector<StoredSession> SessionStore::sessions() {
       " FROM sessions WHERE closed = 0 ORDER BY number");
   while (query.step()) {
     sessions.push_back({query.count(0), std::string(query.text(1)), std::string(query.text(2)),
-                        std::string(query.text(3)), query.count(4), to_beat(query, 5)});
+                        std::string(query.text(3)), query.count(4), to_progress(query, 5)});
   }
   return sessions;
 }
@@ -115,6 +117,7 @@ std::vector<std::uint64_t> SessionStore::remove_closed() {
 }
 
 void SessionStore::insert(std::uint64_t session, const LogEntry& entry) {
+  VAT_CHECK(entry.sequence > 0);
   insert_entry_.bind(0, session)
       .bind(1, entry.sequence)
       .bind(2, entry.position)
@@ -126,6 +129,7 @@ void SessionStore::insert(std::uint64_t session, const LogEntry& entry) {
 }
 
 void SessionStore::append(std::uint64_t session, std::span<const LogEntry> entries) {
+  VAT_CHECK(!entries.empty());
   const std::lock_guard lock(mutex_);
   if (entries.size() == 1) {  // a transaction by itself
     insert(session, entries.front());
@@ -199,16 +203,16 @@ bool SessionStore::trim_some(std::uint64_t session, std::uint64_t last, std::uin
   return database_.number("SELECT changes()") > 0;
 }
 
-void SessionStore::beat(std::uint64_t session, const SessionProgress& beat) {
+void SessionStore::write_progress(std::uint64_t session, const SessionProgress& progress) {
   const std::lock_guard lock(mutex_);
-  write_beat_.bind(0, beat.position)
-      .bind(1, beat.tick)
-      .bind(2, beat.sequence)
-      .bind(3, std::bit_cast<std::int64_t>(beat.hash))
-      .bind(4, std::int64_t{beat.epoch})
-      .bind(5, std::int64_t{beat.playing})
-      .bind(6, beat.speed)
-      .bind(7, std::string_view(beat.participants))
+  write_progress_.bind(0, progress.position)
+      .bind(1, progress.tick)
+      .bind(2, progress.sequence)
+      .bind(3, std::bit_cast<std::int64_t>(progress.hash))
+      .bind(4, std::int64_t{progress.epoch})
+      .bind(5, std::int64_t{progress.playing})
+      .bind(6, progress.speed)
+      .bind(7, std::string_view(progress.participants))
       .bind(8, session)
       .run();
 }

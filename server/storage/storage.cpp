@@ -8,13 +8,14 @@
 #include <future>
 #include <utility>
 #include <vector>
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 constexpr auto kMoveInterval = std::chrono::seconds(1);
-// While commands keep coming the moved part of a log is not used again; beyond this they wait once,
-// for some milliseconds, so that it is.
+// While commands arrive, the copied part of a log is not reused. Beyond this size they wait some
+// milliseconds once, so that it is.
 constexpr std::size_t kMaxLogBytes = std::size_t{64} << 20;
 
 template <class Store>
@@ -58,6 +59,7 @@ Storage::~Storage() {
 }
 
 void Storage::post(std::function<void()> task) {
+  VAT_CHECK(task != nullptr);
   boost::asio::post(thread_, [this, task = std::move(task)] { run(task); });
 }
 
@@ -68,6 +70,7 @@ void Storage::flush() {
 }
 
 void Storage::run(const std::function<void()>& task) {
+  VAT_CHECK(thread_.get_executor().running_in_this_thread());
   try {
     task();
   } catch (const std::exception& error) {
@@ -81,6 +84,7 @@ StorageCounts Storage::counts() const {
 }
 
 void Storage::count_checkpoint(std::chrono::duration<double> cost) {
+  VAT_CHECK(cost.count() >= 0);
   ++checkpoints_written_;
   checkpoint_nanoseconds_ += static_cast<std::uint64_t>(cost.count() * 1e9);
 }
@@ -90,7 +94,7 @@ void Storage::remove_closed() {
     for (const std::uint64_t closed : sessions_.remove_closed()) {
       states_.remove_session(id_of(closed));
     }
-    std::vector<std::uint64_t> open;  // checkpoints are written on this thread: none comes between
+    std::vector<std::uint64_t> open;  // no checkpoint is written meanwhile: this thread writes them
     for (const StoredSession& session : sessions_.sessions()) open.push_back(session.number);
     checkpoints_.keep_only(open);
   });

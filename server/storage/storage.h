@@ -8,7 +8,6 @@
 #include <memory>
 #include <string>
 
-#include "server/clock.h"
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/saved_scenes.h"
@@ -17,17 +16,17 @@
 #include "server/storage/storage_counts.h"
 #include "server/storage/storage_limits.h"
 #include "server/storage/token_store.h"
+#include "server/support/clock.h"
 
 namespace vat {
 
-/// All that a server keeps in its data folder, and a thread for what may take its time: writing
-/// checkpoints, removing what is closed, and moving what was written into its place in the files,
-/// with the waiting for the disk that belongs to it. Nobody else waits for the disk.
+/// Data folder of a server, with a thread for slow work: checkpoints, removal of closed sessions,
+/// and moving of the log with its waits for the disk. Other threads do not wait for the disk.
 class Storage {
  public:
-  /// Opens the folder, or makes it. Throws StorageError.
+  /// Opens or creates the folder. Throws StorageError.
   Storage(const std::string& folder, const StorageLimits& limits, Clock& clock);
-  /// Ends what was posted first.
+  /// Completes all posted tasks.
   ~Storage();
   Storage(const Storage&) = delete;
   Storage& operator=(const Storage&) = delete;
@@ -40,17 +39,17 @@ class Storage {
   SavedScenes& scenes() { return scenes_; }
   TokenStore& tokens() { return tokens_; }
 
-  /// Runs a task on the thread, in the order of the calls; what it throws is logged.
+  /// Runs a task on the thread, in the order of the calls. Exceptions are logged.
   void post(std::function<void()> task);
-  /// Waits until all that was posted has run.
+  /// Waits until all posted tasks have run.
   void flush();
-  /// Frees what closed sessions take.
+  /// Frees the data of closed sessions.
   void remove_closed();
-  /// What /metrics tells of it.
+  /// Counters for /metrics.
   StorageCounts counts() const;
-  /// Something could not be written.
+  /// Counts a failed write.
   void count_failure() { ++failures_; }
-  /// One was written, in so much time of a processor.
+  /// Counts a checkpoint, which took this processor time.
   void count_checkpoint(std::chrono::duration<double> cost);
 
  private:

@@ -5,17 +5,16 @@
 
 namespace vat {
 
-/// Why something could not be kept, or read back. Thrown by all of server/storage/; what was under
-/// way is then undone as a whole.
+/// Failed read or write of stored data. The operation is then undone as a whole.
 class StorageError : public std::runtime_error {
  public:
   enum class Kind {
-    full,       ///< the disk, or what is allowed of it
-    read_only,  ///< the folder or a file in it may not be written
-    corrupt,    ///< a file is damaged, or is no database of this program
+    full,       ///< no space on the disk, or a limit is reached
+    read_only,  ///< the folder or a file in it is read-only
+    corrupt,    ///< a file is damaged, or is not a database of this program
     newer,      ///< a database of a later version of this program
     locked,     ///< another server uses the folder
-    failed      ///< all else that the system refuses
+    failed      ///< all other system errors
   };
 
   StorageError(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

@@ -5,13 +5,13 @@
 
 namespace vat {
 
-/// How much is kept of each session.
+/// Greatest sizes of a session's stored data.
 struct StorageLimits {
-  /// Five minutes of some thousand particles without thinning.
+  /// Sufficient for five minutes of some thousand particles without thinning.
   std::size_t checkpoint_bytes = std::size_t{128} << 20;
-  std::size_t log_bytes = std::size_t{64} << 20;  ///< of commands; then the oldest go
-  /// How much work of a session there is between two checkpoints, where they are cheap enough: what
-  /// is done again after a crash, and the most that going to any moment of its past takes.
+  std::size_t log_bytes = std::size_t{64} << 20;  ///< of commands; the oldest are removed
+  /// Work of a session between two checkpoints, if their cost allows it. Bounds the work that a
+  /// recovery or a seek repeats.
   std::chrono::milliseconds checkpoint_after{100};
 };
 

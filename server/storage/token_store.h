@@ -13,16 +13,16 @@
 
 namespace vat {
 
-/// What is kept of a token that lets somebody in.
+/// Stored data of a token.
 struct StoredToken {
   std::array<std::uint8_t, 32> hash{};
   std::string role;
-  std::string session;              ///< the only one that it is for; empty: all
-  std::optional<std::size_t> uses;  ///< that are left; absent: any number
+  std::string session;              ///< the only accessible session; empty: all
+  std::optional<std::size_t> uses;  ///< remaining uses; absent: unlimited
   double ends = 0;                  ///< [s] since 1970
 };
 
-/// The tokens that are good beyond the end of the server. Safe to use from any thread; throws
+/// Tokens that remain valid after the server ends. Safe to use from any thread; throws
 /// StorageError.
 class TokenStore {
  public:
@@ -32,7 +32,7 @@ class TokenStore {
   void set_uses(std::span<const std::uint8_t> hash, std::size_t uses);
   void remove(std::span<const std::uint8_t> hash);
   void remove_session(const std::string& session);
-  /// Removes those that have ended before.
+  /// Removes tokens that expired before this time.
   void remove_old(double now);
   std::vector<StoredToken> all();
 

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <memory>
 
-#include "server/cli/command.h"
-#include "server/task_runner.h"
+#include "server/cli/common/command.h"
+#include "server/support/task_runner.h"
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/control_report.h"
 #include "tests/bench/accuracy/law_report.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/codec/decode_times.h"
 #include "tests/bench/codec/measure.h"
 #include "tests/bench/codec/peers.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
-#include "server/cli/option_checks.h"
+#include "server/cli/common/command.h"
+#include "server/cli/common/option_checks.h"
 #include "tests/bench/speed/comparison.h"
 
 namespace vat::bench {

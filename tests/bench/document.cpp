@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/document/markers.h"
 #include "tests/bench/document/page_tables.h"
 #include "tests/validation/cases.h"

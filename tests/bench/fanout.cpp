@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "server/cli/open_files.h"
 #include "tests/bench/fanout/case.h"
 #include "tests/bench/fanout/turns.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/instructions/callgrind.h"
 #include "tests/bench/instructions/counted_scenes.h"
 #include "tests/bench/instructions/stored_counts.h"

@@ -1,7 +1,7 @@
 #include <exception>
 #include <iostream>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/program.h"
 
 int main(int argc, char** argv) {

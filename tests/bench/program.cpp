@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/accuracy.h"
 #include "tests/bench/codec.h"
 #include "tests/bench/compare.h"

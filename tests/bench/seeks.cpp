@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "server/script/server_process.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/soak/caller.h"

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "server/cli/open_files.h"
-#include "server/heap.h"
+#include "server/operations/heap.h"
 #include "server/script/server_process.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/soak/caller.h"

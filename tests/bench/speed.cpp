@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/support/instruction_set.h"
-#include "server/cli/command.h"
-#include "server/cli/option_checks.h"
+#include "server/cli/common/command.h"
+#include "server/cli/common/option_checks.h"
 #include "tests/bench/options.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"

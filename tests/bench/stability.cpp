@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/stability/stability_parts.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/command.h"
-#include "server/task_runner.h"
+#include "server/cli/common/command.h"
+#include "server/support/task_runner.h"
 #include "tests/bench/options.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/validate_table.h"

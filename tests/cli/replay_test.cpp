@@ -5,7 +5,7 @@
 
 #include "core/simulation/simulation.h"
 #include "protocol/scene/scene_json.h"
-#include "server/replay/recording.h"
+#include "server/history/recording.h"
 #include "tests/cli/program.h"
 
 namespace vat::test::replay_test {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/limits.h"
-#include "server/cli/simulate_schedule.h"
+#include "server/cli/simulate/simulate_schedule.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 

@@ -11,7 +11,7 @@
 #include "protocol/frame/frame_codec.h"
 #include "protocol/scene/scene_json.h"
 #include "server/access/token.h"
-#include "server/session/session_server.h"
+#include "server/rpc/session_server.h"
 #include "tests/fuzz/target.h"
 
 namespace {

@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "core/saved/sealed_bytes.h"
-#include "server/replay/recording.h"
+#include "server/history/recording.h"
 #include "tests/fuzz/target.h"
 
 // The content of a recording, sealed anew: a checksum finds what happens to bytes, and keeps nobody

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/session/describe.h"
-#include "server/session/scene_loading.h"
-#include "server/session/session_recovery.h"
+#include "server/messages/describe.h"
+#include "server/replay/log_replay.h"
+#include "server/session/core/scene_loading.h"
 #include "tests/support/lone_environment.h"
 
 namespace vat::test {
@@ -53,7 +53,7 @@ std::map<std::uint64_t, std::set<std::string>> hashes_of(const StoredPast& past,
   note();
   for (std::size_t i = 1; i < past.log.size(); ++i) {
     run(past.log[i].position);
-    carry_out_again(core, past.log[i]);
+    repeat_entry(core, past.log[i]);
     note();
   }
   run(past.position);

@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "server/admission/message_meter.h"
-#include "server/admission/resource_budget.h"
-#include "server/net/address_counts.h"
+#include "server/clients/message_meter.h"
+#include "server/support/resource_budget.h"
+#include "server/transport/address_counts.h"
 
 namespace vat::test::admission_test {
 namespace {
@@ -59,25 +59,25 @@ ServerLimits few_messages() {
 TEST(MessageMeter, EachClassHasItsOwnLimit) {
   const SteadyClock::time_point now;
   struct Expected {
-    MessageClass message_class;
+    RateClass rate_class;
     const char* limit;
     int burst;
   };
-  for (const auto& [message_class, limit, burst] :
-       {Expected{MessageClass::query, "queries_per_second", 20},
-        Expected{MessageClass::control, "controls_per_second", 40},
-        Expected{MessageClass::pointer, "pointer_moves_per_second", 60},
-        Expected{MessageClass::scene, "scenes_per_second", 2}}) {
+  for (const auto& [rate_class, limit, burst] :
+       {Expected{RateClass::query, "queries_per_second", 20},
+        Expected{RateClass::control, "controls_per_second", 40},
+        Expected{RateClass::pointer, "pointer_moves_per_second", 60},
+        Expected{RateClass::scene, "scenes_per_second", 2}}) {
     MessageMeter meter(few_messages(), now);
-    for (int i = 0; i < burst; ++i) EXPECT_FALSE(meter.count(message_class, now)) << limit << i;
-    const auto excess = meter.count(message_class, now);
+    for (int i = 0; i < burst; ++i) EXPECT_FALSE(meter.count(rate_class, now)) << limit << i;
+    const auto excess = meter.count(rate_class, now);
     ASSERT_TRUE(excess) << limit;
     EXPECT_EQ(excess->limit, limit);
     EXPECT_DOUBLE_EQ(excess->maximum, burst / 2.0);
     EXPECT_DOUBLE_EQ(excess->retry_after.count(), 2.0 / burst);
     EXPECT_FALSE(excess->is_flood);
-    for (const auto other : {MessageClass::query, MessageClass::scene}) {
-      if (other == message_class) continue;
+    for (const auto other : {RateClass::query, RateClass::scene}) {
+      if (other == rate_class) continue;
       EXPECT_FALSE(meter.count(other, now));
     }
   }
@@ -104,10 +104,10 @@ TEST(ResourceBudget, GivesBackWhatIsNotHeldAnyMore) {
     auto share = budget.take({60, 10});
     ASSERT_TRUE(std::holds_alternative<ResourceShare>(share));
     const auto refused = budget.take({41, 0});
-    ASSERT_TRUE(std::holds_alternative<ResourceExcess>(refused));
-    EXPECT_EQ(std::get<ResourceExcess>(refused).limit, "particles_in_all");
-    EXPECT_EQ(std::get<ResourceExcess>(refused).maximum, 100U);
-    EXPECT_EQ(std::get<ResourceExcess>(budget.take({0, 41})).limit, "springs_in_all");
+    ASSERT_TRUE(std::holds_alternative<LimitExcess>(refused));
+    EXPECT_EQ(std::get<LimitExcess>(refused).limit, "particles_in_all");
+    EXPECT_EQ(std::get<LimitExcess>(refused).maximum, 100U);
+    EXPECT_EQ(std::get<LimitExcess>(budget.take({0, 41})).limit, "springs_in_all");
     EXPECT_TRUE(std::holds_alternative<ResourceShare>(budget.take({40, 40})));
     const ResourceShare moved = std::get<ResourceShare>(std::move(share));
     EXPECT_EQ(budget.used().particles, 60U);

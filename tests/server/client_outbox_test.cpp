@@ -1,4 +1,4 @@
-#include "server/session/client_outbox.h"
+#include "server/clients/client_outbox.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "server/http/downloads.h"
 #include "server/replay/imports.h"
-#include "server/session/base64.h"
+#include "server/support/base64.h"
 #include "tests/support/manual_clock.h"
 
 namespace vat::test::downloads_test {
@@ -57,7 +57,7 @@ TEST(Downloads, AreServedByTheSite) {
 
 const SteadyClock::time_point kStart{};
 
-Imports::Part first_part(std::size_t bytes) {
+Imports::Chunk first_part(std::size_t bytes) {
   return {{}, 100, 0, std::vector<std::uint8_t>(bytes)};
 }
 
@@ -85,7 +85,7 @@ TEST(Imports, HaveSoManyBytesAtMost) {
   Imports imports(50);
   const auto begun = imports.add(1, first_part(30), kStart);
   const std::string name = std::get<Imports::Progress>(begun).name;
-  const Imports::Part next{name, 100, 30, std::vector<std::uint8_t>(20)};
+  const Imports::Chunk next{name, 100, 30, std::vector<std::uint8_t>(20)};
   EXPECT_TRUE(std::holds_alternative<Imports::Progress>(imports.add(1, next, kStart)));
   const auto refused = imports.add(1, first_part(1), kStart);
   ASSERT_TRUE(std::holds_alternative<RpcError>(refused));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/session/method_table.h"
+#include "server/rpc/method_table.h"
 #include "tests/server/access_fixture.h"
 
 namespace vat::test::every_method_test {
@@ -116,8 +116,7 @@ Json params_of(std::string_view method, const std::string& session) {
 
 /// For a method of the server it is that which one was let in with: an owner is a controller there.
 Role counting_role(const Method& method, Role role) {
-  const bool is_of_server =
-      std::holds_alternative<Method::ForServer>(method.read) && !method.rules.is_of_named_session;
+  const bool is_of_server = method.row.role_source == RoleSource::connection;
   return is_of_server && role == Role::owner ? Role::controller : role;
 }
 
@@ -125,14 +124,14 @@ Role counting_role(const Method& method, Role role) {
 TEST_F(EveryMethod, ByEveryRole) {
   for (const Role role : kRoles) {
     for (const Method& method : all_methods()) {
-      SCOPED_TRACE(std::string(method.name) + " by " + to_string(role));
+      SCOPED_TRACE(std::string(method.row.name) + " by " + to_string(role));
       const Cast cast = this->cast(role);
       const Closer closer{*admin, cast.session};
-      const int id = cast.subject->send(method.name, params_of(method.name, cast.session));
+      const int id = cast.subject->send(method.row.name, params_of(method.row.name, cast.session));
       const Json reply = cast.subject->wait_reply_at_tick(id);
       const Json error = reply.value("error", Json::object());
       const int code = error.value("code", 0);
-      const Role least = method.rules.least_role;
+      const Role least = method.row.least_role;
       const bool is_refused = error.contains("data") && error["data"].contains("least_role");
       if (role == Role::none && least > Role::none) {
         EXPECT_EQ(code, 1007) << reply;
@@ -151,9 +150,9 @@ TEST_F(EveryMethod, ByEveryRole) {
 
 TEST_F(EveryMethod, OfASessionNeedsOne) {
   for (const Method& method : all_methods()) {
-    if (std::holds_alternative<Method::ForServer>(method.read)) continue;
-    const Json error = admin->error(method.name, params_of(method.name, "s1"));
-    EXPECT_EQ(error.at("code"), 1001) << method.name;
+    if (std::holds_alternative<ServerHandler>(method.handler)) continue;
+    const Json error = admin->error(method.row.name, params_of(method.row.name, "s1"));
+    EXPECT_EQ(error.at("code"), 1001) << method.row.name;
     EXPECT_EQ(error.at("data").at("kind"), "not_joined");
   }
 }
@@ -178,22 +177,22 @@ TEST_F(EveryMethod, RefusesUnknownParametersAndWrongTypes) {
         << method << params << error;
   };
   for (const Method& method : all_methods()) {
-    Json params = params_of(method.name, cast.session);
+    Json params = params_of(method.row.name, cast.session);
     if (params.is_null()) params = Json::object();
     for (const auto& [name, value] : params.items()) {
       Json wrong = params;
       wrong[name] = wrong_value(value);
-      expect_fault(method.name, wrong, '/' + name);
+      expect_fault(method.row.name, wrong, '/' + name);
     }
     params["colour"] = "red";
-    expect_fault(method.name, params, "/colour");
+    expect_fault(method.row.name, params, "/colour");
   }
   EXPECT_EQ(client.result("session.hash"), before);
 }
 
 TEST_F(EveryMethod, IsListedByServerInfo) {
   std::vector<std::string> names;
-  for (const MethodRules& rules : method_rules()) names.emplace_back(rules.method);
+  for (const Method& method : all_methods()) names.emplace_back(method.row.name);
   const Json listed = connect()->result("server.info").at("methods");
   EXPECT_THAT(listed.get<std::vector<std::string>>(), testing::UnorderedElementsAreArray(names));
 }

@@ -15,8 +15,8 @@
 
 #include "protocol/frame/frame_codec.h"
 #include "protocol/json/json_reader.h"
-#include "server/net/transport.h"
 #include "server/script/transcript.h"
+#include "server/transport/transport.h"
 #include "tests/support/patience.h"
 
 namespace vat::test {

@@ -1,4 +1,4 @@
-#include "server/session/frame_delivery.h"
+#include "server/frames/frame_delivery.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "server/limits.h"
+#include "server/messages/limits.h"
 #include "tests/server/fake_connection.h"
 
 namespace vat::test::frame_delivery_test {

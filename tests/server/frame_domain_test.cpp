@@ -1,4 +1,4 @@
-#include "server/session/frame_domain.h"
+#include "server/frames/frame_domain.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "protocol/frame/frame_codec.h"
-#include "server/session/frame_delivery.h"
+#include "server/frames/frame_delivery.h"
 
 namespace vat::test::frame_line_test {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "server/session/frame_groups.h"
-#include "server/session/frame_pace.h"
-#include "server/session/frame_window.h"
+#include "server/clients/frame_window.h"
+#include "server/frames/frame_groups.h"
+#include "server/frames/frame_pace.h"
 
 namespace vat::test::frame_pace_test {
 namespace {

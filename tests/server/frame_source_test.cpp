@@ -1,4 +1,4 @@
-#include "server/session/frame_source.h"
+#include "server/frames/frame_source.h"
 
 #include <gtest/gtest.h>
 

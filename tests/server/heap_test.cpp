@@ -1,4 +1,4 @@
-#include "server/heap.h"
+#include "server/operations/heap.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/log_format.h"
+#include "server/operations/log_format.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

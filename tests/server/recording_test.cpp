@@ -1,4 +1,4 @@
-#include "server/replay/recording.h"
+#include "server/history/recording.h"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <chrono>
 #include <set>
 
+#include "server/history/recorder.h"
+#include "server/history/session_log.h"
 #include "server/replay/moment_filler.h"
-#include "server/replay/recorder.h"
 #include "server/replay/replay_player.h"
-#include "server/session/session_log.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 #include "tests/support/temporary_folder.h"
@@ -48,12 +48,13 @@ class KeptSession {
     number_ = storage_.sessions().create(
         session, {1, 0, 0, 0, "scene.load", Json{{"scene", write_scene(scene)}}.dump(), false});
     SessionCore core("s1", {"n"}, Simulation::create(scene).value(), environment());
-    core.keep_in(std::make_unique<SessionLog>(storage_, number_, SessionLog::Place{1, 0}));
+    core.history().keep_in(
+        std::make_unique<SessionLog>(storage_, number_, SessionLog::Place{1, 0}));
     for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
       if (commands.contains(tick)) command(core);
       run_tick(core);
     }
-    core.log()->keep(core.moment(), environment_.clock.now());
+    core.history().log()->store(core.history().moment(), environment_.clock.now());
     storage_.flush();
   }
   Recording record() { return record_session(storage_, number_, kMaxRecordingBytes).value(); }
@@ -64,16 +65,16 @@ class KeptSession {
  private:
   static void command(SessionCore& core) {
     LogEntry entry{0, core.run().position(), core.run().tick(), 1, "leave", "{}", false};
-    core.log()->append({&entry, 1});
-    core.apply(entry, [](SessionCore&, Participant&) -> ActionResult { return Json::object(); });
+    core.history().log()->append({&entry, 1});
+    core.execute(entry, [](SessionCore&, Participant&) -> ActionResult { return Json::object(); });
   }
   void run_tick(SessionCore& core) {
     ASSERT_TRUE(core.tick(environment_.clock.now(), false));
-    SessionLog& log = *core.log();
+    SessionLog& log = *core.history().log();
     log.add_hash(core.run().position(), core.run().simulation().state_hash());
     log.add_work(CheckpointPace::Seconds(kTickWork));
     if (log.is_due(core.run().position(), 0, environment_.clock.now())) {
-      log.keep(core.moment(), environment_.clock.now());
+      log.store(core.history().moment(), environment_.clock.now());
       storage_.flush();
     }
   }
@@ -122,7 +123,7 @@ TEST(ReplaySeeks, GoOnFromWhereTheyAreWhereThatIsNearer) {
   Recording recording = session.record();
   recording.moments.clear();
   ReplayPlayer player(recording, session.environment());
-  player.set_keeping({KeptMoments::Seconds(1e9), 0});  // none, however slow the machine is
+  player.set_cache({MomentCache::Seconds(1e9), 0});  // none, however slow the machine is
   SessionCore core("replay", {"n"}, player.begin(), session.environment());
   player.go_to_begin(core);
   player.play_to(core, 50, kGoOn);
@@ -153,7 +154,7 @@ TEST(ReplaySeeks, RunNoneWhereMomentsWereFilledIn) {
   Recording recording = session.record();
   recording.moments.clear();
   ReplayPlayer player(recording, session.environment());
-  player.set_keeping({std::chrono::seconds(0), std::size_t{64} << 20});
+  player.set_cache({std::chrono::seconds(0), std::size_t{64} << 20});
   SessionCore core("replay", {"n"}, player.begin(), session.environment());
   player.go_to_begin(core);
   player.play_to(core, recording.end, kGoOn);
@@ -165,7 +166,7 @@ constexpr std::size_t kMuch = std::size_t{64} << 20;
 std::vector<RecordedMoment> moments_at(const Recording& recording,
                                        const SessionEnvironment& environment,
                                        std::uint64_t position) {
-  const auto all = std::make_shared<KeptMoments>(std::chrono::seconds(0), kMuch);
+  const auto all = std::make_shared<MomentCache>(std::chrono::seconds(0), kMuch);
   ReplayPlayer player(recording, environment);
   player.share(all);
   SessionCore core("replay", {"n"}, player.begin(), environment);
@@ -180,7 +181,7 @@ TEST(MomentFilling, BeginsWithTheWidestGap) {
   constexpr std::uint64_t kNarrow = 100;
   recording.moments.clear();
   recording.moments = moments_at(recording, session.environment(), kNarrow);
-  const auto kept = std::make_shared<KeptMoments>(std::chrono::seconds(0), kMuch);
+  const auto kept = std::make_shared<MomentCache>(std::chrono::seconds(0), kMuch);
   const MomentFiller filler(std::make_shared<const Recording>(recording), session.environment(),
                             kept);
   const auto begins_with_the_widest = [&] {
@@ -198,14 +199,14 @@ TEST(MomentFilling, EndsWithItsReplay) {
   KeptSession session(kMuch);
   Recording recording = session.record();
   recording.end += 100'000'000;
-  const auto kept = std::make_shared<KeptMoments>(std::chrono::hours(1), kMuch);
+  const auto kept = std::make_shared<MomentCache>(std::chrono::hours(1), kMuch);
   const MomentFiller filler(std::make_shared<const Recording>(recording), session.environment(),
                             kept);
   EXPECT_FALSE(filler.is_done());
 }
 
-TEST(KeptMoments, BeyondTheirBytesLieTwiceAsFarApart) {
-  KeptMoments kept(std::chrono::seconds(1), 1000);
+TEST(MomentCache, BeyondTheirBytesLieTwiceAsFarApart) {
+  MomentCache kept(std::chrono::seconds(1), 1000);
   for (std::uint64_t at = 1; at <= 11; ++at) {
     EXPECT_EQ(kept.work().count(), 1) << at;
     kept.add({at, 1, "", std::vector<std::uint8_t>(100)});

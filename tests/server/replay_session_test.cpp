@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "server/history/recording.h"
 #include "server/http/downloads.h"
-#include "server/replay/recording.h"
-#include "server/session/scene_loading.h"
+#include "server/session/core/scene_loading.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
@@ -380,7 +380,7 @@ TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
   live();
   ServerLimits limits;
   limits.max_particles = kMaxParticlesOfSession;
-  const std::size_t most = most_state_bytes(limits);
+  const std::size_t most = max_state_bytes(limits);
   ASSERT_LT(most, std::size_t{1} << 30);
   const auto reason = [&](const Recording& recording) -> std::string {
     const Json whole = import(*ann_, recording);

@@ -7,7 +7,7 @@
 
 #include "server/http/downloads.h"
 #include "server/replay/replay_player.h"
-#include "server/session/scene_loading.h"
+#include "server/session/core/scene_loading.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 #include "tests/support/temporary_folder.h"
@@ -172,7 +172,7 @@ TEST_P(SeekTest, LeadsToTheSameStatesFromAnywhere) {
     hashes.push_back(straight.hash());
   }
   Replay seeking(recording, environment_);
-  if (GetParam()) seeking.player.set_keeping({std::chrono::seconds(0), 1 << 20});
+  if (GetParam()) seeking.player.set_cache({std::chrono::seconds(0), 1 << 20});
   std::uint64_t at = recording.begin;
   for (int n = 0; n < 60; ++n) {
     at = recording.begin + (at * 7 + 5) % (recording.end - recording.begin + 1);
@@ -257,7 +257,7 @@ TEST_F(ReplayTest, RefusesAMomentThatTellsOfAnotherPlace) {
 TEST_F(ReplayTest, GoesToNoMomentBeyondTheLimits) {
   live();
   const Recording recording = record();
-  const auto moments = std::make_shared<KeptMoments>(std::chrono::seconds(0), 10'000'000);
+  const auto moments = std::make_shared<MomentCache>(std::chrono::seconds(0), 10'000'000);
   Replay straight(recording, environment_);
   straight.player.share(moments);
   straight.player.play_to(straight.core, recording.end, kGoOn);

@@ -10,40 +10,36 @@
 #include <vector>
 
 #include "protocol/json/json_reader.h"
-#include "server/session/error_table.h"
-#include "server/session/method_rules.h"
-#include "server/session/rpc_message.h"
+#include "server/messages/error_table.h"
+#include "server/messages/rpc_message.h"
+#include "server/rpc/method_table.h"
 
 namespace vat::test::schemas_test {
 namespace {
 
 /// The definitions of a file of schemas; empty where there is none.
 Json definitions(const std::string& name) {
-  std::ifstream file(VAT_SOURCE_DIR "/protocol/schemas/" + name + ".json");
+  std::ifstream file(VAT_SOURCE_DIR "/protocol/schemas/" + name);
   return file ? Json::parse(file).at("$defs") : Json::object();
 }
 
-std::string group_of(const std::string& method) {
-  return method.substr(0, method.find('.'));
-}
-
 TEST(Schemas, HaveParamsAndResultOfEveryMethod) {
-  for (const MethodRules& rules : method_rules()) {
-    const std::string method(rules.method);
-    const std::string file = group_of(method);
-    EXPECT_TRUE(definitions(file).contains(method + ".params"))
-        << "protocol/schemas/" << file << ".json lacks " << method << ".params";
-    EXPECT_TRUE(definitions(file).contains(method + ".result"))
-        << "protocol/schemas/" << file << ".json lacks " << method << ".result";
+  for (const Method& method : all_methods()) {
+    const std::string name(method.row.name);
+    const std::string file = method.row.schema_file();
+    EXPECT_TRUE(definitions(file).contains(name + ".params"))
+        << "protocol/schemas/" << file << " lacks " << name << ".params";
+    EXPECT_TRUE(definitions(file).contains(name + ".result"))
+        << "protocol/schemas/" << file << " lacks " << name << ".result";
   }
 }
 
 TEST(Schemas, HaveNoOtherMethods) {
   std::set<std::string> known;
-  for (const MethodRules& rules : method_rules()) known.insert(std::string(rules.method));
+  for (const Method& method : all_methods()) known.insert(std::string(method.row.name));
   const std::filesystem::path folder = VAT_SOURCE_DIR "/protocol/schemas";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const Json file = definitions(entry.path().stem().string());
+    const Json file = definitions(entry.path().filename().string());
     for (const auto& [name, definition] : file.items()) {
       if (!name.ends_with(".params")) continue;
       EXPECT_TRUE(known.contains(name.substr(0, name.rfind('.')))) << entry.path() << ": " << name;
@@ -52,7 +48,7 @@ TEST(Schemas, HaveNoOtherMethods) {
 }
 
 TEST(Schemas, HaveTheErrorsOfTheTable) {
-  const Json errors = definitions("errors");
+  const Json errors = definitions("errors.json");
   std::size_t listed = 0;
   for (const ErrorRow& row : error_rows()) {
     const std::string name(row.name);

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <vector>
 
-#include "server/server_metrics.h"
+#include "server/operations/server_metrics.h"
 #include "tests/server/session_fixture.h"
 
 namespace vat::test::server_metrics_test {

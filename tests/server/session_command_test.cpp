@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "protocol/scene/scene_json.h"
+#include "server/rpc/method_table.h"
 #include "server/session/pointer_commands.h"
 #include "tests/server/session_fixture.h"
 
@@ -255,21 +256,21 @@ TEST_F(SessionCommands, WhatMayFlowInCountsForTheLimits) {
   EXPECT_EQ(error.at("data").at("limit"), "particles");
 }
 
-const MethodRules* rules_of(std::string_view method) {
-  return &*std::ranges::find(method_rules(), method, &MethodRules::method);
+const MethodRow* row_of(std::string_view method) {
+  return session_methods().find(method);
 }
 
 class PointerCommandsTest : public testing::Test {
  protected:
   void add(ParticipantNumber participant, std::string_view method, const Json& params) {
-    pointers.add(participant, {rules_of(method), params, {}}, PendingReply(outbox, {}));
+    pointers.add(participant, {row_of(method), params, {}}, PendingReply(outbox, {}));
   }
   /// "PARTICIPANT PARAMS CALLERS" of each that has waited.
   std::vector<std::string> take() {
     std::vector<std::string> taken;
     for (const auto& newest : pointers.take()) {
       taken.push_back(std::to_string(newest.participant) + " " + newest.command.params.dump() +
-                      " " + std::to_string(newest.callers.size()));
+                      " " + std::to_string(newest.replies.size()));
     }
     return taken;
   }

@@ -1,6 +1,6 @@
 // control.*: play, pause, step, reset and speed.
 
-#include "server/session/tick_clock.h"
+#include "server/session/ticks/tick_clock.h"
 #include "tests/server/session_fixture.h"
 
 namespace vat::test::session_control_test {

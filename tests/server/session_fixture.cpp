@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/simulation/simulation.h"
-#include "server/session/describe.h"
+#include "server/messages/describe.h"
 #include "tests/server/message_record.h"
 #include "tests/support/temporary_folder.h"
 

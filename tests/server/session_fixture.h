@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "server/session/session_server.h"
+#include "server/rpc/session_server.h"
 #include "tests/server/fake_connection.h"
 #include "tests/support/manual_clock.h"
 

@@ -7,8 +7,8 @@
 #include <future>
 
 #include "protocol/scene/scene_json.h"
-#include "server/session/frame_feed.h"
-#include "server/session/session_core.h"
+#include "server/frames/frame_feed.h"
+#include "server/session/core/session_core.h"
 #include "tests/server/fake_connection.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
@@ -189,16 +189,16 @@ class SessionCoreTest : public testing::Test {
     const auto connection = std::make_shared<FakeConnection>(viewers_.size() + 1);
     const auto outbox = std::make_shared<ClientOutbox>(connection);
     viewers_.emplace_back(connection, outbox);
-    core.join(outbox, outbox->join(), {}, now);
-    core.subscribe(*core.participants().find_client(connection->id()), {}, now);
-    core.announce();
+    core.people().join(outbox, outbox->join(), {}, now);
+    core.notifier().subscribe(*core.participants().find_client(connection->id()), {}, now);
+    core.notifier().announce();
     wait();
     return connection;
   }
   /// Everybody acknowledges what comes.
   void tick() {
     ASSERT_TRUE(core.tick(now, true));
-    core.publish_tick();
+    core.notifier().publish_tick();
     wait();
     for (const auto& [connection, outbox] : viewers_) {
       ASSERT_TRUE(outbox->acknowledge(connection->frames().back().header.number, now));

@@ -86,7 +86,7 @@ TEST_F(Restart, InvitationsEndInTimeAndWithTheirSession) {
   EXPECT_FALSE(is_good(of_second));
   host.reset();
   EXPECT_EQ(
-      Database(folder + "/vat.db", Database::Mode::look).number("SELECT count(*) FROM tokens"), 0);
+      Database(folder + "/vat.db", Database::Mode::read).number("SELECT count(*) FROM tokens"), 0);
 }
 
 TEST_F(Restart, WhoComesBackHasItsRoleAndItsFrames) {
@@ -123,7 +123,7 @@ TEST_F(Restart, WhoIsWrittenDownWhileTheSessionStandsStillIsThereAfterACrash) {
   clock.advance(1s);
   host->server.flush();
   const auto is_written = [&] {
-    return Database(folder + "/vat.db", Database::Mode::look)
+    return Database(folder + "/vat.db", Database::Mode::read)
                .number("SELECT participants LIKE '%\"Bo\"%' FROM sessions WHERE number = 1") == 1;
   };
   EXPECT_TRUE(is_written());
@@ -216,7 +216,7 @@ TEST(StoredByVersion1, ComesBackAsItWas) {
   for (const char* name : {"/vat.db", "/checkpoints.db"}) {
     std::filesystem::copy_file(VAT_SOURCE_DIR "/tests/recovery/version1" + std::string(name),
                                folder + name);
-    EXPECT_EQ(Database(folder + name, Database::Mode::look).number("PRAGMA user_version"), 1);
+    EXPECT_EQ(Database(folder + name, Database::Mode::read).number("PRAGMA user_version"), 1);
   }
   const Catalogue catalogue = make_catalogue();
   {
@@ -231,7 +231,7 @@ TEST(StoredByVersion1, ComesBackAsItWas) {
     host.client->result("grab.move", {{"grab", 1}, {"target", {0, 0, 1}}});
     host.client->result("session.save", {{"name", "of version 1"}});
   }
-  Database now(folder + "/vat.db", Database::Mode::look);
+  Database now(folder + "/vat.db", Database::Mode::read);
   EXPECT_EQ(now.number("PRAGMA user_version"), 2);
   EXPECT_GE(now.number("SELECT count(*) FROM log"), 7);
   EXPECT_EQ(now.number("SELECT count(*) FROM scenes"), 0);

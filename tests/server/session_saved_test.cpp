@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "server/session/saved_state.h"
-#include "server/session/scene_loading.h"
+#include "server/session/core/saved_state.h"
+#include "server/session/core/scene_loading.h"
 #include "server/storage/database.h"
 #include "tests/server/host.h"
 #include "tests/server/session_fixture.h"
@@ -195,7 +195,7 @@ TEST_P(SavedStatesTest, GoWithTheirSession) {
   host.reset();
   if (!GetParam()) return;
   EXPECT_EQ(
-      Database(folder() + "/states.db", Database::Mode::look).number("SELECT count(*) FROM states"),
+      Database(folder() + "/states.db", Database::Mode::read).number("SELECT count(*) FROM states"),
       0);
 }
 
@@ -370,7 +370,7 @@ class SavedStateEntries : public testing::Test {
                      environment);
     try {
       const ActionResult result =
-          read_restore(params_of_restore(state))(core, core.participants().ghost(1));
+          read_restore(params_of_restore(state))(core, core.participants().find_or_add(1));
       const auto* error = std::get_if<RpcError>(&result);
       return error == nullptr ? "" : error->data.at("limit").get<std::string>();
     } catch (const StorageError& error) {
@@ -393,7 +393,7 @@ class SavedStateEntries : public testing::Test {
 };
 
 TEST_F(SavedStateEntries, AreUnpackedUpToWhatASessionMayBe) {
-  const std::size_t most = most_state_bytes(environment_.limits);
+  const std::size_t most = max_state_bytes(environment_.limits);
   ASSERT_LT(most, std::size_t{1} << 30);
   SavedState state = grown();
   EXPECT_EQ(fault(state), "");

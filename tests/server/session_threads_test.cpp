@@ -4,7 +4,7 @@
 #include <fstream>
 #include <vector>
 
-#include "server/task_runner.h"
+#include "server/support/task_runner.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,9 +4,9 @@
 #include <thread>
 #include <vector>
 
-#include "server/session/scene_loading.h"
+#include "server/session/core/scene_loading.h"
 #include "server/session/session.h"
-#include "server/session/slow_tick_gate.h"
+#include "server/session/ticks/slow_tick_gate.h"
 #include "tests/server/session_fixture.h"
 #include "tests/support/lone_environment.h"
 
@@ -106,9 +106,9 @@ class SessionPlaces : public testing::Test {
   std::shared_ptr<Session> start(const Scene& scene) {
     Simulation simulation = Simulation::create(scene).value();
     auto share = environment_.shared.resources.take_anyway(resources_of(simulation));
-    sessions_.push_back(std::make_shared<Session>("s", SessionSettings{"n"}, std::move(simulation),
-                                                  std::move(share), environment_.shared, pool_,
-                                                  places));
+    auto core = std::make_unique<SessionCore>("s", SessionSettings{"n"}, std::move(simulation),
+                                              std::move(share), environment_.shared);
+    sessions_.push_back(std::make_shared<Session>(std::move(core), nullptr, pool_, places));
     sessions_.back()->start();
     return sessions_.back();
   }

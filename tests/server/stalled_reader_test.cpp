@@ -3,9 +3,9 @@
 #include <random>
 
 #include "protocol/frame/frame_codec.h"
-#include "server/heap.h"
-#include "server/limits.h"
-#include "server/session/frame_delivery.h"
+#include "server/frames/frame_delivery.h"
+#include "server/messages/limits.h"
+#include "server/operations/heap.h"
 #include "tests/server/transport_fixture.h"
 #include "tests/support/allocator.h"
 #include "tests/support/wait.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/session/session_log.h"
+#include "server/history/session_log.h"
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/compression.h"
 #include "server/storage/data_folder.h"
@@ -336,7 +336,7 @@ TEST(CheckpointPace, CheapOnesComeAsOftenAsIsWanted) {
   const Course course =
       follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(0.001), Seconds(100));
   EXPECT_LE(course.longest.count(), 0.15 + 0.004);
-  EXPECT_LE(course.share, CheckpointPace::kGreatestShare);
+  EXPECT_LE(course.share, CheckpointPace::kMaxShare);
 }
 
 TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
@@ -344,9 +344,9 @@ TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
     const Course course =
         follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(cost), Seconds(1000));
     // Sums of a million roundings.
-    EXPECT_LE(course.share, CheckpointPace::kGreatestShare * (1 + 1e-9)) << cost;
+    EXPECT_LE(course.share, CheckpointPace::kMaxShare * (1 + 1e-9)) << cost;
     // And no less than one tick in the time between two of them.
-    EXPECT_GE(course.share, CheckpointPace::kGreatestShare * 0.97 - cost / 1000) << cost;
+    EXPECT_GE(course.share, CheckpointPace::kMaxShare * 0.97 - cost / 1000) << cost;
   }
 }
 
@@ -379,13 +379,13 @@ class BoundedLog : public testing::Test {
     }
   }
   void keep(SessionLog& log, std::uint64_t loaded) {
-    log.keep({.position = 5,
-              .tick = 5,
-              .sequence = log.last(),
-              .loaded = loaded,
-              .participants = write_participants({}),
-              .snapshot = simulation.snapshot()},
-             clock.now(), true);
+    log.store({.position = 5,
+               .tick = 5,
+               .sequence = log.last(),
+               .loaded = loaded,
+               .participants = write_participants({}),
+               .snapshot = simulation.snapshot()},
+              clock.now(), true);
     storage.flush();
   }
   std::vector<std::uint64_t> sequences() {

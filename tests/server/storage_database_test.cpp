@@ -178,7 +178,7 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
     SessionStore store(path);
     number = create(store);
     store.append(number, entry(2, 10, R"({"gravity":[0,0,-1]})"));
-    store.beat(number, {12, 11, 2, 0xfedcba9876543210, 4, true, 0.5, "[1]"});
+    store.write_progress(number, {12, 11, 2, 0xfedcba9876543210, 4, true, 0.5, "[1]"});
     store.reach(number, 20);
     store.reach(number, 15);  // earlier: it was further already
   }
@@ -191,15 +191,15 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
   EXPECT_EQ(session.instruction_set, "avx2");
   EXPECT_EQ(session.settings, R"({"locked":true})");
   EXPECT_EQ(session.reached, 20U);
-  ASSERT_TRUE(session.beat);
-  EXPECT_EQ(session.beat->position, 12U);
-  EXPECT_EQ(session.beat->tick, 11U);
-  EXPECT_EQ(session.beat->sequence, 2U);
-  EXPECT_EQ(session.beat->hash, 0xfedcba9876543210);
-  EXPECT_EQ(session.beat->epoch, 4U);
-  EXPECT_TRUE(session.beat->playing);
-  EXPECT_EQ(session.beat->speed, 0.5);
-  EXPECT_EQ(session.beat->participants, "[1]");
+  ASSERT_TRUE(session.progress);
+  EXPECT_EQ(session.progress->position, 12U);
+  EXPECT_EQ(session.progress->tick, 11U);
+  EXPECT_EQ(session.progress->sequence, 2U);
+  EXPECT_EQ(session.progress->hash, 0xfedcba9876543210);
+  EXPECT_EQ(session.progress->epoch, 4U);
+  EXPECT_TRUE(session.progress->playing);
+  EXPECT_EQ(session.progress->speed, 0.5);
+  EXPECT_EQ(session.progress->participants, "[1]");
 
   const std::vector<LogEntry> log = store.read(number, 1);
   ASSERT_EQ(log.size(), 1U);
@@ -213,7 +213,7 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
 TEST_F(StorageSessions, ABeatIsAPositionThatWasReached) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
-  store.beat(number, {12, 11, 1, 5, 1, true, 1, "[]"});
+  store.write_progress(number, {12, 11, 1, 5, 1, true, 1, "[]"});
   EXPECT_EQ(store.sessions().at(0).reached, 12U);
 }
 

@@ -1,4 +1,4 @@
-#include "server/task_runner.h"
+#include "server/support/task_runner.h"
 
 #include <gtest/gtest.h>
 

@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "server/clock.h"
-#include "server/session/deferred_tasks.h"
-#include "server/session/tick_clock.h"
-#include "server/session/tick_profile.h"
-#include "server/stage_clock.h"
-#include "server/thread_time.h"
+#include "server/session/ticks/tick_clock.h"
+#include "server/session/ticks/tick_profile.h"
+#include "server/support/clock.h"
+#include "server/support/deferred_tasks.h"
+#include "server/support/stage_clock.h"
+#include "server/support/thread_time.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/shaken_vat.h"
 

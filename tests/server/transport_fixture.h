@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/net/transport.h"
+#include "server/transport/transport.h"
 #include "tests/server/transport_client.h"
 
 namespace vat::test {

@@ -1,7 +1,7 @@
 #include <atomic>
 #include <thread>
 
-#include "server/net/ws_upgrade.h"
+#include "server/transport/ws_upgrade.h"
 #include "tests/server/transport_fixture.h"
 
 namespace vat::test::transport_http_test {

@@ -22,13 +22,24 @@ FOLDER_ORDER = (
     # the step, and the simulation
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
     "protocol/json", "protocol/scene", "protocol/frame",
+    # files, sockets and measurements, without sessions
+    "server/support", "server/output", "server/storage", "server/access", "server/transport",
+    "server/operations", "server/messages", "server/http",
+    # what a session consists of
+    "server/clients", "server/frames", "server/people", "server/history", "server/session/ticks",
+    "server/session/core", "server/session", "server/replay", "server/directory",
+    # what clients call
+    "server/methods", "server/rpc",
+    # the programs
+    "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli",
+    "server",
 )
 
 
 def folder_order(tree):
     floors = {folder: floor for floor, folder in enumerate(FOLDER_ORDER)}
     faults = []
-    for path, text in tree.matching(["core/", "protocol/"], (".cpp", ".h")):
+    for path, text in tree.matching(["core/", "protocol/", "server/"], (".cpp", ".h")):
         folder = posixpath.dirname(path)
         if folder not in floors:
             faults.append(f"{path}: FOLDER_ORDER does not have {folder}")

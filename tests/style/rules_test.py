@@ -50,7 +50,7 @@ class SourceRules(RuleTest):
             "core/a.cpp": '#include <vector>\n#include <Eigen/Core>\n#include "core/a.h"\n',
             "protocol/a.cpp": '#include <nlohmann/json.hpp>\n#include "core/a.h"\n',
             "server/a.cpp": '#include <CLI/CLI.hpp>\n#include "protocol/a.h"\n',
-            "server/net/a.cpp": "#include <websocketpp/server.hpp>\n",
+            "server/transport/a.cpp": "#include <websocketpp/server.hpp>\n",
             "tests/unit/a.cpp": '#include "server/a.h"\n#include <gtest/gtest.h>\n',
         })
 
@@ -103,7 +103,7 @@ class SourceRules(RuleTest):
     def test_clock(self):
         rule = source_rules.clock
         self.accepts(rule, {"server/session/a.cpp": "clock_.now(); CostClock::now();\n",
-                            "server/clock.h": "SteadyClock::now()\n"})
+                            "server/support/clock.h": "SteadyClock::now()\n"})
         for line in ("auto t = SteadyClock::now();", "std::chrono::steady_clock::now()",
                      "std::chrono::system_clock::now()", "boost::asio::steady_timer timer;"):
             with self.subTest(line=line):

@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "server/session/session_environment.h"
+#include "server/rpc/method_table.h"
+#include "server/session/core/session_environment.h"
 #include "tests/support/manual_clock.h"
 
 namespace vat::test {
@@ -17,9 +18,9 @@ class LoneEnvironment {
 
   /// The same with another budget.
   SessionEnvironment with(ResourceBudget& resources) {
-    return {catalogue_,     limits,   best_instruction_set(),
-            runner_,        metrics_, resources,
-            frame_threads_, tokens_,  clock};
+    return {catalogue_, limits,           best_instruction_set(), runner_,
+            metrics_,   resources,        frame_threads_,         tokens_,
+            clock,      session_methods()};
   }
 
   ServerLimits limits;

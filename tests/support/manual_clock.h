@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/clock.h"
+#include "server/support/clock.h"
 #include "tests/support/patience.h"
 
 namespace vat::test {

@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "server/session/frame_domain.h"
+#include "server/frames/frame_domain.h"
 #include "tests/bench/codec/stream.h"
 
 namespace vat::bench {

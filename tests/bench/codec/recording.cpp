@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "protocol/scene/scene_json.h"
-#include "server/cli/scene_argument.h"
-#include "server/task_runner.h"
+#include "server/cli/common/scene_argument.h"
+#include "server/support/task_runner.h"
 #include "tests/bench/speed/scenes.h"
 
 namespace vat::bench {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/simulation/simulation.h"
-#include "server/cli/simulate_run.h"
+#include "server/cli/simulate/simulate_run.h"
 #include "tests/bench/speed/scenes.h"
 
 extern "C" {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "server/session/method_rules.h"
+#include "server/rpc/method_table.h"
 
 namespace vat::bench {
 namespace {
@@ -54,8 +54,8 @@ std::string Rubbish::text() {
 }
 
 std::string Rubbish::request() {
-  const auto rules = method_rules();
-  std::string_view method = rules[below(rules.size())].method;
+  const auto methods = all_methods();
+  std::string_view method = methods[below(methods.size())].row.name;
   if (is_spared(method)) method = "server.info";
   Json params = Json::object();
   for (std::size_t i = below(5); i > 0; --i) params[kNames[below(kNames.size())]] = value(0);

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "server/cli/scene_argument.h"
+#include "server/cli/common/scene_argument.h"
 #include "tests/bench/speed/scenes.h"
 
 namespace vat::bench {

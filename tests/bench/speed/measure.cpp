@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/simulation/simulation.h"
-#include "server/cli/simulate_run.h"
+#include "server/cli/simulate/simulate_run.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
 #include "tests/bench/speed/neighbours.h"

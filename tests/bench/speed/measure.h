@@ -9,7 +9,7 @@
 #include "core/scene/scene.h"
 #include "core/support/instruction_set.h"
 #include "core/support/result.h"
-#include "server/stage_clock.h"
+#include "server/support/stage_clock.h"
 
 namespace vat::bench {
 

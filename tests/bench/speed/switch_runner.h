@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "server/task_runner.h"
+#include "server/support/task_runner.h"
 
 namespace vat::bench {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "server/task_runner.h"
+#include "server/support/task_runner.h"
 #include "tests/bench/stability/stability_parts.h"
 #include "tests/stability/adversarial.h"
 #include "tests/stability/closed_pairs.h"

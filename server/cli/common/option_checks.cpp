@@ -1,0 +1,47 @@
+#include "server/cli/common/option_checks.h"
+
+#include <filesystem>
+#include <string>
+
+#include "server/output/text.h"
+
+namespace vat {
+
+CLI::Validator real_in(double min, double max) {
+  std::string range = "[";
+  append_number(range, min);
+  range += ", ";
+  append_number(range, max);
+  range += "]";
+  const auto check = [min, max, range](const std::string& text) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= min && value <= max;
+    return good ? std::string() : "'" + text + "' is not a number in " + range;
+  };
+  return CLI::Validator(check, "in " + range);
+}
+
+CLI::Validator csv_file_name() {
+  const auto check = [](const std::string& name) {
+    const bool good = std::filesystem::path(name).extension() == ".csv";
+    return good ? std::string() : "'" + name + "' must end in .csv";
+  };
+  return CLI::Validator(check, "FILE");
+}
+
+void add_isa_option(CLI::App& command, InstructionSet& instructions) {
+  const auto check = [](const std::string& name) {
+    const Result<InstructionSet> set = parse_instruction_set(name);
+    const Status usable = set ? check_available(set.value()) : Status(set.errors());
+    return usable ? std::string() : usable.errors().front().message;
+  };
+  const auto keep = [&instructions](const std::string& name) {
+    instructions = parse_instruction_set(name).value();
+  };
+  command
+      .add_option_function<std::string>(
+          "--isa", keep, "Instruction set: baseline, avx2 or avx512; default: the machine's best")
+      ->check(CLI::Validator(check, "SET"));
+}
+
+}  // namespace vat

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <chrono>
+#include <ostream>
+
+#include "server/support/stage_clock.h"
+
+namespace vat {
+
+/// Prints the stages by descending time, with their share of `stepping` (time of all steps), and a
+/// row for the remaining time.
+void print_profile(const StageClock& profile, std::chrono::duration<double> stepping,
+                   std::ostream& out);
+
+}  // namespace vat

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <string_view>
+
+#include "server/clients/pending_reply.h"
+
+namespace vat {
+
+/// Answers with the result of `work`, or with the error that describes the exception that it
+/// throws. `what` names the work in the log.
+template <class Work>
+void answer_with(PendingReply& reply, std::string_view what, Work&& work) {
+  try {
+    reply.answer(work());
+  } catch (const StorageError& error) {
+    spdlog::error("{}: {}", what, error.what());
+    reply.answer(storage_failed(error.kind()));
+  } catch (const std::exception& error) {
+    spdlog::error("{}: {}", what, error.what());
+    reply.answer(internal_error());
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,95 @@
+#include "server/directory/admission.h"
+
+#include <utility>
+
+#include "core/support/check.h"
+
+namespace vat {
+
+Admission::Admission(const ServerResources& resources, DirectoryTables& tables)
+    : resources_(resources), tables_(tables) {}
+
+void Admission::start_draining() {
+  VAT_CHECK(has_lock());
+  draining_ = true;
+}
+
+bool Admission::is_draining() const {
+  VAT_CHECK(has_lock());
+  return draining_;
+}
+
+bool Admission::admits_connection() const {
+  VAT_CHECK(has_lock());
+  return !stopped_ && !draining_ &&
+         tables_.clients.size() < resources_.settings.limits.max_connections;
+}
+
+std::optional<RpcError> Admission::refuse_session() const {
+  VAT_CHECK(has_lock());
+  if (stopped_ || draining_) return not_allowed("the server is shutting down");
+  const std::size_t maximum = resources_.settings.limits.max_sessions;
+  if (tables_.sessions.size() < maximum) return {};
+  return limit_reached("sessions", maximum);
+}
+
+std::variant<SessionCreator, RpcError> Admission::admit_creator(const PendingReply& reply) {
+  VAT_CHECK(has_lock());
+  const std::size_t maximum = resources_.settings.limits.max_sessions_per_address;
+  SessionCreator creator{reply.client()->id(),
+                         sessions_by_address_.take(reply.client()->address(), maximum)};
+  if (creator.place == nullptr) return limit_reached("sessions_per_address", maximum);
+  return creator;
+}
+
+std::optional<RpcError> Admission::refuse_replay() const {
+  VAT_CHECK(has_lock());
+  const std::size_t maximum = resources_.settings.limits.max_replays;
+  if (tables_.sessions.replay_count() < maximum) return {};
+  return limit_reached("replays", maximum);
+}
+
+std::optional<RpcError> Admission::refuse_access(const Client& client,
+                                                 SessionNumber session) const {
+  const SessionId& own = client.access.session;
+  if (own.empty() || own == to_id(session)) return {};
+  return not_allowed("the token is for session " + own + " only");
+}
+
+std::optional<RpcError> Admission::refuse_role(const PendingReply& reply,
+                                               SessionNumber session) const {
+  VAT_CHECK(has_lock());
+  const Client* client = tables_.clients.find(reply);
+  if (client == nullptr) return not_allowed("the connection is closed");
+  Role role = client->access.role;
+  if (role != Role::admin) {
+    const bool is_in = client->session == session;
+    const auto found = tables_.sessions.running().find(session);  // a lost one has no owner
+    const bool is_creator = found != tables_.sessions.running().end() &&
+                            found->second->summary().creator == reply.client()->id();
+    role = is_creator ? Role::owner : is_in ? client->outbox->role() : Role::viewer;
+  }
+  return vat::refuse_role(reply.method(), role);
+}
+
+RpcError Admission::refuse_missing(const Client& client, const SessionId& id) const {
+  const auto* absent = tables_.sessions.find_absent(id);
+  if (absent == nullptr || refuse_access(client, absent->first)) {
+    return no_such_session(id, "/session");
+  }
+  return not_recovered(id, absent->second.is_lost ? "lost" : "recovering");
+}
+
+JoinRequest Admission::complete(JoinRequest request, const Client& client) const {
+  const Grant& access = client.access;
+  if (access.is_invitation) request.role = access.role;
+  request.passes_lock =
+      access.is_invitation && (access.role == Role::admin || !access.session.empty());
+  return request;
+}
+
+Role Admission::default_role() const {
+  return resources_.settings.access.mode == AccessMode::open ? Role::controller : Role::viewer;
+}
+
+}  // namespace vat

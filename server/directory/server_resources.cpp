@@ -1,0 +1,76 @@
+#include "server/directory/server_resources.h"
+
+#include <algorithm>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+// At least two: the system then shares even a single core between a slow tick and a fast one.
+std::size_t thread_count(std::size_t wanted) {
+  if (wanted > 0) return wanted;
+  return std::max<std::size_t>(2, std::thread::hardware_concurrency());
+}
+
+ServerLimits without_scene_limits(ServerLimits limits) {
+  limits.max_springs = limits.max_particles = limits.max_particle_steps_per_tick =
+      limits.max_grabs_per_client = std::numeric_limits<std::size_t>::max();
+  return limits;
+}
+
+std::unique_ptr<Storage> open_storage(const ServerSettings& settings, Clock& clock) {
+  if (settings.data_folder.empty()) return nullptr;
+  return std::make_unique<Storage>(settings.data_folder, settings.storage, clock);
+}
+
+}  // namespace
+
+SessionId to_id(SessionNumber number) {
+  if (number >= kFirstReplay) return "r" + std::to_string(number - kFirstReplay);
+  return "s" + std::to_string(number);
+}
+
+ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in,
+                                 Clock& clock_in, const SessionMethods& methods)
+    : catalogue(catalogue_in),
+      settings(std::move(settings_in)),
+      clock(clock_in),
+      runner(thread_count(settings.threads)),
+      tokens(settings.limits.max_tokens, clock),
+      budget({settings.limits.max_particles_in_all, settings.limits.max_springs_in_all}),
+      slow_tick_gate(runner.thread_count()),
+      frame_threads(std::max<std::size_t>(1, runner.thread_count() / 2)),
+      downloads(settings.limits.max_download_bytes),
+      storage(open_storage(settings, clock)),
+      saved_in_memory(storage ? nullptr : std::make_unique<SavedInMemory>()),
+      environment{catalogue,
+                  settings.limits,
+                  settings.instructions,
+                  runner,
+                  metrics,
+                  budget,
+                  frame_threads,
+                  tokens,
+                  clock,
+                  methods,
+                  &downloads,
+                  storage ? &storage->states() : &saved_in_memory->states,
+                  storage ? &storage->scenes() : &saved_in_memory->scenes},
+      recovery_limits(without_scene_limits(settings.limits)),
+      recovery_budget(kUnlimitedResources),
+      recovery_environment{catalogue,     recovery_limits, settings.instructions,
+                           runner,        metrics,         recovery_budget,
+                           frame_threads, tokens,          clock,
+                           methods,       &downloads},
+      pool(2 * runner.thread_count()),
+      deferred(std::make_shared<DeferredTasks>(pool, clock)),
+      creations(boost::asio::make_strand(pool)) {
+  VAT_CHECK(runner.thread_count() > 0);
+  if (storage) tokens.keep_in(storage->tokens());
+}
+
+}  // namespace vat

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <boost/asio/strand.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <memory>
+
+#include "server/directory/server_settings.h"
+#include "server/http/downloads.h"
+#include "server/replay/imports.h"
+#include "server/session/core/session_environment.h"
+#include "server/session/ticks/slow_tick_gate.h"
+#include "server/storage/storage.h"
+#include "server/support/deferred_tasks.h"
+
+namespace vat {
+
+/// Saved states and scenes of a server without a data folder. They end with the server.
+struct SavedInMemory {
+  SavedStates states{MainDatabase::kInMemory};
+  SavedScenes scenes{std::make_shared<MainDatabase>(MainDatabase::kInMemory)};
+};
+
+/// Threads, storage and budgets that all sessions share. The members are in the order in which they
+/// depend on each other; all are safe to use from any thread.
+struct ServerResources {
+  /// Throws StorageError if the data folder cannot be used.
+  ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in, Clock& clock_in,
+                  const SessionMethods& methods);
+  ServerResources(const ServerResources&) = delete;
+  ServerResources& operator=(const ServerResources&) = delete;
+
+  const Catalogue& catalogue;
+  const ServerSettings settings;
+  Clock& clock;
+  /// Helps with the steps of sessions while the pool's threads have nothing else to do.
+  ThreadPoolRunner runner;
+  ServerMetrics metrics;
+  AccessTokens tokens;
+  ResourceBudget budget;
+  SlowTickGate slow_tick_gate;
+  boost::asio::thread_pool frame_threads;
+  Downloads downloads;
+  Imports imports;
+  const std::unique_ptr<Storage> storage;                // null: sessions are in memory only
+  const std::unique_ptr<SavedInMemory> saved_in_memory;  // null: they are in the storage
+  const SessionEnvironment environment;
+  // For recoveries, which accept what was accepted before.
+  const ServerLimits recovery_limits;
+  ResourceBudget recovery_budget;
+  const SessionEnvironment recovery_environment;
+  boost::asio::thread_pool pool;
+  const std::shared_ptr<DeferredTasks> deferred;
+  /// Creations of sessions run one at a time, so that they take at most one thread.
+  boost::asio::strand<boost::asio::thread_pool::executor_type> creations;
+
+  SavedScenes& saved_scenes() const { return *environment.scenes; }
+};
+
+}  // namespace vat

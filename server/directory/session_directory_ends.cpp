@@ -1,0 +1,203 @@
+// Ends of sessions and of the server.
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <future>
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/directory/session_directory.h"
+#include "server/operations/heap.h"
+
+namespace vat {
+namespace {
+
+constexpr std::chrono::milliseconds kShortestExpiryCheck(50);
+constexpr std::chrono::milliseconds kLongestExpiryCheck(15'000);
+constexpr std::chrono::milliseconds kNever = std::chrono::hours(1'000'000);  // a century
+
+/// Calls `post` with a task, and waits until the task is run.
+template <class Post>
+void wait_for_task(const Post& post) {
+  std::promise<void> done;
+  post([&done] { done.set_value(); });
+  done.get_future().wait();
+}
+
+}  // namespace
+
+std::optional<RpcError> SessionDirectory::close(PendingReply& reply, const SessionId& id,
+                                                const std::string& reason) {
+  const std::lock_guard lock(tables_.mutex);
+  const auto* session = tables_.sessions.find(id);
+  if (session == nullptr) return close_absent(reply, id);
+  const SessionNumber number = session->first;
+  if (auto error = admission_.refuse_role(reply, number)) return error;
+  if (const auto failure = forget_stored(number)) return storage_failed(*failure);
+  close_session(number, Session::End::closed, reason, std::move(reply));
+  return {};
+}
+
+std::optional<RpcError> SessionDirectory::close_absent(PendingReply& reply, const SessionId& id) {
+  VAT_CHECK(tables_.mutex.is_held());
+  const auto* absent = tables_.sessions.find_absent(id);
+  if (absent == nullptr) return no_such_session(id, "/session");
+  const SessionNumber number = absent->first;
+  if (auto error = admission_.refuse_role(reply, number)) return error;
+  if (!absent->second.is_lost) return not_recovered(id, "recovering");
+  if (const auto failure = forget_stored(number)) return storage_failed(*failure);
+  resources_.storage->remove_closed();
+  remove_tokens(id, Session::End::closed);
+  tables_.sessions.remove_absent(number);
+  reply.answer(Json{{"tick", 0}});
+  return {};
+}
+
+std::optional<StorageError::Kind> SessionDirectory::forget_stored(SessionNumber number) {
+  VAT_CHECK(tables_.mutex.is_held());
+  try {
+    if (resources_.storage && number < kFirstReplay) resources_.storage->sessions().close(number);
+    return {};
+  } catch (const StorageError& error) {
+    spdlog::error("session {} cannot be closed: {}", to_id(number), error.what());
+    return error.kind();
+  }
+}
+
+void SessionDirectory::remove_tokens(const SessionId& id, Session::End end) {
+  try {
+    resources_.tokens.remove_session(id, end == Session::End::resumable);
+  } catch (const StorageError& error) {
+    // They grant nothing without their session.
+    spdlog::error("session {}: its invitations stay until they expire: {}", id, error.what());
+  }
+}
+
+void SessionDirectory::close_session(SessionNumber number, Session::End end,
+                                     const std::string& reason, std::optional<PendingReply> reply) {
+  VAT_CHECK(tables_.mutex.is_held());
+  const SessionId id = to_id(number);
+  tables_.clients.close_session(
+      number, write_event("session.closed", {{"session", id}, {"reason", reason}}));
+  tables_.sessions.at(number).close(end, std::move(reply));
+  if (resources_.saved_in_memory) resources_.saved_in_memory->states.remove_session(id);
+  remove_tokens(id, end);
+  tables_.sessions.remove(number);
+  spdlog::info("session {} closed: {}", id, reason);
+}
+
+std::string SessionDirectory::metrics() const {
+  ServerMetrics::Gauges gauges;
+  gauges.version = resources_.settings.version;
+  gauges.instructions = resources_.settings.instructions;
+  gauges.threads = resources_.runner.thread_count();
+  gauges.heap = heap_in_use();
+  {
+    const std::lock_guard lock(tables_.mutex);
+    gauges.connections = tables_.clients.size();
+    if (resources_.storage) gauges.storage = resources_.storage->counts();
+    for (const auto& [number, session] : tables_.sessions.running()) {
+      const SessionSummary summary = session->summary();
+      ++(summary.hibernating ? gauges.hibernating_sessions
+         : summary.playing   ? gauges.playing_sessions
+                             : gauges.paused_sessions);
+      gauges.clients += tables_.clients.count_in(number);
+      gauges.particles += summary.particles;
+    }
+  }
+  return resources_.metrics.to_text(gauges);
+}
+
+void SessionDirectory::drain(std::chrono::milliseconds time) {
+  const std::chrono::duration<double> seconds = time;
+  const std::string event = write_event("server.draining", {{"seconds", seconds.count()}});
+  const auto timer = resources_.clock.make_timer(boost::asio::make_strand(resources_.pool));
+  std::unique_lock lock(tables_.mutex);
+  admission_.start_draining();
+  timer->start(resources_.clock.now() + time, [this] {
+    const std::lock_guard timer_lock(tables_.mutex);
+    drain_time_is_over_ = true;
+    drained_.notify_all();
+  });
+  for (const auto& [connection, client] : tables_.clients.all()) client.outbox->send(event);
+  drained_.wait(lock, [this] { return drain_time_is_over_ || tables_.clients.size() == 0; });
+  timer->cancel();
+}
+
+RpcResult SessionDirectory::request_drain(std::optional<std::chrono::milliseconds> time) {
+  if (!resources_.settings.end) return not_allowed("clients cannot end this server");
+  const std::chrono::duration<double> seconds = resources_.settings.end(time);
+  return Json{{"seconds", seconds.count()}};
+}
+
+void SessionDirectory::flush() {
+  if (admission_.stopped()) return;
+  wait_for_task([this](auto done) { boost::asio::post(resources_.creations, done); });
+  std::vector<std::shared_ptr<Session>> sessions;
+  {
+    const std::lock_guard lock(tables_.mutex);
+    for (const auto& [number, session] : tables_.sessions.running()) sessions.push_back(session);
+  }
+  for (const auto& session : sessions) {
+    wait_for_task([&session](auto done) { session->post_behind(done); });
+  }
+  if (resources_.storage) resources_.storage->flush();
+}
+
+void SessionDirectory::stop() {
+  {
+    const std::lock_guard lock(tables_.mutex);
+    admission_.stop();
+    expiry_timer_->cancel();
+    while (const auto* session = tables_.sessions.first()) {
+      close_session(session->first, Session::End::resumable, "the server stops", {});
+    }
+  }
+  resources_.deferred->stop();
+  recoverer_.join();
+  resources_.pool.join();
+  resources_.frame_threads.join();
+  if (resources_.storage) resources_.storage->flush();
+}
+
+std::chrono::milliseconds SessionDirectory::expiry_of(SessionNumber session) const {
+  const ServerLimits& limits = resources_.settings.limits;
+  const auto usual = limits.expire_after.count() > 0 ? limits.expire_after : kNever;
+  return session >= kFirstReplay ? std::min(limits.replay_expire_after, usual) : usual;
+}
+
+void SessionDirectory::wait_for_expiry() {
+  VAT_CHECK(tables_.mutex.is_held());
+  const auto shortest = expiry_of(kFirstReplay);
+  const auto interval = std::clamp(shortest / 4, kShortestExpiryCheck, kLongestExpiryCheck);
+  expiry_timer_->start(resources_.clock.now() + interval, [this] { end_expired(); });
+}
+
+void SessionDirectory::end_expired() {
+  const std::lock_guard lock(tables_.mutex);
+  if (admission_.stopped()) return;
+  const auto now = resources_.clock.now();
+  resources_.downloads.forget_old(now);
+  resources_.imports.forget_old(now);
+  end_expired_sessions(now);
+  wait_for_expiry();
+}
+
+void SessionDirectory::end_expired_sessions(SteadyClock::time_point now) {
+  VAT_CHECK(tables_.mutex.is_held());
+  std::vector<SessionNumber> expired;
+  for (const auto& [number, session] : tables_.sessions.running()) {
+    if (number == tables_.sessions.first()->first || tables_.clients.count_in(number) > 0) continue;
+    const auto empty_since = session->summary().empty_since;
+    if (empty_since && now - *empty_since >= expiry_of(number)) expired.push_back(number);
+  }
+  for (const SessionNumber number : expired) {
+    if (forget_stored(number)) continue;
+    close_session(number, Session::End::closed, "nobody was in it for too long", {});
+  }
+}
+
+}  // namespace vat

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "server/clients/client_outbox.h"
+#include "server/frames/frame_pace.h"
+#include "server/frames/frame_source.h"
+#include "server/frames/subscription.h"
+
+namespace vat {
+
+/// Distributes the frames of a session to its viewers. A viewer that is not ready when a frame is
+/// due receives a newer one as soon as it is ready. Viewers with equal selections and reference
+/// frames form a group and share one encoding. At most kMaxFrameGroups groups are encoded per
+/// state; the viewers of the other groups are due the next state. Used by one thread at a time.
+class FrameDelivery {
+ public:
+  FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics);
+
+  /// Replaces an earlier subscription of the client. The next state is due to it, whatever its
+  /// period.
+  void add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
+           Subscription subscribed);
+  void remove(ConnectionId client);
+  /// Later states are of another scene, or of the same scene after a reset.
+  void set_vat(const std::optional<Vat>& vat);
+  /// Position error [m] of viewers that requested none. Initially 0, the finest grid.
+  void set_default_error(double max_error) { default_error_ = max_error; }
+
+  /// Sends a new state to the viewers that are due it. Exchanges `state` for the memory of an older
+  /// one.
+  void publish(PublishedState& state, SteadyClock::time_point now);
+  /// Sends the last state to clients that may have become ready.
+  void retry(std::span<const ConnectionId> clients, SteadyClock::time_point now);
+
+ private:
+  struct Viewer {
+    std::shared_ptr<ClientOutbox> outbox;
+    std::uint64_t subscription = 0;
+    Subscription subscribed;
+    FramePace pace;
+    bool awaits_any = true;   ///< a frame is due even if it shows nothing new
+    bool has_turn = false;    ///< the last state was due to it
+    bool owes_frame = false;  ///< a state was due, and no frame was sent since
+    HeldFrames held;
+    std::uint32_t shown = 0;      ///< number of the frame after which nothing new was left to show
+    std::uint64_t sent_tick = 0;  ///< of the last frame
+    std::size_t passed_over = 0;  ///< consecutive times that its group was not encoded
+
+    std::uint64_t period() const { return subscribed.every * pace.stride(); }  ///< [ticks]
+  };
+  /// All properties of a viewer on which the bytes of its frame depend.
+  struct GroupKey {
+    FrameCut cut;
+    std::uint8_t stride = 1;
+    bool awaits_any = false;
+    const GridFrame* first = nullptr;
+    const GridFrame* second = nullptr;
+    // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reports a zero in the default
+    auto operator<=>(const GroupKey&) const = default;
+  };
+  struct EncodedFrame {
+    std::shared_ptr<const GridFrame> frame;
+    SharedFrame bytes;  // null: the frame would show nothing new
+  };
+  using Groups = std::map<GroupKey, std::vector<Viewer*>>;
+
+  void note_turns(const PublishedState& state);
+  bool turn_has_come(const Viewer& viewer, const PublishedState& state) const;
+  void gather(Viewer& viewer, SteadyClock::time_point now, Groups& groups);
+  void serve(const Groups& groups, SteadyClock::time_point now);
+  const EncodedFrame* encode(const GroupKey& key, const HeldFrames& held);
+  /// Returns whether a frame was sent.
+  bool send(Viewer& viewer, const EncodedFrame& encoded, SteadyClock::time_point now);
+
+  ServerMetrics& metrics_;
+  std::map<ConnectionId, Viewer> viewers_;
+  FrameSource source_;
+  std::map<GroupKey, EncodedFrame> encoded_;  // of the last state
+  double default_error_ = 0;
+  std::uint8_t least_detail_ = kFullDetail;
+  bool has_state_ = false;
+  std::uint64_t tick_ = 0;   // of the last state
+  std::uint32_t epoch_ = 0;  // of the last state
+};
+
+}  // namespace vat

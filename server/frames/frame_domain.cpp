@@ -1,0 +1,48 @@
+#include "server/frames/frame_domain.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+using Box = Eigen::AlignedBox<Real, 3>;
+
+constexpr Real kSlack = 0.25;        // on each side, of the width there
+constexpr Real kGreatestExcess = 4;  // of the widest side
+
+Real width(const Box& box) {
+  return box.sizes().maxCoeff();
+}
+
+Box with_slack(const Box& box) {
+  const Vec3 slack = kSlack * box.sizes();
+  return {box.min() - slack, box.max() + slack};
+}
+
+}  // namespace
+
+FrameDomain::FrameDomain(const std::optional<Vat>& vat) {
+  if (!vat) return;
+  vat_ = Box(vat->min, vat->max);
+  if (vat->motion) {
+    vat_.extend(vat_.translated(vat->motion->axis.normalized() * vat->motion->stroke));
+  }
+  box_ = vat_;
+}
+
+void FrameDomain::include(const PublishedState& state) {
+  Box needed = vat_;
+  for (const PublishedState::Body& body : state.bodies) {
+    for (const Vec3& position : body.positions) needed.extend(position);
+  }
+  if (needed.isEmpty()) return;
+  if (!box_.contains(needed)) box_.extend(with_slack(needed));
+  if (width(box_) > kGreatestExcess * width(needed)) box_ = with_slack(needed);
+}
+
+FrameGrid FrameDomain::grid(double max_error) const {
+  VAT_CHECK(max_error >= 0);
+  if (box_.isEmpty()) return make_frame_grid(Vec3::Zero(), Vec3::Zero(), max_error);
+  return make_frame_grid(box_.min(), box_.max(), max_error);
+}
+
+}  // namespace vat

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <boost/asio/strand.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/frames/frame_delivery.h"
+
+namespace vat {
+
+/// Passes a session's states to its FrameDelivery, on a strand of the frame threads. These have a
+/// low priority, so that no tick waits for an encoder. While the strand is busy, a newer state
+/// replaces the waiting one. Safe to use from any thread.
+class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<FrameFeed> {
+ public:
+  FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
+            boost::asio::thread_pool& pool, const Clock& clock);
+
+  /// Changes take effect before a state that is published later. Returns true if a waiting state
+  /// was dropped, because it may lack attributes of the new subscription; a state should then be
+  /// published soon.
+  bool add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription, Subscription wish);
+  void remove(ConnectionId client);
+  void set_vat(const std::optional<Vat>& vat);
+  /// See FrameDelivery.
+  void set_default_error(double max_error);
+
+  /// Takes the state. Exchanges it for the memory of an older one, so that publishing does not
+  /// allocate.
+  void publish(PublishedState& state);
+  void wake(ConnectionId client) override;
+  /// Runs `task` after all earlier calls have taken effect.
+  void post(std::function<void()> task);
+
+ private:
+  struct Added {
+    std::shared_ptr<ClientOutbox> outbox;
+    std::uint64_t subscription;
+    Subscription wish;
+  };
+  struct DefaultError {
+    double max_error;
+  };
+  using Change = std::variant<Added, ConnectionId, std::optional<Vat>, DefaultError>;
+  struct PendingChanges {
+    std::vector<Change> changes;
+    PublishedState state;
+    bool has_state = false;  // otherwise `state` is only memory for the next
+    std::vector<ConnectionId> woken;
+  };
+  template <class Put>
+  void put(Put&& put);
+  void turn();
+  void apply_pending_changes();
+
+  const std::string session_;
+  const Clock& clock_;
+  boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
+
+  std::mutex mutex_;
+  PendingChanges pending_;
+  bool turn_scheduled_ = false;
+
+  // Used on the strand only.
+  PendingChanges active_changes_;  // empty between turns, but keeps its memory
+  FrameDelivery delivery_;
+};
+
+}  // namespace vat

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "protocol/frame/grid_frame.h"
+
+namespace vat {
+
+/// Selection and greatest precision of the frames that a client requests.
+struct Subscription {
+  std::optional<double> max_error;  ///< [m]; 0: the finest grid; absent: the session's default
+  std::uint64_t every = 1;          ///< [ticks]
+  FrameSelection selection;
+  /// Greatest errors [m/s], [kg/m^3], [Pa], [m/s^2]; 0: without the attribute.
+  ByAttribute<double> attribute_errors{};
+};
+
+}  // namespace vat

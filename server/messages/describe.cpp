@@ -1,0 +1,143 @@
+#include "server/messages/describe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/output/text.h"
+
+namespace vat {
+namespace {
+
+Json to_triples_json(std::span<const Vec3> vectors) {
+  Json list = Json::array();
+  list.get_ref<Json::array_t&>().reserve(vectors.size());
+  for (const Vec3& vector : vectors) list.push_back(to_json(vector));
+  return list;
+}
+
+Json to_flat_json(std::span<const Vec3> vectors) {
+  Json list = Json::array();
+  list.get_ref<Json::array_t&>().reserve(3 * vectors.size());
+  for (const Vec3& vector : vectors) {
+    for (int axis = 0; axis < 3; ++axis) list.push_back(vector[axis]);
+  }
+  return list;
+}
+
+Json describe_body(const BodyView& body) {
+  Json description{
+      {"body", body.id},
+      {"name", body.name},
+      {"kind", to_string(body.kind)},
+      {"material", body.material},
+      {"particles", body.positions.size()},
+      {"radius", body.radii.empty() ? 0 : *std::ranges::max_element(body.radii)},
+  };
+  if (body.kind == BodyKind::rigid) {
+    description["local_positions"] = to_flat_json(body.local_positions);
+  }
+  return description;
+}
+
+}  // namespace
+
+Json to_json(const Vec3& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+Json to_json(const Quat& orientation) {
+  return {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
+}
+
+Json describe_bodies(const Simulation& simulation) {
+  Json list = Json::array();
+  for (const BodyView& body : simulation.bodies()) list.push_back(describe_body(body));
+  return list;
+}
+
+Json describe_vat(const std::optional<Vat>& vat) {
+  if (!vat) return nullptr;
+  return {{"min", to_json(vat->min)}, {"max", to_json(vat->max)}, {"lid", vat->lid}};
+}
+
+Json describe_state(const BodyView& body) {
+  Json state{
+      {"body", body.id},
+      {"name", body.name},
+      {"kind", to_string(body.kind)},
+      {"positions", to_triples_json(body.positions)},
+      {"velocities", to_triples_json(body.velocities)},
+  };
+  if (!body.numbers.empty())
+    state["numbers"] = std::vector(body.numbers.begin(), body.numbers.end());
+  if (body.pose) {
+    state["center_of_mass"] = to_json(body.pose->center_of_mass);
+    state["orientation"] = to_json(body.pose->orientation);
+    state["velocity"] = to_json(body.pose->velocity);
+    state["angular_velocity"] = to_json(body.pose->angular_velocity);
+  }
+  return state;
+}
+
+namespace {
+
+/// Short as text.
+Real rounded(Real value) {
+  constexpr Real kDigits = 4;
+  if (value == 0 || !std::isfinite(value)) return 0;
+  const Real scale = std::pow(Real{10}, kDigits - 1 - std::floor(std::log10(std::abs(value))));
+  return std::isfinite(scale) ? std::round(value * scale) / scale : value;
+}
+
+}  // namespace
+
+Json describe_connections(const ConnectionList& list, const char* values) {
+  Json pairs = Json::array();
+  Json numbers = Json::array();
+  pairs.get_ref<Json::array_t&>().reserve(4 * list.sample.size());
+  numbers.get_ref<Json::array_t&>().reserve(list.sample.size());
+  for (const ConnectedPair& connection : list.sample) {
+    for (const ConnectedParticle& end : {connection.a, connection.b}) {
+      pairs.push_back(end.body);
+      pairs.push_back(end.particle);
+    }
+    numbers.push_back(rounded(connection.value));
+  }
+  return {{"total", list.total},
+          {"every", list.every},
+          {"pairs", std::move(pairs)},
+          {values, std::move(numbers)}};
+}
+
+Json describe_diagnostics(const Diagnostics& diagnostics) {
+  Vec3 momentum = Vec3::Zero();
+  Vec3 angular_momentum = Vec3::Zero();
+  for (const BodyDiagnostics& body : diagnostics.bodies) {
+    momentum += body.linear_momentum;
+    angular_momentum += body.angular_momentum;
+  }
+  return {{"kinetic_energy", diagnostics.kinetic_energy},
+          {"gravitational_energy", diagnostics.gravitational_energy},
+          {"elastic_energy", diagnostics.elastic_energy},
+          {"contact_energy", diagnostics.contact_energy},
+          {"momentum", to_json(momentum)},
+          {"angular_momentum", to_json(angular_momentum)},
+          {"mean_density_error", diagnostics.mean_density_error},
+          {"max_density_error", diagnostics.max_density_error},
+          {"torn_springs", diagnostics.torn_springs},
+          {"emitted_particles", diagnostics.emitted_particles},
+          {"drained_particles", diagnostics.drained_particles}};
+}
+
+Json describe_guard(const GuardEvent& event, std::uint64_t tick) {
+  return {{"tick", tick},       {"cause", to_string(event.cause)}, {"time", event.time},
+          {"body", event.body}, {"particle", event.particle},      {"recovered", event.recovered}};
+}
+
+std::string describe_hash(std::uint64_t hash) {
+  std::string digits;
+  append_hash(digits, hash);
+  return digits;
+}
+
+}  // namespace vat

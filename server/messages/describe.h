@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/simulation/simulation.h"
+#include "protocol/json/json_reader.h"
+
+/// JSON of a simulation, as PROTOCOL.md specifies it.
+namespace vat {
+
+Json to_json(const Vec3& vector);
+Json to_json(const Quat& orientation);
+
+/// Returns the `bodies` of a description, which do not change within an epoch.
+Json describe_bodies(const Simulation& simulation);
+/// Returns `null`, or the vat at offset zero.
+Json describe_vat(const std::optional<Vat>& vat);
+/// Returns a body of state.query, with full precision.
+Json describe_state(const BodyView& body);
+/// Returns one flat list of body and particle numbers, pair by pair, and a list named `values`,
+/// rounded to four digits.
+Json describe_connections(const ConnectionList& list, const char* values);
+/// Returns the sums over all bodies.
+Json describe_diagnostics(const Diagnostics& diagnostics);
+Json describe_guard(const GuardEvent& event, std::uint64_t tick);
+/// Returns 16 hexadecimal digits.
+std::string describe_hash(std::uint64_t hash);
+
+}  // namespace vat

@@ -1,0 +1,157 @@
+// session.save, load, saves, delete_save, scene.save, scene.delete
+
+#include <stdexcept>
+
+#include "core/limits.h"
+#include "server/messages/describe.h"
+#include "server/methods/handlers.h"
+#include "server/people/person_name.h"
+#include "server/session/core/saved_state.h"
+#include "server/session/core/scene_loading.h"
+#include "server/storage/saved_scenes.h"
+
+namespace vat {
+namespace {
+
+/// Request to save a scene.
+struct SceneToSave {
+  std::string name;
+  std::string key;    ///< of the replaced scene; empty: none
+  const Json* scene;  ///< null: the session's scene
+};
+
+std::variant<Scene, RpcError> scene_to_save(const SessionCore& core, const SceneToSave& wanted) {
+  if (wanted.scene == nullptr) return core.run().as_loaded().scene();
+  auto scene = read_client_scene(*wanted.scene, core.environment().catalogue);
+  if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
+  // A scene that this server cannot run is not saved.
+  auto simulation = make_simulation(std::get<Scene>(scene), core.environment(),
+                                    core.run().simulation().instruction_set());
+  if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+  return scene;
+}
+
+/// Whether the scene may be replaced or deleted with this key or role.
+bool may_change(const SavedScene& scene, const std::string& key, Role role) {
+  return role == Role::admin || are_same(scene.key, hash_of_token(key));
+}
+
+RpcError scene_of_another(const std::string& name) {
+  return not_allowed("the scene " + name +
+                     " belongs to another user; only its key or an admin can change it");
+}
+
+SavedSceneLimits limits_of(const ServerLimits& limits) {
+  return {limits.max_scenes_per_address, limits.max_scene_bytes_per_address,
+          limits.max_scenes_in_all, limits.max_scene_bytes_in_all};
+}
+
+ActionResult save_scene(const SessionCore& core, const Participant& participant,
+                        const SceneToSave& wanted) {
+  const SessionEnvironment& environment = core.environment();
+  if (environment.catalogue.find(wanted.name) != nullptr) {
+    return not_allowed("the catalogue contains a scene with this name");
+  }
+  const auto before = environment.scenes->find(wanted.name);
+  if (before && !may_change(*before, wanted.key, participant.role)) {
+    return scene_of_another(wanted.name);
+  }
+  auto read = scene_to_save(core, wanted);
+  if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
+  auto& scene = std::get<Scene>(read);
+  scene.name = wanted.name;
+  SavedScene saved;
+  const std::string key = make_token();
+  saved.entry = {wanted.name,
+                 scene.title,
+                 scene.description,
+                 participant.name,
+                 environment.clock.wall_time(),
+                 0};
+  saved.address = before ? before->address : participant.outbox->address();
+  saved.key = before ? before->key : hash_of_token(key);
+  saved.scene = write_scene(scene).dump();
+  if (const auto excess = environment.scenes->write(saved, limits_of(environment.limits))) {
+    return limit_reached(excess->limit, excess->maximum);
+  }
+  Json answer{{"name", wanted.name}, {"bytes", saved.scene.size()}};
+  if (!before) answer["key"] = key;
+  return answer;
+}
+
+RpcResult delete_scene(SessionDirectory& directory, const PendingReply& reply,
+                       const std::string& name, const std::string& key) {
+  SavedScenes& scenes = directory.resources().saved_scenes();
+  const auto scene = scenes.find(name);
+  if (!scene) return no_such_scene(name, "/name");
+  const Role role = directory.find_client(reply.client()->id()).role;
+  if (!may_change(*scene, key, role)) return scene_of_another(name);
+  scenes.remove(name);
+  return Json::object();
+}
+
+}  // namespace
+
+SessionAction read_session_save(ObjectReader& params, Errors& errors) {
+  const std::string name = read_person_name(params, "name", errors);
+  return [name](SessionCore& core, Participant& participant) -> ActionResult {
+    if (core.playback() != nullptr) return not_allowed("a replay saves no states");
+    if (core.history().divergence()) return not_allowed("the session differs from its log");
+    return SaveState{name, participant.name};
+  };
+}
+
+SessionAction read_session_load(ObjectReader& params, Errors& errors) {
+  read_person_name(params, "name", errors);
+  return [](SessionCore&, Participant&) -> ActionResult {
+    throw std::logic_error("session.load is executed by its log entry");
+  };
+}
+
+SessionAction read_session_saves(ObjectReader&, Errors&) {
+  return [](SessionCore& core, Participant&) -> ActionResult {
+    Json states = Json::array();
+    for (const SavedStateEntry& entry : core.environment().states->list(core.id())) {
+      states.push_back({{"name", entry.name},
+                        {"saved_by", entry.saved_by},
+                        {"saved", entry.time},
+                        {"at_tick", entry.tick},
+                        {"time", entry.simulation_time},
+                        {"hash", describe_hash(entry.hash)},
+                        {"bytes", entry.bytes}});
+    }
+    return Json{{"states", std::move(states)}};
+  };
+}
+
+SessionAction read_session_delete_save(ObjectReader& params, Errors& errors) {
+  const std::string name = read_person_name(params, "name", errors);
+  return [name](SessionCore& core, Participant&) -> ActionResult {
+    if (!core.environment().states->remove(core.id(), name)) return no_such_state(name);
+    return Json::object();
+  };
+}
+
+SessionAction read_scene_save(ObjectReader& params, Errors& errors) {
+  SceneToSave wanted{read_person_name(params, "name", errors), "", nullptr};
+  if (params.has("key")) wanted.key = params.text("key", kMaxTokenBytes);
+  const Json* given = params.member("scene");
+  if (given != nullptr && !given->is_object()) {
+    add_error(errors, "wrong_type", params.path_of("scene"), "must be a scene, not a name");
+  }
+  const std::optional<Json> scene = given == nullptr ? std::nullopt : std::optional(*given);
+  return [wanted, scene](SessionCore& core, Participant& participant) {
+    return save_scene(core, participant, {wanted.name, wanted.key, scene ? &*scene : nullptr});
+  };
+}
+
+ServerAction read_scene_delete(ObjectReader& params, Errors& errors) {
+  const std::string name = read_person_name(params, "name", errors);
+  std::string key;
+  if (params.has("key")) key = params.text("key", kMaxTokenBytes);
+  return [name, key](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
+    return delete_scene(directory, reply, name, key);
+  };
+}
+
+}  // namespace vat

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/support/instruction_set.h"
+#include "server/storage/storage_counts.h"
+#include "server/support/recent_values.h"
+#include "server/support/stage_clock.h"
+
+namespace vat {
+
+/// Counters of the server since its start, for Prometheus. Safe to use from any thread.
+class ServerMetrics {
+ public:
+  struct Tick {
+    std::chrono::duration<double> time{};
+    std::uint64_t substeps = 0;  ///< includes repeated and undone ones
+    std::uint64_t undone_substeps = 0;
+    std::span<const StageClock::Stage> stages;
+  };
+  void add_tick(const Tick& tick);
+  /// Adds the delay between the due time and the start of a tick.
+  void add_lateness(std::chrono::duration<double> lateness);
+  void add_encoded_frame(std::chrono::duration<double> time, bool is_key);
+  /// Adds the number of encodings of one state.
+  void add_frame_groups(std::size_t count);
+  void add_sent_frames(std::size_t count, std::size_t bytes_each);
+  /// Adds frames that were due to clients which were not ready or not served.
+  void add_missed_frames(std::size_t count);
+  /// Counts a refusal because of a limit, by its name in server.info's `limits`.
+  void add_refusal(std::string_view limit);
+  /// Counts a message that exceeded a rate, by the name of the limit.
+  void add_rate_limited(std::string_view limit);
+  /// Counts an ended WebSocket. Codes that PROTOCOL.md does not list count as one.
+  void add_close(std::uint16_t code);
+
+  /// Current values.
+  struct Gauges {
+    std::string version;
+    InstructionSet instructions = InstructionSet::baseline;
+    std::size_t threads = 0;
+    std::size_t playing_sessions = 0;
+    std::size_t paused_sessions = 0;
+    std::size_t hibernating_sessions = 0;  ///< playing, but without participants
+    std::size_t connections = 0;
+    std::size_t clients = 0;    ///< connections that have joined a session
+    std::size_t particles = 0;  ///< of all sessions
+    std::size_t heap = 0;       ///< in use [bytes]
+    StorageCounts storage;
+  };
+  /// Returns all metrics in Prometheus' text format, version 0.0.4.
+  std::string to_text(const Gauges& gauges) const;
+
+ private:
+  struct TickBound {
+    double seconds;
+    const char* text;
+  };
+  static constexpr std::array kTickBounds = {
+      TickBound{0.0005, "0.0005"}, TickBound{0.001, "0.001"}, TickBound{0.002, "0.002"},
+      TickBound{0.005, "0.005"},   TickBound{0.01, "0.01"},   TickBound{0.02, "0.02"},
+      TickBound{0.05, "0.05"},     TickBound{0.1, "0.1"},     TickBound{0.2, "0.2"},
+      TickBound{0.5, "0.5"},       TickBound{1, "1"},         TickBound{2, "2"}};
+  struct StageTotal {
+    std::uint64_t calls = 0;
+    double seconds = 0;
+  };
+  void append_ticks(std::string& text) const;
+  void append_recent_ticks(std::string& text) const;
+  void append_stages(std::string& text) const;
+  void append_frames(std::string& text) const;
+  void append_refusals(std::string& text) const;
+
+  mutable std::mutex mutex_;
+  std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound, then those above all
+  double tick_seconds_ = 0;
+  RecentValues recent_ticks_;
+  RecentValues recent_lateness_;
+  std::uint64_t substeps_ = 0;
+  std::uint64_t undone_substeps_ = 0;
+  std::uint64_t encoded_frames_ = 0;
+  std::uint64_t encoded_keys_ = 0;
+  double encode_seconds_ = 0;
+  std::uint64_t shown_states_ = 0;
+  std::uint64_t frame_groups_ = 0;
+  std::uint64_t sent_frames_ = 0;
+  std::uint64_t sent_bytes_ = 0;
+  std::uint64_t missed_frames_ = 0;
+  std::map<std::string, std::uint64_t, std::less<>> refusals_;      // by limit
+  std::map<std::string, std::uint64_t, std::less<>> rate_limited_;  // by limit
+  std::map<std::uint16_t, std::uint64_t> closes_;                   // by code; 0: another code
+  std::map<std::string_view, StageTotal> stages_;  // one per stage name of the program
+};
+
+}  // namespace vat

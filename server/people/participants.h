@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "server/access/role.h"
+#include "server/access/token.h"
+#include "server/clients/client_outbox.h"
+#include "server/frames/subscription.h"
+
+namespace vat {
+
+/// Number of a participant in its session, from 1. Not used twice.
+using ParticipantNumber = std::uint64_t;
+
+/// Position that a participant points at, or a ray with its direction.
+struct Pointer {
+  Vec3 position;
+  std::optional<Vec3> direction;
+  bool operator==(const Pointer&) const = default;
+};
+
+/// A participant of a session. Can be away: its connection has ended, and another one can resume
+/// it. A placeholder was never connected: it stands for the sender of commands in a log that is
+/// repeated.
+struct Participant {
+  ParticipantNumber number = 0;
+  std::string name;
+  Role role = Role::viewer;
+  std::shared_ptr<ClientOutbox> outbox;  ///< null: away, or a placeholder
+  std::uint64_t membership = 0;
+  std::optional<Subscription> subscription;  ///< retained while it is away
+  std::map<std::uint64_t, BodyId> grabs;     ///< body of each grab, by the grab's id
+  std::optional<TokenHash> resume;  ///< hash of the token with which another connection resumes it
+  std::optional<SteadyClock::time_point> away_since;
+  std::optional<Pointer> pointer;
+  std::map<std::uint64_t, SteadyClock::time_point>
+      grab_uses;  ///< time of the last use, by the grab's id
+
+  bool is_here() const { return outbox != nullptr; }
+  bool is_away() const { return away_since.has_value(); }
+  bool is_placeholder() const { return !is_here() && !is_away(); }
+};
+
+/// The participants of a session. Used by one thread at a time. References are valid until the
+/// participant is removed.
+class Participants {
+ public:
+  /// Number of participants with a connection.
+  std::size_t connected() const { return by_client_.size(); }
+  std::size_t away() const;
+
+  /// Returns null if there is none.
+  Participant* find(ParticipantNumber number);
+  Participant* find_client(ConnectionId client);
+  Participant* find_resume(const TokenHash& token);
+  /// Returns the participant that has this grab, or null.
+  Participant* holder_of(std::uint64_t grab);
+  /// Returns a participant that holds the body, or null.
+  const Participant* holder_of_body(BodyId body) const;
+
+  /// Adds a participant with the next number.
+  Participant& add(std::string name, Role role);
+  void set_role(Participant& participant, Role role);
+  /// Adds a placeholder if no participant has this number.
+  Participant& find_or_add(ParticipantNumber number);
+  void remove(ParticipantNumber number);
+  ParticipantNumber last_number() const { return last_number_; }
+  /// Later participants have greater numbers than this.
+  void skip_to(ParticipantNumber number) { last_number_ = std::max(last_number_, number); }
+  /// Counts changes of participants, their roles and connections.
+  std::uint64_t changes() const { return changes_; }
+  /// Counts a change that was made outside this class.
+  void touch() { ++changes_; }
+  /// Sets the connection, which must not belong to another participant.
+  void connect(Participant& participant, std::shared_ptr<ClientOutbox> outbox,
+               std::uint64_t membership);
+  void disconnect(Participant& participant);
+  /// Participants without a connection are away from now on.
+  void send_away(SteadyClock::time_point now);
+
+  /// Sends to participants with at least this role.
+  void send_event(const std::string& text, Role least = Role::viewer);
+  /// Clients receive no frames of earlier epochs from now on.
+  void start_epoch(std::uint32_t epoch);
+  /// Whether a connected participant is subscribed to the frame of this tick.
+  bool is_watched(std::uint64_t tick) const;
+  bool is_watched() const;
+  /// Attributes of particles that subscribers requested.
+  ByAttribute<bool> wanted_attributes() const;
+  void close_silent(SteadyClock::time_point now, std::chrono::seconds patience);
+  void forget_grabs();
+  void forget_grab(std::uint64_t grab);
+  void forget_grabs_of(BodyId body);
+
+  /// In ascending order of their numbers.
+  const std::map<ParticipantNumber, Participant>& all() const { return all_; }
+
+ private:
+  std::map<ParticipantNumber, Participant> all_;
+  std::map<ConnectionId, ParticipantNumber> by_client_;
+  ParticipantNumber last_number_ = 0;
+  std::uint64_t changes_ = 0;
+};
+
+}  // namespace vat

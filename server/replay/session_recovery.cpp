@@ -1,0 +1,158 @@
+#include "server/replay/session_recovery.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/support/check.h"
+#include "server/messages/describe.h"
+#include "server/replay/log_replay.h"
+#include "server/session/core/scene_loading.h"
+#include "server/session/core/session_restore.h"
+
+namespace vat {
+namespace {
+
+[[noreturn]] void fail(const std::string& what, const std::string& why) {
+  throw StorageError(StorageError::Kind::corrupt, what + ": " + why);
+}
+
+}  // namespace
+
+SessionRecovery::SessionRecovery(Storage& storage, StoredSession stored,
+                                 const SessionEnvironment& environment,
+                                 const std::atomic<bool>& cancelled)
+    : storage_(storage),
+      stored_(std::move(stored)),
+      environment_(environment),
+      cancelled_(cancelled) {}
+
+Simulation SessionRecovery::begin() {
+  const Result<InstructionSet> instructions = parse_instruction_set(stored_.instruction_set);
+  if (!instructions) fail("its instruction set", instructions.errors().front().message);
+  if (const Status available = check_available(instructions.value()); !available) {
+    throw StorageError(StorageError::Kind::failed, available.errors().front().message);
+  }
+  instructions_ = instructions.value();
+  const std::vector<CheckpointPlace> places = storage_.checkpoints().places(stored_.number);
+  for (auto place = places.rbegin(); place != places.rend(); ++place) {
+    if (auto simulation = begin_at(*place)) return *std::move(simulation);
+  }
+  return begin_at_scene();
+}
+
+std::optional<Simulation> SessionRecovery::begin_at(const CheckpointPlace& place) {
+  try {
+    const std::optional<Checkpoint> checkpoint = storage_.checkpoints().read(place);
+    if (!checkpoint) return {};
+    Result<Simulation> simulation =
+        Simulation::load(checkpoint->state, &environment_.runner, instructions_);
+    if (!simulation) fail("its state", simulation.errors().front().message);
+    SessionMoment moment = read_moment(checkpoint->fields, simulation.value().snapshot());
+    const Simulation as_loaded = load_scene(moment.loaded);
+    start_.emplace(Start{std::move(moment), as_loaded.snapshot()});
+    return std::move(simulation).value();
+  } catch (const StorageError& error) {
+    spdlog::warn("session s{}: its checkpoint at {} is passed over: {}", stored_.number,
+                 place.position, error.what());
+    return {};
+  }
+}
+
+Simulation SessionRecovery::begin_at_scene() {
+  const std::vector<LogEntry> log = storage_.sessions().read(stored_.number, 0);
+  if (log.empty() || log.front().sequence != 1) fail("its log", "the beginning is gone");
+  if (log.size() > 1 && log[1].sequence != 2) fail("its log", "the beginning is gone");
+  return load_scene(1);
+}
+
+Simulation SessionRecovery::load_scene(std::uint64_t sequence) {
+  const std::optional<LogEntry> entry = storage_.sessions().find(stored_.number, sequence);
+  if (!entry) fail("its scene", "the entry is gone");
+  return load_entry_scene(*entry, environment_, instructions_);
+}
+
+void SessionRecovery::repeat_log(SessionCore& core) {
+  VAT_CHECK(core.history().log() == nullptr);
+  try {
+    if (start_) {
+      // The core has the checkpoint's simulation already.
+      Simulation simulation = std::move(core.run().simulation());
+      resume(core, start_->moment, std::move(simulation), start_->as_loaded);
+    }
+    execute_log(core);
+  } catch (const Diverged& difference) {
+    diverge(core, {core.run().position(), core.run().tick(), difference.what()});
+  }
+}
+
+void SessionRecovery::finish(SessionCore& core, const SessionEnvironment& environment) {
+  core.set_environment(environment);
+  const std::uint64_t last = storage_.sessions().last_sequence(stored_.number);
+  core.history().keep_in(std::make_unique<SessionLog>(
+      storage_, stored_.number,
+      SessionLog::Place{last, core.run().position(), core.history().divergence().has_value()}));
+  end_recovery(core, environment.clock.now());
+}
+
+void SessionRecovery::execute_log(SessionCore& core) {
+  compare(core);
+  std::uint64_t last = core.history().sequence();
+  const auto newest =
+      storage_.sessions().find(stored_.number, storage_.sessions().last_sequence(stored_.number));
+  const std::uint64_t end = newest ? newest->position : 0;
+  for (auto entries = storage_.sessions().read(stored_.number, last); !entries.empty();
+       entries = storage_.sessions().read(stored_.number, last)) {
+    for (const LogEntry& entry : entries) {
+      if (entry.sequence != last + 1)
+        fail("its log", "entries are missing before entry " + std::to_string(entry.sequence));
+      last = entry.sequence;
+      // The stored progress may be later than the last entry before it.
+      if (stored_.progress && stored_.progress->sequence + 1 == entry.sequence) {
+        run_to(core, stored_.progress->position, cancelled_);
+        compare(core);
+      }
+      run_to(core, entry.position, cancelled_);
+      if (entry.position < end) {
+        repeat_entry(core, entry);
+      } else {
+        repeat_last_entry(core, entry);
+      }
+    }
+  }
+  if (stored_.progress && stored_.progress->sequence == last) {
+    run_to(core, stored_.progress->position, cancelled_);
+    compare(core);
+  }
+  run_to(core, stored_.reached, cancelled_);
+}
+
+void SessionRecovery::repeat_last_entry(SessionCore& core, const LogEntry& entry) {
+  try {
+    repeat_entry(core, entry);
+  } catch (const Diverged& refusal) {
+    spdlog::info("session s{}: {}, as it was when the server ended", stored_.number,
+                 refusal.what());
+    storage_.sessions().refuse(stored_.number, entry.sequence);
+  }
+}
+
+void SessionRecovery::compare(SessionCore& core) {
+  const std::optional<SessionProgress>& progress = stored_.progress;
+  if (!progress || progress->sequence != core.history().sequence() ||
+      progress->position != core.run().position())
+    return;
+  const std::uint64_t hash = core.run().simulation().state_hash();
+  if (hash != progress->hash) {
+    throw Diverged("the state at position " + std::to_string(progress->position) +
+                   " has the hash " + describe_hash(hash) + ", and was seen with " +
+                   describe_hash(progress->hash));
+  }
+  apply_progress(core, *progress);
+}
+
+}  // namespace vat

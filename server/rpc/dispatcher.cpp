@@ -1,0 +1,123 @@
+#include "server/rpc/dispatcher.h"
+
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <utility>
+
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+constexpr std::uint16_t kFlooding = 4009;
+
+/// Messages that are no request, or name no method, count as queries.
+RateClass class_of(const std::variant<RpcRequest, RpcError>& request) {
+  const auto* good = std::get_if<RpcRequest>(&request);
+  const Method* method = good == nullptr ? nullptr : find_method(good->method);
+  return method == nullptr ? RateClass::query : method->row.rate_class;
+}
+
+}  // namespace
+
+void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_view message) {
+  VAT_CHECK(sender.outbox != nullptr && sender.outbox->meter() != nullptr);
+  ClientOutbox& client = *sender.outbox;
+  std::optional<Json> id;
+  try {
+    const auto now = directory_.resources().clock.now();
+    if (auto excess = client.meter()->count_bytes(message.size(), now)) {
+      return refuse(client, id, *excess);
+    }
+    auto request = read(message, sender.role, id);
+    if (auto excess = client.meter()->count(class_of(request), now)) {
+      return refuse(client, id, *excess);
+    }
+    if (auto* error = std::get_if<RpcError>(&request)) {
+      client.send(write_reply(id.value_or(nullptr), std::move(*error)));
+      return;
+    }
+    PendingReply reply(sender.outbox, id, &directory_.resources().metrics);
+    if (auto result =
+            call(reply, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
+      reply.answer(*std::move(result));
+    }
+  } catch (const StorageError& error) {
+    spdlog::error("a message failed: {}", error.what());
+    client.send(write_reply(id.value_or(nullptr), storage_failed(error.kind())));
+  } catch (const std::exception& error) {
+    spdlog::error("a message failed: {}", error.what());
+    client.send(write_reply(id.value_or(nullptr), internal_error()));
+  }
+}
+
+void Dispatcher::receive_binary(ClientOutbox& client, std::size_t bytes) {
+  VAT_CHECK(client.meter() != nullptr);
+  const auto now = directory_.resources().clock.now();
+  auto excess = client.meter()->count_bytes(bytes, now);
+  if (!excess) excess = client.meter()->count(RateClass::query, now);
+  if (excess) return refuse(client, {}, *excess);
+  client.send(write_reply(nullptr, invalid_request("only the server sends binary messages")));
+}
+
+void Dispatcher::refuse(ClientOutbox& client, const std::optional<Json>& id,
+                        const RateExcess& excess) {
+  directory_.resources().metrics.add_rate_limited(excess.limit);
+  if (excess.is_flood) return client.close(kFlooding, "too many messages");
+  if (!id) return;  // a notification, or not read
+  const RpcError error = rate_limited(excess.limit, excess.maximum, excess.retry_after.count());
+  client.send(write_reply(*id, error));
+}
+
+std::variant<RpcRequest, RpcError> Dispatcher::read(std::string_view message, Role role,
+                                                    std::optional<Json>& id) const {
+  if (role == Role::none && message.size() > limits().max_message_bytes) {
+    return limit_reached("message_bytes", limits().max_message_bytes);
+  }
+  if (message.size() > limits().max_scene_message_bytes) {
+    return limit_reached("scene_message_bytes", limits().max_scene_message_bytes);
+  }
+  Result<Json> json = parse_json(
+      message, {message.size(), limits().max_message_depth, limits().max_message_values});
+  if (!json) return parse_failed(json.errors().front());
+  return read_request(std::move(json).value(), id);
+}
+
+std::optional<RpcResult> Dispatcher::call(PendingReply& reply, Role role, RpcRequest request,
+                                          std::size_t bytes) {
+  const Method* method = find_method(request.method);
+  if (role == Role::none && (method == nullptr || method->row.least_role > Role::none)) {
+    return not_authenticated("the first message must be access.enter");
+  }
+  if (method == nullptr) return method_not_found(request.method);
+  const MethodRow& row = method->row;
+  reply.set_method(row);
+  if (row.rate_class != RateClass::scene && bytes > limits().max_message_bytes) {
+    return limit_reached("message_bytes", limits().max_message_bytes);
+  }
+  if (auto error =
+          reply.count(bytes, limits().max_commands_in_flight, limits().max_bytes_in_flight)) {
+    return *std::move(error);
+  }
+  if (const auto* handler = std::get_if<ServerHandler>(&method->handler)) {
+    if (row.role_source == RoleSource::connection) {
+      if (auto error = refuse_role(row, role)) return *std::move(error);
+    }
+    Errors errors;
+    ObjectReader params(request.params, "", errors);
+    const ServerAction action = (*handler)(params, errors);
+    params.refuse_unknown();
+    if (!errors.empty()) return invalid_params(errors);
+    VAT_CHECK(action != nullptr);
+    return action(directory_, reply);
+  }
+  auto command = session_methods().parse(row.name, std::move(request.params));
+  if (const auto* errors = std::get_if<Errors>(&command)) return invalid_params(*errors);
+  if (auto error = directory_.post(reply, std::get<SessionCommand>(std::move(command)))) {
+    return *std::move(error);
+  }
+  return {};
+}
+
+}  // namespace vat

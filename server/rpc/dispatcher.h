@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "server/directory/session_directory.h"
+#include "server/rpc/method_table.h"
+
+namespace vat {
+
+/// Reads the messages of clients and calls their methods. Checks rates, sizes, roles and
+/// parameters. Called on the transport's threads.
+class Dispatcher {
+ public:
+  explicit Dispatcher(SessionDirectory& directory) : directory_(directory) {}
+
+  /// Executes a message. An error is answered to the message's id, or to null without one.
+  void receive(const SessionDirectory::Sender& sender, std::string_view message);
+  /// Refuses a binary message, which only the server may send.
+  void receive_binary(ClientOutbox& client, std::size_t bytes);
+
+ private:
+  const ServerLimits& limits() const { return directory_.resources().settings.limits; }
+  /// Answers a message that exceeds a rate. Closes clients that go on sending.
+  void refuse(ClientOutbox& client, const std::optional<Json>& id, const RateExcess& excess);
+  std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
+                                          std::optional<Json>& id) const;
+  /// Returns the reply, or nothing if `reply` was moved and is answered later.
+  std::optional<RpcResult> call(PendingReply& reply, Role role, RpcRequest request,
+                                std::size_t bytes);
+
+  SessionDirectory& directory_;
+};
+
+}  // namespace vat

@@ -1,0 +1,86 @@
+#include "server/session/core/scene_loading.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/saved/greatest_size.h"
+#include "server/storage/saved_scenes.h"
+
+namespace vat {
+namespace {
+
+RpcError scene_refused(Errors errors) {
+  for (Error& error : errors) error.path.insert(0, "/scene");
+  return invalid_params(errors);
+}
+
+}  // namespace
+
+Result<std::string> refuse_mesh_file(const std::string&) {
+  return Error{"not_allowed", "",
+               "a mesh that is sent must hold its vertices and triangles, not name a file"};
+}
+
+std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue) {
+  if (value.is_string()) {
+    const auto& name = value.get_ref<const std::string&>();
+    const Scene* scene = catalogue.find(name);
+    if (scene == nullptr) return no_such_scene(name);
+    return *scene;
+  }
+  Result<Scene> scene = read_scene(value, refuse_mesh_file);
+  if (!scene) return scene_refused(scene.errors());
+  return std::move(scene).value();
+}
+
+std::variant<Json, RpcError> find_saved_scene(const std::string& name,
+                                              const SessionEnvironment& environment) {
+  const auto saved = environment.scenes == nullptr ? std::nullopt : environment.scenes->find(name);
+  if (!saved) return no_such_scene(name);
+  const std::string& text = saved->scene;
+  Result<Json> json = parse_json(text, {text.size(), kMaxMessageDepth, text.size() + 1});
+  if (!json) throw StorageError(StorageError::Kind::corrupt, "the saved scene " + name);
+  return std::move(json).value();
+}
+
+std::variant<Scene, RpcError> read_named_scene(const Json& value,
+                                               const SessionEnvironment& environment) {
+  if (!value.is_string() || environment.catalogue.find(value.get_ref<const std::string&>())) {
+    return read_client_scene(value, environment.catalogue);
+  }
+  auto saved = find_saved_scene(value.get_ref<const std::string&>(), environment);
+  if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
+  return read_client_scene(std::get<Json>(saved), environment.catalogue);
+}
+
+std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits) {
+  const std::size_t particles = simulation.greatest_particle_count();
+  if (particles > limits.max_particles) return limit_reached("particles", limits.max_particles);
+  if (simulation.spring_count() > limits.max_springs) {
+    return limit_reached("springs", limits.max_springs);
+  }
+  if (particles * simulation.steps_per_tick() > limits.max_particle_steps_per_tick) {
+    return limit_reached("particle_steps_per_tick", limits.max_particle_steps_per_tick);
+  }
+  return {};
+}
+
+std::size_t max_state_bytes(const ServerLimits& limits) {
+  constexpr std::size_t kMost = std::size_t{1} << 30;  // as of a checkpoint
+  return std::min(kMost, greatest_saved_size(limits.max_particles, limits.max_springs));
+}
+
+Resources resources_of(const Simulation& simulation) {
+  return {simulation.greatest_particle_count(), simulation.spring_count()};
+}
+
+std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
+                                                   const SessionEnvironment& environment,
+                                                   InstructionSet instructions) {
+  Result<Simulation> simulation = Simulation::create(scene, &environment.runner, instructions);
+  if (!simulation) return scene_refused(simulation.errors());
+  if (auto excess = find_excess(simulation.value(), environment.limits)) return *std::move(excess);
+  return std::move(simulation).value();
+}
+
+}  // namespace vat

@@ -1,0 +1,179 @@
+#include "server/session/core/session_core.h"
+
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/session/core/command_entry.h"
+
+namespace vat {
+
+SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
+                         const SessionEnvironment& environment)
+    : SessionCore(std::move(id), std::move(settings), std::move(simulation),
+                  environment.resources.take_anyway({}), environment) {
+  run_.resize_share_anyway();
+}
+
+SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
+                         ResourceShare share, const SessionEnvironment& environment)
+    : context_{std::move(id), std::move(settings), &environment, nullptr, {}},
+      run_(std::move(simulation), std::move(share), environment.metrics),
+      history_(context_, run_, clock_, participants_),
+      notifier_(context_, run_, clock_, history_, participants_, recorded_),
+      people_(context_, run_, participants_, history_, notifier_) {}
+
+void SessionCore::set_environment(const SessionEnvironment& environment) {
+  context_.environment = &environment;
+  run_.move_share(environment.resources);
+}
+
+void SessionCore::set_playing(bool playing) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  if (clock_.playing() && !playing) notifier_.mark_frame();  // clients may lack the last state
+  clock_.set_playing(playing);
+  notifier_.mark_status();
+}
+
+void SessionCore::set_speed(double speed) {
+  clock_.set_speed(speed);
+  notifier_.mark_status();
+}
+
+void SessionCore::load(Simulation simulation) {
+  run_.load(std::move(simulation));
+  history_.mark_scene();
+  start_scene();
+  clock_.restart_rate();
+}
+
+void SessionCore::restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick) {
+  run_.restore(std::move(simulation), as_loaded, tick);
+  history_.mark_scene();
+  start_scene();
+  clock_.restart_rate();
+}
+
+void SessionCore::reset() {
+  run_.reset();
+  start_scene();
+}
+
+void SessionCore::start_scene() {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  history_.clear_divergence();
+  participants_.forget_grabs();
+  clock_.interrupt();
+  notifier_.reset_frames();
+  notifier_.start_epoch();
+}
+
+void SessionCore::start_epoch(bool moved) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  if (moved) notifier_.forget_velocities();
+  // Moved bodies need an epoch too: a paused session shows no second frame of a tick.
+  run_.start_epoch();
+  notifier_.start_epoch();
+}
+
+bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  notifier_.prepare_tick();
+  const AdvanceReport report = run_.advance();
+  notifier_.tell_guard(report);
+  if (report.failed) {
+    spdlog::warn("session {}: paused by the guard at tick {}", context_.id, run_.tick());
+    set_playing(false);
+    return false;
+  }
+  for (const std::uint64_t grab : report.ended_grabs) participants_.forget_grab(grab);
+  if (report.bodies_changed) start_epoch();
+  if (timed) clock_.tick_done(now, run_.tick_seconds());
+  return true;
+}
+
+std::vector<ActionResult> SessionCore::execute(std::span<const ParticipantCommand> commands) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  std::vector<LogEntry> entries;
+  std::vector<std::variant<CommandEntry, RpcError>> prepared;
+  for (const ParticipantCommand& command : commands) {
+    if (!command.command.row->is_logged()) continue;
+    prepared.push_back(make_command_entry(context_, history_, command));
+    if (auto* good = std::get_if<CommandEntry>(&prepared.back())) {
+      entries.push_back(std::move(good->entry));
+    }
+  }
+  if (auto error = history_.append(entries)) {
+    return std::vector<ActionResult>(commands.size(), *error);
+  }
+
+  std::vector<ActionResult> results;
+  auto entry = entries.begin();
+  auto next = prepared.begin();
+  for (const ParticipantCommand& command : commands) {
+    if (!command.command.row->is_logged()) {
+      results.push_back(act(command.participant, command.command.action));
+      continue;
+    }
+    VAT_CHECK(next != prepared.end());
+    const std::variant<CommandEntry, RpcError>& one = *next++;
+    if (const auto* error = std::get_if<RpcError>(&one)) {
+      results.push_back(*error);
+      continue;
+    }
+    VAT_CHECK(entry != entries.end());
+    const auto& action = std::get<CommandEntry>(one).action;
+    results.push_back(execute(*entry, action ? *action : command.command.action));
+    if (std::holds_alternative<RpcError>(results.back())) history_.refuse(*entry);
+    ++entry;
+  }
+  VAT_CHECK(results.size() == commands.size());
+  return results;
+}
+
+ActionResult SessionCore::execute(const LogEntry& entry, const SessionAction& action) {
+  history_.execute(entry);
+  return act(entry.participant, action);
+}
+
+ActionResult SessionCore::act(ParticipantNumber participant, const SessionAction& action) {
+  VAT_CHECK(action != nullptr);
+  try {
+    return action(*this, participants_.find_or_add(participant));
+  } catch (const StorageError& error) {
+    spdlog::error("session {}: {}", context_.id, error.what());
+    return storage_failed(error.kind());
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: a command failed: {}", context_.id, error.what());
+    return internal_error();
+  }
+}
+
+void SessionCore::end_idle_grabs(SteadyClock::time_point now) {
+  struct IdleGrab {
+    ParticipantNumber participant;
+    std::uint64_t grab;
+    BodyId body;
+  };
+  std::vector<IdleGrab> idle;
+  for (const auto& [number, holder] : participants_.all()) {
+    auto& uses = participants_.find(number)->grab_uses;
+    for (const auto& [grab, body] : holder.grabs) {
+      // A recovered grab has no use yet: its idle time starts now.
+      const auto used = uses.try_emplace(grab, now).first->second;
+      if (now - used >= environment().limits.grab_idle) idle.push_back({number, grab, body});
+    }
+  }
+  for (const auto& [number, grab, body] : idle) {
+    const SessionCommand command = environment().methods.make("grab.end", {{"grab", grab}});
+    const ParticipantCommand by_holder{number, command};
+    execute({&by_holder, 1});
+    if (participants_.holder_of(grab) != nullptr) continue;  // not logged; the next check retries
+    const Json event{{"grab", grab}, {"body", body}, {"participant", number}, {"reason", "idle"}};
+    participants_.send_event(write_event("grab.ended", event));
+  }
+}
+
+}  // namespace vat

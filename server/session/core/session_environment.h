@@ -1,0 +1,39 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+
+#include "core/support/instruction_set.h"
+#include "protocol/scene/scene_json.h"
+#include "server/access/access.h"
+#include "server/messages/limits.h"
+#include "server/operations/server_metrics.h"
+#include "server/session/core/session_command.h"
+#include "server/support/clock.h"
+#include "server/support/resource_budget.h"
+#include "server/support/task_runner.h"
+
+namespace vat {
+
+class Downloads;
+class SavedScenes;
+class SavedStates;
+
+/// Resources that all sessions share.
+struct SessionEnvironment {
+  const Catalogue& catalogue;
+  const ServerLimits& limits;
+  InstructionSet instructions;
+  ThreadPoolRunner& runner;  ///< runs the blocks of all sessions' steps
+  ServerMetrics& metrics;
+  ResourceBudget& resources;
+  boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send frames
+  AccessTokens& tokens;
+  Clock& clock;
+  const SessionMethods& methods;
+  Downloads* downloads = nullptr;  ///< null: no downloads
+  // Null: nothing can be saved.
+  SavedStates* states = nullptr;
+  SavedScenes* scenes = nullptr;
+};
+
+}  // namespace vat

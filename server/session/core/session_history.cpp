@@ -1,0 +1,98 @@
+#include "server/session/core/session_history.h"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "core/support/check.h"
+
+namespace vat {
+
+SessionHistory::SessionHistory(const SessionContext& context, const SessionRun& run,
+                               const SessionClock& clock, const Participants& participants)
+    : context_(context), run_(run), clock_(clock), participants_(participants) {}
+
+void SessionHistory::keep_in(std::unique_ptr<SessionLog> log) {
+  VAT_CHECK(log != nullptr && log_ == nullptr);
+  log_ = std::move(log);
+}
+
+void SessionHistory::set_sequences(std::uint64_t sequence, std::uint64_t scene_sequence) {
+  sequence_ = sequence;
+  scene_sequence_ = scene_sequence;
+}
+
+LogEntry SessionHistory::make_entry(ParticipantNumber participant, std::string_view method,
+                                    std::string params) const {
+  return {0,    run_.position(), run_.tick(), participant, std::string(method), std::move(params),
+          false};
+}
+
+std::optional<RpcError> SessionHistory::append(std::span<LogEntry> entries) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  if (entries.empty()) return {};
+  if (log_ == nullptr) {
+    // Commands of a replay's viewers are not part of the recording.
+    const bool counts = context_.playback == nullptr;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      entries[i].sequence = sequence_ + (counts ? 1 + i : 0);
+    }
+    return {};
+  }
+  if (divergence_) {
+    // The log does not lead to this state. The next entry needs a checkpoint before it.
+    sequence_ = log_->last();
+    log_->store(moment(), context_.environment->clock.now(), true);
+  }
+  try {
+    log_->append(entries);
+  } catch (const StorageError& error) {
+    if (!std::exchange(log_fails_, true)) {
+      spdlog::error("session {}: commands are refused, they cannot be logged: {}", context_.id,
+                    error.what());
+    }
+    return storage_failed(error.kind());
+  }
+  if (std::exchange(log_fails_, false)) {
+    spdlog::info("session {}: commands are logged again", context_.id);
+  }
+  return {};
+}
+
+void SessionHistory::refuse(const LogEntry& entry) {
+  if (log_ == nullptr) return;
+  try {
+    log_->refuse(entry.sequence);
+  } catch (const StorageError& error) {
+    // A recovery refuses it as well, unless the server's limits have changed.
+    spdlog::error("session {}: entry {}: {}", context_.id, entry.sequence, error.what());
+  }
+}
+
+std::optional<RpcError> SessionHistory::reach() {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  if (log_ == nullptr) return {};
+  try {
+    log_->reach(run_.position());
+    return {};
+  } catch (const StorageError& error) {
+    return storage_failed(error.kind());
+  }
+}
+
+SessionMoment SessionHistory::moment() const {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  return {run_.position(),
+          run_.tick(),
+          sequence_,
+          scene_sequence_,
+          run_.last_grab(),
+          run_.epoch(),
+          clock_.playing(),
+          clock_.speed(),
+          participants_.changes(),
+          write_participants(participants_),
+          run_.simulation().snapshot()};
+}
+
+}  // namespace vat

@@ -1,0 +1,201 @@
+#include "server/session/core/session_notifier.h"
+
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/frames/default_error.h"
+#include "server/messages/describe.h"
+#include "server/session/core/playback.h"
+
+namespace vat {
+
+SessionNotifier::SessionNotifier(const SessionContext& context, const SessionRun& run,
+                                 const SessionClock& clock, const SessionHistory& history,
+                                 Participants& participants, Participants& recorded)
+    : context_(context),
+      run_(run),
+      clock_(clock),
+      history_(history),
+      participants_(participants),
+      recorded_(recorded),
+      frames_(std::make_shared<FrameFeed>(
+          context.id, run.simulation().scene().vat, context.environment->metrics,
+          context.environment->frame_threads, context.environment->clock)) {
+  frames_->set_default_error(default_max_error(run_.simulation()));
+}
+
+void SessionNotifier::start_epoch() {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  description_due_ = status_due_ = frame_due_ = true;
+  participants_.start_epoch(run_.epoch());
+  recorded_.start_epoch(run_.epoch());  // the viewers, while a recorded command is executed
+  frames_->set_default_error(default_max_error(run_.simulation()));
+}
+
+void SessionNotifier::reset_frames() {
+  frames_->set_vat(run_.simulation().scene().vat);
+}
+
+void SessionNotifier::subscribe(Participant& participant, const Subscription& subscription,
+                                SteadyClock::time_point now) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  VAT_CHECK(participant.is_here());
+  const std::uint64_t number = participant.outbox->subscribe(participant.membership, frames_, now);
+  if (number == 0) return;  // the client has left; its leave is in the inbox
+  participant.subscription = subscription;
+  participants_.touch();
+  const bool replaced = frames_->add(participant.outbox, number, subscription);
+  (clock_.playing() && !replaced ? tick_frame_due_ : frame_due_) = true;
+}
+
+void SessionNotifier::unsubscribe(Participant& participant) {
+  if (!participant.subscription) return;
+  VAT_CHECK(participant.is_here());
+  participant.subscription.reset();
+  participants_.touch();
+  participant.outbox->unsubscribe();
+  frames_->remove(participant.outbox->id());
+}
+
+void SessionNotifier::prepare_tick() {
+  constexpr auto kAcceleration = static_cast<std::size_t>(FrameAttribute::acceleration);
+  if (participants_.wanted_attributes()[kAcceleration]) {
+    publisher_.remember(run_.simulation(), run_.tick_seconds());
+  } else {
+    publisher_.forget();
+  }
+}
+
+void SessionNotifier::tell_guard(const AdvanceReport& report) {
+  for (const GuardEvent& event : report.events) {
+    const std::string text = write_event("session.guard", describe_guard(event, run_.tick()));
+    participants_.send_event(text);
+    recorded_.send_event(text);  // as in start_epoch()
+  }
+}
+
+void SessionNotifier::tell_description() {
+  if (!description_due_) return;
+  participants_.send_event(write_event("session.description", description()));
+  description_due_ = false;  // stays due if the above throws
+}
+
+void SessionNotifier::tell_divergence() {
+  if (!std::exchange(divergence_due_, false) || !history_.divergence()) return;
+  const Divergence& divergence = *history_.divergence();
+  participants_.send_event(write_event("session.diverged", {{"position", divergence.position},
+                                                            {"tick", divergence.tick},
+                                                            {"reason", divergence.reason}}));
+}
+
+void SessionNotifier::publish_tick() {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  tell_description();  // a tick may start an epoch
+  if (frame_due_ || tick_frame_due_ || participants_.is_watched(run_.tick())) publish_frame();
+}
+
+void SessionNotifier::announce() {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  tell_description();
+  tell_divergence();
+  if (status_due_) {
+    announce_status();
+    status_due_ = false;
+  }
+  if (frame_due_) publish_frame();
+}
+
+void SessionNotifier::announce_status() {
+  if (participants_.connected() == 0) return;
+  participants_.send_event(write_event("session.status", status()));
+}
+
+void SessionNotifier::tell_presence(SteadyClock::time_point now) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  Json changes = presence_.take_changes(participants_, now);
+  if (changes.is_null()) return;
+  participants_.send_event(write_event("presence.changed", std::move(changes)));
+}
+
+void SessionNotifier::publish_frame() {
+  frame_due_ = tick_frame_due_ = false;
+  if (!participants_.is_watched()) return;
+  fill_state();
+  frames_->publish(state_);
+}
+
+void SessionNotifier::fill_state() {
+  publisher_.publish(run_.simulation(), participants_.wanted_attributes(), state_);
+  FrameHeader& header = state_.header;
+  header.playing = clock_.playing();
+  header.slow = clock_.is_slow();
+  header.epoch = run_.epoch();
+  header.tick = run_.tick();
+  header.published = context_.environment->clock.wall_time();
+  header.real_time_factor = static_cast<float>(clock_.rate());
+}
+
+Json SessionNotifier::status() const {
+  Json status{
+      {"tick", run_.tick()},
+      {"time", run_.simulation().time()},
+      {"playing", clock_.playing()},
+      {"speed", clock_.speed()},
+      {"real_time_factor", clock_.rate()},
+      {"clients", participants_.connected()},
+      {"particles", run_.simulation().particle_count()},
+  };
+  if (context_.playback != nullptr) status["position"] = run_.position();
+  return status;
+}
+
+Json SessionNotifier::description() const {
+  const Scene& scene = run_.simulation().scene();
+  Json description{
+      {"session", context_.id},
+      {"epoch", run_.epoch()},
+      {"tick", run_.tick()},
+      {"name", context_.settings.name},
+      {"scene", scene.name},
+      {"title", scene.title},
+      {"playing", clock_.playing()},
+      {"speed", clock_.speed()},
+      {"tick_seconds", run_.tick_seconds()},
+      {"gravity", to_json(scene.gravity)},
+      {"vat", describe_vat(scene.vat)},
+      {"bodies", describe_bodies(run_.simulation())},
+  };
+  if (context_.playback != nullptr) {
+    const Playback::Range range = context_.playback->range();
+    description["replay"] = {
+        {"begin", range.begin}, {"end", range.end}, {"position", run_.position()}};
+  }
+  return description;
+}
+
+SessionSummary SessionNotifier::summary() {
+  if (people_ == nullptr || people_changes_ != participants_.changes()) list_people();
+  return {context_.settings.name,
+          run_.simulation().scene().name,
+          participants_.connected(),
+          clock_.playing(),
+          run_.tick(),
+          run_.simulation().particle_count(),
+          context_.settings.creator,
+          context_.playback != nullptr,
+          false,
+          {},
+          people_};
+}
+
+void SessionNotifier::list_people() {
+  auto people = std::make_shared<std::vector<PersonSummary>>();
+  for (const auto& [number, participant] : participants_.all()) {
+    people->push_back({number, participant.name, participant.role,
+                       participant.is_here() ? participant.outbox->address() : ""});
+  }
+  people_ = std::move(people);
+  people_changes_ = participants_.changes();
+}
+
+}  // namespace vat

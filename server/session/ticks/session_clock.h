@@ -1,0 +1,38 @@
+#pragma once
+
+#include "server/session/ticks/tick_clock.h"
+
+namespace vat {
+
+/// Playing state and speed of a session, as set and as measured. Used by one thread at a time.
+class SessionClock {
+ public:
+  bool playing() const { return playing_; }
+  double speed() const { return speed_; }       ///< simulated seconds per second, as set
+  double rate() const { return rate_.rate(); }  ///< the same, as measured
+  /// True while a playing session is slower than its speed.
+  bool is_slow() const { return playing_ && rate_.slower_than(speed_); }
+
+  /// Sets both without an interruption: state of a log or recording.
+  void set(bool playing, double speed);
+  /// Interrupts control.step. A change restarts the measurement.
+  void set_playing(bool playing);
+  void set_speed(double speed);
+  void tick_done(SteadyClock::time_point now, double tick_seconds) {
+    rate_.tick_done(now, tick_seconds);
+  }
+  void restart_rate() { rate_ = {}; }
+
+  /// Ends the ticks of control.step: another control command, another scene, a failed guard.
+  void interrupt() { interrupted_ = true; }
+  /// Returns true once after interrupt().
+  bool take_interruption();
+
+ private:
+  RateMeter rate_;
+  bool playing_ = true;
+  double speed_ = 1;
+  bool interrupted_ = false;
+};
+
+}  // namespace vat

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vat {
+
+/// Returns the bytes as base64 with padding (RFC 4648, section 4).
+std::string to_base64(std::span<const std::uint8_t> bytes);
+/// Returns nothing if the text is not valid base64 with padding.
+std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text);
+
+}  // namespace vat

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace vat {
+
+/// The limit that a request would exceed.
+struct LimitExcess {
+  std::string_view limit;  ///< its name in server.info's `limits`
+  std::size_t maximum = 0;
+};
+
+}  // namespace vat

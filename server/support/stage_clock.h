@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/simulation/simulation.h"
+
+namespace vat {
+
+/// Measures the wall time of a simulation's stages. Reads the clock once per stage, so that it can
+/// always be on.
+class StageClock final : public StageObserver {
+ public:
+  using Clock = std::chrono::steady_clock;
+  struct Stage {
+    std::string_view name;
+    std::uint64_t calls = 0;
+    Clock::duration time{};
+
+    double seconds() const { return std::chrono::duration<double>(time).count(); }
+  };
+
+  /// `now` reads the time.
+  explicit StageClock(Clock::time_point (*now)() = Clock::now) : now_(now) {}
+
+  void stage_begins(std::string_view stage) override;
+  void stages_end() override;
+
+  /// In the order in which they first ran.
+  const std::vector<Stage>& stages() const { return stages_; }
+  /// Sets all times to zero. Stages keep their names and indices.
+  void clear();
+
+ private:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  void charge_running();
+  std::size_t find(std::string_view name);
+
+  Clock::time_point (*now_)();
+  std::vector<Stage> stages_;    // about twenty
+  std::size_t running_ = kNone;  // index into stages_
+  Clock::time_point since_;      // start of the running stage
+};
+
+}  // namespace vat

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "core/support/parallel.h"
+
+namespace vat {
+
+/// A TaskRunner whose threads help the callers of run(), several at a time. A caller works itself,
+/// and waits only for helpers that have started a block.
+///
+/// Helpers poll for some microseconds before they sleep, because passes of a step follow each other
+/// faster than a thread wakes. A run wakes sleeping helpers only if it is long enough to gain from
+/// them.
+///
+/// If a block throws, blocks that have not started are skipped, and run() throws the same
+/// exception. The runner stays usable. A run() inside a block uses only its own thread.
+class ThreadPoolRunner final : public TaskRunner {
+ public:
+  /// Name of the helpers in the system's list of threads.
+  static constexpr const char* kThreadName = "vat-helper";
+
+  /// `thread_count` includes one calling thread, so 1 (or 0) starts none. Throws std::system_error
+  /// if the system refuses a thread.
+  explicit ThreadPoolRunner(std::size_t thread_count);
+  ~ThreadPoolRunner() override;
+  ThreadPoolRunner(const ThreadPoolRunner&) = delete;
+  ThreadPoolRunner& operator=(const ThreadPoolRunner&) = delete;
+
+  void run(std::size_t block_count, const std::function<void(std::size_t)>& block) override;
+  std::size_t thread_count() const override { return thread_count_; }
+
+  using Clock = std::chrono::steady_clock;
+  /// Whether to wake a sleeping helper after `done` blocks of a run took `elapsed` and `left`
+  /// blocks have not started.
+  static bool is_worth_waking(Clock::duration elapsed, std::size_t done, std::size_t left);
+
+  /// Limits this runner's helpers while a thread of another pool is busy: helpers beyond
+  /// thread_count() minus the reservations stop after their current block.
+  class HelperReservation {
+   public:
+    explicit HelperReservation(ThreadPoolRunner& host) : host_(host) { ++host_.reservations_; }
+    ~HelperReservation() { --host_.reservations_; }
+    HelperReservation(const HelperReservation&) = delete;
+    HelperReservation& operator=(const HelperReservation&) = delete;
+
+   private:
+    ThreadPoolRunner& host_;
+  };
+
+ private:
+  using Block = std::function<void(std::size_t)>;
+  struct Job;
+
+  std::size_t begin_alone(std::size_t block_count, const Block& block) const;
+  Job* take_job();
+  void work_as_caller(Job& job);
+  bool should_wake(Clock::duration elapsed, std::size_t done, std::size_t left) const;
+  void help(std::size_t number);
+  bool help_any(std::size_t number, bool has_slept);
+  bool help_with(Job& job, bool has_slept);
+  std::size_t helper_limit() const;
+  void stop();
+
+  const std::size_t thread_count_;
+  std::vector<std::unique_ptr<Job>> jobs_;  // as many as can run at once
+  // Number of opened jobs. Helpers wait for its change.
+  alignas(64) std::atomic<std::uint32_t> calls_ = 0;
+  alignas(64) std::atomic<std::uint32_t> sleepers_ = 0;  // helpers
+  std::atomic<std::uint32_t> busy_ = 0;                  // helpers at work
+  std::atomic<std::uint32_t> reservations_ = 0;
+  std::atomic<bool> stopping_ = false;
+  std::vector<std::thread> helpers_;
+};
+
+}  // namespace vat

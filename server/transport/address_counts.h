@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace vat {
+
+/// Counts items per network address. Safe to use from any thread.
+class AddressCounts {
+ public:
+  /// One counted item. Not counted any more when the last copy is destroyed. Null: refused.
+  using Place = std::shared_ptr<void>;
+
+  /// Adds an item of the address, unless it has `most` already.
+  Place take(const std::string& address, std::size_t most) {
+    const std::lock_guard lock(table_->mutex);
+    std::size_t& count = table_->counts[address];
+    if (count >= most) {
+      if (count == 0) table_->counts.erase(address);
+      return nullptr;
+    }
+    Place place(new Held(table_, address), [](Held* held) { delete held; });
+    ++count;
+    return place;
+  }
+
+ private:
+  struct Table {
+    std::mutex mutex;
+    std::map<std::string, std::size_t> counts;
+  };
+  struct Held {
+    Held(std::shared_ptr<Table> table_in, std::string address_in)
+        : table(std::move(table_in)), address(std::move(address_in)) {}
+    ~Held() {
+      const std::lock_guard lock(table->mutex);
+      const auto entry = table->counts.find(address);
+      if (--entry->second == 0) table->counts.erase(entry);
+    }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+    std::shared_ptr<Table> table;  // places may outlive the counts
+    std::string address;
+  };
+  std::shared_ptr<Table> table_ = std::make_shared<Table>();
+};
+
+}  // namespace vat

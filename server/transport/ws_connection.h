@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "server/transport/transport.h"
+#include "server/transport/ws_task_queue.h"
+
+namespace vat {
+
+/// Passes every call to the endpoint's thread, which alone uses the stream.
+class WsConnection final : public Connection {
+ public:
+  WsConnection(ConnectionId id, std::string address, std::shared_ptr<WsTaskQueue> tasks,
+               std::weak_ptr<WsStream> stream);
+
+  ConnectionId id() const override { return id_; }
+  const std::string& address() const override { return address_; }
+  void send_text(std::string message) override;
+  void send_binary(std::shared_ptr<const std::string> bytes) override;
+  std::size_t queued_bytes() const override { return *queued_bytes_; }
+  void close(std::uint16_t code, std::string_view reason) override;
+
+  /// The peer has gone. Later calls do nothing.
+  void set_gone() { open_ = false; }
+
+ private:
+  void send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode);
+
+  ConnectionId id_;
+  std::string address_;
+  std::shared_ptr<WsTaskQueue> tasks_;
+  std::weak_ptr<WsStream> stream_;
+  std::shared_ptr<std::atomic<std::size_t>> queued_bytes_;
+  std::atomic<bool> open_{true};
+};
+
+}  // namespace vat

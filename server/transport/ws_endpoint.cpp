@@ -1,0 +1,419 @@
+#include "server/transport/ws_endpoint.h"
+
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/socket_base.hpp>
+#include <cerrno>
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "server/transport/ws_connection.h"
+#include "server/transport/ws_upgrade.h"
+
+namespace vat {
+
+namespace {
+
+using boost::asio::ip::tcp;
+namespace opcode = websocketpp::frame::opcode;
+
+constexpr std::chrono::seconds kStopTimeout{1};
+constexpr std::chrono::seconds kResponseTimeout{60};  ///< for a peer to take a whole file
+constexpr long kClosingHandshakeTimeout = 5000;       // [ms]
+/// Sockets beyond the WebSockets: HTTP requests, upgrades under way, connections refused or ending.
+constexpr std::size_t kMaxOtherSockets = 256;
+constexpr std::size_t kMaxOtherSocketsPerAddress = 64;
+
+constexpr std::uint16_t kGoingAway = 1001;
+constexpr std::uint16_t kNotUtf8 = 1007;
+constexpr std::uint16_t kInternalError = 1011;
+constexpr std::uint16_t kTryAgainLater = 1013;
+
+websocketpp::lib::error_code share_port(tcp::acceptor& acceptor) {
+  const int on = 1;
+  if (setsockopt(acceptor.native_handle(), SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0)
+    return {};
+  return {errno, std::system_category()};
+}
+
+[[noreturn]] void fail_to_listen(const std::string& host, std::uint16_t port,
+                                 const std::string& reason) {
+  const bool is_v6 = host.find(':') != std::string::npos;
+  throw std::runtime_error("cannot listen on " + (is_v6 ? "[" + host + "]" : host) + ":" +
+                           std::to_string(port) + ": " + reason);
+}
+
+/// The library finds out the byte order at its first conversion, and keeps it unguarded. What
+/// endpoints on other threads do comes after this one.
+void find_byte_order() {
+  [[maybe_unused]] static const std::uint64_t kFound = websocketpp::lib::net::_htonll(0);
+}
+
+/// Listens briefly, alone on the port, and returns the error if that fails.
+boost::system::error_code try_to_listen(boost::asio::io_context& io,
+                                        const tcp::endpoint& endpoint) {
+  boost::system::error_code error;
+  tcp::acceptor acceptor(io);
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
+  return error;
+}
+
+bool ends_within_character(const std::string& text) {
+  constexpr std::size_t kLongest = 4;
+  for (std::size_t back = 1; back <= std::min(text.size(), kLongest); ++back) {
+    const auto byte = static_cast<unsigned char>(text[text.size() - back]);
+    if (byte >= 0xc0) return back < (byte >= 0xf0 ? 4U : byte >= 0xe0 ? 3U : 2U);
+    if (byte < 0x80) return false;
+  }
+  return false;
+}
+
+/// Returns Connection::address(), or an empty text if the peer has gone.
+std::string address_of(const tcp::socket& socket) {
+  boost::system::error_code error;
+  const auto address = socket.remote_endpoint(error).address();
+  if (error) return {};
+  if (address.is_v4()) return address.to_string();
+  auto bytes = address.to_v6().to_bytes();
+  if (address.to_v6().is_v4_mapped()) {
+    return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, address.to_v6())
+        .to_string();
+  }
+  std::fill(bytes.begin() + bytes.size() / 2, bytes.end(), std::uint8_t{0});
+  return boost::asio::ip::make_address_v6(bytes).to_string() + "/64";
+}
+
+/// The library keeps the reason to itself, so the same is tried without it.
+std::string why_not_listen(boost::asio::io_context& io, const tcp::endpoint& endpoint) {
+  const auto error = try_to_listen(io, endpoint);
+  return error ? error.message() : "the port was in use a moment ago";
+}
+
+}  // namespace
+
+WsEndpoint::WsEndpoint(WsShared& shared)
+    : shared_(shared),
+      tasks_(std::make_shared<WsTaskQueue>(io_)),
+      ping_timer_(io_),
+      stop_timer_(io_) {
+  find_byte_order();
+  configure();
+  set_handlers();
+}
+
+WsEndpoint::~WsEndpoint() {
+  tasks_->shut();
+}
+
+void WsEndpoint::configure() {
+  server_.init_asio(&io_);
+  server_.set_reuse_addr(true);
+  server_.set_user_agent("");
+  server_.set_max_message_size(shared_.settings.max_message_bytes);
+  server_.set_max_http_body_size(shared_.settings.max_http_request_bytes);
+  server_.set_open_handshake_timeout(static_cast<long>(shared_.settings.handshake_timeout.count()));
+  server_.set_close_handshake_timeout(kClosingHandshakeTimeout);
+  server_.set_tls_context(shared_.tls);
+}
+
+void WsEndpoint::set_handlers() {
+  server_.set_tcp_pre_init_handler(
+      [this](const Handle& handle) { guarded("accept", [&] { accepted(*stream_of(handle)); }); });
+  server_.set_validate_handler([this](const Handle& handle) {
+    bool granted = false;
+    return guarded("upgrade", [&] { granted = validate(*stream_of(handle)); }) && granted;
+  });
+  server_.set_open_handler([this](const Handle& handle) {
+    const StreamPtr opened_stream = stream_of(handle);
+    if (guarded("open", [&] { opened(opened_stream); })) return;
+    guarded("open", [&] { close_stream(*opened_stream, kInternalError, "internal error"); });
+  });
+  server_.set_message_handler([this](const Handle& handle, const WsMessage::ptr& message) {
+    const StreamPtr sender = stream_of(handle);
+    if (guarded("message", [&] { received(*sender, *message); })) return;
+    guarded("message", [&] { close_stream(*sender, kInternalError, "internal error"); });
+  });
+  server_.set_ping_handler([this](const Handle& handle, const std::string& payload) {
+    guarded("ping", [&] { answer_ping(*stream_of(handle), payload); });
+    return false;
+  });
+  server_.set_pong_handler([this](const Handle& handle, const std::string&) {
+    guarded("pong", [&] { stream_of(handle)->unanswered_pings = 0; });
+  });
+  server_.set_close_handler(
+      [this](const Handle& handle) { guarded("close", [&] { closed(*stream_of(handle)); }); });
+  server_.set_http_handler(
+      [this](const Handle& handle) { guarded("http", [&] { answer_http(stream_of(handle)); }); });
+}
+
+tcp::endpoint WsEndpoint::address(std::uint16_t port) const {
+  const std::string& host = shared_.settings.host;
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address(host, error);
+  if (error) fail_to_listen(host, port, "the host must be a numeric address");
+  return {address, port};
+}
+
+void WsEndpoint::check_free(std::uint16_t port) {
+  const auto error = try_to_listen(io_, address(port));
+  if (error) fail_to_listen(shared_.settings.host, port, error.message());
+}
+
+std::uint16_t WsEndpoint::listen(std::uint16_t port, bool shares_port) {
+  const std::string& host = shared_.settings.host;
+  const tcp::endpoint endpoint = address(port);
+  if (shares_port) {
+    server_.set_tcp_pre_bind_handler([](const auto& acceptor) { return share_port(*acceptor); });
+  }
+  websocketpp::lib::error_code error;
+  server_.listen(endpoint, error);
+  if (error) fail_to_listen(host, port, why_not_listen(io_, endpoint));
+  server_.start_accept(error);
+  if (error) fail_to_listen(host, port, error.message());
+  boost::system::error_code port_error;
+  return server_.get_local_endpoint(port_error).port();
+}
+
+void WsEndpoint::start() {
+  start_pings();
+  thread_ = std::thread([this] { run(); });
+}
+
+void WsEndpoint::run() {
+  pthread_setname_np(pthread_self(), "vat-network");
+  bool finished = false;
+  while (!finished) finished = guarded("network", [this] { io_.run(); });
+  forget_all();
+}
+
+/// Connections whose closing handshake did not end in time.
+void WsEndpoint::forget_all() {
+  for (const StreamPtr& left : open_streams()) {
+    guarded("close", [&] { closed(*left); });
+  }
+}
+
+void WsEndpoint::begin_stop() {
+  boost::asio::post(io_, [this] {
+    if (!guarded("stop", [this] { close_all(); })) io_.stop();
+  });
+}
+
+void WsEndpoint::join() {
+  thread_.join();
+}
+
+void WsEndpoint::close_all() {
+  stopping_ = true;
+  ping_timer_.cancel();
+  websocketpp::lib::error_code ignored;  // it is listening
+  server_.stop_listening(ignored);
+  const std::vector<StreamPtr> streams = open_streams();
+  if (streams.empty()) return io_.stop();
+  stop_timer_.expires_after(kStopTimeout);
+  stop_timer_.async_wait([this](boost::system::error_code) { io_.stop(); });
+  for (const StreamPtr& open : streams) close_stream(*open, kGoingAway, "the server is stopping");
+}
+
+/// Limits the sockets before they have said anything: the library would go on accepting until the
+/// process is out of file descriptors.
+void WsEndpoint::accepted(WsStream& stream) {
+  const std::size_t count = ++*shared_.socket_count;
+  stream.socket_slot = std::shared_ptr<void>(
+      nullptr, [counter = shared_.socket_count](std::nullptr_t) { --*counter; });
+  boost::system::error_code ignored;  // a socket that is closed already is found by the first read
+  stream.address = address_of(stream.get_raw_socket());
+  const char* passed = nullptr;
+  if (count > shared_.settings.max_connections + kMaxOtherSockets) {
+    passed = "connections";
+  } else {
+    stream.address_slot = shared_.sockets_by_address.take(
+        stream.address, shared_.settings.max_connections_per_address + kMaxOtherSocketsPerAddress);
+    if (!stream.address_slot) passed = "connections_per_address";
+  }
+  if (passed != nullptr) {
+    stream.get_raw_socket().close(ignored);
+    count_refusal(passed);
+    return;
+  }
+  stream.get_raw_socket().set_option(tcp::no_delay(true), ignored);
+  stream.get_raw_socket().set_option(
+      boost::asio::socket_base::send_buffer_size(shared_.settings.send_buffer_bytes), ignored);
+}
+
+bool WsEndpoint::validate(WsStream& stream) {
+  const auto refusal = refuse_upgrade(
+      {stream.get_request().get_uri(), stream.get_request_header("Host"),
+       stream.get_request_header("Origin"), stream.get_request_header("Sec-WebSocket-Version"),
+       stream.get_requested_subprotocols()},
+      shared_.settings.allowed_origins);
+  if (!refusal) {
+    stream.select_subprotocol(kSubprotocol);
+    return true;
+  }
+  stream.set_status(static_cast<websocketpp::http::status_code::value>(refusal->status));
+  stream.append_header("Content-Type", "text/plain; charset=utf-8");
+  stream.append_header("Connection", "close");
+  stream.set_body(refusal->message);
+  return false;
+}
+
+void WsEndpoint::opened(const StreamPtr& stream) {
+  if (stopping_) return close_stream(*stream, kGoingAway, "the server is stopping");
+  stream->peer_slot =
+      shared_.open_by_address.take(stream->address, shared_.settings.max_connections_per_address);
+  if (!stream->peer_slot) {
+    count_refusal("connections_per_address");
+    return close_stream(*stream, kTryAgainLater, "too many connections from this address");
+  }
+  if (++shared_.open_count > shared_.settings.max_connections) {
+    --shared_.open_count;
+    stream->peer_slot.reset();
+    count_refusal("connections");
+    return close_stream(*stream, kTryAgainLater, "too many connections");
+  }
+  stream->id = ++shared_.last_id;
+  stream->peer = std::make_shared<WsConnection>(stream->id, stream->address, tasks_, stream);
+  open_.emplace(stream->id, stream);
+  shared_.connections.opened(stream->peer);
+}
+
+void WsEndpoint::received(WsStream& stream, const WsMessage& message) {
+  if (stream.id == 0) return;
+  stream.unanswered_pings = 0;
+  if (message.get_opcode() == opcode::TEXT) {
+    // The library checks this only at the end of a message in one frame.
+    if (ends_within_character(message.get_payload())) {
+      return close_stream(stream, kNotUtf8, "text that is not UTF-8");
+    }
+    shared_.connections.text_received(stream.id, message.get_payload());
+  } else {
+    shared_.connections.binary_received(stream.id, message.get_payload());
+  }
+}
+
+/// Answers unless an earlier pong still waits for the socket, so that a peer that pings and never
+/// reads makes nothing grow. RFC 6455, section 5.5.3 allows to skip pongs.
+void WsEndpoint::answer_ping(WsStream& stream, const std::string& payload) {
+  stream.unanswered_pings = 0;
+  if (!stream.unsent_pong.expired()) return;
+  const auto token = std::make_shared<char>();
+  stream.unsent_pong = token;
+  stream.send(std::make_shared<WsMessage>(opcode::PONG,
+                                          std::make_shared<const std::string>(payload), token));
+}
+
+void WsEndpoint::closed(WsStream& stream) {
+  if (stream.id == 0) return;
+  const ConnectionId id = std::exchange(stream.id, 0);
+  stream.peer_slot.reset();
+  if (shared_.settings.count_close) shared_.settings.count_close(stream.get_local_close_code());
+  stream.peer->set_gone();
+  stream.peer.reset();
+  open_.erase(id);
+  --shared_.open_count;
+  if (stopping_ && open_.empty()) io_.stop();
+  shared_.connections.closed(id);
+}
+
+void WsEndpoint::count_refusal(std::string_view limit) const {
+  if (shared_.settings.count_refusal) shared_.settings.count_refusal(limit);
+}
+
+void WsEndpoint::answer_http(const StreamPtr& stream) {
+  // Deferring takes the response out of the handshake's time limit, which is too short for a large
+  // file on a slow line.
+  stream->defer_http_response();
+  stream->response_deadline.emplace(io_, kResponseTimeout);
+  stream->response_deadline->async_wait(
+      [handle = std::weak_ptr<WsStream>(stream)](boost::system::error_code error) {
+        if (error) return;
+        if (const auto slow = handle.lock()) {
+          slow->terminate(make_error_code(websocketpp::transport::error::timeout));
+        }
+      });
+  const HttpResponse response = ask_http_handler(*stream);
+  stream->set_status(static_cast<websocketpp::http::status_code::value>(response.status));
+  if (stream->get_request().get_method() != "HEAD") stream->set_body(response.body);
+  for (const auto& [name, value] : response.headers) stream->replace_header(name, value);
+  stream->replace_header("Content-Type", response.content_type);
+  stream->replace_header("Content-Length", std::to_string(response.body.size()));
+  stream->replace_header("Connection", "close");
+  stream->send_http_response();
+}
+
+HttpResponse WsEndpoint::ask_http_handler(const WsStream& stream) {
+  HttpResponse response;
+  const auto& request = stream.get_request();
+  const bool answered =
+      guarded("http", [&] { response = shared_.http(request.get_method(), request.get_uri()); });
+  if (answered) return response;
+  return {500, "text/plain; charset=utf-8", "Internal error.\n", {}};
+}
+
+void WsEndpoint::start_pings() {
+  ping_timer_.expires_after(shared_.settings.ping_interval);
+  ping_timer_.async_wait([this](boost::system::error_code error) {
+    if (error || stopping_) return;
+    guarded("ping", [this] { ping_all(); });
+    start_pings();
+  });
+}
+
+void WsEndpoint::ping_all() {
+  for (const StreamPtr& stream : open_streams()) {
+    websocketpp::lib::error_code error;
+    if (stream->unanswered_pings >= 2) {
+      stream->terminate(make_error_code(websocketpp::transport::error::timeout));
+    } else {
+      ++stream->unanswered_pings;
+      stream->ping("", error);  // fails on a connection that is closing, which has its own deadline
+    }
+  }
+}
+
+std::vector<WsEndpoint::StreamPtr> WsEndpoint::open_streams() const {
+  std::vector<StreamPtr> streams;
+  streams.reserve(open_.size());
+  for (const auto& [id, handle] : open_) {
+    if (StreamPtr stream = handle.lock()) streams.push_back(std::move(stream));
+  }
+  return streams;
+}
+
+WsEndpoint::StreamPtr WsEndpoint::stream_of(const Handle& handle) {
+  return server_.get_con_from_hdl(handle);
+}
+
+template <class Work>
+bool WsEndpoint::guarded(const char* place, Work&& work) noexcept {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& fault) {
+    report(place, fault.what());
+  } catch (...) {
+    report(place, "unknown exception");
+  }
+  return false;
+}
+
+void WsEndpoint::report(const char* place, const char* fault) noexcept {
+  if (!shared_.settings.report) return;
+  try {
+    shared_.settings.report(std::string(place) + ": " + fault);
+  } catch (...) {  // no caller can handle it
+  }
+}
+
+}  // namespace vat

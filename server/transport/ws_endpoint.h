@@ -1,0 +1,108 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "server/transport/address_counts.h"
+#include "server/transport/transport.h"
+#include "server/transport/ws_server.h"
+#include "server/transport/ws_task_queue.h"
+
+namespace vat {
+
+/// State that the endpoints of a transport share. Limits apply to all of them together.
+struct WsShared {
+  WsShared(TransportSettings settings_in, ConnectionHandler& connections_in, HttpHandler http_in)
+      : settings(std::move(settings_in)), connections(connections_in), http(std::move(http_in)) {}
+
+  const TransportSettings settings;
+  std::shared_ptr<boost::asio::ssl::context> tls;  ///< null: no TLS
+  ConnectionHandler& connections;
+  const HttpHandler http;
+  std::atomic<ConnectionId> last_id = 0;
+  std::atomic<std::size_t> open_count = 0;  ///< WebSockets
+  AddressCounts open_by_address;
+  AddressCounts sockets_by_address;
+  /// All sockets; shared with the streams, which may outlive the transport.
+  const std::shared_ptr<std::atomic<std::size_t>> socket_count =
+      std::make_shared<std::atomic<std::size_t>>(0);
+};
+
+/// An endpoint of websocketpp, and the only thread that calls the library for it.
+class WsEndpoint {
+ public:
+  explicit WsEndpoint(WsShared& shared);
+  /// The thread must have been joined.
+  ~WsEndpoint();
+  WsEndpoint(const WsEndpoint&) = delete;
+  WsEndpoint& operator=(const WsEndpoint&) = delete;
+
+  /// Throws as listen() does if another program listens on the port. Endpoints that share the port
+  /// would not notice it.
+  void check_free(std::uint16_t port);
+  /// Listens on the port (0: any), together with other endpoints if `shares_port`. Returns the
+  /// port. Throws std::runtime_error that names host and port if it cannot.
+  std::uint16_t listen(std::uint16_t port, bool shares_port);
+  /// Starts the thread.
+  void start();
+  /// Starts the shutdown of Transport::stop(). join() waits for its end.
+  void begin_stop();
+  void join();
+
+ private:
+  using Handle = websocketpp::connection_hdl;
+  using StreamPtr = std::shared_ptr<WsStream>;
+
+  boost::asio::ip::tcp::endpoint address(std::uint16_t port) const;
+  void configure();
+  void set_handlers();
+  void run();
+  void forget_all();
+
+  void accepted(WsStream& stream);
+  void count_refusal(std::string_view limit) const;
+  bool validate(WsStream& stream);
+  void opened(const StreamPtr& stream);
+  void received(WsStream& stream, const WsMessage& message);
+  void answer_ping(WsStream& stream, const std::string& payload);
+  void closed(WsStream& stream);
+  void answer_http(const StreamPtr& stream);
+  HttpResponse ask_http_handler(const WsStream& stream);
+
+  void start_pings();
+  void ping_all();
+  void close_all();
+  std::vector<StreamPtr> open_streams() const;
+
+  StreamPtr stream_of(const Handle& handle);
+  template <class Work>
+  bool guarded(const char* place, Work&& work) noexcept;
+  void report(const char* place, const char* fault) noexcept;
+
+  WsShared& shared_;
+  boost::asio::io_context io_{1};
+  /// Shared with the connections, which may outlive the endpoint.
+  std::shared_ptr<WsTaskQueue> tasks_;
+  WsServer server_;
+  boost::asio::steady_timer ping_timer_;
+  boost::asio::steady_timer stop_timer_;
+  std::thread thread_;
+
+  // Used on the endpoint's thread only, once it runs.
+  std::unordered_map<ConnectionId, std::weak_ptr<WsStream>> open_;
+  bool stopping_ = false;
+};
+
+}  // namespace vat

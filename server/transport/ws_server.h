@@ -1,0 +1,63 @@
+#pragma once
+
+#include <boost/asio/steady_timer.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <websocketpp/concurrency/none.hpp>
+#include <websocketpp/config/asio_no_tls.hpp>
+#include <websocketpp/logger/stub.hpp>
+#include <websocketpp/server.hpp>
+
+#include "server/transport/transport.h"
+#include "server/transport/ws_message.h"
+#include "server/transport/ws_socket.h"
+
+namespace vat {
+
+class WsConnection;
+
+/// Data of the transport for each connection of the library.
+struct WsPeer {
+  ConnectionId id = 0;  ///< 0: not an open WebSocket
+  std::shared_ptr<WsConnection> peer;
+  std::shared_ptr<void> socket_slot;   ///< counts the open sockets
+  std::string address;                 ///< see Connection::address()
+  std::shared_ptr<void> address_slot;  ///< counts the address's sockets
+  std::shared_ptr<void> peer_slot;     ///< counts its WebSockets
+  std::weak_ptr<void> unsent_pong;
+  std::optional<boost::asio::steady_timer> response_deadline;
+  int unanswered_pings = 0;
+};
+
+/// Configuration of the library for one thread: no locks, log or compression.
+struct WsConfig : websocketpp::config::asio {
+  using type = WsConfig;
+  using base = websocketpp::config::asio;
+  using concurrency_type = websocketpp::concurrency::none;
+  using message_type = WsMessage;
+  using con_msg_manager_type = WsMessage::Manager;
+  using endpoint_msg_manager_type =
+      websocketpp::message_buffer::alloc::endpoint_msg_manager<con_msg_manager_type>;
+  using elog_type = websocketpp::log::stub;
+  using alog_type = websocketpp::log::stub;
+  using connection_base = WsPeer;
+  static constexpr bool enable_multithreading = false;
+
+  struct transport_config : base::transport_config {
+    using concurrency_type = type::concurrency_type;
+    using elog_type = type::elog_type;
+    using alog_type = type::alog_type;
+    using request_type = type::request_type;
+    using response_type = type::response_type;
+    using socket_type = WsSocketEndpoint;
+    static constexpr bool enable_multithreading = false;
+    static constexpr long timeout_socket_shutdown = 1000;  // [ms]
+  };
+  using transport_type = websocketpp::transport::asio::endpoint<transport_config>;
+};
+
+using WsServer = websocketpp::server<WsConfig>;
+using WsStream = WsServer::connection_type;  ///< a TCP connection, with WebSocket or HTTP
+
+}  // namespace vat

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <array>
+#include <boost/asio.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <websocketpp/common/connection_hdl.hpp>
+#include <websocketpp/transport/asio/base.hpp>
+#include <websocketpp/transport/asio/security/base.hpp>
+#include <websocketpp/transport/base/connection.hpp>
+#include <websocketpp/uri.hpp>
+
+namespace vat {
+
+/// A socket, or TLS on a socket. Chosen at run time, so that the library is compiled once for both.
+class WsByteStream {
+ public:
+  using Socket = boost::asio::ip::tcp::socket;
+  using executor_type = Socket::executor_type;
+  using Tls = boost::asio::ssl::stream<Socket&>;
+
+  /// Without a context, bytes are not encrypted.
+  WsByteStream(boost::asio::io_context& io, boost::asio::ssl::context* context) : socket_(io) {
+    if (context != nullptr) tls_.emplace(socket_, *context);
+  }
+
+  executor_type get_executor() { return socket_.get_executor(); }
+  Socket& socket() { return socket_; }
+  Tls* tls() { return tls_ ? &*tls_ : nullptr; }
+
+  template <class Buffers, class Handler>
+  void async_read_some(const Buffers& buffers, Handler&& handler) {
+    if (tls_) {
+      tls_->async_read_some(buffers, std::forward<Handler>(handler));
+    } else {
+      socket_.async_read_some(buffers, std::forward<Handler>(handler));
+    }
+  }
+  template <class Buffers, class Handler>
+  void async_write_some(const Buffers& buffers, Handler&& handler) {
+    if (tls_) {
+      tls_->async_write_some(buffers, std::forward<Handler>(handler));
+    } else {
+      socket_.async_write_some(buffers, std::forward<Handler>(handler));
+    }
+  }
+
+ private:
+  Socket socket_;
+  std::optional<Tls> tls_;
+};
+
+/// Socket policy of the library. At the end it stops sending, and then reads and discards the
+/// peer's data until the peer has closed too. Closing with unread data would reset the connection,
+/// and a peer in a large message would lose the close frame or error page. The library's timers
+/// limit the waits, including that for the TLS handshake.
+class WsSocket : public std::enable_shared_from_this<WsSocket> {
+ public:
+  using type = WsSocket;
+  using ptr = std::shared_ptr<WsSocket>;
+
+  ptr get_shared() { return shared_from_this(); }
+  bool is_secure() const { return context_ != nullptr; }
+  void set_tls_context(std::shared_ptr<boost::asio::ssl::context> context) {
+    context_ = std::move(context);
+  }
+
+  WsByteStream& get_socket() { return *stream_; }
+  WsByteStream::Socket& get_next_layer() { return stream_->socket(); }
+  WsByteStream::Socket& get_raw_socket() { return stream_->socket(); }
+  const WsByteStream::Socket& get_raw_socket() const { return stream_->socket(); }
+
+  std::string get_remote_endpoint(websocketpp::lib::error_code& error) const {
+    boost::system::error_code failure;
+    const auto endpoint = stream_->socket().remote_endpoint(failure);
+    if (failure) {
+      error = websocketpp::transport::error::make_error_code(
+          websocketpp::transport::error::pass_through);
+      return failure.message();
+    }
+    std::ostringstream text;
+    text << endpoint;
+    return text.str();
+  }
+
+  template <class ErrorCode>
+  static websocketpp::lib::error_code translate_ec(ErrorCode) {
+    return websocketpp::transport::error::make_error_code(
+        websocketpp::transport::error::pass_through);
+  }
+
+ protected:
+  using Done = websocketpp::transport::asio::socket::shutdown_handler;
+  using Ready = websocketpp::transport::init_handler;
+
+  websocketpp::lib::error_code init_asio(boost::asio::io_service* io,
+                                         const std::shared_ptr<boost::asio::io_service::strand>&,
+                                         bool) {
+    stream_ = std::make_unique<WsByteStream>(*io, context_.get());
+    return {};
+  }
+  void set_uri(const websocketpp::uri_ptr&) {}
+  void set_handle(const websocketpp::connection_hdl&) {}
+  void pre_init(const Ready& ready) { ready({}); }
+  void post_init(Ready ready) {
+    WsByteStream::Tls* const tls = stream_->tls();
+    if (tls == nullptr) return ready({});
+    tls->async_handshake(
+        boost::asio::ssl::stream_base::server,
+        [self = get_shared(), ready = std::move(ready)](boost::system::error_code error) {
+          ready(error ? translate_ec(error) : websocketpp::lib::error_code());
+        });
+  }
+  boost::system::error_code cancel_socket() {
+    boost::system::error_code error;
+    get_raw_socket().cancel(error);
+    return error;
+  }
+  websocketpp::lib::error_code get_ec() const { return {}; }
+
+  void async_shutdown(Done done) {
+    WsByteStream::Tls* const tls = stream_->tls();
+    if (tls == nullptr) return end_sending(std::move(done));
+    // Fails if the peer still sends or has gone. The next step is the same.
+    tls->async_shutdown([this, self = get_shared(),
+                         done = std::move(done)](boost::system::error_code) { end_sending(done); });
+  }
+
+ private:
+  void end_sending(Done done) {
+    boost::system::error_code error;
+    get_raw_socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, error);
+    if (error) return end(error, done);
+    cancel_socket();  // the library's own read, which else might be told of the end in place of
+                      // this
+    drain(std::move(done));
+  }
+  void drain(Done done) {
+    get_raw_socket().async_read_some(
+        boost::asio::buffer(discarded_), [this, self = get_shared(), done = std::move(done)](
+                                             boost::system::error_code error, std::size_t) {
+          if (!error) {
+            drain(done);
+          } else {
+            end(error == boost::asio::error::eof ? boost::system::error_code() : error, done);
+          }
+        });
+  }
+  /// Closes the socket. The library may have started to read again, and of two readers at the end
+  /// of a stream the system informs one. The other would keep the socket forever.
+  void end(boost::system::error_code error, const Done& done) {
+    boost::system::error_code ignored;  // it has ended either way
+    get_raw_socket().close(ignored);
+    done(error);
+  }
+
+  std::shared_ptr<boost::asio::ssl::context> context_;  // null: no TLS
+  std::unique_ptr<WsByteStream> stream_;
+  std::array<char, 4096> discarded_;
+};
+
+class WsSocketEndpoint {
+ public:
+  using type = WsSocketEndpoint;
+  using socket_con_type = WsSocket;
+  using socket_con_ptr = std::shared_ptr<WsSocket>;
+
+  bool is_secure() const { return context_ != nullptr; }
+  /// For all later connections.
+  void set_tls_context(std::shared_ptr<boost::asio::ssl::context> context) {
+    context_ = std::move(context);
+  }
+
+ protected:
+  websocketpp::lib::error_code init(const socket_con_ptr& connection) {
+    connection->set_tls_context(context_);
+    return {};
+  }
+
+ private:
+  std::shared_ptr<boost::asio::ssl::context> context_;
+};
+
+}  // namespace vat

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/transport/ws_server.h"
+
+namespace vat {
+
+/// Sends and closes of other threads, which the endpoint's thread executes in order. Calls that
+/// arrive faster than it takes them become one task, so that a frame for a thousand clients wakes
+/// it once. Safe to use from any thread.
+class WsTaskQueue : public std::enable_shared_from_this<WsTaskQueue> {
+ public:
+  explicit WsTaskQueue(boost::asio::io_context& io) : io_(&io) {}
+
+  void send(std::weak_ptr<WsStream> stream, WsMessage::ptr message);
+  void close(std::weak_ptr<WsStream> stream, std::uint16_t code, std::string reason);
+  /// Drops all tasks, because the endpoint has ended. Later calls do nothing.
+  void shut();
+
+ private:
+  struct Task {
+    std::weak_ptr<WsStream> stream;
+    WsMessage::ptr message;  // null: close
+    std::uint16_t code = 0;
+    std::string reason;
+  };
+  void put(Task task);
+  void run_all();
+
+  std::mutex mutex_;
+  boost::asio::io_context* io_;  // null once shut
+  std::vector<Task> tasks_;
+};
+
+/// Starts the closing handshake, or drops the connection if that is not possible. Endpoint's
+/// thread only.
+void close_stream(WsStream& stream, std::uint16_t code, const std::string& reason);
+
+}  // namespace vat

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vat {
+
+inline constexpr const char* kSubprotocol = "vat.v1";
+
+/// Headers of a WebSocket upgrade; missing ones are empty.
+struct UpgradeRequest {
+  std::string_view target;
+  std::string_view host;
+  std::string_view origin;
+  std::string_view version;
+  const std::vector<std::string>& subprotocols;
+};
+
+struct UpgradeRefusal {
+  int status;
+  const char* message;
+};
+
+/// Returns the reason for a refusal, or nothing. Only pages of this server and of allowed origins
+/// may connect; otherwise any site could control a user's server.
+std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
+                                             const std::vector<std::string>& allowed_origins);
+
+}  // namespace vat
