@@ -6,7 +6,7 @@
 
 namespace vat {
 
-/// Scalar of the state and of the integration. All quantities are in SI units.
+/// Scalar of the state and of the time integration. All quantities are in SI units.
 using Real = double;
 using Vec3 = Eigen::Matrix<Real, 3, 1>;
 using Mat3 = Eigen::Matrix<Real, 3, 3>;
@@ -14,7 +14,7 @@ using Mat3 = Eigen::Matrix<Real, 3, 3>;
 using Quat = Eigen::Quaternion<Real>;
 using Index = std::uint32_t;
 
-/// Identifies a body for the life of a simulation; never used again after the body is removed.
+/// Identifies a body during the life of a simulation. Ids of removed bodies are not reused.
 using BodyId = std::uint32_t;
 inline constexpr Index kNoParticle = ~Index{0};  ///< in place of an index
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/support/check.h"
+
 namespace vat {
 
 void BodyBoxes::build(const Model& model, const std::vector<Vec3>& positions, Real reach,
                       TaskRunner* runner) {
+  VAT_CHECK(reach >= 0 && positions.size() == model.particle_count);
   const std::vector<ModelBody>& bodies = model.bodies;
   boxes_.resize(bodies.size());
   wide_.resize(bodies.size());
@@ -37,11 +40,11 @@ int BodyBoxes::longest_axis() const {
   return axis;
 }
 
-// Sweeps along the axis along which the boxes lie furthest apart, so that few overlap there.
+// Sweeps along the axis with the largest variance of the boxes, so that few overlap along it.
 void BodyBoxes::find_pairs() {
   by_left_.clear();
   for (Index b = 0; b < boxes_.size(); ++b) {
-    // Neither an empty box nor one that has what is not a number.
+    // Omits empty boxes and boxes with a NaN.
     if ((boxes_[b].min().array() <= boxes_[b].max().array()).all()) by_left_.push_back(b);
   }
   const int axis = longest_axis();

@@ -6,14 +6,15 @@
 #include "core/liquid/pairs/scratch.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Of the reach, beyond what was asked for: a thicker skin lasts longer and has more pairs in it.
+/// The skin in reaches, in addition to the slack. A thicker skin lasts longer and has more pairs.
 constexpr Real kSkinShare = 0.5;
 
-/// The first particle that has contacts: liquids may meet others by SPH alone.
+/// The first particle that has contacts: coupled liquids have none.
 Index first_of(const Model& model) {
   return model.is_coupled ? model.liquid_count : 0;
 }
@@ -32,7 +33,7 @@ bool ContactList::is_between_current(const StepContext& c, Real slack) {
       const Vec3 way = position[first + k] - built_at_[first + k];
       const Real way2 =
           c.model.periodic.any() ? c.model.periodic.nearest(way).squaredNorm() : way.squaredNorm();
-      if (!(way2 <= farthest)) farthest = way2;  // takes what is not a number
+      if (!(way2 <= farthest)) farthest = way2;  // also accepts a NaN
     }
     farthest_[begin / kBlockSize] = farthest;
   });
@@ -62,18 +63,19 @@ void ContactList::make_own_lists(const Model& model) {
     own_list[b] = static_cast<Index>(within_.size());
     within_.emplace_back(body.particles);
   }
-  own_list_ = std::move(own_list);  // all are made: there was memory for them
+  own_list_ = std::move(own_list);  // all lists exist: there was sufficient memory
 }
 
 void ContactList::update(StepContext& c, Real slack) {
   if (own_list_.empty()) make_own_lists(c.model);
+  VAT_CHECK(!(slack < 0) && c.configuration.position.size() == c.model.particle_count);
   const bool were_listed = std::exchange(are_listed_, false);
   bool has_searched = false;
   for (SelfContactList& list : within_) has_searched |= list.update(c, slack);
   if (!is_between_current(c, slack)) {
     has_searched = true;
     const Real skin = slack + kSkinShare * c.model.contact_reach;
-    skin_ = 0;  // until the list is whole: there may be no memory for it
+    skin_ = 0;  // until the list is complete: memory may be insufficient
     search_between(c, skin);
     skin_ = skin;
   }
@@ -100,6 +102,7 @@ void ContactList::find_candidates(const StepContext& c, Real skin) {
 
 void ContactList::find_between(const StepContext& c, Index i, Real skin,
                                std::vector<Index>& found) const {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
   if (i < first_of(model) || is_candidate_[i] == 0) return;
   const ContactSearch search(model, c.configuration, i, skin);
@@ -110,9 +113,9 @@ void ContactList::find_between(const StepContext& c, Index i, Real skin,
       solids_, [&](Index slot) { return solids_.body[slot] != body || takes_own; },
       [&](Index slot) { return solids_.particle[slot]; }, take);
   if (model.is_coupled || (i < model.liquid_count && !model.liquids_touch)) return;
-  const std::span<const Index> liquids = c.work.of<LiquidScratch>().liquid.grid.order();
+  const std::span<const Index> liquids = buffers.liquid.grid.order();
   search.look_in(
-      c.work.of<LiquidScratch>().liquid,
+      buffers.liquid,
       [&](Index slot) {
         return i >= model.liquid_count || model.material[liquids[slot]] != model.material[i];
       },

@@ -15,26 +15,26 @@ namespace vat {
 
 struct StepContext;
 
-/// The pairs of particles that are in contact or soon may be, kept as long as no particle has moved
-/// so far that one may be missing. Which pairs it calls, and in which order, depends on positions
-/// and indices alone, and not on when it was made.
+/// The pairs of particles that are or may soon be in contact. The list remains valid until a
+/// particle has moved so far that a pair may be missing. The pairs that it visits, and their order,
+/// depend on positions and indices only, not on the time of the search.
 class ContactList {
  public:
-  /// From now on the list has every pair up to `slack` [m] beyond its threshold. Searches only
-  /// where something has moved too far since the last time; needs the column liquid_cells then.
+  /// Extends the list to pairs up to `slack` [m] beyond their threshold. Searches only if a
+  /// particle has moved too far since the last search; this requires the column liquid_cells.
   void update(StepContext& context, Real slack);
-  /// Whether update() would not have to search.
+  /// Returns whether update() would not search.
   bool is_current(const StepContext& context, Real slack);
 
-  /// Of its entries, two a pair and some of pairs that are not so near.
+  /// The number of entries: two for each pair, including pairs beyond the slack.
   std::size_t size() const;
 
-  /// The particles of a block that have entries, by index.
+  /// The particles of a block that have entries, in ascending order.
   std::span<const Index> particles(std::size_t block) const { return particles_[block]; }
 
-  /// Calls f(contact) for every dynamic connection of particle i: with other bodies, by the other
-  /// particle's index, then with its own body, the same; with `slack` those too that are up to so
-  /// much beyond their threshold.
+  /// Calls f(contact) for each dynamic connection of particle i: first those with other bodies,
+  /// then those within its body, both ordered by the other particle. Includes pairs up to `slack`
+  /// beyond their threshold.
   template <class F>
   void for_each(const Model& model, const Configuration& at, Index i, F&& f, Real slack = 0) const {
     model.periodic.any() ? visit<true>(model, at, i, slack, f)
@@ -71,7 +71,7 @@ class ContactList {
     if (!within_.empty()) look_at(within(model, i));
   }
 
-  /// The entries of particle i that are of its own body and in no list of others.
+  /// The entries of particle i within its body that are not in between_.
   std::span<const Index> within(const Model& model, Index i) const {
     if (own_list_[model.body[i]] == kNoList) return {};
     return within_[own_list_[model.body[i]]].of(i);
@@ -79,7 +79,8 @@ class ContactList {
 
   bool is_between_current(const StepContext& context, Real slack);
   void search_between(StepContext& context, Real skin);
-  /// Particles that may touch one of another body, for a search up to `skin` beyond the thresholds.
+  /// Finds the particles that may touch another body, for a search up to `skin` beyond the
+  /// thresholds.
   void find_candidates(const StepContext& context, Real skin);
   void find_between(const StepContext& context, Index i, Real skin,
                     std::vector<Index>& found) const;
@@ -88,18 +89,18 @@ class ContactList {
 
   static constexpr Index kNoList = ~Index{0};
 
-  PairTable between_;  ///< of different bodies; in a periodic world of all
+  PairTable between_;  ///< pairs of different bodies; in a periodic world all pairs
   std::vector<Vec3> built_at_;
-  Real skin_ = 0;  ///< of that table; 0: there is none [m]
+  Real skin_ = 0;  ///< skin of that table; 0: no table [m]
   std::vector<SelfContactList> within_;
-  std::vector<Index> own_list_;                ///< by body: place in within_
-  std::vector<std::vector<Index>> particles_;  ///< by block, of both
+  std::vector<Index> own_list_;                ///< by body: index in within_
+  std::vector<std::vector<Index>> particles_;  ///< particles with entries, by block
   bool are_listed_ = false;
-  // Scratch.
+  // Buffers:
   BodyBoxes boxes_;
   std::vector<Index> candidates_;
   std::vector<char> is_candidate_;
-  SortedParticles solids_;      ///< those of the candidates
+  SortedParticles solids_;      ///< the solid candidates
   std::vector<Real> farthest_;  ///< by block
 };
 

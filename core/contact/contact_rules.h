@@ -9,28 +9,28 @@
 
 namespace vat {
 
-/// One dynamic connection (Boldt def. 0.2) seen from particle `self`; distance < threshold.
+/// A dynamic connection (Boldt def. 0.2), seen from particle `self`, with distance < threshold.
 struct Contact {
   Index self = 0;
   Index other = 0;
   Vec3 x;              ///< position of self minus position of other [m]
   Real distance;       ///< |x| [m]
-  Real threshold;      ///< and rest length l of a spring [m]
+  Real threshold;      ///< also the rest length l of a spring [m]
   Real stiffness;      ///< [N/m]
   Real damping;        ///< [N s/m]
-  Real damping_ratio;  ///< of what has a restitution, in place of damping
-  Real layer;          ///< of a layer: the width of its part that pulls [m]; 0: a spring
+  Real damping_ratio;  ///< for a restitution, in place of damping
+  Real layer;          ///< width of the attracting part of a layer [m]; 0: a spring
 };
 
-/// Which law joins particles i and j, if any, as a Contact without its geometry: not two particles
-/// of one rigid body, nor of liquids of one material (they meet by SPH), nor excluded pairs of a
-/// deformable body, wherever their images are.
+/// Finds the law of the contact of particles i and j, as a Contact without geometry. There is no
+/// contact between particles of one rigid body or of liquids of one material (which interact by
+/// SPH), and between excluded pairs of a deformable body, including their images.
 class ContactRules {
  public:
   ContactRules(const Model& model, Index i)
       : model_(model), i_(i), body_(model.body[i]), material_(model.material[i]) {}
 
-  /// False: no law. Otherwise fills threshold and constants.
+  /// Returns whether there is a law, and sets threshold and constants.
   bool find_law(Index j, Contact& contact) const {
     if (model_.body[j] == body_) return find_self_law(j, contact);
     const ContactLaw& law = model_.contact_law(material_, model_.material[j]);
@@ -43,7 +43,7 @@ class ContactRules {
     return true;
   }
 
-  /// Asked only of pairs within reach: exclusions cost a search.
+  /// Returns whether the pair is excluded. Call it for pairs in reach only, because it searches.
   bool excluded(Index j) const {
     if (model_.body[j] != body_) return false;
     const auto begin = model_.exclusions.begin();
@@ -70,7 +70,8 @@ class ContactRules {
   Index material_;
 };
 
-/// Friction of a contact of particles i and j with this stiffness [N/m]: none within a body.
+/// Friction of a contact of particles i and j with this stiffness [N/m]. Zero within a
+/// body.
 inline Friction pair_friction(const Model& model, Index i, Index j, Real stiffness) {
   if (model.body[i] == model.body[j]) return {};
   const Real coefficient = model.contact_law(model.material[i], model.material[j]).friction;
@@ -79,14 +80,14 @@ inline Friction pair_friction(const Model& model, Index i, Index j, Real stiffne
   return {coefficient, sticking_drag(stiffness, mass)};
 }
 
-/// Where particles i and j rub, `way` [m] from j to i.
+/// The arms of particles i and j; `way` [m] points from j to i.
 inline ContactArms pair_arms(const Model& model, Index i, Index j, const Vec3& way) {
   return contact_arms(way, i >= model.free_count, model.radius[i], j >= model.free_count,
                       model.radius[j]);
 }
 
-/// The velocity that its body's spin gives a point at `arm` from particle i, beside the particle's;
-/// `spins` are by rigid body.
+/// The velocity of the point at `arm` from particle i, relative to the particle, by the rotation of
+/// its body. `spins` are by rigid body.
 inline Vec3 turning_velocity(const Model& model, const std::vector<Vec3>& spins, Index i,
                              const Vec3& arm) {
   if (i >= model.free_count) return spins[model.bodies[model.body[i]].rigid].cross(arm);

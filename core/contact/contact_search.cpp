@@ -1,9 +1,12 @@
 #include "core/contact/contact_search.h"
 
+#include "core/support/check.h"
+
 namespace vat {
 
 void SortedParticles::build(const Model& model, const std::vector<Vec3>& positions,
                             std::span<const Index> particles, Real cell_size) {
+  VAT_CHECK(cell_size > 0);
   places_.clear();
   for (const Index i : particles) places_.push_back(model.periodic.wrap(positions[i]));
   grid.build(places_, cell_size);

@@ -9,25 +9,25 @@
 
 namespace vat {
 
-/// Some particles in cell order, coordinates in columns of their own.
+/// Particles in cell order, with their coordinates in separate columns.
 struct SortedParticles {
   UniformGrid grid;
-  std::vector<Index> particle;  ///< by slot, as the next
+  std::vector<Index> particle;  ///< by slot
   std::vector<Index> body;
   std::vector<Real> x;
   std::vector<Real> y;
   std::vector<Real> z;
 
-  /// `cell_size`: best the search radius [m]. In a periodic world the coordinates are those of the
-  /// images in the box.
+  /// `cell_size` [m] should be the search radius. In a periodic world, the coordinates are those of
+  /// the images in the box.
   void build(const Model& model, const std::vector<Vec3>& positions,
              std::span<const Index> particles, Real cell_size);
 
  private:
-  std::vector<Vec3> places_;  ///< in the given order
+  std::vector<Vec3> places_;  ///< in input order
 };
 
-/// Finds the others that particle i may touch, or may be up to `slack` [m] from touching.
+/// Finds the particles that particle i touches, or that are up to `slack` [m] from contact.
 class ContactSearch {
  public:
   ContactSearch(const Model& model, const Configuration& at, Index i, Real slack)
@@ -37,8 +37,8 @@ class ContactSearch {
         slack_(slack),
         reach_(model.contact_reach + slack) {}
 
-  /// Calls f(j) for those of `points` with wanted(slot), where j is index_of(slot): in a periodic
-  /// world with the nearest images, and perhaps more than once.
+  /// Calls f(j) for the near points with wanted(slot), with j = index_of(slot). In a periodic world
+  /// it uses the nearest images, and may visit a point more than once.
   template <class Points, class Wanted, class IndexOf, class F>
   void look_in(const Points& points, Wanted&& wanted, IndexOf&& index_of, F&& f) const {
     const Real reach2 = reach_ * reach_;

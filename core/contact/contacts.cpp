@@ -11,6 +11,7 @@
 #include "core/model/model.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -20,7 +21,7 @@ void find_contacts(StepContext& c) {
 
 namespace {
 
-/// What a scene's contacts have; a loop has no code for the rest.
+/// The terms of a scene's contacts. A loop contains only these.
 struct ContactTerms {
   bool keep_dampers = false;
   bool friction = false;
@@ -28,7 +29,7 @@ struct ContactTerms {
   bool layers = false;
 };
 
-/// What contacts do to one particle.
+/// The sum over the contacts of one particle.
 struct ContactSum {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 torque = Vec3::Zero();  ///< of friction, about the particle's centre [N m]
@@ -42,10 +43,11 @@ void add_layer(const Contact& contact, const Vec3& normal, ContactSum& sum) {
                                                  contact.threshold, contact.distance);
 }
 
-/// A spring and dashpot, at most with friction.
+/// Adds a spring with a dashpot, and friction if there is any.
 template <ContactTerms terms>
 void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, ContactSum& sum,
                 DamperBlock* kept) {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
   const Configuration& at = c.configuration;
   const Vec3 velocity = at.velocity[contact.self] - at.velocity[contact.other];
   const Real speed = velocity.dot(n);
@@ -73,10 +75,8 @@ void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, Con
       const ContactArms arms =
           pair_arms(c.model, contact.self, contact.other, contact.distance * n);
       const Vec3 slip = slip_velocity(velocity, speed, n) +
-                        turning_velocity(c.model, c.work.of<ContactForceScratch>().spins,
-                                         contact.self, arms.self) -
-                        turning_velocity(c.model, c.work.of<ContactForceScratch>().spins,
-                                         contact.other, arms.other);
+                        turning_velocity(c.model, contact_buffers.spins, contact.self, arms.self) -
+                        turning_velocity(c.model, contact_buffers.spins, contact.other, arms.other);
       const Real drag = friction.drag(push, slip);
       sum.force -= drag * slip;
       sum.torque -= drag * arms.self.cross(slip);
@@ -91,23 +91,22 @@ void add_spring(const StepContext& c, const Contact& contact, const Vec3& n, Con
 
 template <ContactTerms terms>
 void add_block(StepContext& c, std::size_t block) {
-  DamperBlock* const kept =
-      terms.keep_dampers ? &c.work.of<ContactForceScratch>().contact_dampers[block] : nullptr;
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
+  DamperBlock* const kept = terms.keep_dampers ? &contact_buffers.contact_dampers[block] : nullptr;
   if constexpr (terms.keep_dampers) kept->clear();
-  for (const Index i : c.work.of<ContactForceScratch>().contacts.particles(block)) {
+  for (const Index i : contact_buffers.contacts.particles(block)) {
     ContactSum sum;
-    c.work.of<ContactForceScratch>().contacts.for_each(
-        c.model, c.configuration, i, [&](const Contact& contact) {
-          const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
-                                        c.model.scene.dimensions);
-          if constexpr (terms.layers) {
-            if (contact.layer > 0) return add_layer(contact, n, sum);
-          }
-          add_spring<terms>(c, contact, n, sum, kept);
-        });
+    contact_buffers.contacts.for_each(c.model, c.configuration, i, [&](const Contact& contact) {
+      const Vec3 n = pair_direction(contact.x, contact.distance, contact.self, contact.other,
+                                    c.model.scene.dimensions);
+      if constexpr (terms.layers) {
+        if (contact.layer > 0) return add_layer(contact, n, sum);
+      }
+      add_spring<terms>(c, contact, n, sum, kept);
+    });
     c.forces.particle[i] += sum.force;
     if constexpr (terms.friction) c.forces.friction_torque[i] += sum.torque;
-    c.work.of<ContactForceScratch>().contact_loads[i] = sum.load;  // the first of its loads
+    contact_buffers.contact_loads[i] = sum.load;  // contacts set the load, walls add to it
     if constexpr (terms.keep_dampers) kept->close(i);
   }
 }
@@ -127,9 +126,11 @@ void add_terms(StepContext& c, std::size_t block) {
 }  // namespace
 
 void add_contacts(StepContext& c) {
-  c.work.of<ContactForceScratch>().contact_loads.resize(c.model.particle_count);
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
+  contact_buffers.contact_loads.resize(c.model.particle_count);
   if (c.work.keep_dampers) {
-    c.work.of<ContactForceScratch>().contact_dampers.resize(block_count(c.model.particle_count));
+    contact_buffers.contact_dampers.resize(block_count(c.model.particle_count));
   }
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t) {
     const std::size_t block = begin / kBlockSize;

@@ -5,17 +5,18 @@
 #include <span>
 #include <vector>
 
+#include "core/support/check.h"
 #include "core/support/parallel.h"
 #include "core/types.h"
 
 namespace vat {
 
-/// For each of a number of particles, others by rising index. One buffer a block, so that blocks
-/// are filled side by side.
+/// For each particle, a list of other particles in ascending order. Each block has its own buffer,
+/// so that blocks are filled in parallel.
 class PairTable {
  public:
-  /// Fills it for `count` particles: find(i, found) adds what particle i has, in any order, and
-  /// even twice.
+  /// Fills the table for `count` particles. find(i, found) adds the others of particle i, in any
+  /// order, possibly twice.
   template <class Find>
   void fill(TaskRunner* runner, std::size_t count, Find&& find) {
     blocks_.resize(block_count(count));
@@ -35,12 +36,13 @@ class PairTable {
   }
 
   std::span<const Index> of(Index i) const {
+    VAT_ASSERT(i / kBlockSize < blocks_.size());
     const Block& block = blocks_[i / kBlockSize];
     const Index begin = block.begin[i % kBlockSize];
     return {block.others.data() + begin, block.begin[i % kBlockSize + 1] - begin};
   }
 
-  /// Of all entries.
+  /// The total number of entries.
   std::size_t size() const {
     std::size_t size = 0;
     for (const Block& block : blocks_) size += block.others.size();
@@ -48,7 +50,7 @@ class PairTable {
   }
 
  private:
-  /// Those of its k-th particle are [begin[k], begin[k + 1]).
+  /// The entries of the k-th particle are [begin[k], begin[k + 1]).
   struct Block {
     std::vector<Index> others;
     std::array<Index, kBlockSize + 1> begin;

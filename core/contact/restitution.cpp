@@ -11,6 +11,7 @@
 #include "core/stage/context.h"
 #include "core/state/rigid_motion.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -40,19 +41,20 @@ Vec3 sum_directions(const StepContext& c, const VatMotion& motion, Index i) {
 }
 
 void spread_over_body(StepContext& c, std::size_t body) {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
   const RigidModel& rigid = c.model.rigid_bodies[body];
   const RigidState& state = c.configuration.rigid[body];
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
   for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
-    force += c.work.of<ContactForceScratch>().mobilities[i];
-    torque += (c.configuration.position[i] - state.center_of_mass)
-                  .cross(c.work.of<ContactForceScratch>().mobilities[i]);
+    force += contact_buffers.mobilities[i];
+    torque +=
+        (c.configuration.position[i] - state.center_of_mass).cross(contact_buffers.mobilities[i]);
   }
   const Vec3 linear = rigid.inverse_mass * force;
   const Vec3 angular = angular_velocity(rigid, state.orientation, torque);
   for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
-    c.work.of<ContactForceScratch>().mobilities[i] =
+    contact_buffers.mobilities[i] =
         linear + angular.cross(c.configuration.position[i] - state.center_of_mass);
   }
 }
@@ -60,22 +62,24 @@ void spread_over_body(StepContext& c, std::size_t body) {
 }  // namespace
 
 void find_contact_mobilities(StepContext& c) {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
+  VAT_CHECK(c.configuration.position.size() == c.model.particle_count);
   const Model& model = c.model;
   const VatMotion motion = model.walls.empty() ? VatMotion{} : vat_motion(*model.scene.vat, c.time);
-  c.work.of<ContactForceScratch>().mobilities.resize(model.particle_count);
+  contact_buffers.mobilities.resize(model.particle_count);
   for_blocks(c.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Index>(k);
       const Vec3 sum = sum_directions(c, motion, i);
-      c.work.of<ContactForceScratch>().mobilities[i] =
+      contact_buffers.mobilities[i] =
           i < model.free_count ? Vec3(model.inverse_mass[i] * sum) : sum;
     }
   });
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const IndexRange particles = model.rigid_bodies[b].particles;
     if (model.rigid_bodies[b].is_held(c.step)) {
-      std::fill_n(c.work.of<ContactForceScratch>().mobilities.begin() + particles.begin,
-                  particles.size(), Vec3::Zero());
+      std::fill_n(contact_buffers.mobilities.begin() + particles.begin, particles.size(),
+                  Vec3::Zero());
     } else {
       spread_over_body(c, b);
     }
@@ -83,6 +87,7 @@ void find_contact_mobilities(StepContext& c) {
 }
 
 Real ContactMobility::along(Index i, const Vec3& normal) const {
+  VAT_ASSERT(i < work.of<ContactForceScratch>().mobilities.size());
   const Real shared = normal.dot(work.of<ContactForceScratch>().mobilities[i]);
   if (i < model.free_count) return std::max(shared, model.inverse_mass[i]);
   const Index body = model.bodies[model.body[i]].rigid;

@@ -64,13 +64,13 @@ struct DamperBlock {
 struct ContactForceScratch {
   static constexpr Method kMethod = Method::contact;
 
-  bool too_many_contacts = false;  ///< more than kMaxProjections: none is projected
+  bool too_many_contacts = false;  ///< more than kMaxProjections; no contact is projected then
   ContactList contacts;
   std::vector<Vec3> spins;                   ///< by rigid body, if there is friction [rad/s]
   std::vector<ContactLoad> contact_loads;    ///< by particle; empty without contacts
   std::vector<Oscillation> load_bounds;      ///< by block of particles
   std::vector<Vec3> mobilities;              ///< see restitution.h; by particle [1/kg]
-  std::vector<DamperBlock> contact_dampers;  ///< if Scratch::keep_dampers, as the next
+  std::vector<DamperBlock> contact_dampers;  ///< if Scratch::keep_dampers
   std::vector<DamperBlock> wall_dampers;
 };
 

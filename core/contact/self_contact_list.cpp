@@ -6,18 +6,20 @@
 
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Of the reach, beyond what was asked for.
+/// The skin in reaches, in addition to the slack.
 constexpr Real kSelfSkinShare = 0.6;
 
 }  // namespace
 
-// The rotation nearest to what the particles did, by the singular values of their covariance
+// The rotation closest to the motion of the particles, by the singular values of their covariance
 // (W. Kabsch, Acta Cryst. A 32 (1976) 922).
 void SelfContactList::fit(const std::vector<Vec3>& positions) {
+  VAT_CHECK(built_at_.size() == particles_.size());
   from_.setZero();
   to_.setZero();
   for (Index k = 0; k < particles_.size(); ++k) {
@@ -45,7 +47,7 @@ bool SelfContactList::is_within(const StepContext& c, Real distance) {
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3 way =
           c.configuration.position[particles_.begin + k] - to_ - turn_ * (built_at_[k] - from_);
-      is_far |= !(way.squaredNorm() <= distance * distance);  // what is not a number is far
+      is_far |= !(way.squaredNorm() <= distance * distance);  // a NaN counts as far
     }
     is_far_[begin / kBlockSize] = is_far ? 1 : 0;
   });
@@ -63,7 +65,7 @@ bool SelfContactList::is_current(const StepContext& c, Real slack) {
 bool SelfContactList::update(const StepContext& c, Real slack) {
   if (is_current(c, slack)) return false;
   const Real skin = slack + kSelfSkinShare * c.model.contact_reach;
-  skin_ = 0;  // until the list is whole: there may be no memory for it
+  skin_ = 0;  // until the list is complete: memory may be insufficient
   search(c, skin);
   skin_ = skin;
   return true;

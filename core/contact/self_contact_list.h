@@ -10,39 +10,40 @@ namespace vat {
 
 struct StepContext;
 
-/// The pairs of particles of one deformable body that are in contact or soon may be; of a world
-/// that does not repeat itself. Stays whole however far the body moves and turns, until its shape
+/// The pairs of particles of one deformable body that are or may soon be in contact, in a world
+/// that is not periodic. The list remains valid for all rigid motions of the body, until its shape
 /// has changed too much.
 class SelfContactList {
  public:
   explicit SelfContactList(const IndexRange& particles) : particles_(particles) {}
 
-  /// From now on the list has every pair up to `slack` [m] beyond its threshold; true where it had
-  /// to search. A search that fails leaves none.
+  /// Extends the list to pairs up to `slack` [m] beyond their threshold. Returns whether it
+  /// searched. A failed search leaves no list.
   bool update(const StepContext& context, Real slack);
-  /// Whether update() would not have to search. Finds out anew how the body has turned, if it must.
+  /// Returns whether update() would not search. Determines the rotation of the body again if
+  /// necessary.
   bool is_current(const StepContext& context, Real slack);
 
   const IndexRange& particles() const { return particles_; }
-  /// The others of particle i of the body.
+  /// The entries of particle i of the body.
   std::span<const Index> of(Index i) const { return table_.of(i - particles_.begin); }
   std::size_t size() const { return table_.size(); }
 
  private:
   void fit(const std::vector<Vec3>& positions);
-  /// Whether no particle is further from where the rigid motion has it.
+  /// Returns whether all particles are within `distance` of the rigid motion.
   bool is_within(const StepContext& context, Real distance);
   void search(const StepContext& context, Real skin);
 
   IndexRange particles_;
   PairTable table_;
-  std::vector<Vec3> built_at_;  ///< of the body's particles
-  Real skin_ = 0;               ///< of the list; 0: there is none [m]
-  // The rigid motion since then: x -> turn (x - from) + to.
+  std::vector<Vec3> built_at_;  ///< positions of the body's particles
+  Real skin_ = 0;               ///< skin of the list; 0: no list [m]
+  // The rigid motion since the search: x -> turn (x - from) + to.
   Mat3 turn_ = Mat3::Identity();
   Vec3 from_ = Vec3::Zero();
   Vec3 to_ = Vec3::Zero();
-  // Scratch.
+  // Buffers:
   SortedParticles sorted_;
   std::vector<Index> all_;
   std::vector<char> is_far_;  ///< by block

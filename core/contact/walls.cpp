@@ -10,11 +10,12 @@
 #include "core/laws/lennard_jones.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// The walls that a model has, as they are at one time.
+/// The walls of a model at one time.
 class WallPlanes {
  public:
   WallPlanes(const Model& model, const VatMotion& motion) : offset_(motion.offset) {
@@ -25,7 +26,7 @@ class WallPlanes {
     }
   }
 
-  /// The least that wall_distance() is for any of them [m].
+  /// The minimum of wall_distance() over the walls [m].
   Real nearest(const Vec3& p) const {
     const Vec3 x = p - offset_;
     const Real along_x = std::min(x.x() - min_.x(), max_.x() - x.x());
@@ -40,13 +41,13 @@ class WallPlanes {
   Vec3 max_ = Vec3::Constant(std::numeric_limits<Real>::infinity());
 };
 
-/// What the walls do to one particle.
+/// The sum over the walls that act on one particle.
 struct WallForce {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 torque = Vec3::Zero();  ///< of friction, about the particle's centre [N m]
-  int count = 0;               ///< of the walls that push
-  Real stiffness = 0;          ///< of the stiffest [N/m]
-  Real damping = 0;            ///< of the strongest dashpot [N s/m]
+  int count = 0;               ///< number of walls that exert a force
+  Real stiffness = 0;          ///< maximum [N/m]
+  Real damping = 0;            ///< maximum over the dashpots [N s/m]
 };
 
 void add_layer(const ContactLaw& law, int wall, Real threshold, Real distance, WallForce& sum) {
@@ -57,7 +58,7 @@ void add_layer(const ContactLaw& law, int wall, Real threshold, Real distance, W
   ++sum.count;
 }
 
-/// `damping_at(wall)`: of the dashpot [N s/m]; `kept` takes the dampers, if it is asked to.
+/// `damping_at(wall)`: damping of the dashpot [N s/m]. `kept` collects the dampers; it may be null.
 template <bool has_friction, class Damping>
 WallForce sum_walls(const Model& model, const VatMotion& motion, const Configuration& at,
                     const std::vector<Vec3>& spins, Index i, Damping&& damping_at,
@@ -106,6 +107,7 @@ WallForce sum_walls(const Model& model, const VatMotion& motion, const Configura
 template <bool has_friction>
 void add_block(StepContext& c, const VatMotion& motion, std::size_t begin, std::size_t end,
                DamperBlock* kept) {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
   const ContactMobility mobilities{c.model, c.work, c.configuration, c.step};
   const WallPlanes planes(c.model, motion);
   for (std::size_t k = begin; k < end; ++k) {
@@ -115,20 +117,20 @@ void add_block(StepContext& c, const VatMotion& motion, std::size_t begin, std::
       continue;
     }
     const WallForce sum = sum_walls<has_friction>(
-        c.model, motion, c.configuration, c.work.of<ContactForceScratch>().spins, i,
+        c.model, motion, c.configuration, contact_buffers.spins, i,
         [&](int wall) { return mobilities.wall_damping(i, wall_normal(wall)); }, kept);
     if (sum.count == 0) continue;
     if (kept != nullptr) kept->close(i);
     c.forces.particle[i] += sum.force;
     if constexpr (has_friction) c.forces.friction_torque[i] += sum.torque;
-    c.work.of<ContactForceScratch>().contact_loads[i].stiffness += sum.stiffness;
+    contact_buffers.contact_loads[i].stiffness += sum.stiffness;
     Real damping = sum.damping;
     if constexpr (has_friction) {  // walls are at right angles: each drags along the others'
                                    // normals
       const Real sticking = wall_friction(c.model, i).sticking;
       damping = std::max(damping, sticking) + (sum.count - 1) * sticking;
     }
-    c.work.of<ContactForceScratch>().contact_loads[i].damping += damping;
+    contact_buffers.contact_loads[i].damping += damping;
   }
 }
 
@@ -154,16 +156,17 @@ Vec3 wall_arm(const Model& model, Index i, int wall, Real distance) {
 }
 
 void add_wall_forces(StepContext& c) {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
   const VatMotion motion = vat_motion(*c.model.scene.vat, c.time);
-  c.work.of<ContactForceScratch>().contact_loads.resize(c.model.particle_count);
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count && c.model.scene.vat);
+  contact_buffers.contact_loads.resize(c.model.particle_count);
   if (c.work.keep_dampers) {
-    c.work.of<ContactForceScratch>().wall_dampers.resize(block_count(c.model.particle_count));
+    contact_buffers.wall_dampers.resize(block_count(c.model.particle_count));
   }
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
-    // Walls push a coupled liquid by its own pressure.
+    // Coupled liquids feel walls by their pressure.
     DamperBlock* const kept =
-        c.work.keep_dampers ? &c.work.of<ContactForceScratch>().wall_dampers[begin / kBlockSize]
-                            : nullptr;
+        c.work.keep_dampers ? &contact_buffers.wall_dampers[begin / kBlockSize] : nullptr;
     if (kept != nullptr) kept->clear();
     const std::size_t first =
         c.model.is_coupled ? std::max<std::size_t>(begin, c.model.liquid_count) : begin;

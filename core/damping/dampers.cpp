@@ -14,6 +14,7 @@
 #include "core/liquid/pairs/no_slip.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/solid/spring_sums.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -100,21 +101,23 @@ void DampingMatrix::collect_rigid(const ForceModel& f) {
 
 template <class F>
 void DampingMatrix::for_kept_blocks(const ForceModel& f, std::size_t block, F&& visit) const {
+  ContactForceScratch& contact_buffers = f.work.of<ContactForceScratch>();
   if (has_own_ && block < own_.size()) visit(own_[block]);
-  if (has_contact_forces(f.model)) visit(f.work.of<ContactForceScratch>().contact_dampers[block]);
-  if (has_wall_forces(f.model)) visit(f.work.of<ContactForceScratch>().wall_dampers[block]);
+  if (has_contact_forces(f.model)) visit(contact_buffers.contact_dampers[block]);
+  if (has_wall_forces(f.model)) visit(contact_buffers.wall_dampers[block]);
 }
 
 namespace {
 
-/// Of a pair of liquid slots: what add_liquid_forces() has for the difference of velocities, or
-/// add_tait_forces() for its part along x, over |x|^2.
+/// The viscosity of a pair of liquid slots: the factor of the difference of velocities in
+/// add_liquid_forces(), or of its component along x in add_tait_forces(), divided by |x|^2.
 Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
+  LiquidScratch& buffers = f.work.of<LiquidScratch>();
   const Model& model = f.model;
-  const std::span<const Index> order = f.work.of<LiquidScratch>().liquid.grid.order();
+  const std::span<const Index> order = buffers.liquid.grid.order();
   const LiquidModel& liquid = liquid_of(model, order[slot]);
-  const LiquidRecord& own = f.work.of<LiquidScratch>().liquid_records[slot];
-  const LiquidRecord& other = f.work.of<LiquidScratch>().liquid_records[other_slot];
+  const LiquidRecord& own = buffers.liquid_records[slot];
+  const LiquidRecord& other = buffers.liquid_records[other_slot];
   const Real r = model.periodic.nearest(own.position - other.position).norm();
   if (model.is_coupled) {
     return -mean_viscosity(liquid, liquid_of(model, order[other_slot])) * liquid.slope_scale *
@@ -122,9 +125,9 @@ Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
   }
   const Real strength =
       liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
-  return model.no_slip_walls.empty() ? strength
-                                     : strength * (f.work.of<LiquidScratch>().filling[slot] *
-                                                   f.work.of<LiquidScratch>().filling[other_slot]);
+  return model.no_slip_walls.empty()
+             ? strength
+             : strength * (buffers.filling[slot] * buffers.filling[other_slot]);
 }
 
 }  // namespace
@@ -146,7 +149,7 @@ void DampingMatrix::collect_viscosity(const ForceModel& f) {
 
 namespace {
 
-/// What a damper does to particle i.
+/// The force of a damper on particle i.
 Vec3 damp(const Damper& damper, const std::vector<Vec3>& w, Index i) {
   const Vec3 change = damper.other == kNoParticle ? w[i] : Vec3(w[i] - w[damper.other]);
   return -damper.strength * change.dot(damper.direction) * damper.direction;
@@ -182,7 +185,9 @@ void damp_springs(const ForceModel& f, const std::vector<Vec3>& w, Index begin, 
 void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
                              const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                              std::vector<Vec3>& torque) {
+  LiquidScratch& buffers = f.work.of<LiquidScratch>();
   const Model& model = f.model;
+  VAT_CHECK(w.size() == f.model.particle_count && force.size() == f.model.particle_count);
   for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     std::fill(force.begin() + static_cast<std::ptrdiff_t>(begin),
               force.begin() + static_cast<std::ptrdiff_t>(end), Vec3::Zero());
@@ -206,20 +211,20 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
   });
   if (!is_viscous_) return;
 
-  const std::span<const Index> order = f.work.of<LiquidScratch>().liquid.grid.order();
+  VAT_CHECK(viscosities_.size() == block_count(model.liquid_count));
+  const std::span<const Index> order = buffers.liquid.grid.order();
   by_slot_.resize(order.size());
   for (std::size_t s = 0; s < order.size(); ++s) by_slot_[s] = w[order[s]];
   for_blocks(f.runner, order.size(), [&](std::size_t begin, std::size_t end) {
-    const PairBlock& pairs = f.work.of<LiquidScratch>().liquid_pairs[begin / kBlockSize];
+    const PairBlock& pairs = buffers.liquid_pairs[begin / kBlockSize];
     const std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
     for (std::size_t s = begin; s < end; ++s) {
       Vec3 sum = Vec3::Zero();
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
         const Vec3 change = by_slot_[pairs.slots[k]] - by_slot_[s];
         if (f.model.is_coupled) {
-          const Vec3 x = f.model.periodic.nearest(
-              f.work.of<LiquidScratch>().liquid_records[s].position -
-              f.work.of<LiquidScratch>().liquid_records[pairs.slots[k]].position);
+          const Vec3 x = f.model.periodic.nearest(buffers.liquid_records[s].position -
+                                                  buffers.liquid_records[pairs.slots[k]].position);
           sum += viscosities[k] * change.dot(x) * x;
         } else {
           sum += viscosities[k] * change;

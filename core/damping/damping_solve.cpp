@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/model/model.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 constexpr Real kTolerance = 1e-2;  // of the change of velocities, in the norm of M
 constexpr int kMaxDampingPasses = 200;
 
-/// The solve's constants.
+/// The constants of the solve.
 struct Equation {
   const ForceModel& force_model;
   const Configuration& at;
@@ -28,7 +29,7 @@ void resize(const Model& model, Motion& motion) {
   motion.angular.resize(model.rigid_bodies.size());
 }
 
-/// The sums of f(i) over free particles, each over blocks in their order.
+/// The sum of f(i) over free particles, in blocks in their order.
 template <class Sums, class F>
 Sums sum_over_particles(const Equation& eq, std::vector<Sums>& partial, F&& f) {
   const Index count = eq.model().free_count;
@@ -58,7 +59,7 @@ void find_inertias(const Equation& eq) {
   }
 }
 
-/// force = D w; writes the rigid particles' entries of w.
+/// force = D w; writes the entries of rigid particles in w.
 void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   const Model& model = eq.model();
   std::vector<Vec3>& friction_torque = eq.scratch.friction_torque;
@@ -83,8 +84,8 @@ void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   });
 }
 
-/// r = dt f + M v with v the velocities given by particle, p = M^-1 r, w = 0, D w = 0; returns
-/// <r, M^-1 r>.
+/// r = dt f + M v with the velocities v by particle, p = M^-1 r, w = 0, D w = 0; returns <r, M^-1
+/// r>.
 template <class F>
 Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
   const Model& model = eq.model();
@@ -129,7 +130,7 @@ Real curvature_along(const Equation& eq) {
   return sum;
 }
 
-/// w += length p, and what follows from it for D w and r.
+/// w += length p; updates D w and r.
 DampingSums advance_along(const Equation& eq, Real length) {
   const Model& model = eq.model();
   const std::vector<DampedBody>& bodies = eq.scratch.bodies;
@@ -185,7 +186,7 @@ void iterate(const Equation& eq, Real error) {
     if (!(error > kTolerance * kTolerance * size)) return;
     apply_damping(eq, eq.scratch.direction, eq.scratch.product);
     const Real curvature = curvature_along(eq);
-    if (!(curvature > 0)) return;  // too small for numbers
+    if (!(curvature > 0)) return;  // too small for the precision of numbers
     const DampingSums advance = advance_along(eq, error / curvature);
     turn_direction(eq, advance.error / error);
     error = advance.error;
@@ -197,7 +198,7 @@ Oscillation greater(const Oscillation& a, const Oscillation& b) {
   return {std::max(a.omega2, b.omega2), std::max(a.rate, b.rate)};
 }
 
-/// Of bodies with particles that move on their own, by their own forces.
+/// The bound of the own forces of bodies with free particles.
 Oscillation bound_bodies(const Model& model) {
   Oscillation bound;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -215,12 +216,14 @@ Oscillation bound_bodies(const Model& model) {
 }  // namespace
 
 Oscillation find_bound(const ForceModel& f, const Configuration& at) {
+  ContactForceScratch& contact_buffers = f.work.of<ContactForceScratch>();
   const Model& model = f.model;
-  const std::vector<ContactLoad>& loads = f.work.of<ContactForceScratch>().contact_loads;
+  VAT_CHECK(f.model.damping.own.size() == f.model.bodies.size());
+  const std::vector<ContactLoad>& loads = contact_buffers.contact_loads;
   Oscillation bound = bound_bodies(model);
   if (loads.empty()) return bound;
   const auto take = [&](const Oscillation& o) { bound = greater(bound, o); };
-  std::vector<Oscillation>& by_block = f.work.of<ContactForceScratch>().load_bounds;
+  std::vector<Oscillation>& by_block = contact_buffers.load_bounds;
   by_block.resize(block_count(model.free_count));
   for_blocks(f.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
     Oscillation& of_block = by_block[begin / kBlockSize];
@@ -271,6 +274,8 @@ bool must_solve_own_damping(const Model& model, Real dt) {
 void solve_damping(const ForceModel& f, const Configuration& from, const Configuration& at,
                    Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
   const Equation eq{f, at, dt, scratch};
+  VAT_CHECK(forces.particle.size() == f.model.particle_count &&
+            from.velocity.size() == at.velocity.size());
   scratch.matrix.collect(f, at, time, viscosity);
   for (Motion* motion :
        {&scratch.change, &scratch.force, &scratch.residual, &scratch.direction, &scratch.product}) {

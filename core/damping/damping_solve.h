@@ -5,15 +5,15 @@
 
 namespace vat {
 
-/// One entry for each particle, and for each rigid body: velocities, or forces. Rigid particles'
-/// velocities follow from their bodies', and bodies' forces from their particles'.
+/// Velocities or forces, with one entry for each particle and for each rigid body. Velocities of
+/// rigid particles follow from those of bodies, and forces on bodies from those on particles.
 struct Motion {
   std::vector<Vec3> particle;
   std::vector<Vec3> linear;
   std::vector<Vec3> angular;
 };
 
-/// A rigid body as the solve sees it, in world axes. What is held does not yield.
+/// A rigid body in the solve, in world axes. A held body has no inverse mass and inertia.
 struct DampedBody {
   Real mass;
   Real inverse_mass;
@@ -21,7 +21,7 @@ struct DampedBody {
   Mat3 inverse_inertia;
 };
 
-/// Sums over one block, or over all.
+/// Sums over one block or over all blocks.
 struct DampingSums {
   Real error = 0;  ///< <r, M^-1 r> of the residual r
   Real size = 0;   ///< <w, M w>
@@ -33,7 +33,7 @@ struct DampingSums {
   }
 };
 
-/// Scratch of solve_damping().
+/// Buffers of solve_damping().
 struct DampingScratch {
   DampingMatrix matrix;
   std::vector<DampedBody> bodies;
@@ -44,32 +44,34 @@ struct DampingScratch {
   Motion product;                     ///< D times the direction
   std::vector<Vec3> friction_torque;  ///< see DampingMatrix::multiply()
   std::vector<Real> partial_sums;     ///< by block
-  std::vector<DampingSums> sums;      ///< the same
+  std::vector<DampingSums> sums;      ///< by block
 };
 
-/// An upper bound of the oscillations that springs, liquids and the contacts of the last evaluation
-/// allow: of each particle, or rigid body, the sum of its own and of all its contacts.
+/// An upper bound of the oscillations of springs, liquids and the contacts of the last evaluation:
+/// the maximum over particles and rigid bodies of the sum of their own bound and those of their
+/// contacts.
 Oscillation find_bound(const ForceModel& force_model, const Configuration& at);
 
-/// Whether velocity Verlet must solve for the damping in a step of `dt`; where it need not, forces
-/// at predicted velocities are stable too, which takes (omega dt)^2 + 4 rate dt <= 4.
+/// Returns whether velocity Verlet must solve for the damping in a step of `dt`. Forces at
+/// predicted velocities are stable as well if (omega dt)^2 + 4 rate dt <= 4.
 bool must_solve_damping(const Oscillation& bound, Real dt);
 
-/// Changes `forces`, evaluated at `at` with velocities near those at the end of a step, into those
-/// at the velocities v that they lead to: M (v - from) = dt (f + D (v - at)), with `from` the
-/// velocities that forces over `dt` begin from: half a step of velocity Verlet's, or a whole one of
-/// symplectic Euler's. Linear in what acts at `at`; by conjugate gradients for w = v - at.
-/// D w is a sum of equal and opposite forces, so momentum is conserved after any number of
-/// iterations. Needs the dampers that the workspace kept; the rigid bodies of `at` move as those of
-/// `from`.
+/// Changes `forces`, evaluated at `at` with velocities close to those at the end of a step, into
+/// the forces at the resulting velocities v: M (v - from) = dt (f + D (v - at)). `from` are the
+/// velocities before the forces act for `dt`: half a step of velocity Verlet, or a whole step of
+/// symplectic Euler. The equation is linear in w = v - at, and solved by conjugate gradients. D w
+/// is a sum of equal and opposite forces, so that momentum is conserved after any number of
+/// iterations. Needs the dampers of an evaluation with keep_dampers. The rigid bodies of `at` have
+/// the motion of those of `from`.
 void solve_damping(const ForceModel& force_model, const Configuration& from,
                    const Configuration& at, Real time, Real dt, bool viscosity, Forces& forces,
                    DampingScratch& scratch);
 
-/// Whether the viscosity of some liquid takes part in that.
+/// Returns whether the viscosity of some liquid must be solved in a step of `dt`.
 bool must_solve_viscosity(const Model& model, Real dt);
 
-/// The same of what liquids do to solids in them too: of any body's own damping.
+/// Returns whether the own damping of some body must be solved in a step of `dt`, including that of
+/// solids in liquids.
 bool must_solve_own_damping(const Model& model, Real dt);
 
 }  // namespace vat

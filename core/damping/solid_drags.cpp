@@ -6,12 +6,14 @@
 #include "core/evaluation/force_model.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 
 void SolidDrags::collect_of(const ForceModel& f, const CellSortedPoints& from, Index first,
                             const CellSortedPoints& to, Index other_first,
                             const std::vector<PairBlock>& near, std::vector<Block>& blocks) {
+  VAT_CHECK(near.size() == block_count(from.grid.order().size()));
   const Model& model = f.model;
   const std::size_t count = from.grid.order().size();
   blocks.resize(block_count(count));
@@ -59,19 +61,19 @@ void SolidDrags::add_of(const ForceModel& f, const CellSortedPoints& from, Index
 }
 
 void SolidDrags::collect(const ForceModel& f) {
-  const Scratch& work = f.work;
+  LiquidScratch& buffers = f.work.of<LiquidScratch>();
   const Index solids = f.model.liquid_count;
-  collect_of(f, work.of<LiquidScratch>().liquid, 0, work.of<LiquidScratch>().solids_in_liquid,
-             solids, work.of<LiquidScratch>().solids_of_liquid, of_liquid_);
-  collect_of(f, work.of<LiquidScratch>().solids_in_liquid, solids, work.of<LiquidScratch>().liquid,
-             0, work.of<LiquidScratch>().liquid_of_solids, of_solids_);
+  collect_of(f, buffers.liquid, 0, buffers.solids_in_liquid, solids, buffers.solids_of_liquid,
+             of_liquid_);
+  collect_of(f, buffers.solids_in_liquid, solids, buffers.liquid, 0, buffers.liquid_of_solids,
+             of_solids_);
 }
 
 void SolidDrags::add(const ForceModel& f, const std::vector<Vec3>& w,
                      std::vector<Vec3>& force) const {
-  add_of(f, f.work.of<LiquidScratch>().liquid, 0, of_liquid_, w, force);
-  add_of(f, f.work.of<LiquidScratch>().solids_in_liquid, f.model.liquid_count, of_solids_, w,
-         force);
+  LiquidScratch& buffers = f.work.of<LiquidScratch>();
+  add_of(f, buffers.liquid, 0, of_liquid_, w, force);
+  add_of(f, buffers.solids_in_liquid, f.model.liquid_count, of_solids_, w, force);
 }
 
 }  // namespace vat

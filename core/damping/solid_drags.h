@@ -11,14 +11,14 @@ namespace vat {
 
 struct ForceModel;
 
-/// The viscous forces between a weakly compressible liquid and the solids in it, those of
+/// The viscous forces between a weakly compressible liquid and its solids, those of
 /// add_tait_forces() and add_tait_forces_on_solids(), as a symmetric, negative semi-definite matrix
 /// D; see DampingMatrix.
 class SolidDrags {
  public:
-  /// Of the configuration that `force_model` was last evaluated at.
+  /// Collects the forces of the configuration at which `force_model` was last evaluated.
   void collect(const ForceModel& force_model);
-  /// force += D w, both with an entry for each particle.
+  /// force += D w, with an entry for each particle.
   void add(const ForceModel& force_model, const std::vector<Vec3>& w,
            std::vector<Vec3>& force) const;
 
@@ -26,14 +26,15 @@ class SolidDrags {
   /// f = -strength x x^T (w - w_other).
   struct Drag {
     Index other;    ///< particle
-    Real strength;  ///< over |x|^2 [N s/m^3]
+    Real strength;  ///< divided by |x|^2 [N s/m^3]
     Vec3 x;         ///< [m]
   };
   struct Block {
     std::vector<Drag> drags;
     std::array<Index, kBlockSize + 1> begin;  ///< by slot
   };
-  /// Of `from`, whose first particle is `first`, by what `near` has of `to`.
+  /// Collects the forces on `from`, whose first particle is `first`, by its neighbours in `to`,
+  /// listed in `near`.
   static void collect_of(const ForceModel& f, const CellSortedPoints& from, Index first,
                          const CellSortedPoints& to, Index other_first,
                          const std::vector<PairBlock>& near, std::vector<Block>& blocks);

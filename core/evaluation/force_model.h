@@ -12,22 +12,22 @@
 
 namespace vat {
 
-/// Evaluates all forces: runs the model's plan.
+/// Evaluates all forces by running the plan of the model.
 struct ForceModel {
   const Model& model;
   const Controls& controls;
   Scratch& work;
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
-  std::uint64_t step = 0;           ///< the nominal step being taken
-  AdvanceReport* report = nullptr;  ///< counts evaluations, if any
-  MotionProbe* probe = nullptr;     ///< sees them, if any
+  std::uint64_t step = 0;           ///< the present nominal step
+  AdvanceReport* report = nullptr;  ///< counts evaluations; may be null
+  MotionProbe* probe = nullptr;     ///< observes evaluations; may be null
 
   /// Tells the observer that `stage` begins.
   void enter(std::string_view stage) const {
     if (observer != nullptr) observer->stage_begins(stage);
   }
-  /// Forces at `configuration` and `time`; also moves rigid particles to their poses.
+  /// Computes the forces at `configuration` and `time`. Moves rigid particles to their poses.
   void evaluate(Configuration& configuration, Real time, Forces& forces) const;
 };
 

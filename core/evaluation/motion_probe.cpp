@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
-constexpr Real kNoticed = 1e-9;  // of a radius: shorter paths are rounding
+constexpr Real kNoticed = 1e-9;  // in radii: shorter distances are rounding
 
-/// sum m |v - mean|^2 of a body's particles, with value(i) its vector.
+/// sum m |v - mean|^2 over the particles of a body, with the vectors value(i).
 template <class Value>
 Real spread(const Model& model, const IndexRange& particles, Value&& value) {
   Vec3 mean = Vec3::Zero();
@@ -39,10 +41,11 @@ void MotionProbe::see(const Configuration& at, const Forces& forces) {
 }
 
 Real MotionProbe::observed_rate(const Model& model) const {
+  VAT_CHECK(seen_ < 2 || last_position_.size() == model.particle_count);
   if (seen_ < 2) return 0;
   Real greatest = 0;
   for (const ModelBody& body : model.bodies) {
-    // Nor do bodies with implicit springs follow the forces that are seen here as they move.
+    // The observed forces of bodies with implicit springs do not determine their motion either.
     if (body.kind == BodyKind::rigid || body.particles.begin >= model.implicit_begin) continue;
     const Real way = spread(model, body.particles,
                             [&](Index i) { return Vec3(last_position_[i] - first_position_[i]); });

@@ -7,23 +7,23 @@
 
 namespace vat {
 
-/// Sees the force evaluations of a step, and estimates from the first and the last of them how fast
-/// the motion in it is: over each deformable or liquid body, in the norm of its masses and relative
-/// to its mean, omega^2 = |change of acceleration| / |change of place|.
+/// Estimates the rate of motion in a step from the first and the last force evaluation: for each
+/// deformable or liquid body, in the norm of its masses and relative to its mean, omega^2 = |change
+/// of acceleration| / |change of position|.
 ///
-/// That is the error estimate that the methods embed, which costs no evaluation: Heun's step
-/// differs from the embedded Euler step by dt/2 (a_2 - a_1), velocity Verlet misses dt^2/12 (a_2 -
-/// a_1) of the path (the trapezoidal rule's error), and in Runge-Kutta 4 it is the quotient of
-/// differences of stages that L. Collatz (The Numerical Treatment of Differential Equations, ch.
-/// II) bounds. Over the path itself each is a function of omega dt alone; see
+/// This is the error estimate embedded in the methods, without further evaluations. Heun's step
+/// differs from the embedded Euler step by dt/2 (a_2 - a_1). The position error of velocity Verlet
+/// is dt^2/12 (a_2 - a_1), that of the trapezoidal rule. In Runge-Kutta 4 it is the quotient of
+/// stage differences that L. Collatz (The Numerical Treatment of Differential Equations, ch. II)
+/// bounds. Divided by the path, each is a function of omega dt only; see
 /// core/numerics/error_model.h.
 class MotionProbe {
  public:
-  /// A step begins; where the forces of its configuration are known already, the
-  /// step does not evaluate them again.
+  /// Begins a step. Includes the forces of the state if they are current, because the step does not
+  /// evaluate them again.
   void begin(const State& state);
   void see(const Configuration& at, const Forces& forces);
-  /// omega [rad/s]; 0 where there were fewer than two evaluations, or nothing moves.
+  /// omega [rad/s]; 0 after fewer than two evaluations, or without motion.
   Real observed_rate(const Model& model) const;
 
  private:

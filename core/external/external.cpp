@@ -8,12 +8,14 @@
 #include "core/stage/context.h"
 #include "core/state/controls.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 void add_applied_force(const AppliedForce& applied, StepContext& c) {
   if (c.step >= applied.end_step) return;
+  VAT_CHECK(applied.body < c.model.bodies.size());
   const IndexRange particles = c.model.bodies[applied.body].particles;
   for (Index i = particles.begin; i < particles.end; ++i) {
     c.forces.particle[i] += c.model.mass[i] * applied.acceleration;
@@ -22,13 +24,14 @@ void add_applied_force(const AppliedForce& applied, StepContext& c) {
 
 void add_grab(const Grab& grab, StepContext& c) {
   const Index first = c.model.bodies[grab.body].particles.begin;
+  VAT_CHECK(grab.particle < c.model.bodies[grab.body].particles.size() && grab.held_mass > 0);
   const Index held = first + grab.particle;
   const PeriodicBox& box = c.model.periodic;
   const Vec3 way = (grab.target - c.configuration.position[held] + 0 * box.nearest(grab.target));
   Vec3 force = grab.stiffness * way - grab.damping * c.configuration.velocity[held];
   const Real size = force.norm();
   if (size > grab.max_force) force *= grab.max_force / size;
-  if (c.model.scene.dimensions == 2) force.y() = 0;  // the target may be anywhere
+  if (c.model.scene.dimensions == 2) force.y() = 0;  // the target may be outside the plane
   for (const Index i : grab.held) {
     c.forces.particle[first + i] += (c.model.mass[first + i] / grab.held_mass) * force;
   }
@@ -60,15 +63,15 @@ void add_settling_drag(const Settling& settling, StepContext& c) {
 }  // namespace
 
 void set_external_forces(StepContext& c) {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
   const Scene& scene = c.model.scene;
   const Vec3 gravity = scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero());
   const bool has_loads = has_contact_forces(c.model) || has_wall_forces(c.model);
-  c.work.of<ContactForceScratch>().contact_loads.resize(has_loads ? c.model.particle_count : 0);
+  contact_buffers.contact_loads.resize(has_loads ? c.model.particle_count : 0);
   for_blocks(c.runner, c.model.particle_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) c.forces.particle[i] = c.model.mass[i] * gravity;
     if (has_loads)
-      std::fill_n(c.work.of<ContactForceScratch>().contact_loads.data() + begin, end - begin,
-                  ContactLoad{});
+      std::fill_n(contact_buffers.contact_loads.data() + begin, end - begin, ContactLoad{});
   });
   if (c.model.has_friction) c.forces.friction_torque.assign(c.model.particle_count, Vec3::Zero());
   if (scene.forces.gravity && scene.central_field) add_central_field(*scene.central_field, c);

@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// The model's walls as they are at the end of a step.
+/// The walls of the model at the end of a step.
 struct Walls {
   const Model& model;
   VatMotion motion;
@@ -24,7 +25,7 @@ constexpr Real inward(int wall) {
   return wall % 2 == 0 ? 1 : -1;
 }
 
-/// Round-off of positions about the walls across an axis [m].
+/// Rounding error of positions at the walls across an axis [m].
 Real round_off(const Walls& walls, int axis) {
   const Vat& vat = *walls.model.scene.vat;
   const Real offset = std::abs(walls.motion.offset[axis]);
@@ -32,7 +33,7 @@ Real round_off(const Walls& walls, int axis) {
   return std::numeric_limits<Real>::epsilon() * (place + offset);
 }
 
-/// The first coordinate at or inside the wall that counts as inside.
+/// The coordinate of the wall, or the first one inside it that counts as inside.
 Real plane_of(const Walls& walls, int wall, Vec3 p) {
   const Vat& vat = *walls.model.scene.vat;
   const int axis = wall / 2;
@@ -44,8 +45,8 @@ Real plane_of(const Walls& walls, int wall, Vec3 p) {
   return p[axis];
 }
 
-/// A box inside the walls by more than round-off, unbounded where there is none: what is in it
-/// needs no closer look.
+/// A box inside the walls by more than the rounding error, unbounded without walls. Positions in it
+/// need no exact test.
 struct ClearBox {
   explicit ClearBox(const Walls& walls) {
     constexpr Real kUnits = 8;
@@ -70,9 +71,9 @@ struct ClearBox {
   Vec3 max = Vec3::Constant(std::numeric_limits<Real>::infinity());
 };
 
-/// Where walls are mirrors a particle that passes one is its image: stopped at the plane it would
-/// stay there, for its own image would not push it.
-bool hold_particle(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& velocity) {
+/// Returns a particle to the inside. Mirror walls reflect it: on the plane it would stay there,
+/// because its own image would not repel it.
+bool move_particle_inside(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& velocity) {
   const bool bounces = is_mirrored && !walls.model.is_incompressible;
   bool is_stopped = false;
   for (const int wall : walls.model.walls) {
@@ -93,11 +94,11 @@ bool hold_particle(const Walls& walls, bool is_mirrored, Vec3& position, Vec3& v
   return is_stopped;
 }
 
-/// Of a rigid body's particles, seen from one wall.
+/// The particles of a rigid body, seen from one wall.
 struct Reach {
-  Real distance = std::numeric_limits<Real>::infinity();  ///< the least [m]
-  Real depth = 0;                                         ///< sum over those beyond [m]
-  Vec3 arm = Vec3::Zero();                                ///< sum of depth times arm [m^2]
+  Real distance = std::numeric_limits<Real>::infinity();  ///< minimum [m]
+  Real depth = 0;           ///< sum over particles beyond the wall [m]
+  Vec3 arm = Vec3::Zero();  ///< sum of depth times arm [m^2]
 };
 using Reaches = std::array<Reach, kWallCount>;
 
@@ -129,7 +130,7 @@ bool fits(const Walls& walls, const Reaches& reaches) {
   return true;
 }
 
-/// Takes away the outward velocity of the body's point at `arm` by an impulse along the normal.
+/// Removes the outward velocity of the body's point at `arm` by an impulse along the normal.
 void stop_point(const Walls& walls, int wall, const RigidModel& rigid, const Vec3& arm,
                 RigidState& state) {
   const Vec3 normal = wall_normal(wall);
@@ -146,7 +147,8 @@ void stop_point(const Walls& walls, int wall, const RigidModel& rigid, const Vec
   state.angular_momentum += impulse * lever;
 }
 
-/// True where the box about the body's particles is inside every wall by more than round-off.
+/// Returns whether the box of the body's particles is inside every wall by more than the rounding
+/// error.
 bool is_clear(const Walls& walls, const RigidState& state, const Vec3& half_sizes) {
   constexpr Real kMargin = 1.001;
   const Vec3 reach =
@@ -156,10 +158,10 @@ bool is_clear(const Walls& walls, const RigidState& state, const Vec3& half_size
   });
 }
 
-bool hold_body(const Walls& walls, const RigidModel& rigid, const Quat& earlier_orientation,
-               RigidState& state, Configuration& now) {
-  // The first round does the work, unless the body is in a corner that is narrow for it; the others
-  // are for its rounding.
+bool move_body_inside(const Walls& walls, const RigidModel& rigid, const Quat& earlier_orientation,
+                      RigidState& state, Configuration& now) {
+  // The first round suffices, except in a corner that is narrow for the body. The others correct
+  // its rounding errors.
   constexpr int kRounds = 8;
   for (int round = 0; round < kRounds; ++round) {
     pose_rigid_body(walls.model, rigid, state, now);
@@ -188,9 +190,10 @@ bool hold_body(const Walls& walls, const RigidModel& rigid, const Quat& earlier_
 
 }  // namespace
 
-std::uint64_t hold_particles_inside(const Model& model, Real time, std::size_t count,
-                                    TaskRunner* runner, Configuration& now) {
+std::uint64_t enforce_walls_on_particles(const Model& model, Real time, std::size_t count,
+                                         TaskRunner* runner, Configuration& now) {
   if (model.walls.empty()) return 0;
+  VAT_CHECK(count <= now.position.size() && count <= model.free_count);
   const Walls walls{model, vat_motion(*model.scene.vat, time)};
   const ClearBox clear(walls);
   std::atomic<std::uint64_t> stops = 0;
@@ -198,7 +201,7 @@ std::uint64_t hold_particles_inside(const Model& model, Real time, std::size_t c
     for (std::size_t i = begin; i < stop; ++i) {
       if (clear.has(now.position[i]) || model.inverse_mass[i] == 0) continue;
       const bool is_mirrored = model.is_coupled && i < model.liquid_count;
-      if (hold_particle(walls, is_mirrored, now.position[i], now.velocity[i])) {
+      if (move_particle_inside(walls, is_mirrored, now.position[i], now.velocity[i])) {
         stops.fetch_add(1, std::memory_order_relaxed);
       }
     }
@@ -209,15 +212,16 @@ std::uint64_t hold_particles_inside(const Model& model, Real time, std::size_t c
 std::uint64_t enforce_walls(const Model& model, const GuardBounds& bounds, const StepEnd& end,
                             const Configuration& before, TaskRunner* runner, Configuration& now) {
   if (model.walls.empty()) return 0;
+  VAT_CHECK(bounds.half_sizes.size() == model.rigid_bodies.size());
   const Walls walls{model, vat_motion(*model.scene.vat, end.time)};
-  std::uint64_t stops = hold_particles_inside(model, end.time, model.free_count, runner, now);
+  std::uint64_t stops = enforce_walls_on_particles(model, end.time, model.free_count, runner, now);
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = now.rigid[b];
     if (rigid.is_held(end.step) || is_clear(walls, state, bounds.half_sizes[b])) {
       continue;
     }
-    if (hold_body(walls, rigid, before.rigid[b].orientation, state, now)) ++stops;
+    if (move_body_inside(walls, rigid, before.rigid[b].orientation, state, now)) ++stops;
   }
   return stops;
 }

@@ -7,6 +7,7 @@
 
 #include "core/limits.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -19,13 +20,13 @@ Real least_radius(const Model& model, const ModelBody& body) {
   return least;
 }
 
-/// Bodies that all notice another one alike, but for the radius.
+/// Bodies that interact with another one in the same way, except for their radii.
 struct AlikeBodies {
   std::size_t count = 0;
   Real least_radius = kMaxLength;
 };
 
-/// By material, twice: solids, and liquids, which do not touch their own kind of the same material.
+/// By material, for solids and for liquids. Liquids do not touch liquids of their material.
 std::array<std::vector<AlikeBodies>, 2> bodies_by_material(const Model& model) {
   std::array<std::vector<AlikeBodies>, 2> result;
   result.fill(std::vector<AlikeBodies>(model.scene.materials.size()));
@@ -40,7 +41,7 @@ std::array<std::vector<AlikeBodies>, 2> bodies_by_material(const Model& model) {
 Real travel_of(const Model& model, const ModelBody& body,
                const std::array<std::vector<AlikeBodies>, 2>& bodies) {
   if (model.is_coupled && body.kind == BodyKind::liquid) {
-    return model.liquids[body.material]->support_radius / 2;  // its pairs push from there on
+    return model.liquids[body.material]->support_radius / 2;  // pairs repel from this distance on
   }
   const Real radius = least_radius(model, body);
   Real travel = kMaxLength;
@@ -85,7 +86,7 @@ bool is_inside(const Vec3& position, const GuardBounds& bounds) {
          (position.array() <= bounds.max.array()).all();
 }
 
-/// Of a state that is outside of a bound, or not a number.
+/// The cause of a fault: out of bounds, or not a number.
 GuardEvent::Cause cause_of(const Vec3& position, const Vec3& velocity, const GuardBounds& bounds) {
   if (!position.allFinite() || !velocity.allFinite()) return GuardEvent::Cause::non_finite;
   if (!is_inside(position, bounds)) return GuardEvent::Cause::outside_domain;
@@ -96,11 +97,11 @@ std::optional<Fault> find_free_fault(const ModelBody& body, Index index, const C
                                      const GuardBounds& bounds, Real max_speed,
                                      TaskRunner* runner) {
   const std::size_t count = body.particles.size();
-  std::atomic<std::size_t> first = count;  // at fault
+  std::atomic<std::size_t> first = count;  // first particle with a fault
   for_blocks(runner, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = body.particles.begin + k;
-      // Written so that a NaN fails it.
+      // In this form, a NaN fails.
       if (is_inside(at.position[i], bounds) &&
           at.velocity[i].squaredNorm() <= max_speed * max_speed) {
         continue;
@@ -157,6 +158,7 @@ GuardBounds guard_bounds(const Model& model) {
 std::optional<Fault> find_fault(const Model& model, const Configuration& at,
                                 const GuardBounds& bounds, Real dt, TaskRunner* runner) {
   for (Index b = 0; b < model.bodies.size(); ++b) {
+    VAT_CHECK(bounds.travel.size() == model.bodies.size() && dt > 0);
     const ModelBody& body = model.bodies[b];
     const Real max_speed = std::min(kMaxSpeed, bounds.travel[b] / dt);
     const auto fault = body.kind == BodyKind::rigid

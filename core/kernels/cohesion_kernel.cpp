@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/kernels/lattice_sum.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -20,7 +21,7 @@ struct Node {
   Real weight;
 };
 
-/// Gauss-Legendre, of 0 to 1.
+/// Gauss-Legendre nodes on [0, 1].
 constexpr std::array<Node, 8> kNodes = {{{0.0198550717512319, 0.0506142681451881},
                                          {0.1016667612931866, 0.1111905172266872},
                                          {0.2372337950418355, 0.1568533229389437},
@@ -30,7 +31,8 @@ constexpr std::array<Node, 8> kNodes = {{{0.0198550717512319, 0.0506142681451881
                                          {0.8983332387068134, 0.1111905172266872},
                                          {0.9801449282487681, 0.0506142681451881}}};
 
-/// Of w over the plane at distance q, in units of H; in space a polynomial, exactly.
+/// The integral of w over the plane at distance q, in units of H; in space that of a polynomial,
+/// exact.
 Real wendland_over_plane(Real q, int dimensions) {
   if (q >= 1) return 0;
   const Real width = std::sqrt(1 - q * q);
@@ -55,6 +57,7 @@ CohesionKernel::CohesionKernel(Real support, Real spacing, int dimensions)
       inverse_near_(1 / (kCore * support)),
       far_scale_(constant_of(kReach * support, dimensions)),
       near_scale_(constant_of(kCore * support, dimensions)) {
+  VAT_CHECK(support > 0 && spacing > 0);
   constexpr Real kSlope = Real{-56} / 3;
   const auto steepness = [&](Real inverse_reach, Real slope) {
     return -sum_over_lattice(1 / inverse_reach, spacing, dimensions, [&](Real x, Real r) {

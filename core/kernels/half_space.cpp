@@ -7,21 +7,22 @@
 namespace vat {
 namespace {
 
-// Integral over planes: of C (h^2 - r^2)^3 over the plane at distance s, pi/4 C (h^2 - s^2)^4.
+// Integrals over planes. The integral of C (h^2 - r^2)^3 over the plane at distance s is pi/4 C
+// (h^2 - s^2)^4.
 Real filling_of_space(Real q) {
   const Real q2 = q * q;
   return 0.5 - Real{315} / 256 * q *
                    (1 - q2 * (Real{4} / 3 - q2 * (Real{6} / 5 - q2 * (Real{4} / 7 - q2 / 9))));
 }
 
-// Over the line at distance s, 32/35 C (h^2 - s^2)^(7/2), where s = h cos(angle).
+// Over the line at distance s: 32/35 C (h^2 - s^2)^(7/2), with s = h cos(angle).
 Real filling_of_plane(Real q) {
   const Real sine2 = 1 - q * q;
   const Real sum = 1 + sine2 * (Real{2} / 3 + sine2 * (Real{8} / 15 + sine2 * (Real{16} / 35)));
   return (std::acos(q) - q * std::sqrt(sine2) * sum) / std::numbers::pi;
 }
 
-// h times the integral over s from d of s A(s). In space, A(s) = pi C/3 (h - s)^2 (h + 2s).
+// h times the integral of s A(s) over s >= d. In space, A(s) = pi C/3 (h - s)^2 (h + 2s).
 Real drag_of_space(Real q) {
   const Real rest = 1 - q;
   return 0.75 * rest * rest * rest * (3 + q * (9 + 8 * q));

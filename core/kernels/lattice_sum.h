@@ -6,8 +6,9 @@
 
 namespace vat {
 
-/// The sum of f(x, r), times a cell's volume, over the points of a cubic (in two dimensions square)
-/// lattice nearer than h to one of them: x along an axis, r the distance from there.
+/// The sum of f(x, r), times the volume of a cell, over the points of a cubic (in two dimensions
+/// square) lattice that are closer than h to one of its points. r is the distance from this point,
+/// and x its component along an axis.
 template <class F>
 Real sum_over_lattice(Real h, Real spacing, int dimensions, F&& f) {
   const int reach = static_cast<int>(h / spacing);

@@ -16,7 +16,7 @@ class Poly6 {
         scale_(dimensions == 3 ? 315 / (64 * std::numbers::pi * h2_ * h2_ * h2_ * h2_ * h)
                                : 4 / (std::numbers::pi * h2_ * h2_ * h2_ * h2_)) {}
 
-  /// From the squared distance, which must be at most h^2.
+  /// `r2`: squared distance, at most h^2.
   Real value(Real r2) const {
     const Real d = h2_ - r2;
     return scale_ * (d * d * d);

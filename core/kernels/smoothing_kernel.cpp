@@ -12,7 +12,7 @@ namespace {
 struct Constants {
   Real in_space;  ///< C h^3
   Real in_plane;  ///< C h^2
-  Real slope;     ///< h^2 of slope_over_r() over its polynomial and C
+  Real slope;     ///< h^2 slope_over_r() / (C polynomial)
 };
 
 Constants constants_of(KernelId id) {
@@ -31,6 +31,7 @@ Constants constants_of(KernelId id) {
 
 SmoothingKernel::SmoothingKernel(KernelId id, Real h, int dimensions, Real scale)
     : id_(id), inverse_h_(1 / h) {
+  VAT_CHECK(h > 0 && (dimensions == 2 || dimensions == 3));
   const Constants constants = constants_of(id);
   scale_ =
       scale * (dimensions == 3 ? constants.in_space / (h * h * h) : constants.in_plane / (h * h));

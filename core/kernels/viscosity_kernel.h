@@ -8,10 +8,9 @@
 namespace vat {
 
 /// The kernel whose Laplacian is C (h - r) for r <= h, zero with its slope at h. In three
-/// dimensions W(r) = 15/(2 pi h^3) (-r^3/(2h^3) + r^2/h^2 + h/(2r) - 1), C = 45/(pi h^6)
-/// [MCG03] eq. 22; Boldt prints 2h/r for h/(2r), but only the latter has unit integral and a zero
-/// value and slope at h. In two, W(r) = C (h r^2/4 - r^3/9 - 5h^3/36 - h^3/6 ln(r/h)),
-/// C = 40/(pi h^5).
+/// dimensions W(r) = 15/(2 pi h^3) (-r^3/(2h^3) + r^2/h^2 + h/(2r) - 1), C = 45/(pi h^6) [MCG03]
+/// eq. 22. Boldt prints 2h/r for h/(2r); only the latter has a unit integral, and a zero value and
+/// slope at h. In two, W(r) = C (h r^2/4 - r^3/9 - 5h^3/36 - h^3/6 ln(r/h)), C = 40/(pi h^5).
 class ViscosityKernel {
  public:
   /// `dimensions`: 3 or 2.
@@ -21,7 +20,7 @@ class ViscosityKernel {
                                          : 40 / (std::numbers::pi * h * h * h * h * h)),
         dimensions_(dimensions) {}
 
-  /// r > 0.
+  /// W(r) for r > 0.
   Real value(Real r) const {
     const Real q = r / h_;
     const Real h3 = h_ * h_ * h_;
@@ -30,9 +29,9 @@ class ViscosityKernel {
     }
     return laplacian_scale_ * h3 * (q * q / 4 - q * q * q / 9 - Real{5} / 36 - std::log(q) / 6);
   }
-  /// C (h - r), never negative: viscosity only ever slows relative motion.
+  /// C (h - r), never negative: viscosity only slows relative motion.
   Real laplacian(Real r) const { return laplacian_scale_ * (h_ - r); }
-  /// C.
+  /// The constant C.
   Real laplacian_scale() const { return laplacian_scale_; }
 
  private:

@@ -3,18 +3,19 @@
 #include <array>
 #include <span>
 
+#include "core/support/check.h"
 #include "core/types.h"
 
 namespace vat {
 
-/// Volume and its slope of cells whose corners are numbered as SampledCell's. Faces are bilinear:
-/// the mean of their two ways of being cut into triangles. All from differences of places, so that
-/// no digits are lost far from the origin.
+/// Volume, and its slope, of cells whose corners are numbered as those of SampledCell. Faces are
+/// bilinear: the mean of both divisions into triangles. All terms are differences of positions, so
+/// that no digits are lost far from the origin.
 
 namespace cell {
 
-/// A face from the corner c, along the axes i and j after its own, seen from outside: its other
-/// corners in turn.
+/// The other corners of a face at the corner c, in order, seen from outside. The face is along the
+/// two axes that follow `axis`.
 inline std::array<Index, 3> face_of(Index c, Index axis) {
   const Index i = Index{1} << (axis + 1) % 3;
   const Index j = Index{1} << (axis + 2) % 3;
@@ -28,9 +29,11 @@ inline Vec3 quarter_turn(const Vec3& v) {
 
 }  // namespace cell
 
-/// The slope of the volume [m^2] with the place of one corner; of an area [m].
+/// The derivative of the volume by the position of one corner [m^2]; in two dimensions that of the
+/// area [m].
 inline Vec3 cell_slope(std::span<const Vec3> at, const std::array<Index, 8>& corners, Index c,
                        int dimensions) {
+  VAT_ASSERT(c < (dimensions == 2 ? 4U : 8U));
   if (dimensions == 2) {
     const bool is_outer = c == 0 || c == 3;
     const Vec3 across =
@@ -49,7 +52,7 @@ inline Vec3 cell_slope(std::span<const Vec3> at, const std::array<Index, 8>& cor
   return sum / 12;
 }
 
-/// The volume [m^3], negative where the cell is turned inside out; of two dimensions the area.
+/// The volume [m^3], negative for an inverted cell; in two dimensions the area [m^2].
 inline Real cell_volume(std::span<const Vec3> at, const std::array<Index, 8>& corners,
                         int dimensions) {
   const Vec3& origin = at[corners[0]];

@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// How hard a spring and dashpot pushes its two ends apart (Boldt eq. 3), `distance` [m] apart and
-/// receding at `speed` [m/s]; negative where it pulls, which contacts do not.
+/// The repulsion of a spring with a dashpot (Boldt eq. 3) between two ends at `distance` [m] that
+/// separate at `speed` [m/s]. Negative for attraction, which contacts do not have.
 inline Real connection_push(Real stiffness, Real damping, Real rest_length, Real distance,
                             Real speed) {
   return stiffness * (rest_length - distance) - damping * speed;

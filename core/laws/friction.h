@@ -4,37 +4,37 @@
 
 #include "core/types.h"
 
-/// Coulomb friction of contacts, regularised and without memory (P. K. Haff, B. T. Werner, Powder
-/// Technology 48 (1986) 239): two touching ends whose velocities differ by the slip u_t, across the
-/// line between them, drag on each other with
+/// Regularised Coulomb friction of contacts, without memory (P. K. Haff, B. T. Werner, Powder
+/// Technology 48 (1986) 239). If the velocities of two touching ends differ by the slip u_t across
+/// the line between them, their friction is
 ///
 ///   F_t = -min(mu F_n, c_t |u_t|) u_t / |u_t|,   c_t = sqrt(k m),
 ///
-/// F_n the push of their contact, k its stiffness, m the reduced mass of the two particles (against
-/// a wall, the particle's). c_t / m is the frequency sqrt(k / m) at which the contact itself would
-/// oscillate, so that friction adds no process faster than what a step must resolve anyway, and is
-/// the same at any step. It is a force of the state alone: contacts that stick creep at
-/// F_t / c_t, which falls as 1 / sqrt(k).
+/// with the normal force F_n, the stiffness k of the contact, and the reduced mass m of both
+/// particles (at a wall, the mass of the particle). c_t / m is the frequency sqrt(k / m) of the
+/// contact itself, so that friction adds no faster process than the step must resolve, and does not
+/// depend on the step. It depends on the state only: sticking contacts creep with F_t / c_t, which
+/// falls as 1 / sqrt(k).
 ///
-/// Both ends feel it at one point of the line between them, with the slip of that point. That of
-/// two rigid bodies divides the line as their particles' radii do; a free particle, which has no
-/// spin, is touched at its centre, and a wall at its plane. So the forces are equal and opposite
-/// and have no couple, which keeps angular momentum too; but between two free particles both are at
-/// their centres, and the couple, the force times the distance, is lost.
+/// Both ends feel the friction at one point of the line between them, with the slip at this point.
+/// Between two rigid bodies, the point divides the line in the ratio of the radii. The point of a
+/// free particle, which has no spin, is its centre, and that of a wall is in its plane. The forces
+/// are therefore equal, opposite and without a couple, and conserve angular momentum. Between two
+/// free particles they act at both centres, and their couple, force times distance, is lost.
 namespace vat {
 
-/// c_t [N s/m] of a contact of `stiffness` [N/m] with the reduced mass `mass` [kg].
+/// The constant c_t [N s/m] of a contact with this stiffness [N/m] and reduced mass [kg].
 inline Real sticking_drag(Real stiffness, Real mass) {
   return std::sqrt(stiffness * mass);
 }
 
-/// The two constants of one contact.
+/// The constants of the friction of one contact.
 struct Friction {
   Real coefficient = 0;  ///< mu
   Real sticking = 0;     ///< c_t [N s/m]
 
   bool acts() const { return coefficient > 0; }
-  /// |F_t| / |u_t| [N s/m], at most c_t, under a push of F_n [N] at the slip u_t [m/s].
+  /// |F_t| / |u_t| [N s/m], at most c_t, for the normal force F_n [N] and the slip u_t [m/s].
   Real drag(Real push, const Vec3& slip) const {
     const Real limit = coefficient * push;
     const Real speed = slip.norm();
@@ -42,18 +42,20 @@ struct Friction {
   }
 };
 
-/// u_t, of the difference of two velocities and its part `speed` along the unit vector `normal`.
+/// The slip u_t, from the difference of two velocities and its component `speed` along the unit
+/// vector `normal`.
 inline Vec3 slip_velocity(const Vec3& velocity, Real speed, const Vec3& normal) {
   return velocity - speed * normal;
 }
 
-/// From the centres of two particles to the point where they rub [m].
+/// Vectors from the centres of two particles to the point of their friction [m].
 struct ContactArms {
   Vec3 self = Vec3::Zero();
   Vec3 other = Vec3::Zero();
 };
 
-/// `way`: from the second centre to the first [m]. A particle that is not rigid has no radius here.
+/// The arms of two particles. `way` points from the second centre to the first [m]. The radius of a
+/// particle that is not rigid has no effect.
 inline ContactArms contact_arms(const Vec3& way, bool is_rigid, Real radius, bool is_other_rigid,
                                 Real other_radius) {
   if (!is_rigid && !is_other_rigid) return {};

@@ -5,38 +5,38 @@
 
 #include "core/types.h"
 
-/// The layer of [MM04] about a body, with the force of M. Mueller, S. Schirm, M. Teschner,
-/// B. Heidelberger, M. Gross, Computer Animation and Virtual Worlds 15 (2004) 159: like that of a
-/// Lennard-Jones potential, it pushes below the distance l and pulls above it, but it is finite at
-/// distance 0 and ends at h = l + a with slope 0. With u = h - r, and scaled here so that its slope
-/// at l is that of a spring of stiffness k,
+/// The layer of [MM04] about a body, with the force of M. Mueller, S. Schirm, M. Teschner, B.
+/// Heidelberger, M. Gross, Computer Animation and Virtual Worlds 15 (2004) 159. Like the force of a
+/// Lennard-Jones potential, it repels below the distance l and attracts above it. It is finite at
+/// distance 0, and ends at h = l + a with slope 0. It is scaled so that its slope at l is that of a
+/// spring with stiffness k. With u = h - r:
 ///
 ///   F(r) = k u^2 (u^2 - a^2) / (2 a^3).
 ///
-/// It is a function of the distance alone, so it keeps energy: parting two particles at rest at l
-/// takes k a^2 / 15, against a pull of at most k a / 8.
+/// It depends on the distance only and therefore conserves energy. Separating two particles at rest
+/// at l takes the energy k a^2 / 15, against an attraction of at most k a / 8.
 namespace vat {
 
-/// F [N], positive where it pushes, for r < h.
+/// The force F [N], positive for repulsion, for r < h.
 inline Real layer_push(Real stiffness, Real width, Real threshold, Real distance) {
   const Real u = threshold - distance;
   return stiffness * u * u * (u * u - width * width) / (2 * width * width * width);
 }
 
-/// What it takes to bring the two to r < h from afar [J].
+/// The energy of two particles at r < h, relative to that at large distances [J].
 inline Real layer_energy(Real stiffness, Real width, Real threshold, Real distance) {
   const Real u = threshold - distance;
   return stiffness * u * u * u * (u * u / 5 - width * width / 3) / (2 * width * width * width);
 }
 
-/// -F'(r) [N/m].
+/// The stiffness -F'(r) [N/m].
 inline Real layer_slope(Real stiffness, Real width, Real threshold, Real distance) {
   const Real u = threshold - distance;
   return stiffness * u * (2 * u * u - width * width) / (width * width * width);
 }
 
-/// The greatest |F'| [N/m] of those at r and beyond: -F' grows towards r = 0, and beyond l it is
-/// above -k / 3.
+/// The maximum of |F'| [N/m] at the distances from r on: -F' grows towards r = 0, and beyond l it
+/// is above -k / 3.
 inline Real greatest_layer_slope(Real stiffness, Real width, Real threshold, Real distance) {
   return std::max(stiffness, layer_slope(stiffness, width, threshold, distance));
 }

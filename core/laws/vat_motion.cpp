@@ -9,20 +9,20 @@
 namespace vat {
 namespace {
 
-/// Motion along one axis: speeding up to `peak`, going on, and slowing down to rest.
+/// Motion along one axis: acceleration to `peak`, constant speed, and deceleration to rest.
 struct AxisMotion {
   Real offset = 0;
   Real velocity = 0;
   Real acceleration = 0;
 };
 
-/// The time-optimal way from rest or not to rest at `way`, seen in the direction in which it first
-/// has to be pushed: there -start^2 / 2 a <= way.
+/// The time-optimal motion to rest at the distance `way`, from the speed `start`. It is mirrored so
+/// that the first acceleration is positive.
 class Approach {
  public:
   Approach(Real way, Real start) {
     const Real a = kMaxHandAcceleration;
-    // Where it would end up if it slowed down from now on.
+    // The distance in which it would stop if it decelerated from now on.
     const Real stopping = start * std::abs(start) / (2 * a);
     direction_ = way < stopping ? -1 : 1;
     start_ = direction_ * start;

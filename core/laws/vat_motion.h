@@ -5,26 +5,26 @@
 
 namespace vat {
 
-/// Where a moving vat is: a function of time alone.
+/// Position and motion of a moving vat, a function of time only.
 struct VatMotion {
-  Vec3 offset = Vec3::Zero();        ///< from its place at time 0 [m]
+  Vec3 offset = Vec3::Zero();        ///< from the position at time 0 [m]
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
   Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 };
 VatMotion vat_motion(const Vat& vat, Real time);
-/// What of it is the hand's, from its start on.
+/// The part of the motion that users cause, from its start on.
 VatMotion hand_motion(const HandMotion& hand, Real time);
-/// Whether it is not at rest at its target yet.
+/// Returns whether the motion that users cause has not ended at `time`.
 bool is_moving(const HandMotion& hand, Real time);
 
-/// Whether any of its walls ever moves, across itself or along; of a hand's motions those that are
-/// not over at `time`.
+/// Returns whether a wall of the vat moves at any time, across itself or along itself. Motions that
+/// users cause count until they end.
 bool moves_walls(const Vat& vat, Real time);
-/// From `time` on no wall moves across itself any faster [m/s].
+/// An upper bound of the speeds of walls across themselves, from `time` on [m/s].
 Real greatest_vat_speed(const Vat& vat, Real time);
 
-/// How far `p` is inside each wall of the vat (negative: beyond it) [m], and the walls' inward
-/// normals. The last wall is the lid.
+/// The distance of `p` from each wall [m], negative beyond it, and the inward normals of the walls.
+/// The last wall is the lid.
 inline constexpr int kWallCount = 6;
 inline Vec3 wall_normal(int wall) {
   return wall % 2 == 0 ? Vec3(Vec3::Unit(wall / 2)) : Vec3(-Vec3::Unit(wall / 2));

@@ -12,7 +12,7 @@
 #include "core/laws/cohesion.h"
 #include "core/laws/vat_motion.h"
 #include "core/model/contacts.h"
-#include "core/model/limited_springs.h"
+#include "core/model/springs.h"
 #include "core/model/surface_tension.h"
 #include "core/numerics/step_limits.h"
 #include "core/sampling/mass_properties.h"
@@ -22,7 +22,8 @@
 namespace vat {
 
 std::uint64_t first_step_from(Real time, Real step) {
-  constexpr Real kRounding = 1e-6;  // a time after whole steps is not one step later
+  constexpr Real kRounding = 1e-6;  // rounding must not delay a time after whole steps by one step
+  VAT_CHECK(step > 0);
   return static_cast<std::uint64_t>(std::max(Real{0}, std::ceil(time / step - kRounding)));
 }
 
@@ -55,7 +56,7 @@ void add_bodies(Model& model, const std::vector<BodyId>& ids,
   }
 }
 
-/// Not across periodic axes, nor across the plane of two dimensions.
+/// Adds the walls, except across periodic axes and across the plane of two dimensions.
 void add_walls(Model& model) {
   const Vat& vat = *model.scene.vat;
   for (int wall = 0; wall < wall_count(vat); ++wall) {
@@ -69,6 +70,8 @@ void add_walls(Model& model) {
 void append_particles(Model& model, ModelBody& body, Index body_index) {
   const SampledBody& sample = *body.sample;
   const auto count = static_cast<Index>(sample.positions.size());
+  VAT_CHECK(sample.masses.size() == sample.positions.size() &&
+            sample.radii.size() == sample.positions.size());
   body.particles = {model.particle_count, model.particle_count + count};
   model.particle_count += count;
   model.mass.insert(model.mass.end(), sample.masses.begin(), sample.masses.end());
@@ -115,109 +118,6 @@ void lay_out_particles(Model& model) {
   append_bodies(model, [](const ModelBody& b) { return b.kind == BodyKind::rigid; });
 }
 
-/// What lists of different lengths take, one after the other: their beginnings, and behind the
-/// last.
-class ListLayout {
- public:
-  explicit ListLayout(std::size_t lists) : begin_(lists + 1, 0) {}
-
-  void count(Index list) { ++begin_[list + 1]; }
-  /// When all is counted.
-  void lay_out() { std::partial_sum(begin_.begin(), begin_.end(), begin_.begin()); }
-  const std::vector<Index>& begin() const { return begin_; }
-  std::vector<Index> take() && { return std::move(begin_); }
-
- private:
-  std::vector<Index> begin_;
-};
-
-/// The springs of one body, from each end, in order of the other one, and among those that join the
-/// same two in the sample's order: by a counting sort by the other end, then one by its own.
-void add_springs_of(const ModelBody& body, const std::vector<Index>& begin,
-                    std::vector<SpringEnd>& ends) {
-  struct End {
-    Index own;
-    Index spring;
-  };
-  const std::vector<SampledSpring>& springs = body.sample->springs;
-  const Index first = body.particles.begin;
-  const auto next_places = [&] {
-    return std::vector<Index>(begin.begin() + first, begin.begin() + body.particles.end);
-  };
-  std::vector<End> by_other(2 * springs.size());
-  std::vector<Index> next = next_places();
-  const Index offset = begin[first];
-  for (Index s = 0; s < springs.size(); ++s) {
-    by_other[next[springs[s].b]++ - offset] = {springs[s].a, s};
-    by_other[next[springs[s].a]++ - offset] = {springs[s].b, s};
-  }
-  next = next_places();
-  for (Index other = 0; other < body.particles.size(); ++other) {
-    for (Index e = begin[first + other]; e < begin[first + other + 1]; ++e) {
-      const End& end = by_other[e - offset];
-      const SampledSpring& spring = springs[end.spring];
-      ends[next[end.own]++] = {first + other, spring.stiffness, spring.damping, spring.rest_length};
-    }
-  }
-}
-
-void add_springs(Model& model) {
-  ListLayout layout(model.free_count);
-  for (const ModelBody& body : model.bodies) {
-    if (!model.scene.forces.springs) break;
-    for (const SampledSpring& spring : body.sample->springs) {
-      layout.count(body.particles.begin + spring.a);
-      layout.count(body.particles.begin + spring.b);
-    }
-  }
-  layout.lay_out();
-  std::vector<SpringEnd> ends(layout.begin().back());
-  for (const ModelBody& body : model.bodies) {
-    const bool has_springs = model.scene.forces.springs && !body.sample->springs.empty();
-    if (has_springs) add_springs_of(body, layout.begin(), ends);
-  }
-  std::vector<Index> own_begin;
-  own_begin.reserve(model.free_count);
-  for (Index i = 0; i < model.free_count; ++i) {
-    const auto of_particle =
-        std::span(ends).subspan(layout.begin()[i], layout.begin()[i + 1] - layout.begin()[i]);
-    const auto own = std::ranges::lower_bound(of_particle, i, {}, &SpringEnd::other);
-    own_begin.push_back(layout.begin()[i] + static_cast<Index>(own - of_particle.begin()));
-    const Material& material = model.scene.materials[model.material[i]];
-    const bool may_change = material.plasticity || material.tearing_strain;
-    model.springs_change = model.springs_change || (may_change && !of_particle.empty());
-  }
-  model.spring_begin = std::move(layout).take();
-  model.spring_own_begin = std::move(own_begin);
-  model.spring_ends = std::move(ends);
-}
-
-void add_cells(Model& model) {
-  std::vector<VolumeCell> cells;
-  ListLayout layout(model.free_count);
-  const Index count = model.scene.dimensions == 3 ? 8 : 4;
-  for (const ModelBody& body : model.bodies) {
-    if (!model.scene.forces.springs) break;
-    for (const SampledCell& sampled : body.sample->cells) {
-      VolumeCell cell{{}, sampled.volume, model.scene.materials[body.material].bulk_modulus};
-      for (Index c = 0; c < count; ++c) {
-        cell.corners[c] = body.particles.begin + sampled.corners[c];
-        layout.count(cell.corners[c]);
-      }
-      cells.push_back(cell);
-    }
-  }
-  layout.lay_out();
-  std::vector<CellCorner> corners(layout.begin().back());
-  std::vector<Index> next(layout.begin().begin(), layout.begin().end() - 1);
-  for (Index k = 0; k < cells.size(); ++k) {
-    for (Index c = 0; c < count; ++c) corners[next[cells[k].corners[c]]++] = {k, c};
-  }
-  model.cells = std::move(cells);
-  model.cell_begin = std::move(layout).take();
-  model.cell_corners = std::move(corners);
-}
-
 void set_inertia(RigidModel& rigid, const Mat3& inertia) {
   rigid.inertia = inertia;
   rigid.inverse_inertia = inertia.inverse();
@@ -234,7 +134,8 @@ std::uint64_t first_free_step(const BodyDescription& body, Real step) {
   return body.fixed ? kNever : first_step_from(body.release, step);
 }
 
-/// What of a rigid body and its particles follows from where it begins.
+/// Returns the data of a rigid body, and sets those of its particles, which follow from its initial
+/// pose.
 RigidModel make_rigid(Model& model, std::size_t index) {
   const ModelBody& body = model.bodies[index];
   const bool plane = model.scene.dimensions == 2;
@@ -247,7 +148,7 @@ RigidModel make_rigid(Model& model, std::size_t index) {
   rigid.free_from = first_free_step(model.scene.bodies[index], model.scene.numerics.step);
   const Mat3 to_body =
       model.scene.bodies[index].orientation.normalized().toRotationMatrix().transpose();
-  // In the plane it is the same in all axes, and rounding must not make it otherwise.
+  // In the plane, inertia is equal in all axes, and rounding must not change this.
   set_inertia(
       rigid, plane ? properties.inertia : Mat3(to_body * properties.inertia * to_body.transpose()));
   for (Index i = 0; i < body.particles.size(); ++i) {
@@ -266,21 +167,21 @@ void add_rigid_bodies(Model& model) {
   }
 }
 
-/// Of the first liquid's particles at rest density, for all liquids share one kernel; half a
-/// support radius where there are none.
+/// The spacing of the first liquid's particles at rest density, which all liquids share as they
+/// share one kernel; half a support radius without particles.
 Real spacing_of(const Model& model, Index material) {
   for (const ModelBody& body : model.bodies) {
     if (body.kind != BodyKind::liquid || body.particles.size() == 0) continue;
     const Real density = model.scene.materials[body.material].density;
     const Real volume = body.sample->masses.front() / density;
     const Real spacing = model.scene.dimensions == 3 ? std::cbrt(volume) : std::sqrt(volume);
-    // Masses may be anything; sums over a lattice may not.
+    // Masses may have any value; sums over the lattice must be bounded.
     return std::max(spacing, model.scene.materials[material].liquid->support_radius / 8);
   }
   return model.scene.materials[material].liquid->support_radius / 2;
 }
 
-/// A force that is off has the constant zero.
+/// The constants of a liquid. The constant of an inactive force is zero.
 LiquidModel make_liquid(const Model& model, Index material) {
   const Scene& scene = model.scene;
   Material given = scene.materials[material];
@@ -294,6 +195,7 @@ LiquidModel make_liquid(const Model& model, Index material) {
 
 void find_rest_volumes(Model& model) {
   model.rest_volume.resize(model.particle_count);
+  VAT_CHECK(model.mass.size() == model.particle_count);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
     std::ranges::copy(particle_volumes(model.scene, b, *body.sample),
@@ -313,7 +215,7 @@ void take_greatest(const OscillatingPart& part, Oscillation& own) {
 
 ModelDamping find_damping(const Model& model) {
   ModelDamping damping;
-  damping.any = model.is_filled;  // what is carried along with the transport velocity
+  damping.any = model.is_filled;  // momentum that the transport velocity carries
   damping.own.resize(model.bodies.size());
   for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples_of(model))) {
     if (part.bound.rate > 0) damping.any = true;
@@ -322,7 +224,7 @@ ModelDamping find_damping(const Model& model) {
   return damping;
 }
 
-/// The same of one body.
+/// The damping of one body.
 Oscillation find_own_damping(const Model& model, std::size_t body) {
   Oscillation own;
   for (const OscillatingPart& part :
@@ -349,7 +251,7 @@ Real central_viscosity_of(const Material& material, int dimensions) {
                                                        liquid.support_radius / 2;
 }
 
-/// See core/laws/cohesion.h.
+/// The maximum tension of a cohesive liquid; see core/laws/cohesion.h.
 Real tensile_strength_of(const Scene& scene, const LiquidConstants& liquid) {
   if (scene.surface_model != SurfaceModel::cohesion) return 0;
   return kTensileShare / 2 *
@@ -377,6 +279,7 @@ LiquidModel::LiquidModel(const Scene& scene, const Material& material, Real part
 
 std::shared_ptr<const SampledBody> sample_of(const Model& model, std::size_t body) {
   const ModelBody& one = model.bodies[body];
+  VAT_CHECK(body < model.bodies.size());
   if (one.sample) return one.sample;
   return std::make_shared<const SampledBody>(sample_body(
       model.scene.bodies[body], model.scene.materials[one.material], model.scene.dimensions));
@@ -421,11 +324,16 @@ std::shared_ptr<Model> compile_model(Scene scene, const std::vector<BodyId>& ids
   add_rigid_bodies(*model);
   compile_contacts(*model);
   model->damping = find_damping(*model);
+  VAT_CHECK(model->liquid_count <= model->implicit_begin &&
+            model->implicit_begin <= model->free_count &&
+            model->free_count <= model->particle_count);
+  VAT_CHECK(model->spring_begin.size() == model->free_count + 1);
   return model;
 }
 
 std::shared_ptr<Model> with_moved_body(const Model& model, std::size_t index,
                                        BodyDescription moved) {
+  VAT_CHECK(index < model.bodies.size());
   auto result = std::make_shared<Model>(model);
   result->scene.bodies[index] = std::move(moved);
   ModelBody& body = result->bodies[index];

@@ -7,7 +7,7 @@
 
 namespace vat {
 
-/// The first nominal step that begins at a time [s] or after it; `step` is their length [s].
+/// The first nominal step that begins at the time [s] or later; `step` is the length of steps [s].
 std::uint64_t first_step_from(Real time, Real step);
 
 /// Compiles a scene without errors, without its plan. `ids` and `samples` have one entry per body
@@ -17,17 +17,16 @@ std::shared_ptr<Model> compile_model(Scene scene, const std::vector<BodyId>& ids
                                      std::vector<std::shared_ptr<const SampledBody>> samples,
                                      const Model* whole = nullptr);
 
-/// What compile_model() makes of the model's scene with one of its bodies beginning elsewhere, and
-/// moving otherwise, than its description has it; from the samples of the others, and at no more
-/// cost than that of the body itself and a copy. Bodies whose particles are not those of their
-/// description keep them.
+/// The model with a new position and motion of one body; equals compile_model() for the changed
+/// scene. It uses the samples of the other bodies, and costs a copy of the model and the
+/// compilation of this body. Bodies whose particles do not follow from their description keep them.
 std::shared_ptr<Model> with_moved_body(const Model& model, std::size_t body, BodyDescription moved);
 
-/// Lets go the samples of liquids that their descriptions can give again; for when the state at
-/// time 0 is known. Of scenes in which liquid flows in or out, where they are needed again soon, it
-/// keeps all.
+/// Releases the samples of liquids that can be computed from their descriptions. Call it when the
+/// state at time 0 is known. In scenes with inflow or outflow it keeps all samples, which are
+/// needed again.
 void forget_samples(Model& model);
-/// That of a body, made again where it was let go.
+/// The sample of a body, which is computed again if it was released.
 std::shared_ptr<const SampledBody> sample_of(const Model& model, std::size_t body);
 
 }  // namespace vat

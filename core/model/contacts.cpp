@@ -7,6 +7,7 @@
 #include "core/laws/contact_damping.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/scene/interface_table.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -29,7 +30,7 @@ ContactLaw make_law(const InterfaceConstants& constants, Real threshold) {
       law.friction = constants.friction;
       law.restitution = constants.restitution.value_or(0);
       break;
-    case InterfaceLaw::sph:  // of coupled liquids, which have no contacts
+    case InterfaceLaw::sph:  // coupled liquids have no contacts
       break;
   }
   return law;
@@ -65,13 +66,14 @@ void fill_laws(Model& model) {
   model.walls_push = std::ranges::any_of(model.wall_laws, pushes);
 }
 
-/// Whether two bodies can be joined by dynamic connections. Liquids of one material are one liquid.
+/// Returns whether dynamic connections can join two bodies. Liquids of one material are one liquid.
 bool can_touch(const Model& model, const ModelBody& a, const ModelBody& b) {
   if (model.is_coupled && (a.kind == BodyKind::liquid || b.kind == BodyKind::liquid)) return false;
   return a.kind != BodyKind::liquid || b.kind != BodyKind::liquid || a.material != b.material;
 }
 
 void find_reach(Model& model) {
+  VAT_CHECK(model.radius.size() == model.particle_count);
   std::vector<Real> greatest_radius(model.bodies.size(), 0);
   for (Index i = 0; i < model.particle_count; ++i) {
     Real& radius = greatest_radius[model.body[i]];
@@ -98,14 +100,15 @@ void find_reach(Model& model) {
   }
 }
 
-/// Of each particle of a body, those that never collide with it.
+/// For each particle of a body, the particles that never collide with it.
 using Excluded = std::vector<std::vector<Index>>;
 
 bool has_exclusions(const Model& model, const ModelBody& body) {
   return body.kind == BodyKind::deformable && model.self_contacts[body.material];
 }
 
-/// Those that start closer to one another than their radii, or are joined by a spring; in order.
+/// Finds particles that are closer at the start than their radii, or joined by a spring; in
+/// ascending order.
 Excluded exclusions_of(const Model& model, const ModelBody& body) {
   const std::vector<Vec3>& points = body.sample->positions;
   const std::vector<Real>& radii = body.sample->radii;
@@ -134,7 +137,7 @@ Excluded exclusions_of(const Model& model, const ModelBody& body) {
   return excluded;
 }
 
-/// Exclusions of all particles, as they are added one after the other.
+/// Collects the exclusions of all particles in sequence.
 struct ExclusionLists {
   std::vector<Index> begin = {0};
   std::vector<Index> all;
@@ -173,6 +176,7 @@ void compile_contacts(Model& model) {
   fill_laws(model);
   find_reach(model);
   if (!model.scene.forces.contacts) model.contact_reach = 0;
+  VAT_CHECK(std::isfinite(model.contact_reach));
   if (model.has_self_contact) find_exclusions(model);
 }
 

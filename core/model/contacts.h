@@ -4,11 +4,11 @@
 
 namespace vat {
 
-/// Fills the tables of contact laws and what follows from them: reach, exclusions, flags. Bodies,
-/// particles and springs must be in the model already.
+/// Fills the tables of contact laws, and the reach, exclusions and flags that follow from them. The
+/// model must have its bodies, particles and springs.
 void compile_contacts(Model& model);
 
-/// Brings them up to date where nothing has changed but where this body starts.
+/// Updates the tables after a change of the initial position of this body only.
 void compile_contacts_of_moved(Model& model, const ModelBody& body);
 
 }  // namespace vat

@@ -19,6 +19,7 @@
 #include "core/sampling/sampling.h"
 #include "core/scene/scene.h"
 #include "core/stage/plan.h"
+#include "core/support/check.h"
 #include "core/support/shared_array.h"
 #include "core/types.h"
 
@@ -31,7 +32,7 @@ struct IndexRange {
   Index size() const { return end - begin; }
 };
 
-/// Of nominal steps.
+/// A nominal step that never comes.
 inline constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
 struct ModelBody {
@@ -40,47 +41,47 @@ struct ModelBody {
   BodyKind kind = BodyKind::liquid;
   Index material = 0;
   IndexRange particles;
-  Index rigid = 0;  ///< place among the rigid bodies; only for kind rigid
+  Index rigid = 0;  ///< index among the rigid bodies; only for kind rigid
   Real mass = 0;
   std::uint64_t melts_at = kNever;            ///< the first nominal step in which it is liquid
-  std::shared_ptr<const SampledBody> sample;  ///< null once forgotten, see sample_of()
-  bool is_as_described = false;               ///< the sample is what the description gives
+  std::shared_ptr<const SampledBody> sample;  ///< null after forget_samples(), see sample_of()
+  bool is_as_described = false;               ///< the sample follows from the description
 };
 
-/// One material's SPH constants with everything that depends on h alone.
+/// The SPH constants of a material, with all values that depend on h only.
 struct LiquidModel {
-  /// `spacing`: of the particles at rest density [m].
+  /// `spacing`: that of the particles at rest density [m].
   LiquidModel(const Scene& scene, const Material& material, Real spacing);
   Real support_radius;
   Real rest_density;
   Real stiffness;
-  Real pressure_share;  ///< of the gas's pressure force: 1/2 as printed
+  Real pressure_share;  ///< factor of the pressure force of the gas: 1/2 as printed
   Real viscosity;
   Real surface_tension;  ///< [N/m]
   Poly6 density_kernel;
   Spiky pressure_kernel;
   ViscosityKernel viscosity_kernel;
-  // Of the weakly compressible liquid.
-  SmoothingKernel kernel;  ///< scaled so that a lattice of that spacing has the rest density
+  // Members of weakly compressible liquids:
+  SmoothingKernel kernel;  ///< scaled so that a lattice with this spacing has the rest density
   Real spacing;
-  Real slope_scale;  ///< of that kernel, so that a slope over that lattice has its own steepness
-  Real central_viscosity;  ///< 2 (d + 2) mu, with the artificial one [Pa s]
-  Real tensile_strength;   ///< the greatest tension of a liquid that attracts itself [Pa]
+  Real slope_scale;  ///< scale of the kernel's gradient: exact for a linear field on this lattice
+  Real central_viscosity;  ///< 2 (d + 2) mu, including the artificial viscosity [Pa s]
+  Real tensile_strength;   ///< maximum tension of a cohesive liquid [Pa]
   HalfSpace half_space;
 };
 
-/// Dynamic connection between particles of two materials: unilateral spring and dashpot with
-/// l = threshold, so that it neither sticks nor jumps in energy when it comes and goes; or a layer;
-/// or, with no stiffness, a projection.
+/// Dynamic connection between particles of two materials. It is a unilateral spring and dashpot
+/// with l = threshold, which neither sticks nor changes the energy when it begins or ends; or a
+/// layer; or a projection, without stiffness.
 struct ContactLaw {
   Real stiffness = 0;         ///< [N/m]
   Real damping = 0;           ///< [N s/m]
-  Real threshold = 0;         ///< [m]; 0 means the sum of the radii (against a wall: the radius)
+  Real threshold = 0;         ///< 0: the sum of the radii, and at a wall the radius [m]
   Real friction = 0;          ///< coefficient mu
-  Real damping_ratio = 0;     ///< of what has a restitution, in place of damping
-  Real layer = 0;             ///< how far a layer reaches beyond the threshold, in thresholds
+  Real damping_ratio = 0;     ///< for a restitution, in place of damping
+  Real layer = 0;             ///< reach of a layer beyond the threshold, in thresholds
   bool is_projected = false;  ///< see core/contact/projection/projection.h
-  Real restitution = 0;       ///< of a projection
+  Real restitution = 0;       ///< of a projection; separation speed / approach speed
 
   /// The distance from a wall below which a particle is in contact [m].
   Real wall_threshold(Real radius) const {
@@ -96,15 +97,15 @@ struct SpringEnd {
   Real rest_length = 0;
 };
 
-/// A static spring that gets no longer than `greatest`.
+/// A static spring with a maximum length.
 struct LimitedSpring {
   Index a = 0;
   Index b = 0;
-  Index end = 0;      ///< that at a
-  Real greatest = 0;  ///< [m]
+  Index end = 0;      ///< index of the spring end at a
+  Real greatest = 0;  ///< maximum length [m]
 };
 
-/// A cell of a deformable body that keeps its volume; see SampledCell.
+/// A cell of a deformable body with a bulk modulus; see SampledCell.
 struct VolumeCell {
   std::array<Index, 8> corners{};
   Real volume = 0;        ///< at rest [m^3], in two dimensions [m^2]
@@ -128,7 +129,7 @@ struct RigidModel {
   std::array<int, 3> splitting;  ///< principal axes: two with the closest moments, and the third
   std::uint64_t free_from = 0;   ///< the first nominal step in which forces move it
 
-  /// Whether the body moves through this step as if no force acted on it.
+  /// Returns whether the body moves in this step as if no force acted on it.
   bool is_held(std::uint64_t step) const { return step < free_from; }
 };
 
@@ -136,19 +137,19 @@ struct RigidModel {
 struct ModelDamping {
   bool any = false;
   std::vector<Oscillation> own;  ///< by body: of its springs, or of its liquid
-  bool is_current = true;        ///< not for the weight of liquids once gravity has changed
+  bool is_current = true;  ///< false: gravity has changed since, and with it the weight of liquids
 };
 
-/// A compiled scene: constant while it is stepped. What is large for deformable bodies is shared by
-/// the copies in which a command changes something else. Particles are ordered liquid, deformable,
-/// rigid, each body contiguous; of the deformable ones, those with implicit springs come last.
+/// A compiled scene, constant during steps. Large data of deformable bodies are shared by the
+/// copies in which a command changes other data. Particles are ordered liquid, deformable, rigid,
+/// each body contiguous. Deformable bodies with implicit springs are the last deformable ones.
 struct Model {
   Scene scene;
   std::vector<ModelBody> bodies;  ///< in the scene's order
 
   PeriodicBox periodic;
-  /// The vat's walls, by the numbers of core/laws/vat_motion.h: those that the scene has, and of
-  /// them those that are no_slip.
+  /// The walls of the vat that exist, numbered as in core/laws/vat_motion.h, and those of them
+  /// without slip.
   std::vector<int> walls;
   std::vector<int> no_slip_walls;
   std::vector<Nozzle> nozzles;  ///< of the scene's emitters
@@ -158,21 +159,23 @@ struct Model {
   Index free_count = 0;      ///< particles [0, free_count) move on their own; the rest are rigid
   Index particle_count = 0;
 
-  // One entry a particle.
+  // One entry for each particle.
   std::vector<Real> mass;
   std::vector<Real> inverse_mass;  ///< 0: fixed, in a nozzle, or part of a rigid body
   std::vector<Real> radius;
   std::vector<Index> body;  ///< index into bodies
   std::vector<Index> material;
-  /// In a liquid at rest [m^3]; where solids and walls take part in liquids (is_coupled).
+  /// Volume in a liquid at rest [m^3]; only for coupled liquids.
   std::vector<Real> rest_volume;
-  std::vector<Vec3> local_position;  ///< rigid particles, from free_count on: body axes, about cm
+  std::vector<Vec3>
+      local_position;  ///< rigid particles, from free_count on: about the centre of mass, body axes
 
   std::vector<std::optional<LiquidModel>> liquids;  ///< by material
   std::vector<RigidModel> rigid_bodies;
 
-  // Static springs of free particles: ends of particle i are [spring_begin[i], spring_begin[i+1]),
-  // in order of `other`, those to later particles from spring_own_begin[i] on.
+  // Static springs of free particles: the ends at particle i are [spring_begin[i],
+  // spring_begin[i+1]), ordered by `other`. Springs to particles after i begin at
+  // spring_own_begin[i].
   SharedArray<Index> spring_begin;
   SharedArray<Index> spring_own_begin;
   SharedArray<SpringEnd> spring_ends;
@@ -181,49 +184,53 @@ struct Model {
   SharedArray<Index> cell_begin;
   SharedArray<CellCorner> cell_corners;
 
-  // By colour: none of [limited_begin[c], limited_begin[c + 1]) shares a particle with another.
+  // By colour: two springs in [limited_begin[c], limited_begin[c + 1]) share no particle.
   SharedArray<LimitedSpring> limited_springs;
   SharedArray<Index> limited_begin;
-  bool springs_change = false;  ///< some may flow or tear, see core/solid/spring_changes.h
+  bool springs_change = false;  ///< some springs may flow or tear, see core/solid/spring_changes.h
 
   std::vector<ContactLaw> contact_laws;                       ///< materials x materials
   std::vector<ContactLaw> wall_laws;                          ///< by material
   std::vector<std::optional<SpringConstants>> self_contacts;  ///< by material
-  // Pairs of one deformable body that never collide: joined by a spring, or closer at the start
-  // than they may come. Sorted; begins have an entry per free particle and one more.
+  // Pairs of particles of one deformable body that never collide: they are joined by a spring, or
+  // start closer than their contact distance. Sorted. `exclusion_begin` has an entry for each free
+  // particle, and the end.
   SharedArray<Index> exclusion_begin;
   SharedArray<Index> exclusions;
-  Real contact_reach = 0;   ///< [m] no contact between particles further apart than this
-  bool is_coupled = false;  ///< liquids meet solids and walls by SPH, not by contacts
-  bool is_filled = false;   ///< coupled, and without a free surface: pressure may be negative
-  bool is_incompressible = false;  ///< coupled liquids keep their volume by projections
-  bool liquids_touch = false;      ///< two liquid materials meet, so liquid particles collide
+  Real contact_reach = 0;   ///< maximum distance of particles in contact [m]
+  bool is_coupled = false;  ///< liquids interact with solids and walls by SPH, not by contacts
+  bool is_filled = false;   ///< coupled, without a free surface: pressure may be negative
+  bool is_incompressible = false;  ///< projections conserve the volume of coupled liquids
+  bool liquids_touch = false;      ///< liquids of different materials are in contact
   bool has_self_contact = false;
-  bool has_surface_tension = false;  ///< some liquid body has, by its curvature
-  std::vector<Real> wall_cosines;    ///< by material, of the contact angle; the same
-  // Of liquids that attract themselves, see core/liquid/surface/cohesion.h.
-  std::optional<CohesionKernel> cohesion;  ///< where some liquid body does
+  bool has_surface_tension = false;  ///< by curvature, of some liquid body
+  std::vector<Real> wall_cosines;    ///< of the contact angle, by material; with curvature
+  // Cohesive liquids, see core/liquid/surface/cohesion.h:
+  std::optional<CohesionKernel> cohesion;  ///< if some liquid body has cohesion
   std::vector<Real> cohesions;             ///< A by material [Pa]
-  /// Shares of materials, row by row, in what solids of others pull, the walls last in each.
+  /// Share of each liquid's attraction by the solids of each material, row by row; the walls are
+  /// last in each row.
   std::vector<Real> adhesion_shares;
-  // Whether some law of bodies or walls has it.
+  // Properties of the laws of bodies and walls:
   bool has_friction = false;
   bool has_restitution = false;  ///< by dashpots
   bool has_layers = false;
   bool has_projection = false;
-  // Whether not all laws are projections.
+  // Whether some law exerts forces:
   bool bodies_push = false;
   bool walls_push = false;
   ModelDamping damping;
 
   StepPlan plan;
 
-  /// Of a liquid's material and solids of another, or with no other walls.
+  /// The share for a liquid's material and the solids of another material, or the walls.
   Real adhesion_share(Index liquid, std::optional<Index> solid) const {
+    VAT_ASSERT(liquid < scene.materials.size());
     const std::size_t count = scene.materials.size();
     return adhesion_shares[liquid * (count + 1) + solid.value_or(static_cast<Index>(count))];
   }
   const ContactLaw& contact_law(Index material_a, Index material_b) const {
+    VAT_ASSERT(material_a < scene.materials.size() && material_b < scene.materials.size());
     return contact_laws[material_a * scene.materials.size() + material_b];
   }
 };

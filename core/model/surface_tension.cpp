@@ -6,6 +6,7 @@
 
 #include "core/laws/cohesion.h"
 #include "core/scene/interface_table.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -15,7 +16,7 @@ Real cosine_of(const Scene& scene, std::optional<std::size_t> interface) {
   return angle == kNeutralAngle ? 0 : std::cos(angle * std::numbers::pi / 180);
 }
 
-/// Of each material, with each other and with the walls.
+/// Fills the attraction of each material, and its shares by all materials and by the walls.
 void compile_cohesion(Model& model, const InterfaceTable& table) {
   const Scene& scene = model.scene;
   const std::size_t count = scene.materials.size();
@@ -37,6 +38,7 @@ void compile_cohesion(Model& model, const InterfaceTable& table) {
 
 void compile_surface_tension(Model& model) {
   const Scene& scene = model.scene;
+  VAT_CHECK(model.liquids.size() == scene.materials.size());
   const auto body = std::ranges::find_if(model.bodies, [&](const ModelBody& each) {
     return each.kind == BodyKind::liquid && each.particles.size() > 0 &&
            model.liquids[each.material]->surface_tension > 0;

@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// Fills what surface tension needs if some liquid body has surface tension. The model must have
-/// its bodies and liquids.
+/// Fills the data of surface tension if some liquid body has it. The model must have its bodies and
+/// liquids.
 void compile_surface_tension(Model& model);
 
 }  // namespace vat

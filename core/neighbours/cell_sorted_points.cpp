@@ -5,7 +5,7 @@
 namespace vat {
 namespace {
 
-/// Whether these are the sorted points, to the bit.
+/// Returns whether `points` have the same bits as the sorted ones.
 bool are_sorted(const CellSortedPoints& sorted, std::span<const Vec3> points,
                 const PeriodicBox& periodic, TaskRunner* runner) {
   const std::span<const Index> order = sorted.grid.order();

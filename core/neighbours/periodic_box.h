@@ -9,11 +9,11 @@
 
 namespace vat {
 
-/// The images of points in a world that repeats itself along some axes. Searches need each length
-/// to be at least twice their radius.
+/// Images of points in a world that is periodic along some axes. Searches need lengths of at least
+/// twice their radius.
 class PeriodicBox {
  public:
-  /// Nothing repeats.
+  /// A world without periodic axes.
   PeriodicBox() = default;
   explicit PeriodicBox(const Periodicity& periodicity) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -29,37 +29,37 @@ class PeriodicBox {
 
   bool any() const { return any_; }
   bool repeats(int axis) const { return repeats_[static_cast<std::size_t>(axis)]; }
-  /// Along a periodic axis.
+  /// Length along a periodic axis [m].
   Real length(int axis) const { return length_[axis]; }
 
-  /// The image in the box, min <= x < max along periodic axes: `p` itself, to the bit, where it is
-  /// in there already.
+  /// The image in the box, with min <= x < max along periodic axes. A point in the box is returned
+  /// unchanged, bit for bit.
   Vec3 wrap(Vec3 p) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (!repeats(axis) || (p[axis] >= min_[axis] && p[axis] < max_[axis])) continue;
       p[axis] -= length_[axis] * std::floor((p[axis] - min_[axis]) / length_[axis]);
-      // Rounding may leave it beside the box.
+      // Rounding may move it out of the box.
       if (p[axis] < min_[axis] || p[axis] >= max_[axis]) p[axis] = min_[axis];
     }
     return p;
   }
 
-  /// The shortest image of a difference of two points of the box; of -x, the opposite to the bit.
+  /// The shortest image of a difference of two points of the box. For -x it is the exact opposite.
   Vec3 nearest(const Vec3& x) const {
     return {nearest(x.x(), 0), nearest(x.y(), 1), nearest(x.z(), 2)};
   }
-  /// The same of one component.
+  /// The shortest image of one component.
   Real nearest(Real x, int axis) const {
     if (x > half_[axis]) return x - length_[axis];
     if (x < -half_[axis]) return x + length_[axis];
     return x;
   }
 
-  /// Calls f(shift) for the images p + shift of a point of the box from which a ball of `radius`
-  /// reaches into the box, that of no shift included.
+  /// Calls f(shift) for all images p + shift of a point of the box from which a ball of `radius`
+  /// reaches into the box, including the zero shift.
   template <class F>
   void for_each_image(const Vec3& p, Real radius, F&& f) const {
-    const Real reach = radius * (1 + 1e-6);  // more than a difference can be rounded by
+    const Real reach = radius * (1 + 1e-6);  // more than the rounding error of a difference
     std::array<int, 3> first{};
     std::array<int, 3> last{};
     for (int axis = 0; axis < 3; ++axis) {

@@ -10,13 +10,14 @@
 namespace vat {
 
 void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size, TaskRunner* runner) {
-  constexpr Real kFar = 1e3 * kMaxLength;  // beyond it the guard ends the step; only stay finite
+  constexpr Real kFar = 1e3 * kMaxLength;  // beyond this distance the guard fails the step; here
+                                           // the grid only has to stay finite
   boxes_.resize(block_count(points.size()));
   for_blocks(runner, points.size(), [&](std::size_t begin, std::size_t end) {
     Vec3 low = Vec3::Constant(kFar);
     Vec3 high = Vec3::Constant(-kFar);
     for (const Vec3& p : points.subspan(begin, end - begin)) {
-      for (int axis = 0; axis < 3; ++axis) {  // a NaN changes neither
+      for (int axis = 0; axis < 3; ++axis) {  // a NaN changes neither bound
         low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
         high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
       }
@@ -32,7 +33,7 @@ void UniformGrid::choose_cells(std::span<const Vec3> points, Real cell_size, Tas
   low = low.cwiseMax(-kFar).cwiseMin(kFar);
   high = high.cwiseMin(kFar).cwiseMax(low);
 
-  // Sparse points get larger cells: correct for any cell not smaller than the search radius.
+  // Sparse points get larger cells. Cells need only be at least as large as the search radius.
   const Real most_cells = static_cast<Real>(std::max<std::size_t>(4096, 8 * points.size()));
   const auto cells_along = [&](int axis) {
     return std::floor((high[axis] - low[axis]) / cell_size) + 1;
@@ -51,6 +52,7 @@ void UniformGrid::build(std::span<const Vec3> points, Real cell_size, TaskRunner
   choose_cells(points, cell_size, runner);
   const std::size_t cell_count = std::size_t{count_[0]} * count_[1] * count_[2];
   resize_closely(cell_begin_, cell_count + 1);
+  VAT_CHECK(points.size() < std::numeric_limits<Index>::max());
   std::ranges::fill(cell_begin_, 0);
   resize_closely(cell_of_, points.size());
   resize_closely(order_, points.size());
@@ -71,7 +73,8 @@ void UniformGrid::build(std::span<const Vec3> points, Real cell_size, TaskRunner
   for (std::size_t i = 0; i < points.size(); ++i) {
     order_[cell_begin_[cell_of_[i]]++] = static_cast<Index>(i);
   }
-  // The fill moved each beginning to its end: move them back by one cell.
+  VAT_CHECK(points.empty() || cell_begin_[cell_count - 1] == points.size());
+  // The filling moved each beginning to its end. Move them back by one cell.
   std::copy_backward(cell_begin_.begin(), cell_begin_.end() - 2, cell_begin_.end() - 1);
   cell_begin_[0] = 0;
 }

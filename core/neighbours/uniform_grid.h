@@ -10,33 +10,33 @@
 
 namespace vat {
 
-/// Points sorted into cubic cells (counting sort, stable: by cell, then by index). Cells are x
-/// fastest, so the cells that a search touches lie in few contiguous runs of slots. Any finite or
-/// non-finite position is accepted; memory is linear in the number of points, because cells grow
-/// where points are far apart.
+/// Points sorted into cubic cells (counting sort, stable: by cell, then by index). Cells are
+/// ordered with x fastest, so that a search visits few contiguous runs of slots. Accepts all
+/// positions, finite or not. Memory is linear in the number of points, because the cells of sparse
+/// points are larger.
 class UniformGrid {
  public:
-  /// `cell_size` > 0 [m]: best the search radius.
+  /// `cell_size` > 0 [m] should be the search radius.
   void build(std::span<const Vec3> points, Real cell_size, TaskRunner* runner = nullptr);
 
-  /// Slot -> index of the point; slots of a cell are contiguous.
+  /// The index of the point in each slot. The slots of a cell are contiguous.
   std::span<const Index> order() const { return order_; }
-  /// Cell -> its first slot, and one past the last. A cell without points is empty.
+  /// The first slot of each cell, and the total number of slots. A cell may be empty.
   std::span<const Index> cell_begin() const { return cell_begin_; }
-  /// The corner of least coordinates of the box around all cells.
+  /// The corner with the lowest coordinates of the box of all cells.
   const Vec3& origin() const { return origin_; }
-  /// That of greatest coordinates.
+  /// The corner with the highest coordinates.
   Vec3 end() const { return origin_ + Vec3(count_[0], count_[1], count_[2]) / inverse_cell_size_; }
 
-  /// Calls f(begin, end) for runs of slots that together hold, each once, every point closer to
-  /// `p` than `radius` (and others).
+  /// Calls f(begin, end) for runs of slots that together contain every point closer to `p` than
+  /// `radius`, each once, and other points.
   template <class F>
   void for_each_run(const Vec3& p, Real radius, F&& f) const {
-    const Real reach = radius * (1 + 1e-6);  // more than p - radius can be rounded by
+    const Real reach = radius * (1 + 1e-6);  // more than the rounding error of p - radius
     for_each_run(p.array() - reach, p.array() + reach, f);
   }
 
-  /// The same of the points of a box, its faces included.
+  /// Calls f(begin, end) for the points in a box, including its faces.
   template <class F>
   void for_each_run(const Vec3& lowest, const Vec3& highest, F&& f) const {
     if (order_.empty()) return;
@@ -59,7 +59,8 @@ class UniformGrid {
   }
 
  private:
-  /// Cell coordinate along an axis, clamped to the grid; monotone in `x`, 0 for a NaN.
+  /// The cell coordinate along an axis, clamped to the grid. It is monotonic in `x`, and 0 for a
+  /// NaN.
   Index coordinate(Real x, std::size_t axis) const {
     const Real c = (x - origin_[static_cast<Eigen::Index>(axis)]) * inverse_cell_size_;
     if (!(c > 0)) return 0;
@@ -71,10 +72,10 @@ class UniformGrid {
   Vec3 origin_ = Vec3::Zero();
   Real inverse_cell_size_ = 1;
   std::array<Index, 3> count_{1, 1, 1};
-  std::vector<Index> cell_begin_;  // per cell, and one past the last
-  std::vector<Index> cell_of_;     // per point
+  std::vector<Index> cell_begin_;  // by cell, and the total number of slots
+  std::vector<Index> cell_of_;     // by point
   std::vector<Index> order_;
-  std::vector<std::array<Vec3, 2>> boxes_;  // around each block of points
+  std::vector<std::array<Vec3, 2>> boxes_;  // boxes of the blocks of points
 };
 
 }  // namespace vat

@@ -6,11 +6,12 @@
 #include "core/limits.h"
 #include "core/numerics/error_model.h"
 #include "core/numerics/step_limits.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-constexpr Real kMargin = 0.9;     // of the stable step
+constexpr Real kMargin = 0.9;     // in stable steps
 constexpr Real kEvaluations = 4;  // of Runge-Kutta 4
 
 bool needs_verlet(const Scene& scene) {
@@ -19,10 +20,10 @@ bool needs_verlet(const Scene& scene) {
   });
 }
 
-/// What of a scene moves, and how fast.
+/// The motions of a scene, as bounds of their rates.
 struct Motions {
   std::vector<Oscillation> smooth;  ///< springs and the central field
-  std::vector<Oscillation> liquid;  ///< adaptive control sees how much of it there is
+  std::vector<Oscillation> liquid;  ///< adaptive control measures its actual rates
   bool has_kinks = false;           ///< liquids, contacts, walls
 };
 
@@ -55,9 +56,10 @@ Motions find_motions(const Scene& scene, std::span<const SampledBody* const> sam
   return motions;
 }
 
-/// The longest step of the integrator with which the smooth motions have the error, and all are
+/// The longest step of the integrator for which smooth motions have the error and all motions are
 /// stable.
 Real longest_step(const Motions& motions, IntegratorId integrator, Real error) {
+  VAT_CHECK(error > 0);
   Real step = kMaxStep;
   for (const Oscillation& motion : motions.liquid) {
     step = std::min(step, kMargin * stable_step(integrator, motion));

@@ -12,19 +12,20 @@
 #include "core/laws/lennard_jones.h"
 #include "core/sampling/volumes.h"
 #include "core/scene/interface_table.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// What contacts move, and what they can touch.
+/// The properties of a body that determine its contacts.
 struct ContactBody {
   BodyKind kind;
   std::size_t material;
-  Real mass;    ///< of what moves as one: a rigid body, or the lightest free particle
-  Real count;   ///< of particles
-  Real side;    ///< particles that can be in contact with another body at once
-  Real radius;  ///< the greatest
-  Real pitch;   ///< distance of the particles from one another
+  Real mass;    ///< of a rigid body, or of the lightest free particle
+  Real count;   ///< number of particles
+  Real side;    ///< number of particles that can be in contact with another body at once
+  Real radius;  ///< maximum radius
+  Real pitch;   ///< distance between neighbouring particles
 };
 
 Real lightest_free(const SampledBody& body) {
@@ -41,7 +42,7 @@ ContactBody describe(const Scene& scene, const BodyDescription& body, const Samp
   const bool is_rigid = body.kind == BodyKind::rigid;
   const auto count = static_cast<Real>(sample.positions.size());
   const bool is_sampled = !std::holds_alternative<ParticleShape>(body.shape);
-  const bool is_empty = sample.radii.empty();  // a liquid that was drained
+  const bool is_empty = sample.radii.empty();  // a drained liquid
   return {body.kind,
           material_index(scene.materials, body.material),
           is_rigid ? std::accumulate(sample.masses.begin(), sample.masses.end(), Real{0})
@@ -52,40 +53,40 @@ ContactBody describe(const Scene& scene, const BodyDescription& body, const Samp
           is_sampled || is_empty ? body.spacing : 2 * std::ranges::min(sample.radii)};
 }
 
-/// How many particles of `other` one particle reaches. Where the threshold is a pitch, a particle
-/// that sinks between four others feels k sum (n.e)^2 = 2 k along the normal; beyond it, the number
-/// grows with the area reached.
+/// The number of particles of `other` within the reach of one particle. With a threshold of one
+/// pitch, a particle between four others feels k sum (n.e)^2 = 2 k along the normal. For larger
+/// thresholds, the number grows with the area in reach.
 Real touched_by_one(const ContactBody& other, Real threshold) {
   const Real reach = std::max(Real{1}, threshold / other.pitch);
   return std::min(other.count, 2 * reach * reach);
 }
 
-/// Contacts at once on what moves as one in `body`.
+/// The number of simultaneous contacts of `body`, or of one of its particles if it is not rigid.
 Real load(const ContactBody& body, const ContactBody& other, Real threshold) {
   const Real each = touched_by_one(other, threshold);
   if (body.kind != BodyKind::rigid) return each;
   return std::min(body.side * each, other.side * touched_by_one(body, threshold));
 }
 
-/// A law of contact, and the worst of the pairs that it joins.
+/// A law of contact, and the pair of bodies that it limits most.
 struct LawInUse {
   InterfaceConstants constants;
   Real threshold = 0;  ///< 0: the sum of the radii
   std::string path;
 
-  Real inverse_mass = 0;               ///< [1/kg] the greatest that it acts on
-  std::array<std::size_t, 2> worst{};  ///< the bodies where that is
+  Real inverse_mass = 0;               ///< maximum over all pairs of bodies [1/kg]
+  std::array<std::size_t, 2> worst{};  ///< the bodies with this inverse mass
 };
 
-/// Adds a pair of bodies, the same twice for one body with itself or the walls, whose contacts act
-/// on an inertia of 1 / `inverse_mass`.
+/// Adds a pair of bodies whose contacts act on an inertia of 1 / `inverse_mass`. Both indices are
+/// equal for contacts of one body with itself or with the walls.
 void take(LawInUse& law, Real inverse_mass, std::array<std::size_t, 2> pair) {
   if (inverse_mass <= law.inverse_mass) return;
   law.inverse_mass = inverse_mass;
   law.worst = pair;
 }
 
-/// Two bodies of one liquid meet by SPH.
+/// Returns whether contacts can act. Two bodies of one liquid interact by SPH.
 bool can_touch(const ContactBody& a, const ContactBody& b) {
   return a.kind != BodyKind::liquid || b.kind != BodyKind::liquid || a.material != b.material;
 }
@@ -95,8 +96,8 @@ Real inverse_mass(const ContactBody& a, const ContactBody& b, const LawInUse& la
   return load(a, b, threshold) / a.mass + load(b, a, threshold) / b.mass;
 }
 
-/// What of an interface oscillates: of a layer its slope at half the distance at which it rests,
-/// further in than particles come; of a projection nothing.
+/// The constants of the oscillation of a contact. A layer has its slope at half its rest distance,
+/// which is closer than particles come. A projection has no oscillation.
 InterfaceConstants oscillating_part(InterfaceConstants constants) {
   switch (constants.law) {
     case InterfaceLaw::penalty:
@@ -112,7 +113,7 @@ InterfaceConstants oscillating_part(InterfaceConstants constants) {
   return constants;
 }
 
-/// The scene's interfaces, then the default one, then each material's self-contact.
+/// The scene's interfaces, then the default one, then the self-contact of each material.
 std::vector<LawInUse> list_laws(const Scene& scene) {
   std::vector<LawInUse> laws;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
@@ -129,7 +130,7 @@ std::vector<LawInUse> list_laws(const Scene& scene) {
   return laws;
 }
 
-/// The laws with the bodies that each is hardest on.
+/// The laws with the bodies that each limits most.
 std::vector<LawInUse> find_worst(const Scene& scene, const std::vector<ContactBody>& bodies) {
   const InterfaceTable table(scene.materials, scene.interfaces);
   const std::size_t other = scene.interfaces.size();
@@ -158,12 +159,13 @@ std::vector<LawInUse> find_worst(const Scene& scene, const std::vector<ContactBo
   return laws;
 }
 
-/// The mass of one particle, on the whole.
+/// The mean mass of a particle.
 Real particle_mass(const ContactBody& body) {
   return body.kind == BodyKind::rigid ? body.mass / body.count : body.mass;
 }
 
-/// The greatest of a contact's damping along its normal and, by friction, across it [N s/m].
+/// The larger one of the damping of a contact along its normal and that of friction across it [N
+/// s/m].
 Real greatest_damping(const LawInUse& law, const std::vector<ContactBody>& bodies) {
   const auto [first, second] = law.worst;
   const Real along = law.constants.restitution
@@ -171,12 +173,12 @@ Real greatest_damping(const LawInUse& law, const std::vector<ContactBody>& bodie
                                        law.constants.stiffness, law.inverse_mass)
                          : law.constants.damping;
   if (law.constants.friction == 0) return along;
-  // No reduced mass is above the lesser of the two.
+  // A reduced mass is at most the lesser mass.
   const Real mass = std::min(particle_mass(bodies[first]), particle_mass(bodies[second]));
   return std::max(along, sticking_drag(law.constants.stiffness, mass));
 }
 
-/// Unit vectors, one of each opposite pair, in the body's axes.
+/// Unit vectors in the axes of the body, one of each opposite pair.
 std::array<Vec3, 13> lattice_directions() {
   std::array<Vec3, 13> directions;
   std::size_t count = 0;
@@ -198,9 +200,9 @@ Mat3 principal_axes(const SampledBody& body) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors();
 }
 
-/// Particles in the foremost layer along `direction`.
+/// The number of particles in the foremost layer along `direction`.
 std::size_t count_foremost(const SampledBody& body, const Vec3& direction) {
-  constexpr Real kDepth = 0.1;  // of a radius
+  constexpr Real kDepth = 0.1;  // in radii
   Real front = -std::numeric_limits<Real>::infinity();
   for (std::size_t i = 0; i < body.positions.size(); ++i) {
     front = std::max(front, direction.dot(body.positions[i]) + body.radii[i]);
@@ -216,6 +218,7 @@ std::size_t count_foremost(const SampledBody& body, const Vec3& direction) {
 }  // namespace
 
 std::size_t count_flattest_side(const SampledBody& body, const Quat& orientation) {
+  VAT_CHECK(!body.positions.empty() && body.radii.size() == body.positions.size());
   const auto lattice = lattice_directions();
   std::vector<Vec3> directions(lattice.begin(), lattice.end());
   const Mat3 rotation = orientation.normalized().toRotationMatrix();
@@ -232,6 +235,7 @@ std::size_t count_flattest_side(const SampledBody& body, const Quat& orientation
 
 void add_contact_limits(const Scene& scene, std::span<const SampledBody* const> samples,
                         std::vector<OscillatingPart>& parts) {
+  VAT_CHECK(samples.size() == scene.bodies.size());
   std::vector<ContactBody> bodies;
   for (std::size_t b = 0; b < samples.size(); ++b) {
     bodies.push_back(describe(scene, scene.bodies[b], *samples[b]));

@@ -6,12 +6,12 @@
 
 namespace vat {
 
-/// The parts of find_oscillating_parts() that contacts make.
+/// Adds the parts of find_oscillating_parts() that are due to contacts.
 void add_contact_limits(const Scene& scene, std::span<const SampledBody* const> samples,
                         std::vector<OscillatingPart>& parts);
 
-/// How many of the body's particles can touch a plane at once: those within a tenth of a radius of
-/// the foremost, along the body's axes, their diagonals and its principal axes.
+/// The number of particles of a body that can touch a plane at once: those within a tenth of a
+/// radius of the foremost particle, along the body's axes, their diagonals and its principal axes.
 std::size_t count_flattest_side(const SampledBody& body, const Quat& orientation);
 
 }  // namespace vat

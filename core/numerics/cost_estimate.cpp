@@ -1,4 +1,6 @@
 #include "core/numerics/cost_estimate.h"
+#include "core/scene/lookup.h"
+#include "core/support/check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,30 +8,30 @@
 namespace vat {
 namespace {
 
-/// Of a particle, or of a spring, with all that is kept for it.
+/// Cost of a particle or a spring, with all data stored for it.
 struct UnitCost {
   Real memory;   ///< [bytes]
-  Real seconds;  ///< of one evaluation of forces
+  Real seconds;  ///< for one force evaluation
 };
 
-// Slopes between blocks of 1 000 and 64 000 particles.
-constexpr UnitCost kLiquid{570, 4.6e-7};         // with the neighbours of two spacings
-constexpr UnitCost kIncompressible{1200, 2e-6};  // with ten to twenty iterations
+// Slopes between scenes of 1 000 and 64 000 particles.
+constexpr UnitCost kLiquid{570, 4.6e-7};         // with the neighbours within two spacings
+constexpr UnitCost kIncompressible{1200, 2e-6};  // with 10 to 20 iterations
 constexpr UnitCost kDeformable{400, 2e-8};
 constexpr UnitCost kSpring{300, 1.3e-8};
 constexpr UnitCost kRigid{360, 2e-8};
-// Of a surface, over the time that a liquid takes for its neighbours.
-constexpr Real kCurvature = 2;   // four passes over them, for two
-constexpr Real kCohesion = 0.5;  // of those within twice the support radius
+// Cost of surface tension, relative to the cost of the neighbours of a liquid.
+constexpr Real kCurvature = 2;   // four passes over the neighbours, compared with two
+constexpr Real kCohesion = 0.5;  // of the neighbours within twice the support radius
 
-// Of the neighbours of two spacings: those of a lone particle's own work, and of the finest lattice
-// that kernels are made for.
+// Relative to the number of neighbours within two spacings: the cost of a particle without
+// neighbours, and the finest lattice for which kernels are made.
 constexpr Real kMinShare = 0.1;
 constexpr Real kMaxSpacings = 8;
 
-/// Of a liquid's particle: time goes by its neighbours.
+/// Cost of a liquid particle. The time depends on its neighbours.
 UnitCost liquid_cost(const Scene& scene, const BodyDescription& body, const SampledBody& sample) {
-  const Material& material = *std::ranges::find(scene.materials, body.material, &Material::name);
+  const Material& material = material_of(scene, body);
   const LiquidConstants& liquid = *material.liquid;
   const Real dimensions = scene.dimensions;
   const Real mass = std::ranges::min(sample.masses);
@@ -59,13 +61,14 @@ Real evaluations_a_step(IntegratorId integrator) {
 }  // namespace
 
 CostEstimate estimate_cost(const Scene& scene, std::span<const SampledBody* const> samples) {
+  VAT_CHECK(samples.size() == scene.bodies.size());
   CostEstimate sum;
   const auto add = [&](const UnitCost& cost, std::size_t count) {
     sum.memory += cost.memory * static_cast<Real>(count);
     sum.seconds += cost.seconds * static_cast<Real>(count);
   };
   for (std::size_t b = 0; b < samples.size(); ++b) {
-    if (samples[b]->positions.empty()) continue;  // an emitter's body
+    if (samples[b]->positions.empty()) continue;  // the body of an emitter
     add(particle_cost(scene, scene.bodies[b], *samples[b]), samples[b]->positions.size());
     add(kSpring, samples[b]->springs.size());
   }

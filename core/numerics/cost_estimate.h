@@ -7,11 +7,11 @@
 
 namespace vat {
 
-/// What a scene is likely to need, to a factor of two or three: for one core of a present-day
-/// processor, steps of the nominal length, and without contacts between bodies.
+/// The expected cost of a scene, within a factor of two or three: for one core of a current
+/// processor, steps of the nominal length, and no contacts between bodies.
 struct CostEstimate {
   Real memory = 0;   ///< [bytes]
-  Real seconds = 0;  ///< of a core for a simulated second
+  Real seconds = 0;  ///< of one core, for one simulated second
 };
 
 /// `samples` are the scene's bodies.

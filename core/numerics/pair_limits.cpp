@@ -10,6 +10,7 @@
 #include "core/neighbours/periodic_box.h"
 #include "core/neighbours/uniform_grid.h"
 #include "core/scene/interface_table.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -18,7 +19,7 @@ PeriodicBox box_of(const Scene& scene) {
   return scene.periodic ? PeriodicBox(*scene.periodic) : PeriodicBox();
 }
 
-/// The bodies' particles one after the other, in a periodic world within its box.
+/// The particles of all bodies; in a periodic world, their images in its box.
 struct Particles {
   std::vector<Vec3> positions;
   std::vector<std::uint8_t> material;  // kMaxMaterials is 64
@@ -48,8 +49,8 @@ Particles in_order(const Particles& particles, std::span<const Index> order) {
   return sorted;
 }
 
-/// Counts neighbours as the step searches for them, up to the limits. Of none that is tried is the
-/// distance asked where all of them count.
+/// Counts neighbours by the search of a step, up to the limits. If `all_tried_count`, all tested
+/// particles count, without a look at their distances.
 class NeighbourCount {
  public:
   NeighbourCount(std::size_t particles, const PeriodicBox& box, bool all_tried_count)
@@ -57,14 +58,14 @@ class NeighbourCount {
 
   bool is_exceeded() const { return found_ > most_ || tried_ > kMaxSearch; }
 
-  /// Adds those of `others` that each of `particles` has within `reach`, itself included. They
-  /// count where `counts(material, other material, distance^2)`.
+  /// Adds the particles of `others` within `reach` of each of `particles`, itself included, for
+  /// which `counts(material, other material, distance^2)` holds.
   template <class Counts>
   void add(const Particles& particles, const Particles& others, Real reach, Counts&& counts) {
     if (particles.positions.empty() || others.positions.empty()) return;
     UniformGrid grid;
     grid.build(others.positions, reach);
-    Particles sorted;  // near in space, near in memory
+    Particles sorted;  // particles that are near in space are near in memory
     if (!all_tried_count_) sorted = in_order(others, grid.order());
     for (std::size_t i = 0; i < particles.positions.size() && !is_exceeded(); ++i) {
       box_.for_each_image(particles.positions[i], reach, [&](const Vec3& shift) {
@@ -89,8 +90,8 @@ class NeighbourCount {
   std::size_t tried_ = 0;
 };
 
-/// Whether what `add_all(count)` adds to a count is too much. Where there are so few that all that
-/// are tried would not be, their distances do not matter.
+/// Returns whether `add_all(count)` adds too many neighbours to a count. Distances are computed
+/// only if the number of tested particles exceeds the limit.
 template <class AddAll>
 bool are_too_many(std::size_t particles, const PeriodicBox& box, AddAll&& add_all) {
   for (const bool all_tried_count : {true, false}) {
@@ -110,7 +111,7 @@ std::string too_many_text(const std::string& what, Real reach, std::size_t parti
   return what + text;
 }
 
-/// The liquid bodies' material of the widest support; none without liquid.
+/// The material of a liquid body with the largest support radius; empty without liquids.
 std::optional<std::size_t> widest_liquid(const Scene& scene, const std::vector<PairBody>& bodies) {
   const auto support = [&](std::size_t m) { return scene.materials[m].liquid->support_radius; };
   std::optional<std::size_t> widest;
@@ -148,7 +149,7 @@ void check_liquid(const Scene& scene, const std::vector<PairBody>& bodies, const
   }
 }
 
-/// The greatest distance at which particles of two bodies touch, and what makes it so great.
+/// The maximum distance at which particles of two bodies touch, and its cause.
 struct ContactReach {
   Real distance = 0;
   std::string cause;
@@ -224,7 +225,7 @@ void check_contact_pairs(const Scene& scene, const std::vector<PairBody>& bodies
 
 namespace {
 
-/// Adds an error where a particle could meet another one and its image at once.
+/// Adds an error if a particle could interact with another one and its image at once.
 void check_length(const Periodicity& periodic, Real reach, const std::string& cause,
                   const std::string& path, RangeCheck& check) {
   for (std::size_t axis = 0; axis < periodic.axes.size(); ++axis) {
@@ -281,8 +282,8 @@ void check_pairs_of_new(const Scene& scene, const std::vector<PairBody>& bodies,
 
 namespace {
 
-/// Whether particles of others, of those that `notices(body)` tells, may be within `reach` of the
-/// body.
+/// Returns whether particles of other bodies, for which `notices(body)` holds, may be within
+/// `reach` of the body.
 template <class Notices>
 bool is_near_others(const std::vector<PairBody>& bodies, std::size_t body, Real reach,
                     Notices&& notices) {
@@ -302,6 +303,7 @@ bool is_near_others(const std::vector<PairBody>& bodies, std::size_t body, Real 
 
 void check_pairs_of_moved(const Scene& scene, const std::vector<PairBody>& bodies, std::size_t body,
                           const std::string& path, RangeCheck& check) {
+  VAT_CHECK(body < bodies.size());
   const BodyDescription& moved = *bodies[body].description;
   const bool is_liquid = moved.kind == BodyKind::liquid;
   const bool repeats = scene.periodic.has_value();  // images may be near

@@ -11,8 +11,8 @@ namespace {
 
 using Complex = std::complex<Real>;
 
-/// 1 + w + w^2/2 + ... + w^order/order!: what a step of an explicit Runge-Kutta method of this
-/// order, with as many stages, makes of exp(w).
+/// 1 + w + w^2/2 + ... + w^order/order!: the approximation of exp(w) by a step of an explicit
+/// Runge-Kutta method of this order with as many stages.
 Complex growth(int order, Complex w) {
   Complex sum = 1;
   Complex term = 1;
@@ -43,7 +43,8 @@ Real runge_kutta_limit(int order, const Oscillation& oscillation) {
   return low;
 }
 
-/// |1 + w|^2 <= 1 in closed form, since the limit of weakly damped ones is far below others'.
+/// The limit |1 + w|^2 <= 1 in closed form. For weakly damped oscillations it is far below that of
+/// other methods.
 Real explicit_euler_limit(const Oscillation& oscillation) {
   const Real half = oscillation.rate / 2;
   const Real discriminant = half * half - oscillation.omega2;
@@ -51,7 +52,7 @@ Real explicit_euler_limit(const Oscillation& oscillation) {
   return 2 / (half + std::sqrt(discriminant));
 }
 
-/// The root of omega2 dt^2 + 2 rate dt = 4, in the form that is exact for either of them zero.
+/// The root of omega2 dt^2 + 2 rate dt = 4, in a form that is exact if one of them is zero.
 Real symplectic_euler_limit(const Oscillation& oscillation) {
   const Real rate = oscillation.rate;
   return 4 / (rate + std::sqrt(rate * rate + 4 * oscillation.omega2));
@@ -60,6 +61,7 @@ Real symplectic_euler_limit(const Oscillation& oscillation) {
 }  // namespace
 
 Real stable_step(IntegratorId integrator, const Oscillation& oscillation) {
+  VAT_CHECK(!(oscillation.omega2 < 0) && !(oscillation.rate < 0));
   if (oscillation.omega2 == 0 && oscillation.rate == 0) {
     return std::numeric_limits<Real>::infinity();
   }

@@ -14,16 +14,17 @@
 #include "core/numerics/contact_limits.h"
 #include "core/sampling/volumes.h"
 #include "core/scene/lookup.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 constexpr Real kSoundLimit = 0.96;     // c dt / h, velocity Verlet, cubic lattice, h = 2 spacings
 constexpr Real kViscousLimit = 0.126;  // nu dt / h^2, the same, 2 / (greatest eigenvalue)
-constexpr Real kNoSlipShare = 2.5;     // a wall's drag is up to 1.5 times the neighbours'
-constexpr Real kVerletLimit = 2;       // omega dt, and rate dt, at those
+constexpr Real kNoSlipShare = 2.5;  // the drag of a wall is up to 1.5 times that of the neighbours
+constexpr Real kVerletLimit = 2;    // omega dt and rate dt at these limits
 
-/// The same of liquids with a smoothing kernel, at the worst of 2 to 4 spacings.
+/// Limits of liquids with a smoothing kernel: the minimum for 2 to 4 spacings in a support radius.
 struct KernelLimits {
   Real sound;
   Real viscous;
@@ -71,7 +72,8 @@ Real greatest_load(const SampledBody& body, const std::vector<Symmetric>& loads)
   return greatest;
 }
 
-/// Of loads sum_j k_ij n n^T on the free particles, with k each of the springs' constants.
+/// Bounds for the springs: loads sum_j k_ij n n^T on the free particles, with k the constants of
+/// the springs.
 SpringBound bound_springs(const SampledBody& body) {
   SpringBound bound;
   if (body.springs.empty()) return bound;
@@ -91,7 +93,7 @@ SpringBound bound_springs(const SampledBody& body) {
   return bound;
 }
 
-/// The strongest damping limits some integrators and the weakest others.
+/// Adds both damping extremes: strong damping limits some integrators, and weak damping others.
 void add_solid(const Scene& scene, std::size_t index, const SampledBody& body,
                std::vector<OscillatingPart>& parts) {
   const Material& material = material_of(scene, scene.bodies[index]);
@@ -110,9 +112,10 @@ void add_solid(const Scene& scene, std::size_t index, const SampledBody& body,
   }
 }
 
-/// What holds a surface together: with curvature a sound of c^2 = 2 kCohesion sigma / (rho h). The
-/// attraction of pairs makes density waves of k have omega^2 = A k^2 (W'(k) - W(k)) / rho, W and W'
-/// the Fourier transforms of its parts, at most 8.6 A / (rho h^2).
+/// The forces that hold a surface together. With curvature, they act as a sound of c^2 = 2
+/// kCohesion sigma / (rho h). With cohesion, density waves of wave number k have omega^2 = A k^2
+/// (W'(k) - W(k)) / rho, with the Fourier transforms W and W' of both parts, at most 8.6 A / (rho
+/// h^2).
 Real cohesion_omega2(const Scene& scene, const Material& material) {
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
@@ -125,9 +128,9 @@ Real cohesion_omega2(const Scene& scene, const Material& material) {
   return limit * limit * 2 * kCohesion * liquid.surface_tension / (material.density * h * h * h);
 }
 
-/// The shortest waves that a surface of these particles shows, two spacings long, have dt <=
-/// sqrt(rho spacing^3 / (2 pi sigma)) (J. U. Brackbill, D. B. Kothe, C. Zemach, J. Comput. Phys.
-/// 100 (1992) 335, eq. 61).
+/// The shortest waves of a surface of these particles, two spacings long, need dt <= sqrt(rho
+/// spacing^3 / (2 pi sigma)) (J. U. Brackbill, D. B. Kothe, C. Zemach, J. Comput. Phys. 100 (1992)
+/// 335, eq. 61).
 Real surface_omega2(const Scene& scene, const Material& material, Real spacing) {
   const LiquidConstants& liquid = *material.liquid;
   if (liquid.surface_tension == 0 || spacing == 0) return 0;
@@ -136,13 +139,13 @@ Real surface_omega2(const Scene& scene, const Material& material, Real spacing) 
          cohesion_omega2(scene, material);
 }
 
-/// Of the pressure under a liquid's own weight, as deep as it is at the start.
+/// The pressure of the liquid's own weight, for its depth at the start.
 Real weight_omega2(const Scene& scene, const SampledBody& body, Real support_radius) {
   if (!scene.forces.pressure || !scene.forces.gravity) return 0;
   return pressed_lattice_omega2(weight_of(scene, body), support_radius);
 }
 
-/// Of the sound, viscosity and settling of a liquid of this material.
+/// The sound, viscosity and settling of a liquid of this material.
 Oscillation bound_liquid(const Scene& scene, const Material& material) {
   const LiquidConstants& liquid = *material.liquid;
   const Real h = liquid.support_radius;
@@ -163,11 +166,13 @@ Oscillation bound_liquid(const Scene& scene, const Material& material) {
   return {sound * sound, kVerletLimit / viscous_limit * viscosity / (h * h) + drag};
 }
 
-/// Of a liquid, or of what becomes one; null for others.
+/// The material of a liquid, or of the liquid into which a body melts; null for others.
 const Material* liquid_of(const Scene& scene, const BodyDescription& body) {
   if (body.kind != BodyKind::liquid && !body.melting) return nullptr;
   const std::string& name = body.melting ? body.melting->into : body.material;
-  return &*std::ranges::find(scene.materials, name, &Material::name);
+  const auto found = std::ranges::find(scene.materials, name, &Material::name);
+  VAT_CHECK(found != scene.materials.end());
+  return &*found;
 }
 
 void add_liquid(const Scene& scene, std::size_t index, const SampledBody& sample,
@@ -175,7 +180,7 @@ void add_liquid(const Scene& scene, std::size_t index, const SampledBody& sample
   const BodyDescription& body = scene.bodies[index];
   const Material& material = *liquid_of(scene, body);
   Oscillation bound = bound_liquid(scene, material);
-  Real spacing = body.spacing;  // an emitter's, of particles to come
+  Real spacing = body.spacing;  // of the particles that an emitter will add
   if (!sample.masses.empty()) {
     spacing = std::pow(std::ranges::min(sample.masses) / material.density, 1.0 / scene.dimensions);
   }
@@ -190,13 +195,13 @@ void add_liquid(const Scene& scene, std::size_t index, const SampledBody& sample
   }
   if (body.melting) {
     part.path += kMeltingPath;
-    part.body.reset();  // not yet
+    part.body.reset();  // the body is not liquid yet
   }
   parts.push_back(std::move(part));
 }
 
-/// A solid in a liquid that it takes part in: what a liquid particle feels, on as much volume, by
-/// the solid's mass. No matter where it is heavier than the liquid.
+/// A solid in a coupled liquid: the forces on liquid of the same volume act on the mass of the
+/// solid. No limit if the solid is denser than the liquid.
 void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sample,
                    std::vector<OscillatingPart>& parts) {
   Real lightest = std::numeric_limits<Real>::infinity();  // density
@@ -209,14 +214,14 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
     const Material* liquid_material = liquid_of(scene, body);
     if (liquid_material == nullptr || &body == &scene.bodies[index]) continue;
     const Material& material = *liquid_material;
-    // The highest modes of a liquid have neighbours that move the other way. A rigid body moves as
-    // one: against liquid at rest the same displacement is half of that.
+    // Neighbours move in opposite directions in the highest modes of a liquid. A rigid body moves
+    // as a whole; against liquid at rest, the relative displacement is half of that.
     const Real share = scene.bodies[index].kind == BodyKind::rigid ? 0.5 : 1;
     const Real ratio = share * material.density / lightest;
     if (ratio <= 1) continue;
     Oscillation liquid = bound_liquid(scene, material);
     if (scene.surface_model == SurfaceModel::cohesion) {
-      liquid.omega2 += cohesion_omega2(scene, material);  // which pulls at it too
+      liquid.omega2 += cohesion_omega2(scene, material);  // cohesion attracts the solid as well
     }
     bound = {std::max(bound.omega2, ratio * liquid.omega2),
              std::max(bound.rate, ratio * liquid.rate)};
@@ -230,12 +235,14 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
 
 Real pressed_lattice_omega2(Real pressure, Real support_radius) {
   constexpr Real kLimit = 0.18;  // dt sqrt(p / rho) / h
+  VAT_CHECK(support_radius > 0);
   const Real rate = kVerletLimit / (kLimit * support_radius);
   return rate * rate * pressure;
 }
 
 Real bound_cells(const SampledBody& body, Real bulk_modulus, int dimensions) {
   std::vector<Real> load(body.positions.size(), 0);
+  VAT_CHECK(body.masses.size() == body.positions.size());
   const Index count = dimensions == 3 ? 8 : 4;
   for (const SampledCell& cell : body.cells) {
     std::array<Real, 8> slope{};
@@ -294,6 +301,7 @@ std::vector<OscillatingPart> find_parts_of_body(const Scene& scene, std::size_t 
 std::vector<OscillatingPart> find_oscillating_parts(const Scene& scene,
                                                     std::span<const SampledBody* const> samples) {
   std::vector<OscillatingPart> parts;
+  VAT_CHECK(samples.size() == scene.bodies.size());
   for (std::size_t b = 0; b < samples.size(); ++b) {
     std::ranges::move(find_parts_of_body(scene, b, *samples[b]), std::back_inserter(parts));
   }

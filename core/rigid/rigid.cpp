@@ -4,15 +4,17 @@
 #include "core/stage/context.h"
 #include "core/state/rigid_motion.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 void find_spins(StepContext& c) {
-  c.work.of<ContactForceScratch>().spins.clear();
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
+  contact_buffers.spins.clear();
   for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
     const RigidState& state = c.configuration.rigid[b];
-    c.work.of<ContactForceScratch>().spins.push_back(
+    contact_buffers.spins.push_back(
         angular_velocity(c.model.rigid_bodies[b], state.orientation, state.angular_momentum));
   }
 }
@@ -27,6 +29,8 @@ void pose_rigid_bodies(StepContext& c) {
 }
 
 void gather_rigid_forces(StepContext& c) {
+  VAT_CHECK(c.forces.rigid_force.size() == c.model.rigid_bodies.size() &&
+            c.forces.particle.size() == c.model.particle_count);
   for (std::size_t b = 0; b < c.model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = c.model.rigid_bodies[b];
     const Vec3 center = c.configuration.rigid[b].center_of_mass;

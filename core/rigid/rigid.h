@@ -4,10 +4,11 @@ namespace vat {
 
 struct StepContext;
 
-/// Stage: particles of rigid bodies take their places from the poses.
+/// Stage: moves the particles of rigid bodies to the poses.
 void pose_rigid_bodies(StepContext& context);
 
-/// Stage: resultant and torque of the particles' forces, Boldt eqs. 5 and 6; none on held bodies.
+/// Stage: computes resultant force and torque of the particles' forces, Boldt eqs. 5 and 6; zero
+/// for held bodies.
 void gather_rigid_forces(StepContext& context);
 
 }  // namespace vat

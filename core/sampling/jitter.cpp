@@ -2,10 +2,13 @@
 
 #include <cstdint>
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
-/// The output function of SplitMix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014), of a counter.
+/// The output function of SplitMix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014), applied to a
+/// counter.
 std::uint64_t scramble(std::uint64_t counter) {
   std::uint64_t z = counter * 0x9e3779b97f4a7c15U;
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -13,7 +16,7 @@ std::uint64_t scramble(std::uint64_t counter) {
   return z ^ (z >> 31U);
 }
 
-/// In [-1, 1), of 53 random bits.
+/// A uniform number in [-1, 1) with 53 random bits.
 Real even(std::uint32_t seed, std::uint64_t draw) {
   const std::uint64_t bits = scramble(scramble(seed + std::uint64_t{1}) + draw + 1) >> 11U;
   return static_cast<Real>(bits) * 0x1p-52 - 1;
@@ -22,6 +25,7 @@ Real even(std::uint32_t seed, std::uint64_t draw) {
 }  // namespace
 
 void jitter(std::vector<Vec3>& points, Real greatest, std::uint32_t seed, int dimensions) {
+  VAT_CHECK(greatest >= 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       if (dimensions == 2 && axis == 1) continue;

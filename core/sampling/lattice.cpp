@@ -11,7 +11,7 @@
 namespace vat {
 namespace {
 
-// A shape that holds a whole number of cells does so in spite of rounding.
+// Tolerance for shapes that hold a whole number of cells, up to rounding.
 constexpr Real kRounding = 1e-9;
 
 struct Bounds {
@@ -51,7 +51,7 @@ Bounds bounds_of(const ParticleShape&) {
 }
 
 bool contains(const BoxShape&, const Vec3&) {
-  return true;  // the lattice covers the bounding box alone
+  return true;  // the lattice covers the bounding box only
 }
 
 bool contains(const SphereShape& sphere, const Vec3& point) {
@@ -97,6 +97,7 @@ MeshLines lines_of(const Lattice& lattice) {
 std::vector<LatticePoint> fill_mesh(const MeshShape& mesh, const Lattice& lattice) {
   const std::vector<MeshCrossing> crossings = find_crossings(mesh, lines_of(lattice));
   const auto width = static_cast<std::size_t>(lattice.size[0]);
+  VAT_CHECK(lattice.size[0] >= 1 && lattice.size[1] >= 1);
   std::vector<std::size_t> begin(width * static_cast<std::size_t>(lattice.size[1]) + 1);
   for (const MeshCrossing& crossing : crossings) ++begin[crossing.line + 1];
   for (std::size_t line = 1; line < begin.size(); ++line) begin[line] += begin[line - 1];
@@ -113,6 +114,7 @@ std::vector<LatticePoint> fill_mesh(const MeshShape& mesh, const Lattice& lattic
 }  // namespace
 
 Lattice make_lattice(const Shape& shape, Real spacing, int dimensions) {
+  VAT_CHECK(spacing > 0);
   const Bounds bounds = std::visit([](const auto& s) { return bounds_of(s); }, shape);
   Lattice lattice;
   lattice.spacing = spacing;

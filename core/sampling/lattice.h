@@ -7,25 +7,27 @@
 
 namespace vat {
 
-/// A simple cubic lattice over the bounding box of a shape and centred on it: along each axis as
-/// many points as cells of `spacing` fit, at least one; in two dimensions one along y. Not for
-/// explicit particles.
+/// A simple cubic lattice, centred on the bounding box of a shape. Along each axis it has as many
+/// points as cells of `spacing` fit, at least one; in two dimensions one along y. Not for explicit
+/// particles.
 struct Lattice {
   Vec3 first = Vec3::Zero();
-  Real spacing = 0;                   ///< [m]
-  std::array<Real, 3> size{0, 0, 0};  ///< points per axis, whole; real, since a bad scene's is huge
+  Real spacing = 0;  ///< [m]
+  std::array<Real, 3> size{
+      0, 0, 0};  ///< points by axis, whole numbers; Real, because invalid scenes have huge ones
   Real point_count() const { return size[0] * size[1] * size[2]; }
 };
 Lattice make_lattice(const Shape& shape, Real spacing, int dimensions = 3);
 
-/// Pairs of a triangle and a column of the lattice that fill_lattice() has to try.
+/// The number of pairs of a triangle and a column of the lattice that fill_lattice() tests.
 Real lattice_work(const MeshShape& mesh, const Lattice& lattice);
 
-/// The lattice points inside the shape, x fastest.
+/// A lattice point inside the shape.
 struct LatticePoint {
   std::array<Index, 3> at{};
-  Vec3 position;  ///< in the shape's frame
+  Vec3 position;  ///< in the frame of the shape
 };
+/// The lattice points inside the shape, x fastest.
 std::vector<LatticePoint> fill_lattice(const Shape& shape, const Lattice& lattice);
 
 }  // namespace vat

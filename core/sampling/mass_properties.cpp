@@ -1,9 +1,11 @@
 #include "core/sampling/mass_properties.h"
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
-/// Mass and its centre, without inertia.
+/// Mass and centre of mass, without inertia.
 MassProperties without_inertia(const SampledBody& body) {
   MassProperties result;
   Vec3 moment = Vec3::Zero();
@@ -11,6 +13,7 @@ MassProperties without_inertia(const SampledBody& body) {
     result.mass += body.masses[i];
     moment += body.masses[i] * body.positions[i];
   }
+  VAT_CHECK(result.mass > 0);
   result.center_of_mass = moment / result.mass;
   result.inertia = Mat3::Zero();
   return result;

@@ -11,13 +11,13 @@ struct MassProperties {
   Mat3 inertia;         ///< about r_cm [kg m^2]
 };
 
-/// I = sum m_e ((x.x) 1 - x x^T) + 2/5 m_e r_e^2 1: the last term is each particle's own as a solid
-/// sphere, and keeps single and collinear particles from a singular tensor.
+/// I = sum m_e ((x.x) 1 - x x^T) + 2/5 m_e r_e^2 1. The last term is the inertia of the particles
+/// as solid spheres, which makes the tensor of single and collinear particles invertible.
 MassProperties mass_properties(const SampledBody& body);
 
-/// The same of a body in the plane y = 0, of discs: I = sum m_e (x.x + r_e^2 / 2), about y. It is
-/// put about every axis: none but y is ever turned about, and a body whose moments are equal stays
-/// in the plane to the bit.
+/// Mass properties of discs in the plane y = 0: I = sum m_e (x.x + r_e^2 / 2), about y. All three
+/// moments have this value: the body only rotates about y, and with equal moments it stays in the
+/// plane exactly.
 MassProperties plane_mass_properties(const SampledBody& body);
 
 }  // namespace vat

@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "core/support/check.h"
+
 namespace vat {
 
 BodyDescription melted(BodyDescription body, const std::string& into, Real mass) {
@@ -11,7 +13,7 @@ BodyDescription melted(BodyDescription body, const std::string& into, Real mass)
   body.melting.reset();
   auto* particles = std::get_if<ParticleShape>(&body.shape);
   if (particles != nullptr) particles->fixed.clear();
-  // A liquid's own mass would be that of its lattice at rest.
+  // By default, the mass of a liquid is that of its lattice at rest density.
   if (particles == nullptr || particles->masses.empty()) body.mass = mass;
   return body;
 }
@@ -24,6 +26,7 @@ SampledBody melted(SampledBody sample) {
 }
 
 Scene with_all_melted(Scene scene, const std::vector<SampledBody>& samples) {
+  VAT_CHECK(samples.size() == scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     BodyDescription& body = scene.bodies[b];
     if (!body.melting) continue;

@@ -1,4 +1,5 @@
 #include "core/sampling/mesh.h"
+#include "core/support/check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@ bool comes_before(const Vec3& a, const Vec3& b) {
   return std::tie(a[0], a[1], a[2]) < std::tie(b[0], b[1], b[2]);
 }
 
-/// For each vertex the first one at the same place.
+/// For each vertex, the first one at the same position.
 std::vector<Index> weld(const std::vector<Vec3>& vertices) {
   std::vector<Index> order(vertices.size());
   for (Index i = 0; i < order.size(); ++i) order[i] = i;
@@ -28,8 +29,8 @@ std::vector<Index> weld(const std::vector<Vec3>& vertices) {
   return welded;
 }
 
-/// Whether a ray from (x, y) towards +x meets the edge. The ends are put in one order first, so
-/// that the two triangles of an edge come to the same answer.
+/// Returns whether a ray from (x, y) towards +x meets the edge. The ends are ordered first, so that
+/// both triangles of an edge get the same answer.
 bool ray_meets_edge(Real x, Real y, const Vec3& a, const Vec3& b) {
   if ((a.y() <= y) == (b.y() <= y)) return false;
   const bool in_order = a.y() < b.y();
@@ -46,7 +47,7 @@ bool line_meets_triangle(Real x, Real y, const Vec3& a, const Vec3& b, const Vec
 
 Real mesh_volume(const MeshShape& mesh) {
   if (mesh.vertices.empty()) return 0;
-  const Vec3 origin = mesh.vertices.front();  // near the mesh, so that little cancels
+  const Vec3 origin = mesh.vertices.front();  // near the mesh, to avoid cancellation
   Real volume = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 normal = (mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin);
@@ -82,7 +83,7 @@ struct LineRange {
 LineRange lines_between(const MeshLines& lines, Real low, Real high, std::size_t axis) {
   const Real first = lines.first[static_cast<Eigen::Index>(axis)];
   const Real count = lines.count[axis];
-  // One line more on each side than the arithmetic says: it is rounded.
+  // One more line on each side, because of rounding.
   const Real begin = std::floor((low - first) / lines.spacing);
   const Real end = std::ceil((high - first) / lines.spacing) + 1;
   return {static_cast<Index>(std::clamp(begin, Real{0}, count)),
@@ -105,7 +106,7 @@ struct Triangle {
 
 void add_crossings(const Triangle& t, const MeshLines& lines, std::vector<MeshCrossing>& found) {
   const Vec3 normal = (t.b - t.a).cross(t.c - t.a);
-  if (normal.z() == 0) return;  // seen from its edge: no line goes through
+  if (normal.z() == 0) return;  // parallel to the lines: no crossing
   const LineRange columns = lines_between(lines, t.low.x(), t.high.x(), 0);
   const LineRange rows = lines_between(lines, t.low.y(), t.high.y(), 1);
   for (Index j = rows.begin; j < rows.end; ++j) {
@@ -114,9 +115,10 @@ void add_crossings(const Triangle& t, const MeshLines& lines, std::vector<MeshCr
       const Real x = lines.first.x() + i * lines.spacing;
       if (!line_meets_triangle(x, y, t.a, t.b, t.c)) continue;
       const Real slope = normal.x() * (x - t.a.x()) + normal.y() * (y - t.a.y());
-      // Clamped, because a steep triangle magnifies the rounding of x and y.
+      // Clamped, because steep triangles amplify the rounding errors of x and y.
       const Real z = std::clamp(t.a.z() - slope / normal.z(), t.low.z(), t.high.z());
       const std::size_t line = static_cast<std::size_t>(j) * lines.count[0] + i;
+      VAT_ASSERT(i < lines.count[0] && j < lines.count[1]);
       found.push_back({line, z, normal.z() > 0 ? 1 : -1});
     }
   }

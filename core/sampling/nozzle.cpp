@@ -10,7 +10,7 @@
 namespace vat {
 namespace {
 
-/// The opening in axes of its own, of which z is the flow's; as deep as one layer.
+/// The opening in its own axes, with z along the flow, and the depth of one layer.
 Shape opening_of(const Emitter& emitter, Real spacing, int dimensions) {
   if (emitter.size)
     return BoxShape{Vec3::Zero(), {(*emitter.size)[0], (*emitter.size)[1], spacing}};
@@ -19,8 +19,8 @@ Shape opening_of(const Emitter& emitter, Real spacing, int dimensions) {
   return CylinderShape{Vec3::Zero(), Vec3::UnitZ(), radius, spacing};
 }
 
-/// Columns: across the flow, across both, along the flow. The first is horizontal, in a scene of
-/// two dimensions in its plane.
+/// Columns: across the flow, across both, along the flow. The first is horizontal, in two
+/// dimensions in the plane.
 Mat3 axes_of(const Emitter& emitter, int dimensions) {
   const Vec3 along = emitter.direction.normalized();
   Vec3 across =
@@ -35,6 +35,7 @@ Mat3 axes_of(const Emitter& emitter, int dimensions) {
 }  // namespace
 
 std::uint64_t Nozzle::entered(Real time) const {
+  VAT_CHECK(interval > 0);
   constexpr Real kRounding = 1e-6;  // of an interval
   const Real next =
       std::floor((time - from) / interval + static_cast<Real>(inside) + kRounding) + 1;
@@ -63,6 +64,7 @@ Nozzle make_nozzle(const Scene& scene, const Emitter& emitter) {
   const auto body = std::ranges::find(scene.bodies, emitter.body, &BodyDescription::name);
   VAT_CHECK(body != scene.bodies.end());
   const Material& material = material_of(scene, *body);
+  VAT_CHECK(body->kind == BodyKind::liquid && body->spacing > 0 && material.liquid);
   Nozzle nozzle;
   nozzle.layer = layer_of(emitter, body->spacing, scene.dimensions);
   nozzle.velocity = emitter.speed * emitter.direction.normalized();

@@ -7,19 +7,21 @@
 #include "core/sampling/lattice.h"
 #include "core/sampling/mesh.h"
 #include "core/scene/field.h"
+#include "core/scene/lookup.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 using Offset = std::array<int, 3>;
 
-/// Half of the neighbours of each kind; the other half are the same springs from the other end.
+/// Half of the neighbours of each kind. The other half are the same springs from the other end.
 constexpr std::array<Offset, 3> kStructural{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 constexpr std::array<Offset, 6> kShear{
     {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}}};
 constexpr std::array<Offset, 3> kBend{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
 
-/// Finds the point at a place of the lattice.
+/// Finds points by their lattice coordinates.
 class LatticeIndex {
  public:
   LatticeIndex(const Lattice& lattice, const std::vector<LatticePoint>& points)
@@ -51,12 +53,6 @@ class LatticeIndex {
   std::vector<Index> index_;
 };
 
-/// For one point within the lattice.
-std::size_t count_springs(const LatticeSprings& springs) {
-  return (springs.structural ? kStructural.size() : 0) + (springs.shear ? kShear.size() : 0) +
-         (springs.bend ? kBend.size() : 0);
-}
-
 template <std::size_t count>
 void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeIndex& index,
                          const std::array<Offset, count>& offsets,
@@ -72,7 +68,7 @@ void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeI
   }
 }
 
-/// All cells whose corners are all points of the body.
+/// Adds the cells whose corners are all points of the body.
 void add_lattice_cells(const std::vector<LatticePoint>& points, const LatticeIndex& index,
                        int dimensions, SampledBody& sample) {
   const Index count = dimensions == 3 ? 8 : 4;
@@ -93,7 +89,7 @@ void add_lattice_cells(const std::vector<LatticePoint>& points, const LatticeInd
   }
 }
 
-/// Of one lattice point [kg]; in two dimensions [kg/m].
+/// Mass of one lattice point [kg]; in two dimensions [kg/m].
 Real point_mass(Real density, Real spacing, int dimensions) {
   const Real layer = density * spacing * spacing;
   return dimensions == 2 ? layer : layer * spacing;
@@ -126,7 +122,7 @@ void sample_lattice(const BodyDescription& body, const Material& material, int d
   const LatticeIndex index(lattice, points);
   if (material.bulk_modulus > 0) add_lattice_cells(points, index, dimensions, sample);
   if (material.springs) {
-    sample.springs.reserve(count_springs(*material.springs) * count);
+    sample.springs.reserve(springs_per_point(*material.springs) * count);
     add_lattice_springs(points, index, kStructural, material.springs->structural, sample);
     add_lattice_springs(points, index, kShear, material.springs->shear, sample);
     add_lattice_springs(points, index, kBend, material.springs->bend, sample);
@@ -152,6 +148,7 @@ void take_particles(const ParticleShape& shape, const BodyDescription& body,
 void add_listed_springs(const BodyDescription& body, SampledBody& sample) {
   for (const SpringDescription& spring : body.springs) {
     const Real distance = (sample.positions[spring.a] - sample.positions[spring.b]).norm();
+    VAT_ASSERT(spring.a < sample.positions.size() && spring.b < sample.positions.size());
     sample.springs.push_back({spring.a, spring.b, spring.constants.stiffness,
                               spring.constants.damping, spring.rest_length.value_or(distance)});
   }
@@ -222,14 +219,21 @@ SampledBody sample_body(const BodyDescription& body, const Material& material, i
   }
   add_listed_springs(body, sample);
   place(body, sample);
+  const std::size_t count = sample.positions.size();
+  VAT_CHECK(sample.velocities.size() == count && sample.masses.size() == count &&
+            sample.radii.size() == count);
   return sample;
+}
+
+std::size_t springs_per_point(const LatticeSprings& springs) {
+  return (springs.structural ? kStructural.size() : 0) + (springs.shear ? kShear.size() : 0) +
+         (springs.bend ? kBend.size() : 0);
 }
 
 std::vector<SampledBody> sample_bodies(const Scene& scene) {
   std::vector<SampledBody> samples;
   for (const BodyDescription& body : scene.bodies) {
-    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
-    samples.push_back(sample_body(body, *material, scene.dimensions));
+    samples.push_back(sample_body(body, material_of(scene, body), scene.dimensions));
   }
   return samples;
 }

@@ -16,9 +16,9 @@ struct SampledSpring {
   Real rest_length = 0;  ///< [m]
 };
 
-/// Eight neighbours of a lattice, in two dimensions four: corner c is at the cell's far end along x
-/// where bit 0 of c is set, along y where bit 1 is, and along z where bit 2 is; of four along x and
-/// z.
+/// Eight neighbours of a lattice. Corner c is at the upper end of the cell along x if bit 0 of c is
+/// set, along y for bit 1, and along z for bit 2. In two dimensions there are four, with bit 0 for
+/// x and bit 1 for z.
 struct SampledCell {
   std::array<Index, 8> corners{};
   Real volume = 0;  ///< at rest [m^3], in two dimensions area [m^2]
@@ -30,7 +30,7 @@ struct NozzleParticle {
   std::uint64_t free_from = 0;  ///< the first nominal step in which forces move it
 };
 
-/// A body as particles in world coordinates at time 0; all columns have equal length.
+/// Particles of a body in world coordinates at time 0. The columns of particles have equal lengths.
 struct SampledBody {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
@@ -38,35 +38,37 @@ struct SampledBody {
   std::vector<Real> radii;
   std::vector<Index> fixed;
   std::vector<SampledSpring> springs;
-  std::vector<SampledCell> cells;            ///< where the material keeps their volume
-  std::vector<NozzleParticle> in_nozzles{};  ///< that no force moves
-  /// Of the particles, from their coming to their going: empty while none has gone, and they are
-  /// 0, 1, 2, ... in their order.
+  std::vector<SampledCell> cells;            ///< if the material has a bulk modulus
+  std::vector<NozzleParticle> in_nozzles{};  ///< not moved by forces
+  /// Numbers of the particles, which do not change. Empty if no particle has been removed; the
+  /// numbers are then 0, 1, 2, ...
   std::vector<Index> numbers{};
-  Index next_number = 0;  ///< of the particle that comes next; 0 too while none has come or gone
+  Index next_number = 0;  ///< number of the next particle; 0 if none was added or removed
 };
 
-/// Turns a body's description into particles and springs, in an order that depends on nothing but
-/// the description. Sampled shapes are filled with a simple cubic lattice of `spacing`, centred on
-/// the shape's bounding box; a particle belongs to the shape if its centre does. Solid bodies get
-/// mass = density * exact volume of the shape in equal parts (or the given mass); a liquid particle
-/// gets density * spacing^3 so that the lattice is at rest density. Springs are at rest where the
-/// jitter leaves their ends, and stretched by the displacement field. In two dimensions a square
-/// lattice fills the section at y = 0, and areas stand for volumes: masses are per metre [kg/m].
-/// The body must be valid.
+/// Converts the description of a valid body into particles and springs, in an order that depends on
+/// the description only. Shapes are filled with a simple cubic lattice of `spacing`, centred on the
+/// bounding box; a particle belongs to the shape if its centre does. Solid bodies get mass =
+/// density * exact volume of the shape in equal parts, or the given mass. A liquid particle gets
+/// density * spacing^3, so that the lattice has the rest density. Springs have their rest lengths
+/// after the jitter, and the displacement field stretches them. In two dimensions a square lattice
+/// fills the section at y = 0, areas replace volumes, and masses are per metre [kg/m].
 SampledBody sample_body(const BodyDescription& body, const Material& material, int dimensions = 3);
+
+/// The maximum number of lattice springs that begin at one lattice point.
+std::size_t springs_per_point(const LatticeSprings& springs);
 
 /// All bodies of a valid scene.
 std::vector<SampledBody> sample_bodies(const Scene& scene);
 
-/// Where each of `bodies` is.
+/// Pointers to the elements of `bodies`.
 std::vector<const SampledBody*> pointers_to(const std::vector<SampledBody>& bodies);
 
 /// Exact volume of a sampled shape [m^3]; zero for explicit particles.
 Real shape_volume(const Shape& shape);
 
-/// Exact area of the section at y = 0 [m^2] of a shape that a scene of two dimensions may sample:
-/// a box or a sphere. Zero for others.
+/// Exact area of the section at y = 0 [m^2] of a box or a sphere, the shapes of two-dimensional
+/// scenes. Zero for other shapes.
 Real shape_area(const Shape& shape);
 
 }  // namespace vat

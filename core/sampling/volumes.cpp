@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene/lookup.h"
 #include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Infinite where some axis is open.
+/// Infinite if an axis is open.
 Real world_volume(const Scene& scene) {
   Real volume = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,13 +31,13 @@ Real world_volume(const Scene& scene) {
 std::vector<Real> particle_volumes(const Scene& scene, std::size_t body,
                                    const SampledBody& sample) {
   const BodyDescription& description = scene.bodies[body];
+  VAT_CHECK(body < scene.bodies.size());
   const std::size_t count = sample.positions.size();
   std::vector<Real> volumes;
   volumes.reserve(count);
   if (description.kind == BodyKind::liquid) {
-    const auto material = std::ranges::find(scene.materials, description.material, &Material::name);
-    VAT_CHECK(material != scene.materials.end());
-    for (const Real mass : sample.masses) volumes.push_back(mass / material->density);
+    const Real density = material_of(scene, description).density;
+    for (const Real mass : sample.masses) volumes.push_back(mass / density);
     return volumes;
   }
   const bool is_plane = scene.dimensions == 2;
@@ -51,6 +52,7 @@ std::vector<Real> particle_volumes(const Scene& scene, std::size_t body,
 
 bool fills_world(const Scene& scene, std::span<const SampledBody* const> samples) {
   constexpr Real kFull = 0.999;
+  VAT_CHECK(samples.size() == scene.bodies.size());
   Real filled = 0;
   for (std::size_t b = 0; b < samples.size(); ++b) {
     for (const Real volume : particle_volumes(scene, b, *samples[b])) filled += volume;

@@ -9,26 +9,28 @@
 #include <vector>
 
 #include "core/support/byte_io.h"
+#include "core/support/names.h"
 #include "core/support/result.h"
 #include "core/types.h"
 
-/// Values to little-endian bytes and back. What a struct is made of is said once, by a function
+/// Conversion of values to little-endian bytes and back. The fields of a struct are listed once, by
+/// a function
 ///
 ///     template <class Archive>
 ///     void describe(Archive& archive, Of<Archive, Struct>& value);
 ///
-/// beside it, which hands its fields to the archive in their order. Numbers take their size, truth
-/// values and enumerations one byte; text and lists begin with their length in four bytes, what may
-/// be absent with a truth value, and what is one of several with its place among them in one byte.
+/// that passes its fields to the archive in order. Numbers take their size; bools and enumerations
+/// take one byte. Texts and lists are prefixed by their length in four bytes, an optional by a
+/// bool, and a variant by its index in one byte.
 namespace vat {
 
-/// The type that describe() gets: what is saved is not changed.
+/// The type of the argument of describe(). Saving does not change the value.
 template <class Archive, class T>
 using Of = std::conditional_t<Archive::kLoads, T, const T>;
 
-/// The last of an enumeration's values, which begin with 0 and have no gaps.
+/// The last value of an enumeration. Values begin with 0 and have no gaps.
 template <class Enumeration>
-inline constexpr Enumeration kLastOf = Enumeration::unknown;
+inline constexpr auto kLastOf = static_cast<Enumeration>(kNamesOf<Enumeration>.size() - 1);
 
 /// Appends values to bytes.
 class SavingArchive {
@@ -92,9 +94,9 @@ class SavingArchive {
   ByteWriter writer_;
 };
 
-/// Reads them. After what cannot be read it gives zeros and empty lists, and failed() stays true,
-/// so that a caller may read all and ask once. A list takes no more memory than its bytes account
-/// for.
+/// Reads values. After invalid bytes it returns zeros and empty lists, and failed() stays true, so
+/// that a caller can read all values and check once. A list takes no more memory than its bytes
+/// justify.
 class LoadingArchive {
  public:
   static constexpr bool kLoads = true;
@@ -113,7 +115,7 @@ class LoadingArchive {
     failed_ = true;
     reader_ = ByteReader({});
   }
-  /// Of elements that take at least `least` bytes each.
+  /// The length of a list whose elements take at least `least` bytes each.
   std::size_t get_length(std::size_t least) {
     const auto length = reader_.get<std::uint32_t>();
     if (length <= reader_.left() / least) return length;

@@ -26,7 +26,7 @@ bool are_positive(const std::vector<Real>& values) {
   return std::ranges::all_of(values, [](Real v) { return v > 0 && std::isfinite(v); });
 }
 
-/// That each is below the next, and the last below `end`.
+/// Returns whether the values are ascending and below `end`.
 bool rise_below(const std::vector<Index>& values, std::size_t end) {
   return std::ranges::adjacent_find(values, std::greater_equal()) == values.end() &&
          (values.empty() || values.back() < end);
@@ -44,7 +44,7 @@ bool is_sample(const SampledBody& sample) {
          rise_below(sample.numbers, sample.next_number);
 }
 
-/// The columns of a model, and contacts of its particles.
+/// Returns whether columns and contacts fit the model.
 bool fits(const Model& model, const Configuration& at) {
   const auto is_contact = [&](const ContactImpulse& contact) {
     return contact.particle < model.particle_count &&
@@ -72,7 +72,7 @@ bool fits(const Model& model, const LocalLevels& levels) {
          std::ranges::all_of(levels.particle, [](std::uint8_t level) { return level <= kMost; });
 }
 
-/// Which body of the model a grab or a force is of.
+/// Returns whether the index and the id belong to one body of the model.
 bool is_of(const Model& model, Index body, BodyId id) {
   return body < model.bodies.size() && model.bodies[body].id == id;
 }
@@ -88,14 +88,14 @@ bool fits(const Model& model, const Grab& grab) {
 
 Status check_saved_scene(const Scene& scene, const std::vector<SavedBody>& bodies, BodyId next_id) {
   if (bodies.size() != scene.bodies.size()) {
-    return bad_value("/bodies", "there must be one for each of the scene's");
+    return bad_value("/bodies", "there must be one for each body of the scene");
   }
   BodyId last = 0;
   std::vector<const SampledBody*> samples;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string path = body_path(b);
     if (bodies[b].id <= last || bodies[b].id >= next_id) {
-      return bad_value(path + "/id", "must be above those before and below the next one");
+      return bad_value(path + "/id", "must exceed the preceding ids and be below the next one");
     }
     last = bodies[b].id;
     samples.push_back(bodies[b].sample ? &*bodies[b].sample : nullptr);
@@ -117,7 +117,7 @@ Status check_saved_sleepers(const Model& model, const Configuration& at,
   const auto sleeps = [](Index island) { return island != kAwake; };
   if (islands.size() != model.bodies.size() || !std::ranges::all_of(islands, is_named) ||
       !std::ranges::any_of(islands, sleeps)) {
-    return bad_value("/sleepers/islands", "must be named by one of their bodies");
+    return bad_value("/sleepers/islands", "must be identified by one of their bodies");
   }
   return {};
 }
@@ -140,7 +140,7 @@ Status check_saved_hand(const HandMotion& hand) {
       is_within(hand.velocity, kRounding * kMaxHandSpeed) && is_within(hand.target, kMaxLength)) {
     return {};
   }
-  return bad_value("/hand", "must be a motion that a hand can give a vat");
+  return bad_value("/hand", "must be a possible motion of the vat");
 }
 
 Status check_saved_controls(const Model& model, const Controls& controls) {
@@ -149,11 +149,11 @@ Status check_saved_controls(const Model& model, const Controls& controls) {
     return is_of(model, applied.body, applied.body_id) && applied.acceleration.allFinite();
   };
   if (controls.grabs.size() > kMaxGrabs || !std::ranges::all_of(controls.grabs, is_grab)) {
-    return bad_value("/grabs", "must be of particles that there are");
+    return bad_value("/grabs", "must be of existing particles");
   }
   if (controls.applied_forces.size() > kMaxAppliedForces ||
       !std::ranges::all_of(controls.applied_forces, is_applied)) {
-    return bad_value("/forces", "must be of bodies that there are");
+    return bad_value("/forces", "must be of existing bodies");
   }
   return {};
 }

@@ -4,9 +4,9 @@
 
 namespace vat {
 
-/// The most bytes that Snapshot::to_bytes() gives of a simulation with so many particles and
-/// springs, from the fields that are written of each and the limits on all else. Vertices of meshes
-/// are counted as three a triangle.
+/// The maximum size in bytes of Snapshot::to_bytes() for a simulation with these numbers of
+/// particles and springs, from their written fields and the limits of all other data. Meshes count
+/// with three vertices for each triangle.
 std::size_t greatest_saved_size(std::size_t particles, std::size_t springs);
 
 }  // namespace vat

@@ -3,25 +3,8 @@
 #include "core/saved/archive.h"
 #include "core/scene/scene.h"
 
-/// The fields of a scene, for archives: all of them, in the order of core/scene/scene.h.
+/// All fields of a scene for archives, in the order of core/scene/scene.h.
 namespace vat {
-
-template <>
-inline constexpr BodyKind kLastOf<BodyKind> = BodyKind::rigid;
-template <>
-inline constexpr IntegratorId kLastOf<IntegratorId> = IntegratorId::runge_kutta_4;
-template <>
-inline constexpr StepControl kLastOf<StepControl> = StepControl::local;
-template <>
-inline constexpr PressureSolver kLastOf<PressureSolver> = PressureSolver::incompressible;
-template <>
-inline constexpr SurfaceModel kLastOf<SurfaceModel> = SurfaceModel::cohesion;
-template <>
-inline constexpr InterfaceLaw kLastOf<InterfaceLaw> = InterfaceLaw::projection;
-template <>
-inline constexpr KernelId kLastOf<KernelId> = KernelId::cubic_spline;
-template <>
-inline constexpr PairPrecision kLastOf<PairPrecision> = PairPrecision::double_precision;
 
 template <class Archive>
 void describe(Archive& archive, Of<Archive, IncompressibleSolve>& v) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/support/byte_io.h"
+#include "core/support/check.h"
 #include "core/support/hash.h"
 
 namespace vat {
@@ -12,7 +13,7 @@ namespace {
 constexpr std::size_t kLengthAt = 12;
 constexpr std::size_t kChecksumAt = 20;
 
-/// Differs wherever one word does: each word is mixed in by a bijection.
+/// Each word enters by a bijection, so that a change of one word changes the checksum.
 std::uint64_t checksum_of(std::span<const std::uint8_t> bytes) {
   StateHash hash;
   ByteReader reader(bytes);
@@ -24,6 +25,7 @@ std::uint64_t checksum_of(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 std::vector<std::uint8_t> begin_sealed(const Seal& seal) {
+  VAT_CHECK(seal.magic.size() == kSealVersionAt);
   std::vector<std::uint8_t> bytes(seal.magic.begin(), seal.magic.end());
   bytes.resize(kSealSize);
   store(bytes, kSealVersionAt, seal.version);
@@ -31,6 +33,7 @@ std::vector<std::uint8_t> begin_sealed(const Seal& seal) {
 }
 
 void close_seal(std::vector<std::uint8_t>& bytes) {
+  VAT_CHECK(bytes.size() >= kSealSize);
   const auto content = std::span<const std::uint8_t>(bytes).subspan(kSealSize);
   store<std::uint64_t>(bytes, kLengthAt, content.size());
   store(bytes, kChecksumAt, checksum_of(content));
@@ -56,10 +59,10 @@ Result<std::span<const std::uint8_t>> open_sealed(const Seal& seal,
   if (length != content.size()) {
     return Error{"wrong_length", "",
                  name + " has " + std::to_string(content.size()) +
-                     " bytes behind its header, which tells of " + std::to_string(length)};
+                     " bytes after its header, which states " + std::to_string(length)};
   }
   if (checksum != checksum_of(content)) {
-    return Error{"damaged", "", name + " has another checksum than its bytes"};
+    return Error{"damaged", "", name + " does not match its checksum"};
   }
   return content;
 }

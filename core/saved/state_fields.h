@@ -6,7 +6,7 @@
 #include "core/state/controls.h"
 #include "core/state/state.h"
 
-/// The fields of a state and of what users hold, for archives.
+/// The fields of a state and of controls, for archives.
 namespace vat {
 
 template <class Archive>
@@ -19,7 +19,7 @@ void describe(Archive& archive, Of<Archive, NozzleParticle>& v) {
   auto& [particle, free_from] = v;
   archive(particle, free_from);
 }
-/// Of a liquid, which has neither springs nor cells, and nothing fixed.
+/// Fields of a liquid, which has no springs, cells and fixed particles.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, SampledBody>& v) {
   auto& [positions, velocities, masses, radii, fixed, springs, cells, in_nozzles, numbers,
@@ -46,7 +46,7 @@ void describe(Archive& archive, Of<Archive, Configuration>& v) {
   auto& [position, velocity, rigid, contacts, springs, pressure] = v;
   archive(position, velocity, rigid, contacts, springs, pressure);
 }
-/// Not `friction_torque`, which nothing reads after the evaluation that wrote it.
+/// Without `friction_torque`, which is read only during an evaluation.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Forces>& v) {
   auto& [particle, rigid_force, rigid_torque, friction_torque, transport] = v;
@@ -72,7 +72,7 @@ void describe(Archive& archive, Of<Archive, VolumeReport>& v) {
   auto& [velocities, places] = v;
   archive(velocities, places);
 }
-/// Forces that are not current are read by nothing, nor are their levels.
+/// Forces that are not current, and their levels, are never read.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, State>& v) {
   auto& [now, step_count, forces, bound, forces_current, history, volume, levels, emitted, drained,

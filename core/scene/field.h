@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// The field's value at the point `x` of the world.
+/// The value of the field at the point `x` of the world.
 Vec3 value_at(const VectorField& field, const Vec3& x);
 
 }  // namespace vat

@@ -11,7 +11,7 @@ InterfaceTable::InterfaceTable(const std::vector<Material>& materials,
     : side_(materials.size() + 1), table_(side_ * side_) {
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const auto& [first, second] = interfaces[i].materials;
-    // The name of the walls is no material's, so it gets the place behind the last.
+    // No material has the name of the walls, so that its index is the one after the last material.
     const std::size_t a = material_index(materials, first);
     const std::size_t b = material_index(materials, second);
     VAT_ASSERT((a + 1 < side_ || first == kVatMaterial) &&

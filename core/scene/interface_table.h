@@ -4,30 +4,33 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "core/support/check.h"
 
 namespace vat {
 
-/// Which of a scene's interfaces joins two materials, or a material and the walls. Materials are
-/// told by their place in the list.
+/// The interfaces of a scene by pairs of materials, or a material and the walls. Materials are
+/// identified by their index.
 class InterfaceTable {
  public:
   InterfaceTable(const std::vector<Material>& materials,
                  const std::vector<InterfaceDescription>& interfaces);
 
-  /// Place in the list of interfaces; none: the default interface.
+  /// Index of the interface; empty: the default interface.
   std::optional<std::size_t> between(std::size_t material_a, std::size_t material_b) const {
+    VAT_ASSERT(material_a < side_ && material_b < side_);
     return table_[material_a * side_ + material_b];
   }
   std::optional<std::size_t> with_walls(std::size_t material) const {
+    VAT_ASSERT(material + 1 < side_);
     return table_[material * side_ + side_ - 1];
   }
 
  private:
-  std::size_t side_;  // the materials, and the walls last
+  std::size_t side_;  // the number of materials, and one for the walls
   std::vector<std::optional<std::size_t>> table_;
 };
 
-/// Place of the material with this name; the number of materials if there is none.
+/// Index of the material with this name; the number of materials if there is none.
 std::size_t material_index(const std::vector<Material>& materials, const std::string& name);
 
 }  // namespace vat

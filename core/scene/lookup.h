@@ -4,12 +4,15 @@
 #include <string>
 
 #include "core/scene/scene.h"
+#include "core/support/check.h"
 
 namespace vat {
 
-/// The material of a body. The scene must be valid: it has a material of this name.
+/// The material of a body. The scene must have a material with this name.
 inline const Material& material_of(const Scene& scene, const BodyDescription& body) {
-  return *std::ranges::find(scene.materials, body.material, &Material::name);
+  const auto found = std::ranges::find(scene.materials, body.material, &Material::name);
+  VAT_CHECK(found != scene.materials.end());
+  return *found;
 }
 
 /// JSON pointer to the body with this index in Scene::bodies.

@@ -4,10 +4,10 @@
 
 namespace vat {
 
-/// The floating-point numbers in which core/pairs sums. In single precision motions are exact to
-/// some 1e-7 of their size, and places to 1e-9 of the span of all of them: where these are further
-/// apart than kMaxSupports support radii, sums are in double precision. State and integration are
-/// double either way.
+/// The floating-point precision of the sums of core/liquid/pairs. In single precision, the relative
+/// error of motions is about 1e-7, and that of positions 1e-9 of their extent. If the extent
+/// exceeds kMaxSupports support radii, sums use double precision. State and integration always use
+/// double precision.
 enum class PairPrecision : std::uint8_t { single_precision, double_precision };
 
 inline constexpr double kMaxSupports = 1024;

@@ -1,4 +1,4 @@
-// The commands of Simulation: what users change while it runs.
+// Commands of users on a running simulation.
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -9,15 +9,17 @@
 #include "core/limits.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_impl.h"
+#include "core/support/check.h"
 #include "core/validation/validate.h"
 
 namespace vat {
 namespace {
 
-constexpr Real kGrabFrequency = 2 * std::numbers::pi * 2;  // [rad/s] follows a hand
+constexpr Real kGrabFrequency = 2 * std::numbers::pi * 2;  // [rad/s]; follows a moving hand
 constexpr Real kGrabMaxAcceleration = 200;                 // [m/s^2]
 constexpr Real kGrabReach = 3;                             // [particle diameters] held around it
-constexpr Real kGrabMaxDampingRatio = 0.5;  // of the held momentum in a step; 1 is unstable
+constexpr Real kGrabMaxDampingRatio =
+    0.5;  // of the momentum of the held particles in one step; 1 is unstable
 
 Error no_such_body() {
   return {"no_such_body", "/body", "there is no body with this id"};
@@ -30,7 +32,7 @@ Status check_vector(const Vec3& value, Real limit, const std::string& path) {
   return Error{"out_of_range", path, message.str()};
 }
 
-/// A vector that moves bodies leaves those of two dimensions in their plane.
+/// Checks a vector that moves bodies. In two dimensions it must be in the plane.
 Status check_in_world(const Scene& scene, const Vec3& value, Real limit, const std::string& path) {
   if (scene.dimensions == 2 && value.y() != 0) {
     return Error{"off_plane", path, "must have y = 0 in a scene of two dimensions"};
@@ -40,7 +42,7 @@ Status check_in_world(const Scene& scene, const Vec3& value, Real limit, const s
 
 }  // namespace
 
-Result<BodyId> Simulation::add_body(const BodyDescription& body) {
+Result<BodyId> HostInterface::add_body(const BodyDescription& body) {
   Errors errors = find_body_errors(impl_->all().scene, impl_->present(), body, "/body");
   if (!errors.empty()) return errors;
   impl_->wake_all();
@@ -53,7 +55,7 @@ Result<BodyId> Simulation::add_body(const BodyDescription& body) {
   return id;
 }
 
-Status Simulation::remove_body(BodyId id) {
+Status HostInterface::remove_body(BodyId id) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
   impl_->wake_all();
@@ -67,7 +69,7 @@ Status Simulation::remove_body(BodyId id) {
   return {};
 }
 
-Status Simulation::set_emitter(std::string_view name, bool open) {
+Status HostInterface::set_emitter(std::string_view name, bool open) {
   const auto found = std::ranges::find(impl_->all().scene.emitters, name, &Emitter::name);
   if (found == impl_->all().scene.emitters.end()) {
     return Error{"unknown_name", "/emitter", "must be the name of one of the scene's emitters"};
@@ -80,7 +82,7 @@ Status Simulation::set_emitter(std::string_view name, bool open) {
   return {};
 }
 
-Status Simulation::melt_body(BodyId id, const std::string& material) {
+Status HostInterface::melt_body(BodyId id, const std::string& material) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
   const auto index = static_cast<std::size_t>(body - impl_->all().bodies.data());
@@ -91,7 +93,7 @@ Status Simulation::melt_body(BodyId id, const std::string& material) {
   return {};
 }
 
-Status Simulation::set_gravity(const Vec3& gravity) {
+Status HostInterface::set_gravity(const Vec3& gravity) {
   Status status = check_in_world(impl_->model->scene, gravity, kMaxGravity, "/gravity");
   if (!status) return status;
   impl_->wake_all();
@@ -103,7 +105,7 @@ Status Simulation::set_gravity(const Vec3& gravity) {
   return {};
 }
 
-Status Simulation::set_interface(const InterfaceDescription& interface) {
+Status HostInterface::set_interface(const InterfaceDescription& interface) {
   Errors errors =
       find_interface_errors(impl_->all().scene, impl_->present(), interface, "/interface");
   if (!errors.empty()) return errors;
@@ -122,7 +124,7 @@ Status Simulation::set_interface(const InterfaceDescription& interface) {
   return {};
 }
 
-Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
+Status HostInterface::apply_force(BodyId id, const Vec3& force, Real duration) {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return no_such_body();
   Status status = check_in_world(impl_->model->scene, force, kMaxForce, "/force");
@@ -150,7 +152,7 @@ Status Simulation::apply_force(BodyId id, const Vec3& force, Real duration) {
 
 namespace {
 
-/// The particle itself, and of bodies that are not rigid those near it at present.
+/// The particle itself, and for bodies that are not rigid the particles near it.
 std::vector<Index> held_particles(const Model& model, const ModelBody& body,
                                   const Configuration& at, Index particle) {
   if (body.kind == BodyKind::rigid) return {particle};
@@ -165,7 +167,7 @@ std::vector<Index> held_particles(const Model& model, const ModelBody& body,
   return held;
 }
 
-/// The least mass that the held particles show to a force on them: of a rigid body, of its point.
+/// The minimum mass of the held particles for a force on them; for a rigid body that of the point.
 Real felt_mass(const Model& model, const ModelBody& body, const Configuration& at,
                const Grab& grab) {
   if (body.kind != BodyKind::rigid) return grab.held_mass;
@@ -175,16 +177,18 @@ Real felt_mass(const Model& model, const ModelBody& body, const Configuration& a
       r * model.local_position[body.particles.begin + grab.particle - model.free_count];
   Mat3 cross;
   cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-  // Acceleration of the point for a force on it.
+  // The acceleration of the point by a force on it.
   const Mat3 mobility = rigid.inverse_mass * Mat3::Identity() -
                         cross * r * rigid.inverse_inertia * r.transpose() * cross;
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(mobility, Eigen::EigenvaluesOnly);
   return 1 / solver.eigenvalues().maxCoeff();
 }
 
-/// Constants of a critically damped spring that moves the whole body, or of a liquid what is held.
-/// The held particles are fewer: the damping must not turn them round within a step.
+/// Sets the constants of a critically damped spring that moves the whole body, or in a liquid the
+/// held particles. The damping is limited, because it must not reverse the velocity of the held
+/// particles within a step.
 void tune_grab(const Model& model, const ModelBody& body, const Configuration& at, Grab& grab) {
+  VAT_CHECK(!grab.held.empty());
   grab.held_mass = 0;
   for (const Index i : grab.held) grab.held_mass += model.mass[body.particles.begin + i];
   const Real most = kGrabMaxDampingRatio * felt_mass(model, body, at, grab) /
@@ -198,12 +202,12 @@ void tune_grab(const Model& model, const ModelBody& body, const Configuration& a
 
 }  // namespace
 
-void Simulation::Impl::tune_grabs() {
+void SimulationImpl::tune_grabs() {
   for (Grab& grab : controls.grabs) tune_grab(*model, model->bodies[grab.body], state.now, grab);
 }
 
-Status Simulation::grab_start(std::uint64_t id, BodyId body_id, Index particle,
-                              const Vec3& target) {
+Status HostInterface::grab_start(std::uint64_t id, BodyId body_id, Index particle,
+                                 const Vec3& target) {
   const ModelBody* body = impl_->find(body_id);
   if (body == nullptr) return no_such_body();
   if (particle >= body->particles.size()) {
@@ -242,7 +246,7 @@ Error no_such_grab() {
 
 }  // namespace
 
-Status Simulation::grab_move(std::uint64_t id, const Vec3& target) {
+Status HostInterface::grab_move(std::uint64_t id, const Vec3& target) {
   const auto grab = std::ranges::find(impl_->controls.grabs, id, &Grab::id);
   if (grab == impl_->controls.grabs.end()) return no_such_grab();
   if (Status status = check_vector(target, kMaxLength, "/target"); !status) return status;
@@ -251,7 +255,7 @@ Status Simulation::grab_move(std::uint64_t id, const Vec3& target) {
   return {};
 }
 
-Status Simulation::grab_end(std::uint64_t id) {
+Status HostInterface::grab_end(std::uint64_t id) {
   if (std::erase_if(impl_->controls.grabs, [&](const Grab& g) { return g.id == id; }) == 0) {
     return no_such_grab();
   }
@@ -259,7 +263,7 @@ Status Simulation::grab_end(std::uint64_t id) {
   return {};
 }
 
-std::optional<Vec3> Simulation::grab_target(std::uint64_t id) const {
+std::optional<Vec3> HostInterface::grab_target(std::uint64_t id) const {
   const auto grab = std::ranges::find(impl_->controls.grabs, id, &Grab::id);
   if (grab == impl_->controls.grabs.end()) return {};
   return grab->target;

@@ -9,14 +9,15 @@
 #include "core/laws/vat_motion.h"
 #include "core/simulation/measure.h"
 #include "core/solid/spring_changes.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Every n-th of a list that is told one by one, so that there are at most so many.
-class Thinned {
+/// Selects every n-th of `total` elements, so that there are at most `most`.
+class StridedSelection {
  public:
-  Thinned(std::size_t total, std::size_t most, ConnectionList& list) : list_(list) {
+  StridedSelection(std::size_t total, std::size_t most, ConnectionList& list) : list_(list) {
     list_.total = total;
     list_.every = most == 0 ? total + 1 : std::max<std::size_t>(1, (total + most - 1) / most);
   }
@@ -37,6 +38,7 @@ struct Pair {
 };
 
 ConnectedParticle particle_of(const Model& model, Index particle) {
+  VAT_ASSERT(particle < model.particle_count);
   const ModelBody& body = model.bodies[model.body[particle]];
   const Index place = particle - body.particles.begin;
   const bool is_numbered = body.sample && !body.sample->numbers.empty();
@@ -77,7 +79,7 @@ void list_springs(const Model& model, const Configuration& at, const ConnectionQ
                   ConnectionList& list) {
   std::size_t total = 0;
   for_each_spring(model, at, query, [&](Index, Index) { ++total; });
-  Thinned thinned(total, query.max_count, list);
+  StridedSelection thinned(total, query.max_count, list);
   for_each_spring(model, at, query, [&](Index i, Index s) {
     thinned.add([&] {
       return make_connection(model, {i, model.spring_ends[s].other, strain_of(model, at, i, s)});
@@ -85,7 +87,7 @@ void list_springs(const Model& model, const Configuration& at, const ConnectionQ
   });
 }
 
-/// Along the line between them [N]; negative where it pulls.
+/// The force along the line between the particles [N]; negative for attraction.
 Real force_of(const StepContext& c, const Contact& contact) {
   if (contact.layer > 0) {
     return layer_push(contact.stiffness, contact.layer, contact.threshold, contact.distance);
@@ -142,7 +144,8 @@ Connections find_connections(const ForceModel& force_model, Configuration config
   find_pushes(force_model, configuration, time, query, pushes);
   std::vector<Pair> kept_apart;
   find_projected(projected, stepped, query, kept_apart);
-  Thinned thinned(pushes.size() + kept_apart.size(), query.max_count, connections.contacts);
+  StridedSelection thinned(pushes.size() + kept_apart.size(), query.max_count,
+                           connections.contacts);
   for (const Pair& pair : pushes) {
     thinned.add([&] { return make_connection(force_model.model, pair); });
   }

@@ -8,10 +8,10 @@
 
 namespace vat {
 
-/// Static springs and contacts of a configuration; see Simulation::connections(). Runs the plan
-/// into the force model's workspace, which must not be that of the steps, where bodies may push
-/// each other. `projected` has what contacts by projection did, of the configuration or of what is
-/// stepped of it, whose model is `stepped`.
+/// Static springs and contacts of a configuration; see HostInterface::connections(). If bodies can
+/// exert contact forces, runs the plan in the workspace of the force model, which must not be that
+/// of the steps. `projected` are the contacts by projection of the stepped bodies, whose model is
+/// `stepped`.
 Connections find_connections(const ForceModel& force_model, Configuration configuration, Real time,
                              const std::vector<ContactImpulse>& projected, const Model& stepped,
                              const ConnectionQuery& query);

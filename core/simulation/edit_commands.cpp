@@ -1,5 +1,4 @@
-// Commands of Simulation by which users build: bodies put elsewhere, other materials, and the vat
-// moved by hand.
+// Commands by which users build: they move bodies and the vat, and change materials.
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +31,7 @@ Status out_of_range(const std::string& path, const std::string& range) {
   return Error{"out_of_range", path, "must be " + range};
 }
 
-/// What is wrong with the numbers of a placement, whatever the scene has.
+/// Checks the numbers of a placement, independent of the scene.
 Status check_placement(const BodyPlacement& place, const ModelBody& body, int dimensions) {
   if (!are_at_most(place.center_of_mass, kMaxLength)) {
     return out_of_range("/position", "three finite numbers of magnitude at most 1e6");
@@ -45,18 +44,18 @@ Status check_placement(const BodyPlacement& place, const ModelBody& body, int di
   }
   const Quat turned = place.orientation.value_or(Quat::Identity());
   const bool is_turn = std::isfinite(turned.norm()) && std::abs(turned.norm() - 1) <= 0.01;
-  if (!is_turn) return out_of_range("/orientation", "a quaternion of length 1, but for rounding");
+  if (!is_turn) return out_of_range("/orientation", "a quaternion of length 1, up to rounding");
   if (dimensions == 3) return {};
   if (place.velocity && place.velocity->y() != 0) {
     return Error{"off_plane", "/velocity", "must have y = 0 in a scene of two dimensions"};
   }
   if (turned.x() != 0 || turned.z() != 0) {
-    return Error{"off_plane", "/orientation", "must turn about y in a scene of two dimensions"};
+    return Error{"off_plane", "/orientation", "must rotate about y in a scene of two dimensions"};
   }
   return {};
 }
 
-/// Where a body comes to: of a rigid one the pose, of others a shift.
+/// The new pose of a rigid body, or the shift of another body.
 struct Move {
   Vec3 shift = Vec3::Zero();  ///< [m]
   Vec3 center = Vec3::Zero();
@@ -77,7 +76,7 @@ Move make_move(const BodyView& view, const BodyPlacement& place) {
   return {place.center_of_mass - view.pose->center_of_mass, place.center_of_mass, orientation};
 }
 
-/// The description of the body as it begins elsewhere.
+/// The description of the body at its new position.
 BodyDescription describe_moved(const Model& model, std::size_t index, const Move& move,
                                const BodyPlacement& place) {
   BodyDescription body = model.scene.bodies[index];
@@ -120,10 +119,11 @@ void set_motion(const Move& move, const BodyPlacement& place, const Model& model
 
 }  // namespace
 
-Status Simulation::move_body(BodyId id, const BodyPlacement& placement) {
-  const std::optional<BodyView> view = find_body(id);
-  if (!view) return Error{"no_such_body", "/body", "there is no body with this id"};
-  const ModelBody& body = *impl_->find(id);
+Status HostInterface::move_body(BodyId id, const BodyPlacement& placement) {
+  const ModelBody* found = impl_->find(id);
+  if (found == nullptr) return Error{"no_such_body", "/body", "there is no body with this id"};
+  const ModelBody& body = *found;
+  const BodyView view = impl_->view_of(body);
   if (body.particles.size() == 0) {
     return Error{"no_particles", "/body", "the body has no particles at present"};
   }
@@ -133,16 +133,16 @@ Status Simulation::move_body(BodyId id, const BodyPlacement& placement) {
   const Scene& scene = impl_->all().scene;
   Status status = check_placement(placement, body, scene.dimensions);
   if (!status) return status;
-  const Move move = make_move(*view, placement);
+  const Move move = make_move(view, placement);
   if (scene.dimensions == 2 && std::abs(move.shift.y()) > 0) {
     return Error{"off_plane", "/position", "must stay in the plane y = 0 of the scene"};
   }
   std::vector<Vec3> places;
-  for (std::size_t i = 0; i < view->positions.size(); ++i) places.push_back(move.place(*view, i));
+  for (std::size_t i = 0; i < view.positions.size(); ++i) places.push_back(move.place(view, i));
   const auto index = static_cast<std::size_t>(&body - impl_->all().bodies.data());
   BodyDescription moved = describe_moved(impl_->all(), index, move, placement);
   if (!are_at_most(moved.position, kMaxLength)) {
-    return out_of_range("/position", "so that the body began within 1e6 m of the origin");
+    return out_of_range("/position", "such that the body began within 1e6 m of the origin");
   }
   CurrentScene present = impl_->present();
   present.bodies[index].positions = places;
@@ -156,8 +156,9 @@ Status Simulation::move_body(BodyId id, const BodyPlacement& placement) {
 
 namespace {
 
-/// Of liquids that have flown or melted, whose particles are not those of their descriptions: with
-/// masses for another density, but where these were given.
+/// The sample of a liquid after a change of its density, for liquids that have flowed or melted,
+/// whose particles do not follow from their description. Masses change unless the description
+/// contains them.
 std::shared_ptr<const SampledBody> with_density(const SampledBody& sample,
                                                 const BodyDescription& body, Real ratio) {
   const auto* particles = std::get_if<ParticleShape>(&body.shape);
@@ -168,14 +169,14 @@ std::shared_ptr<const SampledBody> with_density(const SampledBody& sample,
   return scaled;
 }
 
-/// A rigid body's motion, which stays whatever its mass becomes.
-struct KeptMotion {
+/// The motion of a rigid body, which does not change with its mass.
+struct PreservedMotion {
   BodyId body = 0;
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-void restore_motion(const KeptMotion& kept, const Model& model, Configuration& now) {
+void restore_motion(const PreservedMotion& kept, const Model& model, Configuration& now) {
   const ModelBody& body = *std::ranges::find(model.bodies, kept.body, &ModelBody::id);
   const RigidModel& rigid = model.rigid_bodies[body.rigid];
   RigidState& state = now.rigid[body.rigid];
@@ -184,7 +185,7 @@ void restore_motion(const KeptMotion& kept, const Model& model, Configuration& n
   state.angular_momentum = turned * rigid.inertia * turned.transpose() * kept.angular_velocity;
 }
 
-/// The support radius is the length of a nozzle's tube, with what is in it.
+/// Returns whether the length of a nozzle changes, which is the support radius.
 bool changes_nozzles(const Scene& scene, const Material& before, const Material& after) {
   if (!before.liquid || !after.liquid) return false;
   if (before.liquid->support_radius == after.liquid->support_radius) return false;
@@ -204,14 +205,14 @@ std::vector<const SampledBody*> changed_samples(const Model& model) {
 
 }  // namespace
 
-Status Simulation::set_material(const Material& material) {
+Status HostInterface::set_material(const Material& material) {
   const std::string path = "/material";
   const Model& model = impl_->all();
   const auto before = std::ranges::find(model.scene.materials, material.name, &Material::name);
   const bool is_new = before == model.scene.materials.end();
   if (!is_new && changes_nozzles(model.scene, *before, material)) {
     return Error{"not_allowed", path + "/liquid/support_radius",
-                 "must stay, since an emitter's nozzle is as long"};
+                 "must stay, because it is the length of an emitter's nozzle"};
   }
   Errors errors =
       find_material_errors(model.scene, impl_->present(), changed_samples(model), material, path);
@@ -219,8 +220,8 @@ Status Simulation::set_material(const Material& material) {
   const Real ratio = is_new ? 1 : material.density / before->density;
   impl_->wake_all();
   std::vector<BodyId> described_anew;
-  std::vector<KeptMotion> motions;
-  Impl::Samples samples(impl_->model->bodies.size());
+  std::vector<PreservedMotion> motions;
+  SimulationImpl::Samples samples(impl_->model->bodies.size());
   for (std::size_t b = 0; b < samples.size(); ++b) {
     const ModelBody& body = impl_->model->bodies[b];
     const BodyDescription& description = impl_->model->scene.bodies[b];
@@ -230,17 +231,17 @@ Status Simulation::set_material(const Material& material) {
       samples[b] = with_density(*body.sample, description, ratio);
     }
     if (body.kind != BodyKind::rigid || ratio == 1) continue;
-    const RigidPose pose = *find_body(body.id)->pose;
+    const RigidPose pose = *impl_->view_of(body).pose;
     motions.push_back({body.id, pose.velocity, pose.angular_velocity});
   }
   impl_->recompile(with_material(impl_->model->scene, material), impl_->ids(), std::move(samples),
                    {}, described_anew);
-  for (const KeptMotion& kept : motions) restore_motion(kept, *impl_->model, impl_->state.now);
+  for (const PreservedMotion& kept : motions) restore_motion(kept, *impl_->model, impl_->state.now);
   impl_->pose_rigid_particles();
   return {};
 }
 
-Status Simulation::move_vat(const Vec3& offset) {
+Status HostInterface::move_vat(const Vec3& offset) {
   Errors errors = find_moved_vat_errors(impl_->all().scene, offset);
   if (!errors.empty()) return errors;
   const std::optional<HandMotion> before = impl_->all().scene.vat->hand;
@@ -261,14 +262,14 @@ Status Simulation::move_vat(const Vec3& offset) {
   return {};
 }
 
-Result<Connections> Simulation::connections(const ConnectionQuery& wish) const {
-  if (wish.body && impl_->find(*wish.body) == nullptr) {
+Result<Connections> HostInterface::connections(const ConnectionQuery& query) const {
+  if (query.body && impl_->find(*query.body) == nullptr) {
     return Error{"no_such_body", "/body", "there is no body with this id"};
   }
   const ForceModel force_model{impl_->all(),  impl_->controls, impl_->measured,
                                impl_->runner, nullptr,         impl_->state.step_count};
   return find_connections(force_model, impl_->all_now(), impl_->time(), impl_->state.now.contacts,
-                          *impl_->model, wish);
+                          *impl_->model, query);
 }
 
 }  // namespace vat

@@ -1,20 +1,21 @@
-// What flows in and out between two steps of a simulation.
+// Inflow and outflow between two steps of a simulation.
 
 #include <algorithm>
 
 #include "core/model/compile.h"
 #include "core/simulation/simulation_impl.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// What becomes of one liquid body.
+/// The change of one liquid body.
 struct Change {
-  std::vector<Index> kept;  ///< of its particles, in rising order
-  SampledBody sample;       ///< of those, and behind them what is new, at its place
+  std::vector<Index> kept;  ///< remaining particles, in ascending order
+  SampledBody sample;       ///< sample of the remaining particles, followed by the new ones
 };
 
-/// The entries of a column that are kept.
+/// The entries of a column that remain.
 template <class T>
 std::vector<T> selected(const std::vector<T>& column, const std::vector<Index>& kept) {
   std::vector<T> result;
@@ -35,7 +36,7 @@ class Flow {
   std::uint64_t drained() const { return drained_; }
   const std::vector<std::optional<Change>>& changes() const { return changes_; }
 
-  /// Liquid in the scene's drains goes, but for what is in nozzles.
+  /// Removes liquid in drains, except particles in nozzles.
   void drain() {
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
       const ModelBody& body = model_.bodies[b];
@@ -50,7 +51,7 @@ class Flow {
     }
   }
 
-  /// What has left its nozzle is moved by forces.
+  /// Frees particles that have left their nozzle.
   void set_free() {
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
       const auto is_out = [&](const NozzleParticle& each) {
@@ -61,7 +62,7 @@ class Flow {
     }
   }
 
-  /// Layers whose time to come into their nozzle is since the step before, at `before`.
+  /// Adds the layers that have entered their nozzle since the last step, at `before`.
   void emit(Real time, Real before) {
     for (std::size_t e = 0; e < model_.nozzles.size(); ++e) {
       if (!model_.scene.emitters[e].open) continue;
@@ -95,6 +96,7 @@ class Flow {
   }
 
   Change change_of(const ModelBody& body, std::vector<Index> kept) const {
+    VAT_CHECK(body.sample != nullptr);
     const SampledBody& all = *body.sample;
     Change change;
     SampledBody& sample = change.sample;
@@ -154,8 +156,7 @@ class Flow {
   std::uint64_t drained_ = 0;
 };
 
-/// Contacts by projection, which liquids that flow have none of, as the solids' new places have
-/// them.
+/// Contacts by projection with the new indices of solids. Flowing liquids have no such contacts.
 std::vector<ContactImpulse> moved(const std::vector<ContactImpulse>& contacts, Index before,
                                   Index now) {
   std::vector<ContactImpulse> result;
@@ -173,14 +174,14 @@ std::vector<ContactImpulse> moved(const std::vector<ContactImpulse>& contacts, I
 
 }  // namespace
 
-void Simulation::Impl::flow() {
+void SimulationImpl::flow() {
   Flow flow(*model, state);
   const std::uint64_t step = state.step_count;
   if (!model->scene.drains.empty() && step % steps_per_tick() == 0) flow.drain();
   flow.set_free();
   flow.emit(time(), step == 0 ? 0 : static_cast<Real>(step - 1) * step_size());
   if (flow.is_empty()) return;
-  if (sleepers) {  // places below are those in a model of all bodies
+  if (sleepers) {  // the indices below are those of a model of all bodies
     wake_all();
     this->flow();
     return;

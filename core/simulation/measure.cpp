@@ -11,6 +11,7 @@
 #include "core/solid/spring_changes.h"
 #include "core/solid/volume.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -65,7 +66,7 @@ Real elastic_energy(const Model& model, const Configuration& at) {
     for (Index s = model.spring_begin[i]; s < model.spring_begin[i + 1]; ++s) {
       const SpringEnd spring = present_spring(model, at, s);
       const Real stretch = (at.position[i] - at.position[spring.other]).norm() - spring.rest_length;
-      energy += 0.25 * spring.stiffness * stretch * stretch;  // each spring has two ends here
+      energy += 0.25 * spring.stiffness * stretch * stretch;  // each spring has two ends
     }
   }
   return energy;
@@ -75,7 +76,7 @@ Real pair_contact_energy(const Model& model, const Scratch& work, const Configur
   Real energy = 0;
   for (Index i = 0; i < model.particle_count; ++i) {
     work.of<ContactForceScratch>().contacts.for_each(model, at, i, [&](const Contact& contact) {
-      if (contact.layer > 0) {  // each contact is found twice
+      if (contact.layer > 0) {  // each contact is visited twice
         energy += 0.5 * layer_energy(contact.stiffness, contact.layer, contact.threshold,
                                      contact.distance);
         return;
@@ -135,7 +136,7 @@ bool runs(const StepPlan& plan, StageFunction stage) {
   return std::ranges::find(plan.stages, stage, &Stage::run) != plan.stages.end();
 }
 
-/// Density and pressure where no force needs them.
+/// Computes density and pressure if no force needs them.
 void complete_liquid_fields(StepContext& c) {
   if (c.model.liquid_count == 0 || c.model.is_coupled) return;
   if (!runs(c.model.plan, &compute_liquid_density)) {
@@ -145,7 +146,7 @@ void complete_liquid_fields(StepContext& c) {
   if (!runs(c.model.plan, &compute_liquid_pressure)) compute_liquid_pressure(c);
 }
 
-/// Forces among the body's own particles cancel in the sums.
+/// Forces between the particles of the body cancel in the sums.
 void measure_outer_forces(const ModelBody& body, const Configuration& at, const Forces& inner,
                           BodyDiagnostics& result) {
   for (Index i = body.particles.begin; i < body.particles.end; ++i) {
@@ -195,6 +196,7 @@ StepContext evaluate_inner_forces(const ForceModel& force_model, Configuration& 
 
 Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) {
   const Model& model = force_model.model;
+  VAT_CHECK(at.position.size() == force_model.model.particle_count);
   Forces forces;
   StepContext context = evaluate_inner_forces(force_model, at, time, forces);
   complete_liquid_fields(context);

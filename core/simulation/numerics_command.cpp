@@ -1,4 +1,4 @@
-// The command of Simulation that changes how it is stepped.
+// The command that changes the numerics of a simulation.
 
 #include <cmath>
 
@@ -9,19 +9,18 @@
 namespace vat {
 namespace {
 
-/// Why the length of steps cannot change now.
+/// The reason why the step length cannot change now; empty if it can.
 std::optional<std::string> refuse_other_step(const Scene& scene, bool is_between_ticks) {
-  if (!scene.emitters.empty()) return "must stay, since the scene's emitters count by it";
+  if (!scene.emitters.empty()) return "must stay, because the emitters of the scene depend on it";
   if (!is_between_ticks) return "can change at the end of a tick only";
   return {};
 }
 
-/// What is left of a force acts for whole steps of the new length, weakened so that its impulse
-/// stays.
+/// Converts the rest of a force to whole steps of the new length, with the same impulse.
 AppliedForce in_steps(AppliedForce applied, std::uint64_t step, std::uint64_t new_step,
                       Real new_per_old) {
   const Real left = static_cast<Real>(applied.end_step - step) * new_per_old;
-  const Real steps = std::ceil(left - 1e-6);  // rounding must not add one
+  const Real steps = std::ceil(left - 1e-6);  // rounding must not add a step
   applied.acceleration *= left / steps;
   applied.end_step = new_step + static_cast<std::uint64_t>(steps);
   return applied;
@@ -29,13 +28,13 @@ AppliedForce in_steps(AppliedForce applied, std::uint64_t step, std::uint64_t ne
 
 }  // namespace
 
-Status Simulation::set_numerics(IntegratorId integrator, Real step) {
+Status HostInterface::set_numerics(IntegratorId integrator, Real step) {
   Scene scene = impl_->all().scene;
   const Numerics before = scene.numerics;
   const std::uint32_t old_steps = impl_->steps_per_tick();
   scene.numerics.integrator = integrator;
   scene.numerics.step = step;
-  scene.numerics.accuracy.reset();  // it has chosen
+  scene.numerics.accuracy.reset();  // the numerics are resolved
   if (Errors errors = find_numerics_errors(scene); !errors.empty()) return errors;
   if (integrator == before.integrator && step == before.step) return {};
   const bool is_between_ticks = impl_->state.step_count % old_steps == 0;

@@ -1,4 +1,4 @@
-// What a simulation keeps when its bodies change between two steps.
+// The state that remains when bodies change between two steps.
 
 #include <algorithm>
 
@@ -8,11 +8,12 @@
 #include "core/simulation/simulation_impl.h"
 #include "core/state/body_state.h"
 #include "core/stepping/step_plan.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Lets go what of the held particles is gone; false where the one in the hand is.
+/// Removes lost particles from a grab. Returns false if its grabbed particle is lost.
 bool keep_held(const std::vector<Index>& kept, Grab& grab) {
   const auto place = [&](Index particle) {
     const auto found = std::ranges::lower_bound(kept, particle);
@@ -46,10 +47,11 @@ Controls rebind(Controls controls, const Model& before, const Model& model) {
   return controls;
 }
 
-void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
-                                 const std::vector<std::optional<std::vector<Index>>>& kept,
-                                 const std::vector<BodyId>& described_anew) {
+void SimulationImpl::recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
+                               const std::vector<std::optional<std::vector<Index>>>& kept,
+                               const std::vector<BodyId>& described_anew) {
   std::vector<bool> as_described(ids.size());
+  VAT_CHECK(samples.size() == ids.size() && (kept.empty() || kept.size() == ids.size()));
   for (std::size_t b = 0; b < ids.size(); ++b) {
     const ModelBody* known = find(ids[b]);
     if (samples[b] != nullptr || known == nullptr || known->sample == nullptr) continue;
@@ -86,11 +88,11 @@ void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids, Sa
         std::move(new_bounds), std::move(new_step_bounds));
 }
 
-void Simulation::Impl::recompile(Scene scene, const std::vector<BodyId>& ids) {
+void SimulationImpl::recompile(Scene scene, const std::vector<BodyId>& ids) {
   recompile(std::move(scene), ids, Samples(ids.size()), {});
 }
 
-void Simulation::Impl::recompile_moved(std::size_t body, BodyDescription moved) {
+void SimulationImpl::recompile_moved(std::size_t body, BodyDescription moved) {
   auto new_model = with_moved_body(*model, body, std::move(moved));
   GuardBounds new_bounds = guard_bounds(*new_model);
   StepBounds new_step_bounds = step_bounds_of_moved(*new_model, body, step_bounds);
@@ -108,13 +110,13 @@ void Simulation::Impl::recompile_moved(std::size_t body, BodyDescription moved) 
         std::move(new_bounds), std::move(new_step_bounds));
 }
 
-std::vector<BodyId> Simulation::Impl::ids() const {
+std::vector<BodyId> SimulationImpl::ids() const {
   std::vector<BodyId> ids;
   for (const ModelBody& body : all().bodies) ids.push_back(body.id);
   return ids;
 }
 
-CurrentScene Simulation::Impl::present() const {
+CurrentScene SimulationImpl::present() const {
   CurrentScene present;
   const Model& whole = all();
   for (const ModelBody& body : whole.bodies) {
@@ -128,11 +130,13 @@ CurrentScene Simulation::Impl::present() const {
   return present;
 }
 
-void Simulation::Impl::melt(const std::vector<MeltedBody>& bodies) {
+void SimulationImpl::melt(const std::vector<MeltedBody>& bodies) {
   Scene scene = model->scene;
   Samples samples(scene.bodies.size());
   for (const MeltedBody& melting : bodies) {
+    VAT_CHECK(melting.body < model->bodies.size());
     const ModelBody& body = model->bodies[melting.body];
+    VAT_CHECK(body.sample != nullptr);
     scene.bodies[melting.body] = melted(scene.bodies[melting.body], melting.into, body.mass);
     samples[melting.body] = std::make_shared<const SampledBody>(melted(*body.sample));
   }

@@ -1,4 +1,4 @@
-// The command of Simulation by which a body that has been there comes back.
+// The command that restores a body at its last positions and motion.
 
 #include <cmath>
 
@@ -9,6 +9,7 @@
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_impl.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 #include "core/validation/validate.h"
 
 namespace vat {
@@ -24,7 +25,7 @@ Status check_pose(const RigidPose& pose, int dimensions) {
   }
   const bool is_turn =
       std::isfinite(pose.orientation.norm()) && std::abs(pose.orientation.norm() - 1) <= 0.001;
-  if (!is_turn) return wrong("orientation", "a quaternion of length 1, but for rounding");
+  if (!is_turn) return wrong("orientation", "a quaternion of length 1, up to rounding");
   if (!(pose.velocity.norm() <= kMaxSpeed)) return wrong("velocity", "at most 1e4 m/s");
   if (!are_at_most(pose.angular_velocity, kMaxAngularSpeed)) {
     return wrong("angular_velocity", "three finite numbers of magnitude at most 1e4");
@@ -59,11 +60,11 @@ Status check_columns(const BodyMotion& motion, std::size_t particles, int dimens
 Status check_motion(const BodyMotion& motion, BodyKind kind, std::size_t particles,
                     int dimensions) {
   if (kind != BodyKind::rigid) return check_columns(motion, particles, dimensions);
-  if (!motion.pose) return Error{"missing", "/state", "of a rigid body its pose is needed"};
+  if (!motion.pose) return Error{"missing", "/state", "a rigid body needs its pose"};
   return check_pose(*motion.pose, dimensions);
 }
 
-/// Where a rigid body's particles are in this pose.
+/// The positions of a rigid body's particles in this pose.
 std::vector<Vec3> posed(const SampledBody& sample, const BodyDescription& body,
                         const RigidPose& pose) {
   Vec3 center = Vec3::Zero();
@@ -72,6 +73,7 @@ std::vector<Vec3> posed(const SampledBody& sample, const BodyDescription& body,
     center += sample.masses[i] * sample.positions[i];
     mass += sample.masses[i];
   }
+  VAT_CHECK(mass > 0 && body.kind == BodyKind::rigid);
   center /= mass;
   const Quat turn = pose.orientation.normalized() * body.orientation.normalized().conjugate();
   std::vector<Vec3> places;
@@ -84,6 +86,7 @@ std::vector<Vec3> posed(const SampledBody& sample, const BodyDescription& body,
 void set_motion(const BodyMotion& motion, const Model& model, const ModelBody& body,
                 Configuration& now) {
   if (body.kind == BodyKind::rigid) {
+    VAT_CHECK(motion.pose.has_value() && body.rigid < now.rigid.size());
     const RigidModel& rigid = model.rigid_bodies[body.rigid];
     RigidState& state = now.rigid[body.rigid];
     state.center_of_mass = motion.pose->center_of_mass;
@@ -94,6 +97,8 @@ void set_motion(const BodyMotion& motion, const Model& model, const ModelBody& b
         turned * (rigid.inertia * (turned.transpose() * motion.pose->angular_velocity));
     return;
   }
+  VAT_CHECK(motion.positions.size() == body.particles.size());
+  VAT_CHECK(motion.velocities.size() == body.particles.size());
   for (Index i = 0; i < body.particles.size(); ++i) {
     const Index particle = body.particles.begin + i;
     now.position[particle] = motion.positions[i];
@@ -103,10 +108,10 @@ void set_motion(const BodyMotion& motion, const Model& model, const ModelBody& b
 
 }  // namespace
 
-Result<BodyId> Simulation::add_body(const BodyDescription& body, const BodyMotion& motion) {
+Result<BodyId> HostInterface::add_body(const BodyDescription& body, const BodyMotion& motion) {
   Scene scene = impl_->all().scene;
   Scene open = scene;
-  open.vat.reset();  // it may have begun where the vat is no more
+  open.vat.reset();  // its initial position may be outside the present vat
   Errors errors = find_body_errors(open, impl_->present(), body, "/body");
   if (!errors.empty()) return errors;
   const Material& material = scene.materials[material_index(scene.materials, body.material)];

@@ -11,23 +11,35 @@
 #include "core/simulation/simulation_impl.h"
 #include "core/state/rigid_motion.h"
 #include "core/stepping/step_plan.h"
+#include "core/support/check.h"
 #include "core/validation/validate.h"
 
 namespace vat {
 
-const ModelBody* Simulation::Impl::find(BodyId id) const {
+const ModelBody* SimulationImpl::find(BodyId id) const {
   const std::vector<ModelBody>& bodies = all().bodies;
   const auto found = std::ranges::find(bodies, id, &ModelBody::id);
   return found == bodies.end() ? nullptr : &*found;
 }
 
-void Simulation::Impl::pose_rigid_particles() {
+const ModelBody* SimulationImpl::find(std::string_view name) const {
+  const std::vector<ModelBody>& bodies = all().bodies;
+  const auto found = std::ranges::find(bodies, name, &ModelBody::name);
+  return found == bodies.end() ? nullptr : &*found;
+}
+
+void SimulationImpl::pose_rigid_particles() {
   for (std::size_t b = 0; b < model->rigid_bodies.size(); ++b) {
     pose_rigid_body(*model, model->rigid_bodies[b], state.now.rigid[b], state.now);
   }
 }
 
-Simulation::Simulation() : impl_(std::make_unique<Impl>()) {}
+HostInterface::HostInterface() : impl_(std::make_unique<SimulationImpl>()) {}
+HostInterface::HostInterface(HostInterface&&) noexcept = default;
+HostInterface& HostInterface::operator=(HostInterface&&) noexcept = default;
+HostInterface::~HostInterface() = default;
+
+Simulation::Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
@@ -40,7 +52,7 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner,
   Scene resolved = scene;
   resolve_accuracy(resolved);
   Simulation simulation;
-  Impl& impl = *simulation.impl_;
+  SimulationImpl& impl = *simulation.impl_;
   impl.runner = runner;
   impl.work.instructions = impl.measured.instructions = instructions;
   std::vector<BodyId> ids;
@@ -55,15 +67,17 @@ Result<Simulation> Simulation::create(const Scene& scene, TaskRunner* runner,
   return simulation;
 }
 
-void Simulation::Impl::adopt(Content content, GuardBounds content_bounds,
-                             StepBounds content_step_bounds) noexcept {
+void SimulationImpl::adopt(SimulationContent content, GuardBounds content_bounds,
+                           StepBounds content_step_bounds) noexcept {
   if (call_start.content.model == model && !call_start.bounds) {
     call_start.bounds.emplace(std::move(bounds), std::move(step_bounds));
   }
-  static_cast<Content&>(*this) = std::move(content);
+  VAT_CHECK(content.model != nullptr &&
+            content_bounds.travel.size() == content.model->bodies.size());
+  static_cast<SimulationContent&>(*this) = std::move(content);
   bounds = std::move(content_bounds);
   step_bounds = std::move(content_step_bounds);
-  local.forget();
+  stepper.forget();
   work.clear();
   measured.clear();
 }
@@ -103,41 +117,40 @@ const Scene& Simulation::scene() const {
   return impl_->all().scene;
 }
 
-namespace {
-
-BodyView view_of(const Model& model, const Configuration& at, const ModelBody& body,
-                 const Sleepers* sleepers) {
+BodyView SimulationImpl::view_of(const ModelBody& body) const {
+  const Configuration& at = all_now();
+  VAT_CHECK(body.particles.begin <= body.particles.end);
+  VAT_CHECK(body.particles.end <= at.position.size());
   const auto part = [&](const auto& column) {
     return std::span(column).subspan(body.particles.begin, body.particles.size());
   };
   BodyView view{body.id,
                 body.name,
                 body.kind,
-                model.scene.materials[body.material].name,
+                all().scene.materials[body.material].name,
                 part(at.position),
                 part(at.velocity),
-                part(model.mass),
-                part(model.radius),
+                part(all().mass),
+                part(all().radius),
                 {},
                 {}};
   if (body.sample) view.numbers = body.sample->numbers;
-  view.is_asleep =
-      sleepers != nullptr &&
-      sleepers->islands[static_cast<std::size_t>(&body - model.bodies.data())] != kAwake;
+  const auto index = static_cast<std::size_t>(&body - all().bodies.data());
+  VAT_CHECK(index < all().bodies.size());
+  view.is_asleep = sleepers && sleepers->islands[index] != kAwake;
   if (body.kind == BodyKind::rigid) {
-    const RigidModel& rigid = model.rigid_bodies[body.rigid];
-    const RigidState& state = at.rigid[body.rigid];
+    const RigidModel& rigid = all().rigid_bodies[body.rigid];
+    const RigidState& rigid_state = at.rigid[body.rigid];
     view.pose =
-        RigidPose{state.center_of_mass, state.orientation, rigid.inverse_mass * state.momentum,
-                  angular_velocity(rigid, state.orientation, state.angular_momentum)};
+        RigidPose{rigid_state.center_of_mass, rigid_state.orientation,
+                  rigid.inverse_mass * rigid_state.momentum,
+                  angular_velocity(rigid, rigid_state.orientation, rigid_state.angular_momentum)};
     view.local_positions =
-        std::span(model.local_position)
-            .subspan(body.particles.begin - model.free_count, body.particles.size());
+        std::span(all().local_position)
+            .subspan(body.particles.begin - all().free_count, body.particles.size());
   }
   return view;
 }
-
-}  // namespace
 
 std::vector<BodyView> Simulation::bodies() const {
   std::vector<BodyView> views;
@@ -145,24 +158,23 @@ std::vector<BodyView> Simulation::bodies() const {
   return views;
 }
 
-void Simulation::list_bodies(std::vector<BodyView>& views) const {
+void HostInterface::list_bodies(std::vector<BodyView>& views) const {
   views.clear();
   views.reserve(impl_->all().bodies.size());
   for (const ModelBody& body : impl_->all().bodies) {
-    views.push_back(view_of(impl_->all(), impl_->all_now(), body, impl_->sleepers.get()));
+    views.push_back(impl_->view_of(body));
   }
 }
 
 std::optional<BodyView> Simulation::find_body(BodyId id) const {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return {};
-  return view_of(impl_->all(), impl_->all_now(), *body, impl_->sleepers.get());
+  return impl_->view_of(*body);
 }
 
 std::optional<BodyId> Simulation::find_body(std::string_view name) const {
-  const auto found = std::ranges::find(impl_->all().bodies, name, &ModelBody::name);
-  if (found == impl_->all().bodies.end()) return {};
-  return found->id;
+  const ModelBody* body = impl_->find(name);
+  return body == nullptr ? std::nullopt : std::optional(body->id);
 }
 
 Vec3 Simulation::vat_offset() const {
@@ -171,14 +183,17 @@ Vec3 Simulation::vat_offset() const {
 }
 
 Diagnostics Simulation::diagnostics() const {
-  const ForceModel force_model{impl_->all(),  impl_->controls, impl_->measured,
-                               impl_->runner, nullptr,         impl_->state.step_count};
-  Diagnostics result = measure(force_model, impl_->all_now(), impl_->time());
+  Diagnostics result = impl_->measure_all();
   result.emitted_particles = impl_->state.emitted;
   result.drained_particles = impl_->state.drained;
   result.sleeping_bodies = sleeping_body_count();
   if (impl_->all().is_incompressible) result.volume = impl_->state.volume;
   return result;
+}
+
+Diagnostics SimulationImpl::measure_all() const {
+  const ForceModel force_model{all(), controls, measured, runner, nullptr, state.step_count};
+  return measure(force_model, all_now(), time());
 }
 
 Result<LiquidFields> Simulation::liquid_fields(BodyId id) const {
@@ -187,14 +202,15 @@ Result<LiquidFields> Simulation::liquid_fields(BodyId id) const {
   return fields;
 }
 
-Status Simulation::measure_liquid(BodyId id, LiquidFields& fields) const {
+Status HostInterface::measure_liquid(BodyId id, LiquidFields& fields) const {
   const ModelBody* body = impl_->find(id);
   if (body == nullptr) return Error{"no_such_body", "/body", "there is no such body"};
   if (body->kind != BodyKind::liquid) {
     return Error{"not_liquid", "/body", "body '" + body->name + "' is not liquid"};
   }
-  diagnostics();  // leaves density and pressure of the present positions in `measured`
+  impl_->measure_all();  // leaves density and pressure of the present positions in `measured`
   const auto copy = [&](const std::vector<Real>& column, std::vector<Real>& part) {
+    VAT_CHECK(column.size() >= body->particles.end);
     part.assign(column.begin() + body->particles.begin, column.begin() + body->particles.end);
   };
   copy(impl_->measured.of<LiquidScratch>().density, fields.density);

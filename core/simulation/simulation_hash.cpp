@@ -1,4 +1,4 @@
-// What of a simulation its next steps start from, as one number.
+// The hash of the data from which the next steps start.
 
 #include "core/simulation/simulation_impl.h"
 #include "core/support/hash.h"
@@ -29,7 +29,7 @@ void add_configuration(const Model& model, const Configuration& now, StateHash& 
   for (const Real pressure : now.pressure) hash.add(pressure);
 }
 
-/// The rest of the state of what is stepped.
+/// Adds the rest of the state of the stepped bodies.
 void add_state(const Model& model, const State& state, StateHash& hash) {
   for (const std::uint32_t looks : state.slow_looks) hash.add(std::uint64_t{looks});
   const StepControl control = model.scene.numerics.control;
@@ -77,7 +77,7 @@ void add_controls(const Controls& controls, StateHash& hash) {
 
 }  // namespace
 
-std::uint64_t Snapshot::Content::hash() const {
+std::uint64_t SimulationContent::hash() const {
   StateHash hash;
   hash.add(state.step_count);
   add_configuration(all(), gather(), hash);

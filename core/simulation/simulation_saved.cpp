@@ -1,4 +1,4 @@
-// States of a simulation that are kept: snapshots, and their bytes.
+// Snapshots of a simulation, and their bytes.
 
 #include <algorithm>
 
@@ -20,23 +20,20 @@ constexpr Seal kSeal{"vat.sim\n", 1, "a saved simulation"};
 
 }  // namespace
 
-template <>
-inline constexpr InstructionSet kLastOf<InstructionSet> = InstructionSet::avx512;
-
 Snapshot Simulation::snapshot() const {
-  return {std::make_shared<const Snapshot::Content>(*impl_), impl_->next_id,
+  return {std::make_shared<const SimulationContent>(*impl_), impl_->next_id,
           impl_->work.instructions};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
   VAT_CHECK(snapshot.instructions_ == impl_->work.instructions);
-  const Snapshot::Content& content = *snapshot.content_;
-  impl_->adopt(content, Impl::bounds_of(content), find_step_bounds(*content.model));
+  const SimulationContent& content = *snapshot.content_;
+  impl_->adopt(content, SimulationImpl::bounds_of(content), find_step_bounds(*content.model));
   impl_->next_id = std::max(impl_->next_id, snapshot.next_id_);
   impl_->show();
 }
 
-Snapshot::Snapshot(std::shared_ptr<const Content> content, BodyId next_id,
+Snapshot::Snapshot(std::shared_ptr<const SimulationContent> content, BodyId next_id,
                    InstructionSet instructions)
     : content_(std::move(content)), next_id_(next_id), instructions_(instructions) {}
 Snapshot::Snapshot(const Snapshot&) = default;
@@ -54,9 +51,8 @@ const Scene& Snapshot::scene() const {
 
 namespace {
 
-/// What a body has that its description does not tell: the sample of a liquid into which or from
-/// which something flowed, or which has melted. Its damping is that under the gravity that there
-/// was when it was compiled.
+/// The data of a body that do not follow from its description: the sample of a liquid after inflow,
+/// outflow or melting. Its damping is that for the gravity at its compilation.
 SavedBody saved_body(const Model& model, std::size_t index) {
   const ModelBody& body = model.bodies[index];
   SavedBody saved{body.id, model.damping.own[index], {}};
@@ -66,7 +62,7 @@ SavedBody saved_body(const Model& model, std::size_t index) {
   return saved;
 }
 
-/// The model of all bodies, as it was when it was saved.
+/// The model of all bodies, as at the time of saving.
 std::shared_ptr<const Model> compile_saved(Scene scene, std::vector<SavedBody> bodies) {
   std::vector<BodyId> ids;
   std::vector<std::shared_ptr<const SampledBody>> samples;
@@ -86,8 +82,9 @@ std::shared_ptr<const Model> compile_saved(Scene scene, std::vector<SavedBody> b
 }
 
 Status bad_bytes(const LoadingArchive& archive) {
-  if (archive.failed()) return Error{"bad_value", "", "the saved simulation's values end early"};
-  if (archive.left() > 0) return Error{"bad_value", "", "there is more than one simulation"};
+  if (archive.failed())
+    return Error{"bad_value", "", "the values of the saved simulation are incomplete"};
+  if (archive.left() > 0) return Error{"bad_value", "", "the saved simulation has surplus bytes"};
   return {};
 }
 
@@ -116,7 +113,7 @@ Result<Simulation> Simulation::load(std::span<const std::uint8_t> bytes, TaskRun
   InstructionSet saved{};
   archive(saved);
   if (archive.failed()) {
-    return Error{"bad_value", "/instruction_set", "must be one that this program knows"};
+    return Error{"bad_value", "/instruction_set", "must be known to this program"};
   }
   if (instructions.value_or(saved) != saved) {
     return Error{"other_instruction_set", "/instruction_set",
@@ -125,14 +122,14 @@ Result<Simulation> Simulation::load(std::span<const std::uint8_t> bytes, TaskRun
   }
   if (Status available = check_available(saved); !available) return available.errors();
   Simulation simulation;
-  Impl& impl = *simulation.impl_;
+  SimulationImpl& impl = *simulation.impl_;
   impl.runner = runner;
   impl.work.instructions = impl.measured.instructions = saved;
   if (Status loaded = impl.load(archive); !loaded) return loaded.errors();
   return simulation;
 }
 
-Status Simulation::Impl::load(LoadingArchive& archive) {
+Status SimulationImpl::load(LoadingArchive& archive) {
   std::uint64_t saved_hash = 0;
   Scene scene;
   std::vector<SavedBody> bodies;
@@ -141,9 +138,9 @@ Status Simulation::Impl::load(LoadingArchive& archive) {
   std::vector<Index> islands;
   archive(saved_hash, scene, next_id, bodies, some_sleep);
   if (some_sleep) archive(configuration, islands);
-  Content content;
+  SimulationContent content;
   archive(content.state, content.controls);
-  std::optional<HandMotion> hand;  // what users do comes last, as it came into the format
+  std::optional<HandMotion> hand;  // last, because it was added to the format last
   if (archive.left() > 0 && scene.vat) archive(hand.emplace());
   if (Status status = bad_bytes(archive); !status) return status;
   if (hand) {
@@ -167,7 +164,7 @@ Status Simulation::Impl::load(LoadingArchive& archive) {
     return status;
   }
   if (content.hash() != saved_hash) {
-    return Error{"bad_value", "/hash", "the state does not have the hash that it was saved with"};
+    return Error{"bad_value", "/hash", "the state does not have its saved hash"};
   }
   GuardBounds content_bounds = bounds_of(content);
   StepBounds content_step_bounds = find_step_bounds(*content.model);

@@ -1,4 +1,4 @@
-// What a simulation does with bodies that have come to rest; see core/sleep/islands.h.
+// Sleeping bodies of a simulation; see core/sleep/islands.h.
 
 #include <algorithm>
 #include <cmath>
@@ -7,26 +7,29 @@
 #include "core/simulation/simulation_impl.h"
 #include "core/sleep/drives.h"
 #include "core/state/body_state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Islands are sought in every so manieth look: that costs about as much as a search for contacts.
+/// Number of checks between two searches for islands, each of which costs about as much as a search
+/// for contacts.
 constexpr std::uint64_t kLooksPerSearch = 8;
 
-/// Looks at rest, from the first to the last of which is the time after which a body may sleep.
+/// The number of checks that a body must rest before it may sleep.
 std::uint32_t looks_of_rest(const Scene& scene) {
   constexpr Real kRounding = 1e-9;
   const Real looks = 1 + std::ceil(scene.sleeping->after / scene.numerics.tick - kRounding);
   return static_cast<std::uint32_t>(std::min(looks, Real{std::numeric_limits<int>::max()}));
 }
 
-/// Of the bodies of a new model: those of bodies that were stepped before go on.
+/// The numbers of slow checks for the bodies of a new model; those of bodies that were stepped
+/// before continue.
 std::vector<std::uint32_t> carried_looks(const Model& before, const std::vector<std::uint32_t>& of,
                                          const Model& model) {
   std::vector<std::uint32_t> looks(model.bodies.size(), 0);
   std::size_t b = 0;
-  for (std::size_t n = 0; n < looks.size(); ++n) {  // both are in the scene's order
+  for (std::size_t n = 0; n < looks.size(); ++n) {  // both are in the order of the scene
     while (b < of.size() && before.bodies[b].id < model.bodies[n].id) ++b;
     if (b < of.size() && before.bodies[b].id == model.bodies[n].id) looks[n] = of[b];
   }
@@ -39,7 +42,8 @@ bool has_all_of(const Model& before, const Model& model) {
 
 }  // namespace
 
-GuardBounds Simulation::Impl::bounds_of(const Content& content) {
+GuardBounds SimulationImpl::bounds_of(const SimulationContent& content) {
+  VAT_CHECK(content.model != nullptr);
   GuardBounds bounds = guard_bounds(*content.model);
   if (!content.sleepers) return bounds;
   const std::vector<Real> travel = guard_bounds(*content.sleepers->model).travel;
@@ -51,7 +55,7 @@ GuardBounds Simulation::Impl::bounds_of(const Content& content) {
   return bounds;
 }
 
-Configuration Snapshot::Content::gather() const {
+Configuration SimulationContent::gather() const {
   if (!sleepers) return state.now;
   Configuration result = sleepers->configuration;
   write_part(*model, state.now, *sleepers->model, result);
@@ -59,7 +63,7 @@ Configuration Snapshot::Content::gather() const {
   return result;
 }
 
-void Simulation::Impl::show() {
+void SimulationImpl::show() {
   if (!sleepers) {
     shown_sleepers.reset();
     return;
@@ -69,15 +73,16 @@ void Simulation::Impl::show() {
   write_part(*model, state.now, *sleepers->model, shown);
 }
 
-void Simulation::Impl::step_others_than(std::vector<Index> islands,
-                                        std::shared_ptr<const Model> whole, Configuration now) {
+void SimulationImpl::step_others_than(std::vector<Index> islands,
+                                      std::shared_ptr<const Model> whole, Configuration now) {
+  VAT_CHECK(whole != nullptr && islands.size() == whole->bodies.size());
   settle_still_bodies(*whole, now, islands);
   const bool none_sleeps =
       std::ranges::all_of(islands, [](Index island) { return island == kAwake; });
-  Content next{none_sleeps ? whole : compile_awake(*whole, islands), state, {}, nullptr};
+  SimulationContent next{none_sleeps ? whole : compile_awake(*whole, islands), state, {}, nullptr};
   next.state.now = part_of(*whole, now, *next.model);
   next.state.slow_looks = carried_looks(*model, state.slow_looks, *next.model);
-  // What is near sleepers they have no part in.
+  // Forces on bodies near sleepers do not include those of the sleepers.
   const bool keeps_forces = state.forces_current && has_all_of(*model, *next.model) &&
                             model->scene.numerics.control != StepControl::local;
   next.state.forces =
@@ -93,7 +98,7 @@ void Simulation::Impl::step_others_than(std::vector<Index> islands,
   adopt(std::move(next), std::move(new_bounds), std::move(new_step_bounds));
 }
 
-void Simulation::Impl::wake_all() {
+void SimulationImpl::wake_all() {
   if (sleepers) {
     const std::size_t bodies = sleepers->islands.size();
     step_others_than(std::vector<Index>(bodies, kAwake), sleepers->model, gather());
@@ -101,7 +106,7 @@ void Simulation::Impl::wake_all() {
   std::ranges::fill(state.slow_looks, 0);
 }
 
-void Simulation::Impl::look_for_rest() {
+void SimulationImpl::look_for_rest() {
   const Scene& scene = model->scene;
   if (prevents_sleep(scene, time())) {
     std::ranges::fill(state.slow_looks, 0);
@@ -109,6 +114,7 @@ void Simulation::Impl::look_for_rest() {
   }
   const std::uint32_t needed = looks_of_rest(scene);
   const Real speed = scene.sleeping->speed;
+  VAT_CHECK(state.slow_looks.size() == model->bodies.size());
   bool any_rested = false;
   for (Index b = 0; b < model->bodies.size(); ++b) {
     const ModelBody& body = model->bodies[b];
@@ -127,13 +133,14 @@ void Simulation::Impl::look_for_rest() {
   std::vector<Index> islands = find_resting_islands(*model, state.now, rested);
   if (std::ranges::all_of(islands, [](Index island) { return island == kAwake; })) return;
   Configuration now = gather();
-  // In the model of all bodies.
+  // The islands in the model of all bodies.
   std::vector<Index> all_islands = sleepers ? sleepers->islands : islands;
   if (sleepers) {
     std::vector<Index> awake;
     for (Index b = 0; b < all_islands.size(); ++b) {
       if (all_islands[b] == kAwake) awake.push_back(b);
     }
+    VAT_CHECK(awake.size() == islands.size());
     for (std::size_t n = 0; n < islands.size(); ++n) {
       if (islands[n] != kAwake) all_islands[awake[n]] = awake[islands[n]];
     }
@@ -142,7 +149,8 @@ void Simulation::Impl::look_for_rest() {
   step_others_than(std::move(all_islands), sleepers ? sleepers->model : model, std::move(now));
 }
 
-void Simulation::Impl::wake_near() {
+void SimulationImpl::wake_near() {
+  VAT_CHECK(sleepers != nullptr);
   const Model& whole = *sleepers->model;
   const Real reach = greatest_reach(whole);
   if (reach == 0) return;
@@ -171,7 +179,7 @@ void Simulation::Impl::wake_near() {
   step_others_than(std::move(islands), sleepers->model, gather());
 }
 
-void Simulation::Impl::sleep_and_wake() {
+void SimulationImpl::sleep_and_wake() {
   enter("sleep");
   if (state.step_count % steps_per_tick() == 0) look_for_rest();
   if (sleepers && !model->bodies.empty()) wake_near();

@@ -5,8 +5,8 @@
 
 namespace vat {
 
-/// Puts the liquid particles that left a periodic world back into it, through the other side.
-/// Solids stay whole, and go as far as they like.
+/// Moves liquid particles that have left a periodic world to the opposite side. Solids stay whole,
+/// and may move any distance.
 void wrap_liquid(const Model& model, TaskRunner* runner, Configuration& configuration);
 
 }  // namespace vat

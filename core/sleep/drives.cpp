@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/laws/vat_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -30,10 +31,11 @@ bool prevents_sleep(const Scene& scene, Real time) {
 }
 
 bool is_driven(const Model& model, const State& state, const Controls& controls, Index b) {
+  VAT_CHECK(b < model.bodies.size());
   const ModelBody& body = model.bodies[b];
   const auto is_of_body = [&](const auto& control) { return control.body == b; };
   if (std::ranges::any_of(controls.grabs, is_of_body)) return true;
-  // Those that have ended stay in the list until the call does.
+  // Forces that have ended remain in the list until the end of the call.
   const auto pushes = [&](const AppliedForce& applied) {
     return is_of_body(applied) && applied.end_step > state.step_count;
   };

@@ -6,6 +6,7 @@
 
 #include "core/sleep/resting_bodies.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -29,6 +30,7 @@ Real island_distance(Real reach, Real speed, Real step) {
 Real greatest_speed(const Model& model, const ModelBody& body, const Configuration& at,
                     Real limit) {
   if (body.kind == BodyKind::rigid) {
+    VAT_CHECK(body.rigid < at.rigid.size());
     const RigidModel& rigid = model.rigid_bodies[body.rigid];
     const RigidState& state = at.rigid[body.rigid];
     Real extent2 = 0;
@@ -38,6 +40,7 @@ Real greatest_speed(const Model& model, const ModelBody& body, const Configurati
     const Vec3 omega = angular_velocity(rigid, state.orientation, state.angular_momentum);
     return rigid.inverse_mass * state.momentum.norm() + omega.norm() * std::sqrt(extent2);
   }
+  VAT_CHECK(body.particles.end <= at.velocity.size());
   Real greatest2 = 0;
   for (Index i = body.particles.begin; i < body.particles.end; ++i) {
     greatest2 = std::max(greatest2, at.velocity[i].squaredNorm());
@@ -56,14 +59,15 @@ bool is_still(const Model& model, const ModelBody& body, const Configuration& at
 
 namespace {
 
-/// Bodies that are joined, two by two, to sets.
-class Sets {
+/// A partition of bodies into sets of joined bodies.
+class DisjointSets {
  public:
-  explicit Sets(std::size_t count) : parent_(count) {
+  explicit DisjointSets(std::size_t count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
-  /// The least of its set.
+  /// The lowest body of its set.
   Index root(Index body) {
+    VAT_ASSERT(body < parent_.size());
     while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
     return body;
   }
@@ -77,7 +81,7 @@ class Sets {
   std::vector<Index> parent_;
 };
 
-struct Search {
+struct IslandSearch {
   const Model& model;
   const Configuration& at;
   const std::vector<char>& rested;
@@ -91,8 +95,8 @@ struct Search {
   }
 };
 
-/// Small bodies look for large ones: it costs less than the reverse.
-void join_islands(Search& search, std::vector<Index> bodies, Sets& sets) {
+/// Small bodies search for large ones, which costs less than the reverse.
+void join_islands(IslandSearch& search, std::vector<Index> bodies, DisjointSets& sets) {
   std::ranges::stable_sort(bodies, {},
                            [&](Index b) { return search.model.bodies[b].particles.size(); });
   const Real distance = island_distance(search.reach, 0, 0);
@@ -104,8 +108,8 @@ void join_islands(Search& search, std::vector<Index> bodies, Sets& sets) {
   }
 }
 
-/// By set of resting bodies, whether something else is near.
-std::vector<char> find_disturbed(Search& search, Sets& sets) {
+/// For each set of resting bodies, whether another body is near.
+std::vector<char> find_disturbed(IslandSearch& search, DisjointSets& sets) {
   const Model& model = search.model;
   std::vector<char> disturbed(model.bodies.size(), 0);
   for (Index b = 0; b < model.bodies.size(); ++b) {
@@ -126,15 +130,16 @@ std::vector<char> find_disturbed(Search& search, Sets& sets) {
 
 std::vector<Index> find_resting_islands(const Model& model, const Configuration& at,
                                         const std::vector<char>& rested) {
+  VAT_CHECK(rested.size() == model.bodies.size());
   std::vector<Index> bodies;
   for (Index b = 0; b < rested.size(); ++b) {
     if (rested[b]) bodies.push_back(b);
   }
   std::vector<Index> islands(model.bodies.size(), kAwake);
-  Sets sets(model.bodies.size());
+  DisjointSets sets(model.bodies.size());
   std::vector<char> disturbed(model.bodies.size(), 0);
   if (const Real reach = greatest_reach(model); reach > 0) {
-    Search search{model, at, rested, reach, {}, {}};
+    IslandSearch search{model, at, rested, reach, {}, {}};
     search.resting.build(model, at.position, bodies, island_distance(reach, 0, 0));
     join_islands(search, bodies, sets);
     disturbed = find_disturbed(search, sets);

@@ -6,40 +6,42 @@
 #include "core/model/model.h"
 #include "core/state/state.h"
 
-/// Bodies that have come to rest sleep: they are not stepped until something may move them again.
+/// Bodies at rest sleep: they are not stepped until something can move them again.
 ///
-/// Islands are bodies that are near each other: closer, particle by particle, than what follows. An
-/// island falls asleep where all of its particles were slower than Sleeping::speed in every look,
-/// one as each tick begins, for Sleeping::after, and nothing drives it. Its velocities become zero,
-/// by which it loses at most m speed^2 / 2 of energy and m speed of momentum; its places stay. It
-/// wakes, as a whole, before a step in which what is awake may come within reach of it.
+/// Islands are sets of bodies that are near each other: their particles are within the island
+/// distance. An island falls asleep if all its particles were slower than Sleeping::speed in every
+/// check for the time Sleeping::after, with one check at each tick, and nothing acts on it. Its
+/// velocities become zero, which removes at most m speed^2 / 2 of energy and m speed of momentum;
+/// its positions stay. An island wakes as a whole before a step in which an awake body can come
+/// within reach of it.
 ///
-/// The reach is the greatest distance at which particles of two bodies notice each other: that of
-/// contacts or a liquid's support radius. In a step nothing moves further than the reach, see
-/// core/guard/guard.h, or in varied steps than it goes in twice its length at its present speed:
-/// at the reach and so much more sleepers wake. Islands are half a reach further apart, so that
-/// what lies beside them without moving does not wake them.
+/// The reach is the maximum distance at which particles of two bodies interact: that of contacts or
+/// the support radius of a liquid. In one step no body moves further than the reach, see
+/// core/guard/guard.h; in varied steps no further than its present speed allows in twice the step.
+/// Sleepers wake at the sum of the reach and this distance. The island distance is half a reach
+/// longer, so that bodies that lie beside an island without moving do not wake it.
 namespace vat {
 
-/// Of a body that is in no island that sleeps.
+/// The island of a body that is awake.
 inline constexpr Index kAwake = ~Index{0};
 
-/// [m] 0 where no body notices another.
+/// The reach [m]; 0 if bodies do not interact.
 Real greatest_reach(const Model& model);
-/// How near something of this speed wakes what sleeps, in steps of `step` [m].
+/// The distance at which something with this speed wakes a sleeper, in steps of `step` [m].
 Real waking_distance(Real reach, Real speed, Real step);
-/// How near bodies are of one island, or something awake keeps one awake [m].
+/// The distance of bodies in one island, and of an awake body that keeps another one awake [m].
 Real island_distance(Real reach, Real speed, Real step);
 
-/// The greatest speed of a body's particles [m/s]; of a rigid one's a bound. `limit`: above it the
-/// answer may be any speed above it.
+/// The maximum speed of a body's particles [m/s]; for a rigid body an upper bound. Above `limit` it
+/// may be any speed above `limit`.
 Real greatest_speed(const Model& model, const ModelBody& body, const Configuration& at, Real limit);
 
-/// Has no particles, or is held for ever where it is: what lies on it is no island with it.
+/// Returns whether the body has no particles, or is held for all time without motion. Bodies that
+/// lie on it form no island with it.
 bool is_still(const Model& model, const ModelBody& body, const Configuration& at);
 
-/// By body, the island in which it is to sleep, named by one of its bodies; kAwake for the others.
-/// `rested`: by body, whether it has rested long enough and nothing drives it.
+/// For each body, the island in which it can sleep, identified by one of its bodies; kAwake for the
+/// others. `rested`: for each body, whether it has rested long enough and nothing acts on it.
 std::vector<Index> find_resting_islands(const Model& model, const Configuration& at,
                                         const std::vector<char>& rested);
 

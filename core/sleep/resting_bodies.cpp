@@ -1,4 +1,5 @@
 #include "core/sleep/resting_bodies.h"
+#include "core/support/check.h"
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +32,7 @@ void RestingBodies::build(const Model& model, const std::vector<Vec3>& positions
   std::vector<Index> particles;
   for (const Index b : bodies) {
     const IndexRange& range = model.bodies[b].particles;
+    VAT_CHECK(range.begin <= range.end && range.end <= positions.size());
     boxes.emplace_back(box_of(std::span(positions).subspan(range.begin, range.size())), b);
     for (Index i = range.begin; i < range.end; ++i) particles.push_back(i);
   }
@@ -49,6 +51,7 @@ void RestingBodies::build(const Model& model, const std::vector<Vec3>& positions
 void RestingBodies::find_candidates(std::span<const Vec3> points, Real distance,
                                     std::vector<Index>& candidates) const {
   candidates.clear();
+  VAT_CHECK(furthest_.size() == bodies_.size() && boxes_.size() == bodies_.size());
   const Box wide = grown(box_of(points), distance);
   const auto first = std::ranges::lower_bound(furthest_, wide.min().x()) - furthest_.begin();
   for (auto k = static_cast<std::size_t>(first); k < bodies_.size(); ++k) {
@@ -62,7 +65,7 @@ void RestingBodies::keep_near(std::span<const Vec3> points, Real distance,
                               std::vector<Index>& candidates) const {
   Box around;
   for (const Index body : candidates) around.extend(grown(box(body), distance));
-  auto left = candidates.begin();  // those before it were found
+  auto left = candidates.begin();  // candidates before it have been found
   const auto look_from = [&](const Vec3& p) {
     particles_.grid.for_each_run(p, distance, [&](Index begin, Index end) {
       for (Index slot = begin; slot < end; ++slot) {

@@ -5,6 +5,7 @@
 #include "core/laws/vat_motion.h"
 #include "core/model/compile.h"
 #include "core/stepping/step_plan.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -37,6 +38,7 @@ void settle_still_bodies(const Model& model, const Configuration& at, std::vecto
 }
 
 std::shared_ptr<const Model> compile_awake(const Model& model, const std::vector<Index>& islands) {
+  VAT_CHECK(islands.size() == model.bodies.size());
   Scene scene = model.scene;
   scene.bodies.clear();
   std::vector<BodyId> ids;
@@ -57,6 +59,7 @@ std::shared_ptr<const Model> compile_awake(const Model& model, const std::vector
 }
 
 void stop(const Model& model, const std::vector<Index>& islands, Configuration& at) {
+  VAT_CHECK(islands.size() == model.bodies.size());
   for (std::size_t b = 0; b < islands.size(); ++b) {
     if (islands[b] == kAwake) continue;
     const ModelBody& body = model.bodies[b];

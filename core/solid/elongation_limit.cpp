@@ -2,10 +2,12 @@
 
 #include <atomic>
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
-/// True where the spring was to get longer than the tolerance allows.
+/// Limits one spring. Returns whether its elongation was to exceed the tolerance.
 bool limit_spring(const Model& model, const LimitedSpring& spring, Real dt, Configuration& at) {
   const bool is_torn = !at.springs.empty() && at.springs[spring.end].is_torn;
   const Vec3 x = at.position[spring.a] - at.position[spring.b];
@@ -27,6 +29,7 @@ bool limit_spring(const Model& model, const LimitedSpring& spring, Real dt, Conf
 
 void limit_elongation(const Model& model, TaskRunner* runner, Configuration& at, Real dt) {
   if (model.limited_springs.empty()) return;
+  VAT_CHECK(dt > 0 && at.velocity.size() == model.particle_count);
   for (int sweep = 0; sweep < kElongationSweeps; ++sweep) {
     std::atomic<bool> any = false;
     for (std::size_t colour = 0; colour + 1 < model.limited_begin.size(); ++colour) {

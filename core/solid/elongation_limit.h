@@ -6,17 +6,17 @@
 
 namespace vat {
 
-/// Before a drift of `dt`: no spring with an elongation limit gets longer than it may be (after X.
-/// Provot, Graphics Interface 1995, pages 147-154, who moves the ends of such springs; here their
-/// velocities change before they move, as in R. Bridson, R. Fedkiw, J. Anderson, ACM Trans. Graph.
-/// 21 (2002) 594). What would be longer loses by an impulse along it what is too much of the speed
-/// at which its ends part, or closes where it is too long already. Impulses are opposite and along
-/// the line between both ends, so that linear and angular momentum stay to rounding, and inelastic.
-/// One spring after the other, colour by colour, in at most kElongationSweeps rounds, until none is
-/// above its limit by kElongationTolerance of its length.
+/// Limits the elongation of springs in the following drift of `dt` (after X. Provot, Graphics
+/// Interface 1995, pages 147-154, who moves the ends of such springs; here their velocities change
+/// before the drift, as in R. Bridson, R. Fedkiw, J. Anderson, ACM Trans. Graph. 21 (2002) 594).
+/// For a spring that would exceed its limit, an impulse along it removes the excess of the
+/// separating velocity of its ends; a spring that exceeds it already closes. The impulses are
+/// inelastic, opposite and along the line between the ends, so that linear and angular momentum are
+/// conserved up to rounding. The springs are processed colour by colour, in at most
+/// kElongationSweeps sweeps, until all are within kElongationTolerance of their limit.
 ///
-/// The limit is that of the motion along the spring: a spring that turns by a small angle w dt in
-/// the drift gets longer by (w dt)^2 / 2 of its length, which the next step takes back.
+/// The limit is linear in the motion along the spring: a spring that rotates by a small angle w dt
+/// in the drift gets longer by (w dt)^2 / 2 of its length, which the next step corrects.
 void limit_elongation(const Model& model, TaskRunner* runner, Configuration& configuration,
                       Real dt);
 inline constexpr int kElongationSweeps = 100;

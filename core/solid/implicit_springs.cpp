@@ -9,24 +9,25 @@
 #include "core/laws/pair_direction.h"
 #include "core/model/model.h"
 #include "core/solid/spring_changes.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 constexpr int kMaxNewtonSteps = 20;
-constexpr int kMaxShortenings = 6;        // of one of them
-constexpr Real kLinearTolerance = 0.1;    // of the residual, in one of them
+constexpr int kMaxShortenings = 6;        // of one Newton step
+constexpr Real kLinearTolerance = 0.1;    // of the residual, in one Newton step
 constexpr Real kDashpotTolerance = 1e-4;  // of the impulse
 constexpr int kMaxDriftHalvings = 6;
 constexpr int kMaxTurns = 8;
 
-/// Squares, in the norm of the inverse masses.
+/// Squares in the norm of the inverse masses.
 struct ResidualSize {
   Real residual2 = 0;
-  Real rounding2 = 0;  ///< of the forces' own rounding errors
+  Real rounding2 = 0;  ///< of the rounding errors of the forces
 };
 
-/// The drift of one body.
+/// The drift of one body with implicit springs.
 class BodyDrift {
  public:
   BodyDrift(const ForceModel& f, const Configuration& at, const IndexRange& particles,
@@ -43,9 +44,9 @@ class BodyDrift {
   BodyDrift(const BodyDrift&) = delete;
   BodyDrift& operator=(const BodyDrift&) = delete;
 
-  /// The springs' over `part` of `dt`; false where some of it did not converge.
+  /// Applies the springs over `part` of `dt`. Returns false if some part did not converge.
   bool take(Real dt, Real part, int halvings = 0);
-  /// The dashpots' over `dt`, of velocities at positions, both by particle.
+  /// Applies the dashpots over `dt` to velocities at positions, both by particle.
   void damp(std::span<const Vec3> positions, std::span<Vec3> velocities, Real dt);
 
  private:
@@ -62,10 +63,10 @@ class BodyDrift {
   IndexRange particles_;
   SpringSystem system_;
   ImplicitSpringsScratch& s_;
-  bool is_exact_ = false;  ///< the last solve came to the tolerance
+  bool is_exact_ = false;  ///< the last solve reached the tolerance
 };
 
-/// The force at one end, whose slope it notes.
+/// The force at one end. Stores its slope.
 Vec3 BodyDrift::push_end(Index i, Index end, Real half) {
   const SpringEnd spring = present_spring(model_, at_, end);
   const std::size_t a = place_of(i);
@@ -81,7 +82,7 @@ Vec3 BodyDrift::push_end(Index i, Index end, Real half) {
       2 * half * spring.damping * (model_.inverse_mass[i] + model_.inverse_mass[spring.other]);
   const Real late = calming * calming / (1 + calming * calming);
   const Real stiffness = half * half * spring.stiffness;
-  // Two particles that stay in one place are pushed apart as by any spring.
+  // Two particles at one position are pushed apart as by any spring.
   if (mean == 0) {
     system_.slope(end) = {n, stiffness, 0};
     return spring.stiffness * spring.rest_length * n;
@@ -91,7 +92,7 @@ Vec3 BodyDrift::push_end(Index i, Index end, Real half) {
   return -spring.stiffness * strain * middle;
 }
 
-/// The impulse dt/2 f - m (v - v0) that is left at the velocities of the scratch.
+/// The remaining impulse dt/2 f - m (v - v0) at the velocities of the scratch.
 ResidualSize BodyDrift::find_residual(Real half) {
   constexpr Real kRounding = 4 * std::numeric_limits<Real>::epsilon();
   system_.count_pass();
@@ -121,7 +122,7 @@ ResidualSize BodyDrift::find_residual(Real half) {
   return {residual2, rounding2};
 }
 
-/// Goes along the change as far as the residual gets less; false where it does not.
+/// Moves along the change as far as the residual decreases. Returns false if it does not.
 bool BodyDrift::follow_change(Real half, ResidualSize& size) {
   system_.for_particles([&](Index i) { s_.last_velocity[place_of(i)] = s_.velocity[place_of(i)]; });
   Real length = 1;
@@ -157,9 +158,9 @@ bool BodyDrift::solve(Real half) {
   return false;
 }
 
-/// Takes from a body that nothing holds the angular momentum that the tolerance has left; false
-/// where there is none. What it changes moves the middle of the way, so that a little is left
-/// again.
+/// Removes the angular momentum error of the solve, which its tolerance permits, from a body
+/// without fixed particles. Returns false if the error is zero. The correction moves the midpoints,
+/// so that a small part remains.
 bool BodyDrift::remove_turn(Real half) {
   Vec3 center = Vec3::Zero();
   Real mass = 0;
@@ -180,7 +181,7 @@ bool BodyDrift::remove_turn(Real half) {
     torque += model_.mass[i] * arm.cross(s_.velocity[k] - s_.start_velocity[k]);
     inertia += model_.mass[i] * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
   }
-  // Particles in a row have no torque along it, where their inertia is zero.
+  // Particles in a line have no torque along it, where their inertia is zero.
   inertia += 1e-12 * inertia.trace() * Mat3::Identity();
   if (inertia.trace() == 0) return false;
   const Vec3 turn = inertia.ldlt().solve(torque);
@@ -191,11 +192,12 @@ bool BodyDrift::remove_turn(Real half) {
 
 bool BodyDrift::take(Real dt, Real part, int halvings) {
   const bool is_solved = solve(dt * part / 2);
+  VAT_ASSERT(part > 0 && dt > 0);
   if (!is_solved && halvings < kMaxDriftHalvings) {
     const bool first = take(dt, part / 2, halvings + 1);
     return take(dt, part / 2, halvings + 1) && first;
   }
-  // More than the tolerance is no small turn, and would stretch the springs.
+  // An error above the tolerance is no small rotation; its correction would stretch the springs.
   for (int round = 0; round < kMaxTurns && is_exact_; ++round) {
     if (!remove_turn(dt * part / 2)) break;
   }
@@ -253,7 +255,7 @@ void for_bodies(const Model& model, F&& f) {
   }
 }
 
-/// Those from Model::implicit_begin to free_count.
+/// The part of a column for particles from Model::implicit_begin to free_count.
 template <class Columns>
 auto part_of(const Model& model, Columns& column) {
   return std::span(column).subspan(model.implicit_begin, model.free_count - model.implicit_begin);
@@ -261,14 +263,15 @@ auto part_of(const Model& model, Columns& column) {
 
 }  // namespace
 
-void keep_implicit_places(const Model& model, const Configuration& at,
-                          ImplicitSpringsScratch& scratch) {
+void store_implicit_positions(const Model& model, const Configuration& at,
+                              ImplicitSpringsScratch& scratch) {
   const std::span<const Vec3> positions = part_of(model, at.position);
   scratch.position.assign(positions.begin(), positions.end());
 }
 
 void drift_implicit_springs(const ForceModel& f, Configuration& at, Real dt,
                             ImplicitSpringsScratch& scratch) {
+  VAT_CHECK(scratch.position.size() == f.model.free_count - f.model.implicit_begin);
   const std::span<Vec3> positions = part_of(f.model, at.position);
   const std::span<Vec3> velocities = part_of(f.model, at.velocity);
   std::ranges::copy(scratch.position, positions.begin());

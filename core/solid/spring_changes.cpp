@@ -4,10 +4,12 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
-/// One spring of the material; true where it changed.
+/// Changes one spring of the material. Returns whether it changed.
 bool change_spring(const Material& material, Real start, Real length, Real dt, SpringState& state) {
   if (state.is_torn || start == 0) return false;
   if (material.tearing_strain && length > (1 + *material.tearing_strain) * start) {
@@ -38,6 +40,7 @@ Real flown_length(const Plasticity& plasticity, Real start, Real rest, Real leng
 
 bool change_springs(const Model& model, TaskRunner* runner, Configuration& at, Real dt) {
   if (at.springs.empty()) return false;
+  VAT_CHECK(at.springs.size() == model.spring_ends.size());
   std::atomic<bool> any = false;
   const Index first = model.liquid_count;
   for_blocks(runner, model.free_count - first, [&](std::size_t begin, std::size_t end) {

@@ -6,7 +6,7 @@
 
 namespace vat {
 
-/// The spring as it is by now: flown springs have another rest length, torn ones no constants.
+/// The present spring: plastic springs have other rest lengths, torn ones zero constants.
 inline SpringEnd present_spring(const Model& model, const Configuration& at, Index end) {
   SpringEnd spring = model.spring_ends[end];
   if (at.springs.empty()) return spring;
@@ -16,15 +16,16 @@ inline SpringEnd present_spring(const Model& model, const Configuration& at, Ind
   return spring;
 }
 
-/// The length at rest [m] to which a spring flows that is `length` long at the end of `dt`, from
-/// `rest`; `start` is the length at rest at time 0. Springs of length 0 have no strain.
+/// The rest length [m] after plastic flow of a spring with the rest length `rest` and the length
+/// `length` at the end of `dt`. `start` is the rest length at time 0. Springs of rest length 0 have
+/// no strain.
 Real flown_length(const Plasticity& plasticity, Real start, Real rest, Real length, Real dt);
 
-/// What the springs do that may flow or tear, after their ends have moved for `dt` to where they
-/// are. Both ends of a spring come to the same bits. True where any changed.
+/// Applies plastic flow and tearing after a motion of `dt`. Both ends of a spring get the same
+/// bits. Returns whether a spring has changed.
 bool change_springs(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt);
 
-/// How many springs are torn.
+/// The number of torn springs.
 std::size_t count_torn(const Configuration& configuration);
 
 }  // namespace vat

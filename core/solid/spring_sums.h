@@ -4,15 +4,15 @@
 #include <array>
 
 #include "core/model/model.h"
+#include "core/support/check.h"
 #include "core/support/parallel.h"
 
 namespace vat {
 
-/// By particle of one block.
+/// Sums for the particles of one block.
 using BlockSums = std::array<Vec3, kBlockSize>;
 
-/// Calls body(begin, end) for the particles with springs that are not implicit, in the blocks of
-/// all particles.
+/// Calls body(begin, end) for the particles with explicit springs, in the blocks of all particles.
 template <class Body>
 void for_spring_blocks(const Model& model, TaskRunner* runner, Body&& body) {
   const std::size_t base = model.liquid_count / kBlockSize * kBlockSize;
@@ -22,12 +22,13 @@ void for_spring_blocks(const Model& model, TaskRunner* runner, Body&& body) {
   });
 }
 
-/// What springs do to the particles [begin, end) of one block. `at_particle(e)` gives a function of
-/// the ends of particle e which returns what their springs do to it; the other particle gets the
-/// opposite. Each spring is asked for once in each block that it has an end in.
+/// Sums the forces of springs on the particles [begin, end) of one block. `at_particle(e)` returns
+/// a function of the ends of particle e that returns the force on e; the other particle gets the
+/// opposite force. Each spring is evaluated once in each block in which it has an end.
 template <class F>
 void sum_over_springs(const Model& model, Index begin, Index end, BlockSums& sums,
                       F&& at_particle) {
+  VAT_ASSERT(begin <= end && end - begin <= sums.size());
   const SpringEnd* const ends = model.spring_ends.data();
   std::fill_n(sums.begin(), end - begin, Vec3::Zero());
   for (Index e = begin; e < end; ++e) {
@@ -40,7 +41,7 @@ void sum_over_springs(const Model& model, Index begin, Index end, BlockSums& sum
       for (Index s = range.begin; s < range.end; ++s) {
         const Vec3 part = at_end(s);
         sum += part;
-        const Index other = ends[s].other - begin;  // wraps around for what is before
+        const Index other = ends[s].other - begin;  // wraps around for particles before the block
         if (other < end - begin) sums[other] -= part;
       }
     }

@@ -4,23 +4,24 @@
 #include <vector>
 
 #include "core/model/model.h"
+#include "core/support/check.h"
 #include "core/support/parallel.h"
 
 namespace vat {
 
-/// What a change of velocities does to the impulse of a spring, seen from one end [kg].
+/// The derivative of the impulse of a spring by velocities, seen from one end [kg].
 struct SpringSlope {
   Vec3 direction;
   Real along;
   Real across;
 };
 
-/// Scratch of SpringSystem. Entries are of the particles and ends from Model::implicit_begin on.
+/// Buffers of SpringSystem, for the particles and ends from Model::implicit_begin on.
 struct SpringSystemScratch {
   std::vector<SpringSlope> slopes;
-  std::vector<Vec3> residual;  ///< impulses, zero where particles are fixed [N s]
-  std::vector<Vec3> change;    ///< of velocities
-  std::vector<Vec3> left;      ///< of the residual
+  std::vector<Vec3> residual;   ///< impulses, zero for fixed particles [N s]
+  std::vector<Vec3> change;     ///< of velocities
+  std::vector<Vec3> remaining;  ///< residual after the steps so far
   std::vector<Vec3> direction;
   std::vector<Vec3> product;
   std::vector<Real> partial_sums;  ///< by block
@@ -29,23 +30,24 @@ struct SpringSystemScratch {
 };
 
 /// The linear equations (M + slopes) change = residual for the velocities of one body with implicit
-/// springs. Slopes are equal at both ends and opposite in effect, so that every iterate conserves
-/// linear momentum, and angular momentum where they have no part across.
+/// springs. Slopes are equal at both ends with opposite effects, so that every iterate conserves
+/// linear momentum, and angular momentum if they have no transverse part.
 class SpringSystem {
  public:
   SpringSystem(const Model& model, TaskRunner* runner, const IndexRange& particles,
                SpringSystemScratch& scratch);
 
-  /// Solves by conjugate gradients preconditioned with M, to `tolerance` of the residual in the
-  /// norm of M^-1, or as far as a fixed number of iterations goes.
+  /// Solves by conjugate gradients with the preconditioner M, to `tolerance` of the residual in the
+  /// norm of M^-1, with a limited number of iterations.
   void solve(Real tolerance);
 
-  /// How often all the body's springs were gone through.
+  /// The number of passes over all springs of the body.
   std::uint64_t passes() const { return passes_; }
   void count_pass() { ++passes_; }
 
   std::size_t place_of(Index particle) const { return particle - model_.implicit_begin; }
   SpringSlope& slope(Index end) {
+    VAT_ASSERT(end - model_.spring_begin[model_.implicit_begin] < scratch_.slopes.size());
     return scratch_.slopes[end - model_.spring_begin[model_.implicit_begin]];
   }
 
@@ -56,7 +58,7 @@ class SpringSystem {
       for (std::size_t k = begin; k < end; ++k) f(particles_.begin + static_cast<Index>(k));
     });
   }
-  /// The sum of f(particle), in an order that depends on the body alone.
+  /// The sum of f(particle), in an order that depends on the body only.
   template <class F>
   Real sum(F&& f) {
     std::vector<Real>& sums = scratch_.partial_sums;

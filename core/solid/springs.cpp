@@ -7,6 +7,7 @@
 #include "core/solid/spring_sums.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -31,7 +32,7 @@ void add_block(StepContext& c, Index begin, Index end) {
       const Real speed = (velocity - velocities[spring.other]).dot(n);
       if constexpr (springs_change) {
         const SpringEnd now = present_spring(*model, *configuration, s);
-        // Those of torn springs are not asked for a damping that they no longer have.
+        // Torn springs have no damping, and their direction is zero.
         if constexpr (keep_directions) directions[s] = now.damping > 0 ? n : Vec3(Vec3::Zero());
         return connection_push(now.stiffness, now.damping, now.rest_length, r, speed) * n;
       } else {
@@ -54,6 +55,7 @@ void add_springs(StepContext& c) {
 }  // namespace
 
 void add_spring_forces(StepContext& c) {
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
   if (c.work.keep_dampers)
     c.work.of<SolidScratch>().spring_directions.resize(c.model.spring_ends.size());
   c.work.keep_dampers ? add_springs<true>(c) : add_springs<false>(c);

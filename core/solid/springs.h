@@ -4,8 +4,8 @@ namespace vat {
 
 struct StepContext;
 
-/// Stage: static connections of deformable bodies that are not implicit, Boldt eq. 3 with a dashpot
-/// along the spring.
+/// Stage: adds the forces of explicit static connections of deformable bodies, Boldt eq. 3 with a
+/// dashpot along the spring.
 void add_spring_forces(StepContext& context);
 
 }  // namespace vat

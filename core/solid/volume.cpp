@@ -4,25 +4,27 @@
 #include "core/solid/scratch.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 
 void compute_cell_pressure(StepContext& c) {
+  SolidScratch& solid_buffers = c.work.of<SolidScratch>();
   const SharedArray<VolumeCell>& cells = c.model.cells;
-  c.work.of<SolidScratch>().cell_pressure.resize(cells.size());
+  solid_buffers.cell_pressure.resize(cells.size());
   for_blocks(c.runner, cells.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Real volume =
           cell_volume(c.configuration.position, cells[k].corners, c.model.scene.dimensions);
-      c.work.of<SolidScratch>().cell_pressure[k] =
-          cells[k].bulk_modulus * (1 - volume / cells[k].volume);
+      solid_buffers.cell_pressure[k] = cells[k].bulk_modulus * (1 - volume / cells[k].volume);
     }
   });
 }
 
-// Each particle sums what the cells around it do to it, so that every force has one writer.
+// Each particle sums the forces of its cells, so that every force has one writer.
 void add_cell_forces(StepContext& c) {
   const Index first = c.model.liquid_count;
+  VAT_CHECK(c.work.of<SolidScratch>().cell_pressure.size() == c.model.cells.size());
   for_blocks(c.runner, c.model.free_count - first, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Index i = first + static_cast<Index>(k);

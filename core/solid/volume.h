@@ -6,15 +6,16 @@ namespace vat {
 
 struct StepContext;
 
-/// Stages of bodies that keep their volume. Each cell of the lattice has the energy
-/// K (V - V0)^2 / (2 V0), so a pressure K (1 - V / V0) that pushes its corners along the slope of
-/// its volume (M. Teschner, B. Heidelberger, M. Mueller, M. Gross, Computer Graphics International
-/// 2004, pages 312-319, whose cells are tetrahedra). The slopes of a volume that neither moving nor
-/// turning a cell changes add up to nothing: linear and angular momentum stay to rounding.
+/// Stages of bodies with a bulk modulus. Each cell of the lattice has the energy K (V - V0)^2 / (2
+/// V0), and therefore a pressure K (1 - V / V0) that acts on its corners along the gradient of its
+/// volume (M. Teschner, B. Heidelberger, M. Mueller, M. Gross, Computer Graphics International
+/// 2004, pages 312-319, with tetrahedra as cells). Translations and rotations do not change the
+/// volume, so that the sum of the gradients is zero, and linear and angular momentum are conserved
+/// up to rounding.
 void compute_cell_pressure(StepContext& context);
 void add_cell_forces(StepContext& context);
 
-/// The energy [J] in compressed and dilated cells.
+/// The energy of compressed and expanded cells [J].
 Real cell_energy(const Model& model, const Configuration& configuration);
 
 }  // namespace vat

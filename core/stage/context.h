@@ -18,7 +18,7 @@ struct StepContext {
   const Model& model;
   const Controls& controls;
   Real time;           ///< [s]
-  std::uint64_t step;  ///< the nominal step being taken
+  std::uint64_t step;  ///< the present nominal step
   Configuration& configuration;
   Forces& forces;
   Scratch& work;

@@ -1,24 +1,15 @@
 #include "core/stage/plan.h"
 
-#include <array>
-
 #include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-constexpr std::array<std::string_view, kColumnCount> kColumnNames = {
-    "position",       "velocity",        "rigid_state",   "force",          "liquid_cells",
-    "solid_cells",    "pair_clusters",   "pair_motion",   "liquid_pairs",   "density",
-    "filled_density", "pressure",        "liquid_solids", "solid_pressure", "transport",
-    "surface",        "surface_normals", "contact_list",  "mobility",       "cell_pressure",
-    "rigid_force",    "kept_pressure"};
-
 std::string join(const std::vector<Column>& columns) {
   std::string text;
   for (const Column column : columns) {
     if (!text.empty()) text += ' ';
-    text += kColumnNames[static_cast<std::size_t>(column)];
+    text += to_string(column);
   }
   return text;
 }

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/support/names.h"
+
 namespace vat {
 
 struct StepContext;
@@ -35,7 +37,14 @@ enum class Column : std::uint8_t {
   rigid_force,
   kept_pressure,
 };
-inline constexpr std::size_t kColumnCount = 22;
+template <>
+inline constexpr std::array kNamesOf<Column>{
+    "position",       "velocity",        "rigid_state",   "force",          "liquid_cells",
+    "solid_cells",    "pair_clusters",   "pair_motion",   "liquid_pairs",   "density",
+    "filled_density", "pressure",        "liquid_solids", "solid_pressure", "transport",
+    "surface",        "surface_normals", "contact_list",  "mobility",       "cell_pressure",
+    "rigid_force",    "kept_pressure"};
+inline constexpr std::size_t kColumnCount = kNamesOf<Column>.size();
 
 /// One pass over whole arrays.
 using StageFunction = void (*)(StepContext&);

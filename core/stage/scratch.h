@@ -9,8 +9,8 @@
 namespace vat {
 
 /// The methods that keep buffers from one force evaluation to the next.
-enum class Method : std::uint8_t { liquid, surface, contact, solid };
-inline constexpr std::size_t kMethodCount = 4;
+enum class Method : std::uint8_t { liquid, surface, contact, solid, incompressible };
+inline constexpr std::size_t kMethodCount = 5;
 
 /// The buffers of all methods. A method defines their type, with `kMethod`, and reaches only its
 /// own and those of methods below it. The buffers are kept so that a steady step allocates nothing.

@@ -11,7 +11,7 @@ namespace vat {
 
 namespace {
 
-/// Whether springs join the same particles of both.
+/// Returns whether the springs of both bodies join the same particles.
 bool have_same_springs(const Placed& from, const Placed& to) {
   for (Index k = 0; k < from.body.particles.size(); ++k) {
     const auto ends = [k](const Placed& placed) {
@@ -34,6 +34,7 @@ void carry_over(const Placed& from, const Configuration& source, const Placed& t
                 const std::optional<std::vector<Index>>& kept, Configuration& target) {
   const Index first = from.body.particles.begin;
   const Index new_first = to.body.particles.begin;
+  VAT_CHECK(kept || from.body.particles.size() == to.body.particles.size());
   if (kept) {
     for (std::size_t k = 0; k < kept->size(); ++k) {
       target.position[new_first + k] = source.position[first + (*kept)[k]];
@@ -62,7 +63,7 @@ void carry_over(const Placed& from, const Configuration& source, const Placed& t
 
 namespace {
 
-/// Calls f(body of the part, the same of the whole).
+/// Calls f(body of the part, same body of the whole).
 template <class F>
 void for_each_shared_body(const Model& part, const Model& whole, F&& f) {
   std::size_t w = 0;
@@ -72,7 +73,8 @@ void for_each_shared_body(const Model& part, const Model& whole, F&& f) {
   }
 }
 
-/// By body of the whole: where its particles begin in the part; kNowhere where it is not there.
+/// For each body of the whole, the beginning of its particles in the part; kNowhere if the part
+/// does not have it.
 constexpr Index kNowhere = ~Index{0};
 std::vector<Index> beginnings(const Model& part, const Model& whole) {
   std::vector<Index> begins(whole.bodies.size(), kNowhere);
@@ -82,7 +84,7 @@ std::vector<Index> beginnings(const Model& part, const Model& whole) {
   return begins;
 }
 
-/// By body of the part: where its particles begin in the whole.
+/// For each body of the part, the beginning of its particles in the whole.
 std::vector<Index> beginnings_in_whole(const Model& part, const Model& whole) {
   std::vector<Index> begins;
   for_each_shared_body(part, whole, [&](const ModelBody&, const ModelBody& same) {
@@ -91,14 +93,15 @@ std::vector<Index> beginnings_in_whole(const Model& part, const Model& whole) {
   return begins;
 }
 
-/// The same particle of another model, where its body's particles begin at begins[body].
+/// The index of a particle in another model, in which the particles of its body begin at
+/// begins[body].
 Index moved(const Model& from, const std::vector<Index>& begins, Index particle) {
   const Index body = from.body[particle];
   if (begins[body] == kNowhere) return kNowhere;
   return begins[body] + (particle - from.bodies[body].particles.begin);
 }
 
-/// Adds the contacts that there are in the other model too.
+/// Appends the contacts that exist in the other model.
 void append_contacts(const Model& from, const std::vector<ContactImpulse>& source,
                      const std::vector<Index>& begins, std::vector<ContactImpulse>& target) {
   for (ContactImpulse contact : source) {
@@ -124,6 +127,7 @@ Forces no_forces(const Model& model) {
 }
 
 Configuration part_of(const Model& whole, const Configuration& source, const Model& part) {
+  VAT_CHECK(source.position.size() == whole.particle_count);
   Configuration target;
   target.position.resize(part.particle_count);
   target.velocity.resize(part.particle_count);
@@ -153,6 +157,7 @@ void add_contacts_of_part(const Model& part, const Configuration& source, const 
 }
 
 Forces forces_of_part(const Model& whole, const Forces& source, const Model& part) {
+  VAT_CHECK(source.particle.size() == whole.particle_count);
   Forces target = no_forces(part);
   if (!source.transport.empty()) target.transport.resize(part.liquid_count, Vec3::Zero());
   for_each_shared_body(part, whole, [&](const ModelBody& body, const ModelBody& same) {

@@ -6,35 +6,36 @@
 #include "core/model/model.h"
 #include "core/state/state.h"
 
-/// What belongs to single bodies in the columns of a state.
+/// Copies of the state of single bodies between models.
 namespace vat {
 
-/// One of a scene's models, with one of its bodies.
+/// A model, with one of its bodies.
 struct Placed {
   const Model& model;
   const ModelBody& body;
 };
 
-/// Copies the state of a body from one model's columns to another's; what its sample has beyond
-/// `kept`, where that is given, is where it starts already. Contacts by projection are left alone.
+/// Copies the state of a body from the columns of one model to those of another. `kept`, if given,
+/// are the particles that remain; further particles of the new body keep their initial state.
+/// Contacts by projection are not copied.
 void carry_over(const Placed& from, const Configuration& source, const Placed& to,
                 const std::optional<std::vector<Index>>& kept, Configuration& target);
 
-/// With a column's length, and nothing else in it.
+/// Zero forces with the column lengths of the model.
 Forces no_forces(const Model& model);
 
-/// What follows is of two models of one scene, a `whole` and a `part` that has some of its bodies,
-/// in the same order.
+/// The following functions take two models of one scene: a `whole`, and a `part` with some of its
+/// bodies in the same order.
 
-/// The configuration of the part's bodies. Contacts with others are left out.
+/// The configuration of the bodies of the part. Contacts with other bodies are left out.
 Configuration part_of(const Model& whole, const Configuration& source, const Model& part);
-/// Writes it back, but for its contacts.
+/// Writes the configuration of the part back, except its contacts.
 void write_part(const Model& part, const Configuration& source, const Model& whole,
                 Configuration& target);
-/// Adds its contacts to those of others.
+/// Adds the contacts of the part to those of other bodies.
 void add_contacts_of_part(const Model& part, const Configuration& source, const Model& whole,
                           Configuration& target);
-/// Forces on the part's bodies.
+/// Forces on the bodies of the part.
 Forces forces_of_part(const Model& whole, const Forces& source, const Model& part);
 
 }  // namespace vat

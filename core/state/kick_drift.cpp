@@ -1,10 +1,14 @@
 #include "core/state/kick_drift.h"
 
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 
 void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt) {
+  VAT_CHECK(configuration.position.size() == model.particle_count &&
+            configuration.velocity.size() == model.particle_count &&
+            configuration.rigid.size() == model.rigid_bodies.size());
   for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       configuration.position[i] += dt * configuration.velocity[i];
@@ -14,7 +18,7 @@ void drift(const Model& model, TaskRunner* runner, Configuration& configuration,
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = configuration.rigid[b];
     state.center_of_mass += (dt * rigid.inverse_mass) * state.momentum;
-    // A held body at rest stays to the bit.
+    // A held body at rest remains bitwise equal.
     if (rigid.free_from > 0 && state.angular_momentum.isZero(0)) continue;
     state.orientation = rotate_freely(rigid, state.orientation, state.angular_momentum, dt);
   }
@@ -22,6 +26,7 @@ void drift(const Model& model, TaskRunner* runner, Configuration& configuration,
 
 void move_with_transport(const Model& model, TaskRunner* runner, const Forces& forces,
                          Configuration& configuration, Real dt) {
+  VAT_CHECK(forces.transport.size() <= model.liquid_count);
   for_blocks(runner, forces.transport.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (model.inverse_mass[i] > 0) configuration.position[i] += dt * forces.transport[i];
@@ -31,6 +36,10 @@ void move_with_transport(const Model& model, TaskRunner* runner, const Forces& f
 
 void kick(const Model& model, TaskRunner* runner, const Forces& forces,
           Configuration& configuration, Real dt) {
+  VAT_CHECK(forces.particle.size() == model.particle_count &&
+            configuration.velocity.size() == model.particle_count);
+  VAT_CHECK(forces.rigid_force.size() == model.rigid_bodies.size() &&
+            configuration.rigid.size() == model.rigid_bodies.size());
   for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       configuration.velocity[i] += (dt * model.inverse_mass[i]) * forces.particle[i];

@@ -4,9 +4,9 @@
 
 namespace vat {
 
-/// x += dt v for free particles, and the torque-free motion of rigid bodies.
+/// Free particles: x += dt v. Rigid bodies: motion without torque.
 void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt);
-/// x += dt w of liquids that fill their world, see core/liquid/tait/transport.h.
+/// Liquids that fill their world: x += dt w; see core/liquid/tait/transport.h.
 void move_with_transport(const Model& model, TaskRunner* runner, const Forces& forces,
                          Configuration& configuration, Real dt);
 /// v += dt f / m, P += dt f_res, L += dt tau.

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/support/check.h"
+
 namespace vat {
 Vec3 angular_velocity(const RigidModel& rigid, const Quat& orientation,
                       const Vec3& angular_momentum) {
@@ -18,13 +20,13 @@ Quat orientation_rate(const Quat& orientation, const Vec3& angular_velocity) {
 
 namespace {
 
-/// A body in its principal axes, and its angular momentum seen from them.
+/// The orientation of a body's principal axes, and its angular momentum in these axes.
 struct PrincipalState {
   Quat orientation;
   Vec3 angular_momentum;
 };
 
-/// The motion of H = rate_excess * L_axis^2 / 2 for `dt`: a turn about that axis.
+/// The motion of the Hamiltonian rate_excess * L_axis^2 / 2 for `dt`: a rotation about this axis.
 void turn_about(int axis, Real rate_excess, Real dt, PrincipalState& state) {
   Vec3& m = state.angular_momentum;
   const Real half = 0.5 * dt * rate_excess * m[axis];
@@ -43,8 +45,8 @@ void turn_about(int axis, Real rate_excess, Real dt, PrincipalState& state) {
   m[second] = cos * m[second] - sin * kept;
 }
 
-/// Shares of a step of the fourth-order composition of a symmetric method of order two
-/// (M. Suzuki, Phys. Lett. A 146 (1990) 319).
+/// The parts of a step in the fourth-order composition of a symmetric second-order method (M.
+/// Suzuki, Phys. Lett. A 146 (1990) 319).
 const Real kOuterShare = 1 / (4 - std::cbrt(Real{4}));
 const std::array<Real, 5> kShares = {kOuterShare, kOuterShare, 1 - 4 * kOuterShare, kOuterShare,
                                      kOuterShare};
@@ -52,7 +54,7 @@ const std::array<Real, 5> kShares = {kOuterShare, kOuterShare, 1 - 4 * kOuterSha
 }  // namespace
 
 // H = |L|^2 / 2 I_r + sum over the other two axes j of (1 / I_j - 1 / I_r) L_j^2 / 2. The first
-// term only turns the body about L, and commutes with the others.
+// term only rotates the body about L, and commutes with the others.
 Quat rotate_freely(const RigidModel& rigid, const Quat& orientation, const Vec3& angular_momentum,
                    Real dt) {
   PrincipalState state{orientation * rigid.principal_axes, {}};
@@ -75,6 +77,8 @@ Quat rotate_freely(const RigidModel& rigid, const Quat& orientation, const Vec3&
 void pose_rigid_body(const Model& model, const RigidModel& rigid, const RigidState& state,
                      Configuration& configuration) {
   const Mat3 r = state.orientation.normalized().toRotationMatrix();
+  VAT_ASSERT(rigid.particles.begin >= model.free_count &&
+             rigid.particles.end <= model.particle_count);
   const Vec3 velocity = rigid.inverse_mass * state.momentum;
   const Vec3 omega = angular_velocity(rigid, state.orientation, state.angular_momentum);
   for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {

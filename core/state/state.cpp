@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -28,6 +29,8 @@ void copy(const Configuration& from, TaskRunner* runner, Configuration& to) {
 
 void place_body(const Model& model, const ModelBody& body, Configuration& configuration) {
   const SampledBody& sample = *body.sample;
+  VAT_CHECK(sample.positions.size() == body.particles.size() &&
+            body.particles.end <= configuration.position.size());
   std::ranges::copy(sample.positions, configuration.position.begin() + body.particles.begin);
   std::ranges::copy(sample.velocities, configuration.velocity.begin() + body.particles.begin);
   for (const Index fixed : sample.fixed) {
@@ -44,8 +47,8 @@ void place_body(const Model& model, const ModelBody& body, Configuration& config
     state.momentum += sample.masses[i] * sample.velocities[i];
   }
   state.center_of_mass *= rigid.inverse_mass;
-  // From the given angular velocity and I, not from the particles' own motion: the latter lacks the
-  // spin of each particle as a sphere.
+  // From the given angular velocity and I, not from the motion of the particles, which does not
+  // include the spin of each particle as a sphere.
   const Mat3 r = state.orientation.toRotationMatrix();
   state.angular_momentum = r * (rigid.inertia * (r.transpose() * description.angular_velocity));
   pose_rigid_body(model, rigid, state, configuration);
@@ -64,9 +67,7 @@ State initial_state(const Model& model) {
     }
   }
   if (model.scene.sleeping) state.slow_looks.assign(model.bodies.size(), 0);
-  state.forces.particle.assign(model.particle_count, Vec3::Zero());
-  state.forces.rigid_force.assign(model.rigid_bodies.size(), Vec3::Zero());
-  state.forces.rigid_torque.assign(model.rigid_bodies.size(), Vec3::Zero());
+  state.forces = no_forces(model);
   return state;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
@@ -9,7 +11,7 @@ std::uint8_t small_level_of(Real step, Real dt) {
   return static_cast<std::uint8_t>(level_of(step, dt));
 }
 
-/// Raises levels of free particles to what their neighbours' allow; true where it raised any.
+/// Raises the levels of free particles as their neighbours require. Returns whether it raised one.
 bool raise_neighbours(const Model& model, std::vector<std::uint8_t>& level) {
   bool raised = false;
   for (Index i = model.liquid_count; i < model.free_count; ++i) {
@@ -28,6 +30,8 @@ bool raise_neighbours(const Model& model, std::vector<std::uint8_t>& level) {
 
 void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
                          LocalLevels& levels) {
+  VAT_CHECK(steps.particle.size() == model.free_count &&
+            steps.rigid.size() == model.rigid_bodies.size());
   levels.particle.resize(model.particle_count);
   for (Index i = 0; i < model.free_count; ++i) {
     levels.particle[i] = model.inverse_mass[i] == 0 ? 0 : small_level_of(steps.particle[i], dt);

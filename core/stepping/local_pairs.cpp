@@ -5,6 +5,7 @@
 
 #include "core/limits.h"
 #include "core/solid/spring_changes.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -14,7 +15,8 @@ bool is_moved(const Model& model, Index i) {
   return model.rigid_bodies[model.bodies[model.body[i]].rigid].inverse_mass > 0;
 }
 
-/// From the finest level to the coarsest, and otherwise as they are; few and nearly in order.
+/// Sorts from the finest level to the coarsest, keeping the order of equal levels. There are few
+/// pairs, nearly in order.
 void sort_by_level(std::span<LocalPair> pairs) {
   for (std::size_t k = 1; k < pairs.size(); ++k) {
     const LocalPair pair = pairs[k];
@@ -80,6 +82,7 @@ void LocalPairs::build_contacts(const ForceModel& f, const Configuration& at,
 void LocalPairs::build(const ForceModel& f, const Configuration& at, const LocalLevels& levels,
                        bool model_changed) {
   skin_ = levels.skin;
+  VAT_CHECK(levels.particle.size() == f.model.particle_count);
   const bool same_levels = !model_changed && levels.particle == spring_levels_;
   if (!same_levels) build_springs(f, at, levels);
   if (same_levels && f.model.contact_reach <= 0) return;
@@ -88,10 +91,11 @@ void LocalPairs::build(const ForceModel& f, const Configuration& at, const Local
   sort_particles(f.model, levels);
 }
 
-/// By counting: from the finest level to the coarsest, and within one by index.
+/// Counting sort: from the finest level to the coarsest, and by index within a level.
 void LocalPairs::sort_particles(const Model& model, const LocalLevels& levels) {
   finest_of_.resize(model.particle_count);
-  std::array<std::size_t, kMaxStepLevel + 2> count{};  // of the levels, and of what does not move
+  std::array<std::size_t, kMaxStepLevel + 2>
+      count{};  // of the levels, and of particles that do not move
   finest_ = 0;
   coarsest_ = kMaxStepLevel;
   finest_rigid_ = -1;
@@ -110,6 +114,7 @@ void LocalPairs::sort_particles(const Model& model, const LocalLevels& levels) {
     finest_of_[i] = finest;
     finest_ = std::max(finest_, finest);
     if (i >= model.free_count) finest_rigid_ = std::max(finest_rigid_, finest);
+    VAT_ASSERT(finest <= kMaxStepLevel);
     ++count[static_cast<std::size_t>(kMaxStepLevel - finest)];
   }
   coarsest_ = std::min(coarsest_, finest_);
@@ -130,6 +135,7 @@ void LocalPairs::sort_particles(const Model& model, const LocalLevels& levels) {
 
 bool LocalPairs::is_stale(const ForceModel& f, const Configuration& at) {
   if (f.model.contact_reach <= 0) return false;
+  VAT_CHECK(built_at_.size() == at.position.size());
   farthest_.resize(contacts_.size());
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     Real farthest = 0;

@@ -11,26 +11,26 @@ namespace vat {
 /// A static or dynamic connection seen from one of its particles.
 struct LocalPair {
   Index other = 0;
-  std::uint8_t level = 0;   ///< the finer of its two particles'
-  bool is_contact = false;  ///< pushes only
+  std::uint8_t level = 0;   ///< finer level of both particles
+  bool is_contact = false;  ///< repels only
   Real stiffness = 0;
   Real damping = 0;
-  Real rest_length = 0;  ///< of a contact, the distance at which it begins
-  Real layer = 0;        ///< of a layer: the width of its part that pulls [m]
+  Real rest_length = 0;  ///< of a contact: distance at which it begins
+  Real layer = 0;        ///< width of the attracting part of a layer [m]
 };
 
-/// Every connection that can act as long as no particle moves by more than half a skin, by
-/// particle: its springs, then its contacts, either from the finest level to the coarsest; and the
-/// particles from the finest of their connections to the coarsest. So what is due in a sub-step
-/// comes first.
+/// All connections that can act until a particle has moved by more than half a skin. For each
+/// particle there are its springs and then its contacts, both from the finest level to the
+/// coarsest. Particles are ordered from the finest level of their connections to the coarsest, so
+/// that the connections of a sub-step come first.
 class LocalPairs {
  public:
-  /// Positions and cells must be those of `at`. Particles that nothing moves get no entries.
-  /// The first time, or after commands, `model_changed`.
+  /// Positions and cells must be those of `at`. Particles that do not move get no entries.
+  /// `model_changed`: true in the first call and after commands.
   void build(const ForceModel& force_model, const Configuration& at, const LocalLevels& levels,
              bool model_changed);
 
-  /// Whether a particle has moved so far that connections may be missing.
+  /// Returns whether a particle has moved so far that connections may be missing.
   bool is_stale(const ForceModel& force_model, const Configuration& at);
 
   /// Calls f(pair) for the connections of particle i of level `due` or finer.
@@ -45,13 +45,13 @@ class LocalPairs {
       }
     }
   }
-  /// The particles with a connection of `level` or finer, or of such a level themselves.
+  /// The particles with `level` or finer, or with such a connection.
   std::span<const Index> due(int level) const {
     return std::span(order_).first(due_count_[static_cast<std::size_t>(level)]);
   }
-  /// The finest level of any rigid particle's connections.
+  /// The finest level of the connections of rigid particles.
   int finest_rigid() const { return finest_rigid_; }
-  /// The finest and the coarsest level of what moves; 0 where nothing does.
+  /// The finest and the coarsest level of moving particles; 0 without any.
   int finest() const { return finest_; }
   int coarsest() const { return coarsest_; }
 
@@ -60,7 +60,7 @@ class LocalPairs {
     std::vector<LocalPair> pairs;
     std::array<std::size_t, kBlockSize + 1> begin;
   };
-  /// Fills `blocks` with what collect(i, pairs) appends for each particle that moves.
+  /// Fills `blocks` with the pairs that collect(i, pairs) appends for each moving particle.
   template <class Collect>
   static void fill(const ForceModel& force_model, std::vector<Block>& blocks, Collect&& collect);
   void build_springs(const ForceModel& force_model, const Configuration& at,
@@ -71,10 +71,10 @@ class LocalPairs {
 
   std::vector<Block> springs_;
   std::vector<Block> contacts_;
-  std::vector<std::uint8_t> spring_levels_;  ///< with which springs_ were built
+  std::vector<std::uint8_t> spring_levels_;  ///< levels for which springs_ were built
   std::vector<Index> order_;
   std::vector<std::size_t> due_count_;  ///< by level
-  std::vector<int> finest_of_;          ///< by particle; -1: nothing moves it
+  std::vector<int> finest_of_;          ///< by particle; -1: it does not move
   std::vector<Vec3> built_at_;
   std::vector<Real> farthest_;  ///< by block
   Real skin_ = 0;

@@ -15,11 +15,12 @@
 #include "core/liquid/gas/liquid.h"
 #include "core/rigid/rigid.h"
 #include "core/solid/springs.h"
-#include "core/stepping/integrator.h"
+#include "core/state/kick_drift.h"
+#include "core/support/check.h"
 
 namespace vat {
 
-/// Where and when forces are evaluated.
+/// State and time at which forces are evaluated.
 struct LocalStepper::Moment {
   const ForceModel& force_model;
   State& state;
@@ -41,7 +42,7 @@ struct LocalStepper::Moment {
 
 namespace {
 
-/// What a step of level 0 shrinks to.
+/// The step of a level, relative to that of level 0.
 Real share_of(int level) {
   return Real{1} / static_cast<Real>(1U << level);
 }
@@ -76,7 +77,8 @@ ContactForce force_of(const Model& model, const Configuration& at, const std::ve
   return {push * n - friction_force, -arms.self.cross(friction_force)};
 }
 
-/// Stages that the liquids' own forces consist of: all that are not replaced here.
+/// Returns whether the stage belongs to the forces of liquids: all stages that this file does not
+/// replace.
 bool is_of_liquids(const Stage& stage) {
   return stage.run != &pose_rigid_bodies && stage.run != &set_external_forces &&
          stage.run != &find_contacts && stage.run != &add_contacts &&
@@ -96,7 +98,8 @@ void resize(const Model& model, Forces& forces) {
   if (model.has_friction) forces.friction_torque.resize(model.particle_count, Vec3::Zero());
 }
 
-/// Short skins are rebuilt often, long ones find many that never touch.
+/// The skin of the list of contacts. Short skins are rebuilt often, long ones contain many pairs
+/// that never touch.
 Real skin_for(const Model& model, const Configuration& at, Real dt) {
   Real speed2 = 0;
   for (const Vec3& velocity : at.velocity) speed2 = std::max(speed2, velocity.squaredNorm());
@@ -129,6 +132,7 @@ void LocalStepper::build_pairs(const Moment& now) {
 }
 
 const std::vector<Vec3>& LocalStepper::evaluate_liquid(const Moment& now) {
+  VAT_CHECK(liquid_.particle.size() >= now.model().liquid_count);
   std::fill_n(liquid_.particle.begin(), now.model().liquid_count, Vec3::Zero());
   StepContext context = now.context(liquid_);
   for (const Stage& stage : now.model().plan.stages) {
@@ -217,11 +221,12 @@ void LocalStepper::kick_rigid(const Moment& now, Real dt) {
   }
 }
 
-/// The kick between two sub-steps: that of every connection of level `due` or finer, as long as its
-/// own step. All forces are summed before any velocity changes.
+/// The kick between two sub-steps, by every connection of level `due` or finer, over its own step.
+/// All forces are summed before velocities change.
 void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
   now.force_model.enter("connections");
   const Model& model = now.model();
+  VAT_CHECK(due >= 0 && due <= kMaxStepLevel);
   const LocalLevels& levels = now.state.levels;
   const VatMotion vat = now.vat();
   const std::span<const Index> order = pairs_.due(due);
@@ -257,6 +262,7 @@ void LocalStepper::kick_due(const Moment& now, int due, Real dt) {
 
 std::optional<Fault> LocalStepper::find_fast(const Model& model, const Configuration& at, Real dt,
                                              const GuardBounds& guard) const {
+  VAT_CHECK(guard.travel.size() == model.bodies.size());
   for (Index b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
     for (Index i = body.particles.begin; i < body.particles.end; ++i) {
@@ -285,6 +291,7 @@ void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real 
   f.enter("kick");
   kick(f.model, f.runner, state.forces, state.now, dt / 2);
 
+  VAT_CHECK(finest_ >= 0 && finest_ <= kMaxStepLevel && coarsest_ <= finest_);
   const std::uint32_t parts = 1U << finest_;
   const Real part = dt / parts;
   StepContext context = start.context(due_);

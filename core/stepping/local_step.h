@@ -5,31 +5,31 @@
 
 namespace vat {
 
-/// Local step control: power-of-two steps by particle (L. Hernquist, N. Katz, Astrophys. J. Suppl.
-/// Ser. 70 (1989) 419), as nested kick-drift-kick steps. The force of a connection belongs to the
-/// finer of its particles' levels and kicks both ends at once, by what a step of that level takes;
-/// between kicks all particles drift on the finest level. The nesting is that of the reversible
+/// Local step control: steps of a power of two for each particle (L. Hernquist, N. Katz, Astrophys.
+/// J. Suppl. Ser. 70 (1989) 419), as nested kick-drift-kick steps. The force of a connection has
+/// the finer level of its particles and kicks both ends at once, over the step of this level.
+/// Between kicks all particles drift on the finest level. The nesting is that of the reversible
 /// multiple-time-step method (M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992)
-/// 1990) with a level for each connection: of order 2, symplectic while the levels stay, and with
-/// momentum and angular momentum conserved to rounding. Dashpots take the velocities from before
-/// the kick, so in damping the order is 1.
+/// 1990) with a level for each connection: order 2, symplectic for constant levels, with momentum
+/// and angular momentum conserved up to rounding. Dashpots use the velocities before the kick, so
+/// that damping has order 1.
 ///
-/// Springs and contacts have the level of their connection, walls that of their particle, and the
-/// liquids' forces one for all liquids; gravity, fields and what users apply belong to level 0.
+/// Springs and contacts have the level of their connection, and walls that of their particle. All
+/// forces of liquids have one common level. Gravity, fields and forces of users have level 0.
 class LocalStepper {
  public:
-  /// A step of `dt` seconds from `time`. Its levels were chosen when the one before it closed, or
-  /// are chosen now where the forces of the state are not current.
+  /// Takes a step of `dt` seconds from `time`. The levels were chosen at the end of the last step;
+  /// they are chosen again if the forces of the state are not current.
   void take_step(const ForceModel& force_model, State& state, Real time, Real dt,
                  const StepBounds& bounds, const GuardBounds& guard);
   /// The first particle or rigid body that moved further in a step of its level than the guard
-  /// allows, as it is after a step of `dt`.
+  /// allows, after a step of `dt`.
   std::optional<Fault> find_fast(const Model& model, const Configuration& at, Real dt,
                                  const GuardBounds& guard) const;
-  /// Something else than a step has changed the state.
+  /// Call it after a change of the state by something other than a step.
   void forget() { pairs_current_ = false; }
 
-  /// The finest and the coarsest level of particles in the last step; 0 before it.
+  /// The finest and the coarsest level of particles in the last step; 0 before the first.
   int finest() const { return finest_; }
   int coarsest() const { return coarsest_; }
 
@@ -51,9 +51,9 @@ class LocalStepper {
   bool pairs_current_ = false;
   PresentSteps present_;
   LocalLevels closing_levels_;
-  Forces closing_;  ///< forces that close a step
-  Forces due_;      ///< of a sub-step; zero between them
-  Forces liquid_;   ///< the liquids' own
+  Forces closing_;  ///< forces at the end of a step
+  Forces due_;      ///< forces of a sub-step; zero in between
+  Forces liquid_;   ///< forces of liquids
   int finest_ = 0;
   int coarsest_ = 0;
 };

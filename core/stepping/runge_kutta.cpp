@@ -8,7 +8,7 @@
 namespace vat {
 namespace {
 
-/// Stage s is evaluated at y_0 + dt * reach * k_{s-1} and weighs `weight` in the step.
+/// Stage s is evaluated at y_0 + dt * reach * k_{s-1}, and has the weight `weight` in the step.
 struct RungeKuttaStage {
   Real reach;
   Real weight;
@@ -18,23 +18,7 @@ constexpr RungeKuttaStage kHeun[] = {{0, 1.0 / 2}, {1, 1.0 / 2}};
 constexpr RungeKuttaStage kRungeKutta4[] = {
     {0, 1.0 / 6}, {1.0 / 2, 1.0 / 3}, {1.0 / 2, 1.0 / 3}, {1, 1.0 / 6}};
 
-std::span<const RungeKuttaStage> stages_of(IntegratorId id) {
-  switch (id) {
-    case IntegratorId::explicit_euler:
-      return kExplicitEuler;
-    case IntegratorId::heun:
-      return kHeun;
-    case IntegratorId::runge_kutta_4:
-      return kRungeKutta4;
-    case IntegratorId::symplectic_euler:
-    case IntegratorId::velocity_verlet:
-      break;
-  }
-  VAT_CHECK(false && "not a Runge-Kutta method");
-  return {};
-}
-
-/// A rigid body's rate of change, in the same members: velocity, dq/dt, force, torque.
+/// The rate of change of a rigid body, in the same members: velocity, dq/dt, force, torque.
 RigidState rigid_rate(const RigidModel& rigid, const RigidState& at, const Vec3& force,
                       const Vec3& torque) {
   const Vec3 omega = angular_velocity(rigid, at.orientation, at.angular_momentum);
@@ -55,7 +39,7 @@ void clear(Configuration& sum, const Model& model) {
   sum.rigid.assign(model.rigid_bodies.size(), zero);
 }
 
-/// With k the rate at `at`: increment += weight k, and at = start + dt * reach k.
+/// Adds the rate k at `at`: increment += weight k, and at = start + dt * reach k.
 void accumulate(const ForceModel& f, const Forces& forces, const Configuration& start, Real weight,
                 Real dt_reach, Configuration& at, Configuration& increment) {
   const Model& model = f.model;
@@ -95,12 +79,10 @@ void finish(const ForceModel& f, const Configuration& start, const Configuration
   }
 }
 
-}  // namespace
-
-void take_runge_kutta_step(IntegratorId id, const ForceModel& f, State& state, Real time, Real dt,
-                           IntegratorScratch& scratch) {
-  const std::span<const RungeKuttaStage> stages = stages_of(id);
+void take_step_of(std::span<const RungeKuttaStage> stages, const StepArguments& step) {
+  const auto& [f, state, time, dt, scratch] = step;
   f.enter("combine");
+  VAT_CHECK(dt > 0 && !stages.empty());
   scratch.start = state.now;
   clear(scratch.increment, f.model);
   for (std::size_t s = 0; s < stages.size(); ++s) {
@@ -114,6 +96,18 @@ void take_runge_kutta_step(IntegratorId id, const ForceModel& f, State& state, R
   if (state.now.springs.empty()) return;
   f.enter("change_springs");
   change_springs(f.model, f.runner, state.now, dt);
+}
+
+}  // namespace
+
+void take_explicit_euler_step(const StepArguments& step) {
+  take_step_of(kExplicitEuler, step);
+}
+void take_heun_step(const StepArguments& step) {
+  take_step_of(kHeun, step);
+}
+void take_runge_kutta_4_step(const StepArguments& step) {
+  take_step_of(kRungeKutta4, step);
 }
 
 }  // namespace vat

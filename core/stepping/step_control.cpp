@@ -15,17 +15,18 @@
 #include "core/numerics/step_limits.h"
 #include "core/rigid/rigid.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
-constexpr Real kTravelShare = 0.5;         // of the guard's: two bodies may approach each other
-constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, by each of two particles
-constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by a percent in a step
-constexpr Real kGreatestTurn = 0.5;               // [rad] a step; the guard's is 1
+constexpr Real kTravelShare = 0.5;  // of the guard's travel: two bodies may approach each other
+constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, for each of two particles
+constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by one percent in a step
+constexpr Real kGreatestTurn = 0.5;               // [rad] in one step; the guard allows 1
 
-/// 2 lambda_max(sum_j k_ij n n^T) / m_i for one of the springs' constants, as they start.
+/// 2 lambda_max(sum_j k_ij n n^T) / m_i at the start, for one of the constants of the springs.
 template <class Constant>
 Real spring_load(const Model& model, const ModelBody& body, Index i, Constant&& constant) {
   const std::vector<Vec3>& at = body.sample->positions;
@@ -42,14 +43,14 @@ Real spring_load(const Model& model, const ModelBody& body, Index i, Constant&& 
   return 2 * solver.eigenvalues()[2] * model.inverse_mass[i];
 }
 
-/// With the sound of a liquid that is compressed.
+/// The oscillation with the sound of a compressed liquid.
 Oscillation compressed(const Model& model, const Oscillation& liquid) {
-  if (model.is_coupled) return liquid;  // its bound allows for that
+  if (model.is_coupled) return liquid;  // its bound includes the compression
   const Real share = compressed_step_share(model.scene.dimensions);
   return {liquid.omega2 / (share * share), liquid.rate};
 }
 
-/// What is left of bodies' own bounds for the length of steps; see OscillatingPart::limiting().
+/// The part of the own bounds of bodies that limits steps; see OscillatingPart::limiting().
 Oscillation limiting(const Model& model, const Oscillation& own) {
   return {own.omega2, solves_damping(model.scene) ? 0 : own.rate};
 }
@@ -58,7 +59,7 @@ Real travel_share(const Model& model) {
   return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
 }
 
-/// Those of a body's particles, which all have the same.
+/// Sets the bounds of a body's particles, which are equal.
 void bound_liquid(const Model& model, std::size_t b, StepBounds& bounds) {
   const IndexRange& particles = model.bodies[b].particles;
   const bool has_level_of_its_own = model.scene.numerics.control == StepControl::local;
@@ -140,19 +141,19 @@ StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds
 
 namespace {
 
-/// The time in which a particle at `speed` with `acceleration` travels `way`.
+/// The time in which a particle with `speed` and `acceleration` travels the distance `way`.
 Real travel_time(Real way, Real speed, Real acceleration) {
   return 2 * way / (speed + std::sqrt(speed * speed + 4 * acceleration * way));
 }
 
-/// What a state says about one body's steps.
+/// The bounds that the present state implies.
 struct PresentBounds {
   const Model& model;
   const State& state;
   const StepBounds& bounds;
   const GuardBounds& guard;
 
-  /// With local control, forces are kept in parts.
+  /// Local control stores forces in parts.
   bool forces_known() const {
     return state.forces_current && model.scene.numerics.control != StepControl::local;
   }
@@ -195,8 +196,8 @@ Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
   return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
 }
 
-/// What one in kRare of a liquid's particles exceed: greater ones are impacts, gone before they can
-/// shake the lattice.
+/// The pressure that one in kRare particles of a liquid exceed. Higher ones are impacts, which are
+/// too short to disturb the lattice.
 Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& particles,
                       std::vector<Real>& scratch) {
   constexpr Index kRare = 100;
@@ -207,7 +208,7 @@ Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& parti
   return *place;
 }
 
-/// Of a body's own forces: sound and viscosity, or the pressure, where viscosity is solved for.
+/// The bound of a body's own forces: sound and viscosity; or pressure, if viscosity is solved.
 Oscillation liquid_bound(const PresentBounds& present, std::size_t body,
                          std::vector<Real>& scratch) {
   const Model& model = present.model;
@@ -255,8 +256,8 @@ void limit_grabs(const ForceModel& f, PresentSteps& steps) {
   }
 }
 
-/// How far any two particles that may touch can approach each other in a step of `longest`, and no
-/// more than in the steps that their travel allows.
+/// The maximum distance by which two particles can approach each other in a step of `longest`,
+/// limited to the travel of a step.
 Real greatest_approach(const PresentBounds& present, Real longest) {
   Real greatest = 0;
   const auto take = [&](Index body, Real speed) {
@@ -301,6 +302,8 @@ Real PresentSteps::least() const {
 
 void find_present_steps(const ForceModel& f, State& state, Real time, Real longest,
                         const StepBounds& bounds, const GuardBounds& guard, PresentSteps& steps) {
+  VAT_CHECK(longest > 0);
+  ContactForceScratch& contact_buffers = f.work.of<ContactForceScratch>();
   const Model& model = f.model;
   StepContext context{model, f.controls, time, f.step, state.now, state.forces, f.work, f.runner};
   pose_rigid_bodies(context);
@@ -312,10 +315,9 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   steps.liquid = liquid_step(present, steps.pressures);
   limit_grabs(f, steps);
   const Real approach = greatest_approach(present, longest);
-  if (model.contact_reach > 0 &&
-      !f.work.of<ContactForceScratch>().contacts.is_current(context, approach)) {
+  if (model.contact_reach > 0 && !contact_buffers.contacts.is_current(context, approach)) {
     if (model.liquid_count > 0) sort_liquid(context);
-    f.work.of<ContactForceScratch>().contacts.update(context, approach);
+    contact_buffers.contacts.update(context, approach);
   }
   find_contact_steps(f, state.now, time, {longest, approach}, bounds, steps.contacts,
                      steps.particle, steps.rigid);
@@ -333,6 +335,7 @@ Real without_viscosity_solve(const Model& model, Real step) {
 
 std::uint32_t level_of(Real step, Real nominal) {
   std::uint32_t level = 0;
+  VAT_CHECK(nominal > 0);
   while (level < kMaxStepLevel && std::ldexp(nominal, -static_cast<int>(level)) > step) ++level;
   return level;
 }
@@ -341,7 +344,7 @@ namespace {
 
 std::uint32_t steps_of(Real step, Real left, Real nominal) {
   constexpr Real kRounding = 1e-9;
-  if (!(step < left)) return 1;  // nor is what is not a number: the guard deals with such states
+  if (!(step < left)) return 1;  // also for a NaN, which the guard detects
   const Real longest = std::max(step, std::ldexp(nominal, -kMaxStepLevel));
   return static_cast<std::uint32_t>(std::ceil(left / longest * (1 - kRounding)));
 }
@@ -350,6 +353,7 @@ std::uint32_t steps_of(Real step, Real left, Real nominal) {
 
 std::uint32_t choose_step_count(Real wanted, Real left, Real nominal, StepHistory& history) {
   const std::uint32_t needed = steps_of(wanted, left, nominal);
+  VAT_CHECK(left > 0 && nominal > 0);
   std::uint32_t count = history.step > 0 ? steps_of(history.step, left, nominal) : needed;
   if (needed > count) {
     count = needed;

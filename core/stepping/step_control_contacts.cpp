@@ -9,14 +9,15 @@
 #include "core/laws/pair_direction.h"
 #include "core/laws/vat_motion.h"
 #include "core/numerics/error_model.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 constexpr Real kStabilityMargin = 0.9;
-constexpr Real kLocalMargin = 0.5;  // kicks at several periods have resonances below the limit
+constexpr Real kLocalMargin = 0.5;  // kicks with several periods have resonances below the limit
 
-/// What a step's length depends on beside the state.
+/// The parameters of the search.
 struct ContactBoundSearch {
   const ForceModel& force_model;
   const Configuration& at;
@@ -24,12 +25,12 @@ struct ContactBoundSearch {
   Real gained_speed;  ///< by gravity, within `longest` [m/s]
   Real reach;
   VatMotion vat_motion;
-  Real vat_speed;  ///< the greatest [m/s]
+  Real vat_speed;  ///< maximum [m/s]
 
   const Model& model() const { return force_model.model; }
 };
 
-/// 1/m of a free particle; of a rigid one 1/M + |x|^2 / I, at most that of any direction.
+/// 1/m of a free particle. For a rigid one 1/M + |x|^2 / I, the maximum over all directions.
 void find_inverse_masses(const ContactBoundSearch& search, std::vector<Real>& inverse_mass) {
   const Model& model = search.model();
   inverse_mass.assign(model.inverse_mass.begin(), model.inverse_mass.end());
@@ -52,13 +53,14 @@ bool acts(const SpringConstants& law) {
   return law.stiffness > 0 || law.damping > 0;
 }
 
-/// The time until two ends that are `gap` [m] from touching may do so, approaching at most at
+/// The time until two ends with the gap `gap` [m] can touch, with an approach speed of at most
 /// `approach` [m/s].
 Real time_to_touch(Real gap, Real approach) {
   return gap <= 0 ? 0 : gap / std::max(approach, std::numeric_limits<Real>::min());
 }
 
-/// A connection along `normal`, with friction across it, seen from an end that bears `share` of it.
+/// A connection along `normal`, with friction across it, seen from an end with the share `share` of
+/// it.
 ContactPrediction look_at(const SpringConstants& law, const Friction& friction, Real threshold,
                           Real time, Real share, const Vec3& normal, Real normal_speed) {
   const Mat3 along = normal * normal.transpose();
@@ -98,13 +100,13 @@ ContactPrediction look_at_pairs(const ContactBoundSearch& search,
   return sum;
 }
 
-/// Of a layer, down to the distance `nearest` from the wall, at most its reach.
+/// The maximum slope of a layer from the distance `nearest` from the wall to its reach.
 Real greatest_wall_slope(const ContactLaw& law, Real reach, Real nearest) {
   const Real width = reach * law.layer / (1 + law.layer);
   return greatest_layer_slope(law.stiffness, width, reach, std::clamp(nearest, Real{0}, reach));
 }
 
-/// `inverse_mass`: of what the particle moves [1/kg].
+/// `inverse_mass`: that of the motion of the particle [1/kg].
 ContactPrediction look_at_walls(const ContactBoundSearch& search, Real inverse_mass, Index i) {
   const Model& model = search.model();
   const Vat& vat = *model.scene.vat;
@@ -133,13 +135,13 @@ ContactPrediction look_at_walls(const ContactBoundSearch& search, Real inverse_m
   return sum;
 }
 
-/// A force with a kink is of order 2 with any method: a contact that begins and ends within steps
-/// changes the speed of parting by up to z^2 / 8.
+/// Forces with kinks limit all methods to order 2. A contact that begins and ends within steps
+/// changes the separation speed by up to z^2 / 8.
 Real contact_phase(const Numerics& numerics) {
   return std::min(resolving_phase_of_places(numerics), std::sqrt(8 * numerics.tolerance));
 }
 
-/// `contacts` alone, and with all other forces.
+/// The step for `contacts` only, and with `all` other forces.
 Real allowed_step(const Numerics& numerics, const ContactPrediction& prediction,
                   const Oscillation& contacts, const Oscillation& all) {
   const Real rate = std::sqrt(contacts.omega2 + contacts.rate * contacts.rate);
@@ -148,14 +150,14 @@ Real allowed_step(const Numerics& numerics, const ContactPrediction& prediction,
   const Real share = std::min(Real{1}, amplitude / (kFullAmplitude * prediction.threshold));
   const Real resolving = contact_phase(numerics) / (rate * std::sqrt(share));
   const Real step = std::min(safe_step(numerics, all), resolving);
-  // Local levels are for a whole step, whenever in it the contact begins.
+  // Local levels hold for the whole step, at whatever time in it the contact begins.
   return numerics.control == StepControl::local ? step : std::max(prediction.time, step);
 }
 
 using Mat6 = Eigen::Matrix<Real, 6, 6>;
 
-/// An upper bound of a symmetric, positive semi-definite matrix's eigenvalues, (tr A^8)^(1/8): a
-/// quarter too great at most, and cheaper than they are.
+/// An upper bound of the eigenvalues of a symmetric, positive semi-definite matrix, (tr A^8)^(1/8).
+/// It is at most a quarter too large, and cheaper than the eigenvalues.
 Real greatest_eigenvalue(Mat6 matrix) {
   const Real trace = matrix.trace();
   if (!(trace > 0)) return 0;
@@ -164,7 +166,7 @@ Real greatest_eigenvalue(Mat6 matrix) {
   return trace * std::sqrt(std::sqrt(std::sqrt(matrix.trace())));
 }
 
-/// An upper bound of a symmetric matrix's eigenvalues; exact where springs act along the axes.
+/// An upper bound of the eigenvalues of a symmetric matrix; exact for springs along the axes.
 Real greatest_row(const Mat3& matrix) {
   return matrix.cwiseAbs().rowwise().sum().maxCoeff();
 }
@@ -176,8 +178,8 @@ Real particle_step(const Numerics& numerics, const ContactPrediction& prediction
   return allowed_step(numerics, prediction, contacts, own + contacts);
 }
 
-/// What contacts' constants K at arms a from the centre of mass add up to for a rigid body's
-/// motions (u, theta), of which the particle's is u + theta x a: the matrix of J^T K J.
+/// The sum of the contacts' constants K at arms a from the centre of mass, for the motions (u,
+/// theta) of a rigid body, in which a particle moves by u + theta x a: the matrix J^T K J.
 struct RigidLoad {
   Mat3 linear = Mat3::Zero();
   Mat3 mixed = Mat3::Zero();
@@ -189,7 +191,7 @@ struct RigidLoad {
     mixed += turned;
     angular += turned * cross.transpose();
   }
-  /// Bounds the eigenvalues of M^-1 J^T K J, with I^-1 = turning turning^T.
+  /// An upper bound of the eigenvalues of M^-1 J^T K J, with I^-1 = turning turning^T.
   Real greatest(Real inverse_mass, const Mat3& turning) const {
     const Mat3 scaled = std::sqrt(inverse_mass) * turning.transpose() * mixed;
     Mat6 matrix;
@@ -205,7 +207,7 @@ Mat3 cross_matrix(const Vec3& a) {
   return cross;
 }
 
-Real rigid_step(const ContactBoundSearch& search, const std::vector<ContactPrediction>& outlooks,
+Real rigid_step(const ContactBoundSearch& search, const std::vector<ContactPrediction>& predictions,
                 std::size_t body) {
   const RigidModel& rigid = search.model().rigid_bodies[body];
   const RigidState& now = search.at.rigid[body];
@@ -213,7 +215,7 @@ Real rigid_step(const ContactBoundSearch& search, const std::vector<ContactPredi
   RigidLoad stiffness;
   RigidLoad damping;
   for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
-    const ContactPrediction& own = outlooks[i - search.model().free_count];
+    const ContactPrediction& own = predictions[i - search.model().free_count];
     if (own.is_empty()) continue;
     sum.add(own);
     const Mat3 cross = cross_matrix(search.at.position[i] - now.center_of_mass);
@@ -231,7 +233,7 @@ Real rigid_step(const ContactBoundSearch& search, const std::vector<ContactPredi
 }  // namespace
 
 Real safe_step(const Numerics& numerics, const Oscillation& oscillation) {
-  if (numerics.control == StepControl::local) {  // damping is that of the velocity before the kick
+  if (numerics.control == StepControl::local) {  // damping uses the velocity before the kick
     return kLocalMargin * stable_step(IntegratorId::symplectic_euler, oscillation);
   }
   const Real step = stable_step(numerics.integrator, oscillation);
@@ -251,6 +253,8 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
                         ContactScratch& scratch, std::vector<Real>& particle_steps,
                         std::vector<Real>& rigid_steps) {
   const Model& model = f.model;
+  VAT_CHECK(particle_steps.size() == f.model.free_count &&
+            rigid_steps.size() == f.model.rigid_bodies.size());
   if (model.contact_reach <= 0 && model.walls.empty()) return;
   const ContactBoundSearch search{
       f,
@@ -260,7 +264,7 @@ void find_contact_steps(const ForceModel& f, const Configuration& at, Real time,
       ahead.reach,
       model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{},
       model.scene.vat ? greatest_vat_speed(*model.scene.vat, time) : 0};
-  // Coupled liquid meets walls without springs.
+  // Coupled liquid has no springs at walls.
   const Index first = model.is_coupled && model.contact_reach <= 0 ? model.liquid_count : 0;
   if (first == model.particle_count) return;
   find_inverse_masses(search, scratch.inverse_mass);

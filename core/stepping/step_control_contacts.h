@@ -9,55 +9,54 @@
 
 namespace vat {
 
-/// The contacts of a particle or of a rigid body, walls included, that act now or may soon.
+/// The contacts of a particle or a rigid body, walls included, that act or may soon act.
 ///
-/// Until the first of them acts a step need not resolve them: it may reach up to there. Where they
-/// act it is to be stable, and to resolve to the scene's tolerance the oscillation that they start:
-/// of amplitude speed / omega, and in full from kFullAmplitude of the threshold on, below in
-/// proportion. So a pile at rest needs only stability.
+/// Before the first of them acts, a step need not resolve them, and may extend to this time. Acting
+/// contacts must be stable, and their oscillation must be resolved to the tolerance of the scene:
+/// with its amplitude speed / omega, fully from kFullAmplitude of the threshold on, and
+/// proportionally below. A pile at rest therefore only needs stability.
 struct ContactPrediction {
-  /// sum of k n n^T and of b n n^T, by Young's inequality in the share of the pair's motion that
-  /// makes the bound least: (a - b)^2 <= (1 + s) a^2 + (1 + 1/s) b^2 [N/m], [N s/m].
+  /// Sum of k n n^T and of b n n^T. By Young's inequality, (a - b)^2 <= (1 + s) a^2 + (1 + 1/s)
+  /// b^2, with the share s of the pair's motion that minimises the bound [N/m], [N s/m].
   Mat3 stiffness = Mat3::Zero();
   Mat3 damping = Mat3::Zero();
-  Real time = std::numeric_limits<Real>::infinity();       ///< to the first; 0: one acts [s]
-  Real speed = 0;                                          ///< along the normal, the greatest [m/s]
-  Real threshold = std::numeric_limits<Real>::infinity();  ///< the least [m]
+  Real time = std::numeric_limits<Real>::infinity();  ///< to the first contact; 0: one acts [s]
+  Real speed = 0;                                     ///< maximum along the normal [m/s]
+  Real threshold = std::numeric_limits<Real>::infinity();  ///< minimum [m]
 
   void add(const ContactPrediction& other);
   bool is_empty() const { return time == std::numeric_limits<Real>::infinity(); }
 };
 inline constexpr Real kFullAmplitude = 0.01;
 
-/// Scratch of find_contact_steps().
+/// Buffers of find_contact_steps().
 struct ContactScratch {
   std::vector<ContactPrediction> prediction;  ///< by rigid particle
-  std::vector<Real> inverse_mass;             ///< of the motion that a force on the particle starts
+  std::vector<Real> inverse_mass;             ///< of the motion that a force on the particle causes
 };
 
-/// What bounds the steps of a model whatever its state.
+/// Bounds of the steps of a model, for all states.
 struct StepBounds {
-  std::vector<Oscillation> own;  ///< by free particle: of its springs, or of its liquid
-  std::vector<Real> own_step;    ///< by free particle: that is stable for them [s]
-  Real scene_step = 0;           ///< that resolves the central field, and with which bodies are
-                                 ///< stable in a liquid [s]; infinite without either
+  std::vector<Oscillation> own;  ///< by free particle: of its springs or its liquid
+  std::vector<Real> own_step;    ///< by free particle: stable step for them [s]
+  Real scene_step = 0;  ///< resolves the central field, and is stable for bodies in a liquid;
+                        ///< infinite without both [s]
 };
 
-/// How far ahead contacts are looked for.
+/// The time for which contacts are predicted.
 struct ContactHorizon {
-  Real longest = 0;  ///< step [s]
-  Real reach = 0;    ///< how far any two particles may approach each other within that [m]
+  Real longest = 0;  ///< longest step [s]
+  Real reach = 0;    ///< maximum approach of two particles in this step [m]
 };
 
-/// Lowers the steps by free particle and by rigid body to those that their contacts, together with
-/// the other forces on the free particles, allow. Positions and cells must be those of the present
-/// state.
+/// Lowers the steps of free particles and rigid bodies to those that their contacts allow, together
+/// with the other forces on free particles. Positions and cells must be those of the present state.
 void find_contact_steps(const ForceModel& force_model, const Configuration& at, Real time,
                         const ContactHorizon& ahead, const StepBounds& bounds,
                         ContactScratch& scratch, std::vector<Real>& particle_step,
                         std::vector<Real>& rigid_step);
 
-/// The stable step of the scene's integrator, with a margin; infinite where it has none.
+/// The stable step of the scene's integrator, with a margin; infinite if there is none.
 Real safe_step(const Numerics& numerics, const Oscillation& oscillation);
 
 }  // namespace vat

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <tuple>
+
 #include "core/contact/scratch.h"
+#include "core/liquid/incompressible/volume_solve.h"
 #include "core/liquid/pairs/scratch.h"
 #include "core/liquid/surface/scratch.h"
 #include "core/solid/scratch.h"
@@ -8,40 +11,25 @@
 
 namespace vat {
 
-/// The buffers of all methods of a step: each method has its lines here.
+/// The buffers of all methods of a step.
 class Workspace : public Scratch {
  public:
   Workspace() { set_all(); }
-  Workspace(const Workspace& other)
-      : Scratch(other),
-        liquid_(other.liquid_),
-        surface_(other.surface_),
-        contact_(other.contact_),
-        solid_(other.solid_) {
-    set_all();
-  }
+  Workspace(const Workspace& other) : Scratch(other), buffers_(other.buffers_) { set_all(); }
 
   /// Deletes all content, except the instruction set.
   void clear() {
     keep_dampers = false;
-    liquid_ = {};
-    surface_ = {};
-    contact_ = {};
-    solid_ = {};
+    buffers_ = {};
   }
 
  private:
   void set_all() {
-    set(liquid_);
-    set(surface_);
-    set(contact_);
-    set(solid_);
+    std::apply([&](auto&... buffers) { (set(buffers), ...); }, buffers_);
   }
 
-  LiquidScratch liquid_;
-  SurfaceScratch surface_;
-  ContactForceScratch contact_;
-  SolidScratch solid_;
+  std::tuple<LiquidScratch, SurfaceScratch, ContactForceScratch, SolidScratch, VolumeScratch>
+      buffers_;
 };
 
 }  // namespace vat

@@ -7,18 +7,21 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/support/check.h"
+
 namespace vat {
 
-/// Unsigned integer of the size of T, which carries its bits.
+/// Unsigned integer with the size of T, for its bits.
 template <class T>
 using BitsOf = std::conditional_t<
     sizeof(T) == 1, std::uint8_t,
     std::conditional_t<sizeof(T) == 2, std::uint16_t,
                        std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
 
-/// Writes `value` little-endian at `offset`; the bytes must be there.
+/// Writes `value` little-endian at `offset`. The bytes must exist.
 template <class T>
 void store(std::span<std::uint8_t> bytes, std::size_t offset, T value) {
+  VAT_ASSERT(offset + sizeof(T) <= bytes.size());
   const std::uint64_t bits = std::bit_cast<BitsOf<T>>(value);
   for (std::size_t i = 0; i < sizeof(T); ++i) {
     bytes[offset + i] = static_cast<std::uint8_t>(bits >> (8 * i));
@@ -41,8 +44,8 @@ class ByteWriter {
   std::vector<std::uint8_t>& bytes_;
 };
 
-/// Reads little-endian numbers. Past the end it gives zeros and ended_early() stays true, so that a
-/// caller may read a group of fields and check once.
+/// Reads little-endian numbers. Past the end it returns zeros, and ended_early() stays true, so
+/// that a caller can read a group of fields and check once.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

@@ -2,16 +2,16 @@
 
 namespace vat {
 
-/// Prints the failed condition with its place to stderr and aborts.
+/// Prints the failed condition with its file and line to stderr, and aborts.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 
 }  // namespace vat
 
-/// A condition that only a mistake in this program can break; kept in every build.
+/// Aborts if a condition is false that only a programming error can violate. Active in every build.
 #define VAT_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::vat::check_failed(#condition, __FILE__, __LINE__))
 
-/// The same, in inner loops: compiled out where NDEBUG is defined.
+/// Like VAT_CHECK, for inner loops: without effect if NDEBUG is defined.
 #ifdef NDEBUG
 #define VAT_ASSERT(condition) static_cast<void>(0)
 #else

@@ -6,8 +6,8 @@
 
 namespace vat {
 
-/// Resizes a column whose length varies from step to step: where it must grow it gets room for an
-/// eighth more than it had, or just what is asked for. A vector by itself would double.
+/// Resizes a column whose length varies between steps. If it must grow, its capacity grows by an
+/// eighth, or to the required size if this is more. A vector would double it.
 template <class T>
 void resize_closely(std::vector<T>& column, std::size_t size) {
   if (size > column.capacity()) {
@@ -16,7 +16,7 @@ void resize_closely(std::vector<T>& column, std::size_t size) {
   column.resize(size);
 }
 
-/// Adds to its end in the same way.
+/// Appends a value. The capacity grows by an eighth.
 template <class T>
 void add_closely(std::vector<T>& column, const T& value) {
   constexpr std::size_t kLeast = 8;

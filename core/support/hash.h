@@ -8,14 +8,14 @@
 
 namespace vat {
 
-/// FNV-1a over 64-bit words: the offset basis and prime are the published 64-bit ones, the input
-/// unit is a word in place of a byte. It sees bits: -0.0 and 0.0 differ.
+/// FNV-1a over 64-bit words in place of bytes, with the published 64-bit offset basis and prime. It
+/// hashes bits: -0.0 and 0.0 differ.
 class StateHash {
  public:
   void add(std::uint64_t word) {
     value_ ^= word;
     value_ *= 0x100000001b3ULL;
-    value_ ^= value_ >> 32;  // a word-wise multiply never moves high bits down
+    value_ ^= value_ >> 32;  // multiplication never moves high bits down
   }
   void add(Real value) { add(std::bit_cast<std::uint64_t>(value)); }
   void add(const Vec3& v) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <span>
 
+#include "core/support/check.h"
 #include "core/support/instruction_set_limit.h"
 
 namespace vat {
@@ -15,8 +16,8 @@ namespace {
 constexpr std::array kSets = {InstructionSet::baseline, InstructionSet::avx2,
                               InstructionSet::avx512};
 
-// The compiler's library detects the processor: the one of Highway reads a timer when it is loaded,
-// with an instruction that valgrind does not know on every processor.
+// Detection by the compiler's library. Highway's own detection executes, when it is loaded, an
+// instruction that valgrind does not know on every processor.
 #if HWY_ARCH_X86
 bool has_avx2() {
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
@@ -68,19 +69,6 @@ std::string list(std::span<const InstructionSet> sets) {
 
 void limit_instruction_sets(InstructionSet greatest) {
   greatest_set = greatest;
-}
-
-const char* to_string(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::baseline:
-      return "baseline";
-    case InstructionSet::avx2:
-      return "avx2";
-    case InstructionSet::avx512:
-      return "avx512";
-  }
-  VAT_CHECK(false && "not an instruction set");
-  return "";
 }
 
 Result<InstructionSet> parse_instruction_set(std::string_view name) {

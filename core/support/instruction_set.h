@@ -5,28 +5,31 @@
 #include <string_view>
 #include <vector>
 
+#include "core/support/names.h"
 #include "core/support/result.h"
 
 namespace vat {
 
-/// Which instructions the vectorised loops use. Results are the same bits wherever the same set is
-/// used, and differ in their last digits between sets.
+/// Instructions of the vectorised loops. Results have the same bits for the same set, and differ
+/// between sets in their last digits.
 enum class InstructionSet : std::uint8_t {
-  baseline,  ///< what every processor of the architecture has: SSE2 on x86-64
+  baseline,  ///< available on all processors of the architecture: SSE2 on x86-64
   avx2,      ///< AVX2, FMA, BMI, BMI2, LZCNT and F16C
-  avx512,    ///< those and AVX-512 F, CD, BW, DQ, VL
+  avx512,    ///< avx2, and AVX-512 F, CD, BW, DQ and VL
 };
 
-const char* to_string(InstructionSet set);
-/// Fails for an unknown name, and says which there are.
+template <>
+inline constexpr std::array kNamesOf<InstructionSet>{"baseline", "avx2", "avx512"};
+
+/// Returns the set with this name. Fails for an unknown name, with a list of the names.
 Result<InstructionSet> parse_instruction_set(std::string_view name);
 
-/// Those that this build has code for, and that the processor and the operating system can run, in
-/// rising order; baseline is always the first.
+/// Returns the sets that this build contains and that this machine supports, in ascending order.
+/// The first is baseline.
 std::vector<InstructionSet> available_instruction_sets();
-/// The last of these.
+/// Returns the last of the available sets.
 InstructionSet best_instruction_set();
-/// Fails with the code "not_available" for one that is not among them, and says which are.
+/// Fails with the code "not_available" and a list of the available sets if `set` is not available.
 Status check_available(InstructionSet set);
 
 }  // namespace vat

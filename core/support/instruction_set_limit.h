@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// Treats this machine as one without the sets above `greatest`, in all threads from now on. For
-/// tests of machines with fewer instructions.
+/// Hides the sets above `greatest` in all threads from now on. For tests of machines with fewer
+/// instructions.
 void limit_instruction_sets(InstructionSet greatest);
 
 }  // namespace vat

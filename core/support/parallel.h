@@ -7,7 +7,7 @@
 
 namespace vat {
 
-/// Runs independent blocks of work; the core owns no threads. `run` calls `block(0) … block(n-1)`,
+/// Runs independent blocks of work; core creates no threads. `run` calls `block(0) … block(n-1)`,
 /// each exactly once, in any order and from any thread, and returns when all have ended.
 class TaskRunner {
  public:
@@ -16,19 +16,20 @@ class TaskRunner {
   virtual std::size_t thread_count() const = 0;
 };
 
-/// Block size of every parallel pass and reduction. Fixed, so that the order of every sum, and so
-/// every bit of the result, does not depend on the number of threads.
+/// Block size of all parallel passes and reductions. It is fixed, so that the order of every sum,
+/// and all bits of the result, do not depend on the number of threads.
 inline constexpr std::size_t kBlockSize = 256;
 
-/// Number of blocks of `size` that hold `count` elements.
+/// The number of blocks of `size` elements that hold `count` elements.
 constexpr std::size_t block_count(std::size_t count, std::size_t size = kBlockSize) {
   return (count + size - 1) / size;
 }
 
-/// Calls `body(begin, end)` over [0, count) in blocks of `size`; serially where `runner` is null or
-/// the range is a single block. `body` may write only what belongs to its own range.
+/// Calls `body(begin, end)` for the blocks of [0, count). Runs serially if `runner` is null or
+/// there is only one block. `body` may write only to its own range.
 template <std::size_t size = kBlockSize, class Body>
 void for_blocks(TaskRunner* runner, std::size_t count, Body&& body) {
+  static_assert(size > 0);
   const std::size_t blocks = block_count(count, size);
   const auto block = [&](std::size_t b) { body(b * size, std::min(count, (b + 1) * size)); };
   if (runner == nullptr || runner->thread_count() < 2 || blocks < 2) {

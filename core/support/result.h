@@ -10,8 +10,8 @@
 
 namespace vat {
 
-/// One thing wrong with an input. `path` is a JSON pointer such as "/bodies/3/radius" (empty: the
-/// whole input); `message` names the field's allowed range.
+/// An error of an input. `path` is a JSON pointer such as "/bodies/3/radius", empty for the whole
+/// input. `message` names the allowed range of the field.
 struct Error {
   std::string code;
   std::string path;
@@ -51,7 +51,7 @@ class [[nodiscard]] Result {
   std::variant<T, Errors> content_;
 };
 
-/// Success or at least one Error.
+/// Success, or at least one Error.
 template <>
 class [[nodiscard]] Result<void> {
  public:

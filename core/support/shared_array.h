@@ -5,9 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/support/check.h"
+
 namespace vat {
 
-/// Values that do not change, and that all copies share: to copy it costs the same for any size.
+/// A constant array that all copies share. Copying costs the same for any size.
 template <class T>
 class SharedArray {
  public:
@@ -22,8 +24,14 @@ class SharedArray {
   const T* end() const { return data() + size_; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  const T& operator[](std::size_t i) const { return data()[i]; }
-  const T& back() const { return data()[size_ - 1]; }
+  const T& operator[](std::size_t i) const {
+    VAT_ASSERT(i < size_);
+    return data()[i];
+  }
+  const T& back() const {
+    VAT_ASSERT(size_ > 0);
+    return data()[size_ - 1];
+  }
 
  private:
   std::shared_ptr<const T> data_;

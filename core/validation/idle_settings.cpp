@@ -20,8 +20,7 @@ bool has_viscous_liquid(const Scene& scene) {
   return scene.forces.viscosity &&
          std::ranges::any_of(scene.bodies, [&](const BodyDescription& body) {
            if (body.kind != BodyKind::liquid) return false;
-           const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
-           const LiquidConstants& liquid = *material->liquid;
+           const LiquidConstants& liquid = *material_of(scene, body).liquid;
            return liquid.viscosity > 0 || (has_artificial && liquid.artificial_viscosity > 0);
          });
 }
@@ -36,7 +35,7 @@ bool has_wall_friction(const Scene& scene) {
          });
 }
 
-/// Friction is that of a spring's push, and sticks as hard as the spring.
+/// Friction is proportional to the force of the spring, and its sticking to the stiffness.
 void warn_of_friction(const InterfaceConstants& constants, const std::string& path,
                       std::vector<Warning>& warnings) {
   const bool is_penalty = constants.law == InterfaceLaw::penalty;
@@ -45,7 +44,7 @@ void warn_of_friction(const InterfaceConstants& constants, const std::string& pa
   }
 }
 
-/// With coupled solvers liquids meet solids and walls by SPH, whatever the law.
+/// In coupled solvers, liquids interact with solids and walls by SPH for all laws.
 void warn_of_law(const Scene& scene, const InterfaceDescription& interface, const std::string& path,
                  std::vector<Warning>& warnings) {
   if (scene.pressure_solver == PressureSolver::gas) return;
@@ -61,7 +60,7 @@ void warn_of_law(const Scene& scene, const InterfaceDescription& interface, cons
   if (!is_liquid) return;
   warn(path + "/law",
        std::string("with \"") + to_string(scene.pressure_solver) +
-           "\" liquids meet others by \"sph\"",
+           "\" liquids interact with other materials by \"sph\"",
        warnings);
 }
 
@@ -75,7 +74,7 @@ void warn_of_vat_walls(const Scene& scene, std::vector<Warning>& warnings) {
       warn(path + "/no_slip", "no liquid of the scene is viscous", warnings);
     }
     if (!wall.no_slip && !has_friction && !wall.velocity.isZero(0)) {
-      warn(path + "/velocity", "a wall without no_slip or friction drags nothing along", warnings);
+      warn(path + "/velocity", "a wall without no_slip or friction exerts no drag", warnings);
     }
   }
 }
@@ -88,7 +87,7 @@ bool has_surface_tension(const Scene& scene) {
   });
 }
 
-/// Whether it joins a liquid with surface tension to a wall or solid.
+/// Returns whether the interface joins a liquid with surface tension to a wall or a solid.
 bool has_surface(const Scene& scene, const InterfaceDescription& interface) {
   const auto is_liquid_body = [&](const std::string& name) {
     return std::ranges::any_of(scene.bodies, [&](const BodyDescription& body) {
@@ -137,7 +136,7 @@ void warn_of_tolerance(const Numerics& numerics, std::vector<Warning>& warnings)
   }
 }
 
-/// What the solver of pressures does not use.
+/// Warns of settings that the pressure solver does not use.
 void warn_of_solver(const Scene& scene, std::vector<Warning>& warnings) {
   const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
   const IncompressibleSolve& solve = scene.incompressible;
@@ -146,17 +145,17 @@ void warn_of_solver(const Scene& scene, std::vector<Warning>& warnings) {
                       solve.divergence_tolerance != usual.divergence_tolerance ||
                       solve.most_iterations != usual.most_iterations;
   if (is_set && !is_incompressible) {
-    warn("/incompressible", "the pressure solver is another", warnings);
+    warn("/incompressible", "the pressure solver is not \"incompressible\"", warnings);
   }
   const bool is_gas = scene.pressure_solver == PressureSolver::gas;
   if (scene.printed_pressure_force && !is_gas) {
     warn("/printed_pressure_force", "the pressure solver is not \"gas\"", warnings);
   }
   if (scene.kernel != Scene{}.kernel && is_gas) {
-    warn("/kernel", "the pressure solver \"gas\" has kernels of its own", warnings);
+    warn("/kernel", "the pressure solver \"gas\" uses other kernels", warnings);
   }
   if (scene.pair_precision != Scene{}.pair_precision && is_gas) {
-    warn("/pair_precision", "the pressure solver \"gas\" has double precision", warnings);
+    warn("/pair_precision", "the pressure solver \"gas\" always uses double precision", warnings);
   }
   for (std::size_t m = 0; is_incompressible && m < scene.materials.size(); ++m) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;

@@ -6,7 +6,7 @@
 
 namespace vat {
 
-/// Adds a warning, code no_effect, for each setting that changes nothing in this scene.
+/// Adds a warning, code no_effect, for each setting that has no effect in this scene.
 void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings);
 
 }  // namespace vat

@@ -9,15 +9,11 @@
 #include "core/sampling/melting.h"
 #include "core/sampling/nozzle.h"
 #include "core/scene/interface_table.h"
+#include "core/scene/lookup.h"
 #include "core/support/check.h"
 #include "core/validation/validate_parts.h"
 
 namespace vat {
-
-void check_constants(const SpringConstants& constants, const std::string& path, RangeCheck& check) {
-  check.real(constants.stiffness, 0, kMaxStiffness, path + "/stiffness");
-  check.real(constants.damping, 0, kMaxDamping, path + "/damping");
-}
 
 namespace {
 
@@ -25,18 +21,9 @@ std::string element(const char* list, std::size_t index) {
   return list + ('/' + std::to_string(index));
 }
 
-void check_liquid(const LiquidConstants& liquid, const std::string& path, RangeCheck& check) {
-  check.real(liquid.stiffness, 0, kMaxStiffness, path + "/stiffness");
-  check.real(liquid.viscosity, 0, kMaxViscosity, path + "/viscosity");
-  check.real(liquid.support_radius, kMinLength, kMaxLength, path + "/support_radius");
-  check.real(liquid.artificial_viscosity, 0, kMaxArtificialViscosity,
-             path + "/artificial_viscosity");
-  check.real(liquid.surface_tension, 0, kMaxSurfaceTension, path + "/surface_tension");
-}
-
-/// What the scene has that surface tension does not work with. The gas boils at its surface: its
-/// forces derive from no energy. An incompressible liquid never pulls, which cohesion needs. What a
-/// surface is corrected by is of Wendland's kernel.
+/// The setting of the scene that excludes surface tension; empty if there is none. The gas solver
+/// conserves no energy, so that its surface heats up. An incompressible liquid has no tension,
+/// which cohesion needs. The corrections of a surface hold for Wendland's kernel.
 std::string adverse_to_surfaces(const Scene& scene) {
   const bool is_cohesive = scene.surface_model == SurfaceModel::cohesion;
   if (scene.pressure_solver == PressureSolver::gas) return "the pressure solver \"gas\"";
@@ -77,7 +64,7 @@ void check_incompressible(const Scene& scene, RangeCheck& check) {
           to_string(numerics.integrator) + '"');
 }
 
-/// Coupled liquids share one kernel, and nothing has levels of its own.
+/// Checks that coupled liquids have one support radius, and no local steps.
 void check_coupled_liquids(const Scene& scene, RangeCheck& check) {
   if (scene.pressure_solver == PressureSolver::gas) return;
   const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
@@ -105,15 +92,14 @@ void check_material(const Material& material, const std::string& path, RangeChec
   if (material.name == kVatMaterial) {
     check.add("reserved_name", path + "/name", "must not be \"vat\": that names the walls");
   }
-  check.real(material.density, kMinDensity, kMaxDensity, path + "/density");
-  if (material.liquid) check_liquid(*material.liquid, path + "/liquid", check);
-  if (material.self_contact) {
-    check_constants(*material.self_contact, path + "/self_contact", check);
-  }
+  check_members(material, path, check);
+  if (material.liquid) check_members(*material.liquid, path + "/liquid", check);
+  if (material.self_contact) check_members(*material.self_contact, path + "/self_contact", check);
+  if (material.plasticity) check_members(*material.plasticity, path + "/plasticity", check);
   check_spring_changes(material, path, check);
   if (!material.springs) return;
   const auto lattice = [&](const std::optional<SpringConstants>& constants, const char* name) {
-    if (constants) check_constants(*constants, path + "/springs/" + name, check);
+    if (constants) check_members(*constants, path + "/springs/" + name, check);
   };
   lattice(material.springs->structural, "structural");
   lattice(material.springs->shear, "shear");
@@ -134,7 +120,8 @@ void check_materials(const Scene& scene, RangeCheck& check) {
   }
 }
 
-/// An accuracy chooses numerics that can.
+/// Checks that the numerics support the laws. If the scene has an accuracy, it chooses suitable
+/// numerics.
 void check_laws(const Scene& scene, RangeCheck& check) {
   if (scene.numerics.accuracy) return;
   check_law_numerics(scene.numerics, scene.default_interface, "/default_interface", check);
@@ -171,6 +158,7 @@ CurrentScene present_of(const std::vector<SampledBody>& samples) {
 }
 
 std::vector<PairBody> pair_bodies(const Scene& scene, const CurrentScene& present) {
+  /// The bodies of a scene with their present particles, for the count of pairs.
   VAT_CHECK(present.bodies.size() == scene.bodies.size());
   std::vector<PairBody> pairs;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -181,7 +169,7 @@ std::vector<PairBody> pair_bodies(const Scene& scene, const CurrentScene& presen
 
 }  // namespace
 
-/// Of particles to one another.
+/// Checks periods and the numbers of neighbours.
 void check_neighbours(const Scene& scene, const CurrentScene& present,
                       const std::string& periods_path, const std::string& pairs_path,
                       RangeCheck& check) {
@@ -191,7 +179,7 @@ void check_neighbours(const Scene& scene, const CurrentScene& present,
   }
 }
 
-/// For all that emitters may add.
+/// Checks the number of particles for all that emitters may add.
 void check_room(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check) {
   Allowance allowance;
   for (std::size_t b = 0; b < samples.size(); ++b) {
@@ -282,8 +270,7 @@ Errors find_body_errors(const Scene& scene, const CurrentScene& present,
 Errors find_body_errors(const Scene& scene, const BodyDescription& body, const std::string& path) {
   std::vector<SampledBody> samples;
   for (const BodyDescription& other : scene.bodies) {
-    samples.push_back(sample_body(
-        other, scene.materials[material_index(scene.materials, other.material)], scene.dimensions));
+    samples.push_back(sample_body(other, material_of(scene, other), scene.dimensions));
   }
   return find_body_errors(scene, present_of(samples), body, path);
 }
@@ -307,6 +294,7 @@ Errors find_interface_errors(const Scene& scene, const CurrentScene& present,
 Errors find_melting_errors(const Scene& scene, const CurrentScene& present, std::size_t body,
                            const std::string& into) {
   Errors errors;
+  VAT_CHECK(body < scene.bodies.size());
   RangeCheck check(errors);
   check_melting(scene, scene.bodies[body], into, "/body", "/material", check);
   if (!errors.empty()) return errors;
@@ -321,7 +309,8 @@ namespace {
 
 constexpr const char* kPositionPath = "/position";
 
-/// Of a body where it is put; `check_its_pairs(pairs, check)` is for its neighbours.
+/// The errors of a body at its present position. `check_its_pairs(pairs, check)` checks its
+/// neighbours.
 template <class CheckPairs>
 Errors find_placed_errors(const Scene& scene, const CurrentScene& present, std::size_t body,
                           CheckPairs&& check_its_pairs) {
@@ -344,6 +333,7 @@ Errors find_moved_errors(const Scene& scene, const CurrentScene& present, std::s
 }
 
 Errors find_returned_errors(const Scene& scene, const CurrentScene& present) {
+  VAT_CHECK(!scene.bodies.empty() && present.bodies.size() == scene.bodies.size());
   const std::size_t last = scene.bodies.size() - 1;
   return find_placed_errors(scene, present, last, [&](const auto& pairs, RangeCheck& check) {
     check_pairs_of_new(scene, pairs, kPositionPath, check);
@@ -368,7 +358,7 @@ Errors find_material_errors(const Scene& scene, const CurrentScene& present,
   Errors errors = find_changed_errors(changed, known);
   for (Error& error : errors) {
     const bool is_own = error.path == own || error.path.starts_with(own + '/');
-    if (!is_own) error.message = error.path + " would be wrong: " + error.message;
+    if (!is_own) error.message = error.path + " would be invalid: " + error.message;
     error.path = is_own ? path + error.path.substr(own.size()) : path;
   }
   RangeCheck check(errors);
@@ -398,7 +388,7 @@ Errors find_moved_vat_errors(const Scene& scene, const Vec3& offset) {
   moved.vat->max += offset;
   check_flow(moved, errors);
   for (Error& error : errors) {
-    error.message = error.path + " would be wrong: " + error.message;
+    error.message = error.path + " would be invalid: " + error.message;
     error.path = path;
   }
   return errors;

@@ -24,7 +24,7 @@ const Material* check_material(const Scene& scene, const BodyDescription& body,
   return &*found;
 }
 
-/// What the shape's particles say one by one is not also said for the whole body.
+/// Checks that mass and radius are given either for the body or for the particles of the shape.
 bool check_lists(const BodyDescription& body, const ParticleShape& particles,
                  const std::string& path, RangeCheck& check) {
   bool fine = true;
@@ -45,7 +45,7 @@ bool check_lists(const BodyDescription& body, const ParticleShape& particles,
   return fine;
 }
 
-/// Spacing, mass and radius: given where nothing else tells them, and in range.
+/// Checks spacing, mass and radius: their ranges, and that each follows from one source.
 bool check_sizes(const BodyDescription& body, const std::string& path, RangeCheck& check) {
   bool fine = true;
   if (body.mass) fine &= check.real(*body.mass, kMinMass, kMaxMass, path + "/mass");
@@ -58,7 +58,7 @@ bool check_sizes(const BodyDescription& body, const std::string& path, RangeChec
   return fine;
 }
 
-/// A sampled body's reach against its spacing: what neighbours it will have.
+/// Checks the reach of a sampled body against its spacing, which bounds the number of neighbours.
 void check_ratios(const BodyDescription& body, const Material& material, const std::string& path,
                   RangeCheck& check) {
   if (std::holds_alternative<ParticleShape>(body.shape)) return;
@@ -101,7 +101,7 @@ void check_springs(const BodyDescription& body, std::size_t particles, const std
                 "must be two different numbers below the number of particles, " +
                     std::to_string(particles));
     }
-    check_constants(spring.constants, at, check);
+    check_members(spring.constants, at, check);
     if (spring.rest_length) check.real(*spring.rest_length, 0, kMaxLength, at + "/rest_length");
   }
 }
@@ -110,20 +110,7 @@ std::size_t lattice_spring_count(const BodyDescription& body, const Material& ma
                                  const std::vector<LatticePoint>& points) {
   if (body.kind != BodyKind::deformable || !material.springs) return 0;
   const LatticeSprings& springs = *material.springs;
-  const std::size_t each =
-      (springs.structural ? 3u : 0u) + (springs.shear ? 6u : 0u) + (springs.bend ? 3u : 0u);
-  return each * points.size();  // an upper bound: a limit that is easy to explain
-}
-
-/// Whether a point is between the walls that the vat has.
-bool is_inside(const Scene& scene, const Vec3& p) {
-  const Vat& vat = *scene.vat;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (scene.periodic && scene.periodic->axes[static_cast<std::size_t>(axis)]) continue;
-    const bool is_open_above = axis == 2 && !vat.lid;
-    if (!(p[axis] > vat.min[axis] && (is_open_above || p[axis] < vat.max[axis]))) return false;
-  }
-  return true;
+  return springs_per_point(springs) * points.size();  // an upper bound, simple to explain
 }
 
 struct BodySize {
@@ -131,7 +118,7 @@ struct BodySize {
   std::size_t lattice_springs = 0;
 };
 
-/// The size of a body whose shape and spacing are valid; none where it cannot be sampled.
+/// The size of a body whose shape and spacing are valid; empty if it cannot be sampled.
 std::optional<BodySize> measure_lattice(const BodyDescription& body, const Material& material,
                                         int dimensions, const std::string& path,
                                         Allowance& allowance, RangeCheck& check) {
@@ -170,10 +157,20 @@ std::optional<BodySize> measure_body(const BodyDescription& body, const Material
 
 }  // namespace
 
+bool is_inside_vat(const Scene& scene, const Vec3& p) {
+  const Vat& vat = *scene.vat;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (scene.periodic && scene.periodic->axes[static_cast<std::size_t>(axis)]) continue;
+    const bool is_open_above = axis == 2 && !vat.lid;
+    if (!(p[axis] > vat.min[axis] && (is_open_above || p[axis] < vat.max[axis]))) return false;
+  }
+  return true;
+}
+
 void check_inside_vat(const Scene& scene, const Vec3& offset, std::span<const Vec3> positions,
                       const std::string& path, RangeCheck& check) {
   for (const Vec3& position : positions) {
-    if (is_inside(scene, position - offset)) continue;
+    if (is_inside_vat(scene, position - offset)) continue;
     check.add("outside_vat", path, "must start inside the vat, with every particle's centre");
     return;
   }

@@ -3,13 +3,14 @@
 #include "core/limits.h"
 #include "core/numerics/pair_limits.h"
 #include "core/scene/lookup.h"
+#include "core/support/check.h"
 #include "core/validation/validate.h"
 #include "core/validation/validate_parts.h"
 
 namespace vat {
 namespace {
 
-/// A liquid whose particles are known: its description only names it, and places what comes.
+/// Checks the description of a liquid whose particles are known: its name, material and radius.
 void check_known(const Scene& scene, const BodyDescription& body, const std::string& path,
                  RangeCheck& check) {
   check.text(body.name, kMaxNameLength, false, path + "/name");
@@ -20,16 +21,16 @@ void check_known(const Scene& scene, const BodyDescription& body, const std::str
   if (body.radius) check.real(*body.radius, kMinLength, kMaxLength, path + "/radius");
 }
 
-/// The parts that bodies have nothing to do with.
+/// The parts of the scene that do not depend on bodies.
 Scene without_bodies(const Scene& scene) {
   Scene world = scene;
   world.bodies.clear();
   world.emitters.clear();
-  world.numerics.accuracy.reset();  // it has chosen
+  world.numerics.accuracy.reset();  // the numerics are resolved
   return world;
 }
 
-/// One in which bodies may start anywhere, and flow as fast as they like.
+/// The scene without the limits of initial positions and of the speed of flow.
 Scene without_bounds(const Scene& scene) {
   Scene open = scene;
   open.vat.reset();
@@ -47,7 +48,7 @@ Errors find_numerics_errors(const Scene& scene) {
       error.path = error.path.substr(own.size());
       continue;
     }
-    error.message = error.path + " would be wrong: " + error.message;
+    error.message = error.path + " would be invalid: " + error.message;
     error.path = error.path == own + "/tick" ? "/step" : "/integrator";
   }
   return errors;
@@ -55,6 +56,7 @@ Errors find_numerics_errors(const Scene& scene) {
 
 Errors find_changed_errors(const Scene& scene, const std::vector<const SampledBody*>& known) {
   Errors errors = find_errors(without_bodies(scene));
+  VAT_CHECK(known.size() == scene.bodies.size());
   if (!errors.empty()) return errors;
   RangeCheck check(errors);
   if (scene.bodies.size() > kMaxBodies) check.add("too_many", "/bodies", "too many bodies");

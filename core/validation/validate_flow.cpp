@@ -10,7 +10,7 @@ namespace {
 
 constexpr Real kMinFlow = 1e-6;  // [m/s]
 
-/// The name of each element, and how many there are.
+/// Checks the names of the elements, and their number.
 template <class Element>
 bool check_names(const std::vector<Element>& elements, std::size_t most, const std::string& path,
                  RangeCheck& check) {
@@ -29,7 +29,7 @@ bool check_names(const std::vector<Element>& elements, std::size_t most, const s
   return true;
 }
 
-/// The liquid body that an emitter feeds; null, and an error, where it feeds none.
+/// The liquid body of an emitter; null, with an error, if there is none.
 const BodyDescription* find_fed_body(const Scene& scene, const Emitter& emitter,
                                      const std::string& path, RangeCheck& check) {
   const auto body = std::ranges::find(scene.bodies, emitter.body, &BodyDescription::name);
@@ -57,31 +57,21 @@ void check_opening(const Emitter& emitter, const std::string& path, RangeCheck& 
   }
 }
 
-bool is_in_vat(const Vat& vat, const Periodicity& periodic, const Vec3& place) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (periodic.axes[static_cast<std::size_t>(axis)]) continue;
-    const bool is_open = axis == 2 && !vat.lid;
-    if (!(place[axis] > vat.min[axis] && (is_open || place[axis] < vat.max[axis]))) return false;
-  }
-  return true;
-}
-
-/// Both ends of the tube are in the vat, wherever that slides.
+/// Checks that both ends of the tube stay in the vat during its motion.
 void check_tube(const Scene& scene, const Emitter& emitter, const std::string& path,
                 RangeCheck& check) {
   if (!scene.vat) return;
-  const Periodicity periodic = scene.periodic.value_or(Periodicity{});
   const auto& motion = scene.vat->motion;
   const Vec3 slide = motion ? Vec3(motion->stroke * motion->axis.normalized()) : Vec3::Zero();
   const Nozzle nozzle = make_nozzle(scene, emitter);
   const Vec3 tube = static_cast<Real>(nozzle.inside) * nozzle.interval * nozzle.velocity;
   for (const Vec3& place : nozzle.layer) {
     const auto stays_in = [&](const Vec3& end) {
-      return is_in_vat(*scene.vat, periodic, end) && is_in_vat(*scene.vat, periodic, end - slide);
+      return is_inside_vat(scene, end) && is_inside_vat(scene, end - slide);
     };
     if (stays_in(place) && stays_in(place - tube)) continue;
     check.add("outside_vat", path + "/position",
-              "must leave the nozzle, a support radius long, inside the vat");
+              "must keep the nozzle, which is one support radius long, inside the vat");
     return;
   }
 }
@@ -113,7 +103,7 @@ void check_emitter(const Scene& scene, const Emitter& emitter, const std::string
   check.real(emitter.from, 0, Emitter::kNoEnd, path + "/from");
   check.real(emitter.until, emitter.from, Emitter::kNoEnd, path + "/until");
   if (body == nullptr) return;
-  // A layer at most enters a nozzle in a step.
+  // In one step at most one layer enters a nozzle.
   const Real fastest = std::min(kMaxSpeed, body->spacing / scene.numerics.step);
   check.real(emitter.speed, kMinFlow, fastest, path + "/speed");
   if (errors.size() == errors_before) check_layers(scene, emitter, *body, path, check);

@@ -19,7 +19,7 @@ bool joins(const InterfaceDescription& interface, const std::string& material) {
 
 void check_interface_constants(const InterfaceConstants& constants, const std::string& path,
                                RangeCheck& check) {
-  check_constants(constants.spring(), path, check);
+  check_members(constants.spring(), path, check);
   check.real(constants.friction, 0, kMaxFriction, path + "/friction");
   check.real(constants.reach, kMinLayerReach, kMaxLayerReach, path + "/reach");
   if (!constants.restitution) return;
@@ -30,10 +30,10 @@ void check_interface_constants(const InterfaceConstants& constants, const std::s
   }
 }
 
-/// With cohesion, below 30 degrees a drop becomes a film one or two particles thick, and above 135
-/// what holds it together at the wall is more than what pushes it off. Of curvature, below 75
-/// degrees the line where a surface meets a wall runs ahead as a film one particle thick, and above
-/// 150 the drop does not rest.
+/// Checks the contact angle. With cohesion, below 30 degrees a drop becomes a film one or two
+/// particles thick, and above 135 the attraction by the wall exceeds the repulsion. With curvature,
+/// below 75 degrees the contact line advances as a film one particle thick, and above 150 the drop
+/// does not come to rest.
 void check_contact_angle(const Scene& scene, const InterfaceDescription& interface,
                          const std::string& path, RangeCheck& check) {
   if (scene.surface_model == SurfaceModel::cohesion) {
@@ -48,8 +48,8 @@ void check_contact_angle(const Scene& scene, const InterfaceDescription& interfa
   check.real(interface.contact_angle, 75, 150, path);
 }
 
-/// The threshold against the coarsest of the sampled bodies that meet by it; explicit particles may
-/// lie as they like.
+/// Checks the threshold against the coarsest spacing of the sampled bodies at this interface.
+/// Explicit particles may have any distance.
 void check_threshold(const Scene& scene, const InterfaceDescription& interface,
                      const std::string& path, RangeCheck& check) {
   if (!check.real(*interface.threshold, kMinLength, kMaxLength, path)) return;
@@ -71,7 +71,7 @@ std::size_t count_solids(const Scene& scene, const std::string& material) {
       }));
 }
 
-/// Whether bodies meet by it of which none is liquid.
+/// Returns whether the interface joins two bodies that are not liquid.
 bool joins_solids(const Scene& scene, const InterfaceDescription& interface) {
   const auto& [first, second] = interface.materials;
   if (first == second) return count_solids(scene, first) > 1;
@@ -104,7 +104,7 @@ void check_interface(const Scene& scene, const InterfaceDescription& interface,
               "\"sph\" needs the pressure solver \"tait\": in \"gas\" solids have no density");
   } else if (joins_solids(scene, interface)) {
     check.add("not_allowed", path + "/law",
-              "\"sph\" is for liquids, and bodies meet by it of which none is liquid");
+              "\"sph\" is for liquids, but the interface joins bodies that are not liquid");
   }
 }
 
@@ -120,7 +120,7 @@ void check_interfaces(const Scene& scene, RangeCheck& check) {
     check_interface(scene, scene.interfaces[i], path, check);
     const auto& [first, second] = scene.interfaces[i].materials;
     if (!pairs.insert(std::minmax(first, second)).second) {
-      check.add("duplicate", path + "/materials", "must not be a pair that came before");
+      check.add("duplicate", path + "/materials", "must not repeat an earlier pair");
     }
   }
 }
@@ -135,7 +135,7 @@ void check_new_solid(const Scene& scene, const BodyDescription& body, const std:
     if (interface.constants.law != InterfaceLaw::sph || !joins(interface, body.material)) continue;
     if (!joins_solids(with_body, interface)) continue;
     check.add("not_allowed", path + "/material",
-              "meets others that are not liquid by an interface with the law \"sph\"");
+              "must not join solid bodies by an interface with the law \"sph\"");
   }
 }
 

@@ -7,7 +7,7 @@
 namespace vat {
 namespace {
 
-constexpr Real kUnitTolerance = 1e-3;  // of a quaternion's length: rounded in a file, no mistake
+constexpr Real kUnitTolerance = 1e-3;  // of a quaternion's length: rounding in files
 
 void check_field(const VectorField& field, Real bound, const std::string& path, RangeCheck& check) {
   check.vector(field.center, -kMaxLength, kMaxLength, path + "/center");
@@ -32,7 +32,7 @@ void check_fields(const BodyDescription& body, const std::string& path, RangeChe
                              const std::string& at) {
     if (!field) return;
     if (body.kind == BodyKind::rigid) {
-      check.add("not_allowed", at, "must be left out: a rigid body's particles move as one");
+      check.add("not_allowed", at, "must be left out for a rigid body");
     } else {
       check_field(*field, bound, at, check);
     }
@@ -52,13 +52,13 @@ void check_jitter(const BodyDescription& body, const std::string& path, RangeChe
 
 void check_hold(const BodyDescription& body, const std::string& path, RangeCheck& check) {
   if (!check.real(body.release, 0, kMaxRelease, path + "/release")) return;
-  constexpr const char* kRigidOnly = "only a rigid body is held";
+  constexpr const char* kRigidOnly = "only a rigid body can be held";
   const bool is_rigid = body.kind == BodyKind::rigid;
   if (body.fixed && !is_rigid) check.add("not_allowed", path + "/fixed", kRigidOnly);
   if (body.release > 0 && !is_rigid) {
     check.add("not_allowed", path + "/release", kRigidOnly);
   } else if (body.release > 0 && body.fixed) {
-    check.add("not_allowed", path + "/release", "must be 0: a fixed body is held for ever");
+    check.add("not_allowed", path + "/release", "must be 0: a fixed body is never released");
   }
 }
 

@@ -6,7 +6,7 @@
 namespace vat {
 namespace {
 
-/// What keeps a scene of two dimensions in its plane. One error a member is enough.
+/// Checks that values are in the plane of a two-dimensional scene, with one error for each member.
 class PlaneCheck {
  public:
   explicit PlaneCheck(RangeCheck& check) : check_(check) {}
@@ -15,7 +15,7 @@ class PlaneCheck {
     if (value.y() != 0) add(path, "must have y = 0 in a scene of two dimensions");
   }
   void about_y(Real x, Real z, const std::string& path) {
-    if (x != 0 || z != 0) add(path, "must turn about y alone in a scene of two dimensions");
+    if (x != 0 || z != 0) add(path, "must rotate about y only in a scene of two dimensions");
   }
   void add(const std::string& path, const char* message) { check_.add("off_plane", path, message); }
 
@@ -76,7 +76,7 @@ void check_plane(const Scene& scene, RangeCheck& check) {
   if (!scene.vat) return;
   if (scene.vat->motion) plane.zero_y(scene.vat->motion->axis, "/vat/motion/axis");
   for (std::size_t wall = 0; wall < scene.vat->walls.size(); ++wall) {
-    if (wall / 2 == 1) continue;  // is not there
+    if (wall / 2 == 1) continue;  // does not exist
     plane.zero_y(scene.vat->walls[wall].velocity,
                  std::string("/vat/walls/") + kWallNames[wall] + "/velocity");
   }

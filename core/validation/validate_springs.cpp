@@ -1,33 +1,18 @@
 #include <algorithm>
 
-#include "core/limits.h"
 #include "core/validation/validate_parts.h"
 
 namespace vat {
 
 void check_spring_changes(const Material& material, const std::string& path, RangeCheck& check) {
-  if (material.tearing_strain) {
-    check.real(*material.tearing_strain, kMinStrain, kMaxStrain, path + "/tearing_strain");
-  }
-  check.real(material.bulk_modulus, 0, kMaxStiffness, path + "/bulk_modulus");
   if (material.bulk_modulus > 0 && material.tearing_strain) {
     check.add("not_allowed", path + "/bulk_modulus",
-              "must be left out, since the material tears: a gap has no volume to keep");
+              "must be left out for a material with a tearing strain");
   }
-  if (material.elongation_limit) {
-    check.real(*material.elongation_limit, 0, kMaxStrain, path + "/elongation_limit");
-    if (material.implicit_springs) {
-      check.add("not_allowed", path + "/elongation_limit",
-                "must be left out, since the material's springs are implicit");
-    }
+  if (material.elongation_limit && material.implicit_springs) {
+    check.add("not_allowed", path + "/elongation_limit",
+              "must be left out, since the material's springs are implicit");
   }
-  if (!material.plasticity) return;
-  const Plasticity& plasticity = *material.plasticity;
-  const std::string at = path + "/plasticity";
-  check.real(plasticity.yield_strain, 0, kMaxStrain, at + "/yield_strain");
-  check.real(plasticity.hardening, 0, kMaxHardening, at + "/hardening");
-  check.real(plasticity.relaxation_time, 0, kMaxPeriod, at + "/relaxation_time");
-  check.real(plasticity.max_strain, 0, kMaxPlasticStrain, at + "/max_strain");
 }
 
 namespace {

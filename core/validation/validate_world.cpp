@@ -26,7 +26,7 @@ void check_slide(const SlideMotion& motion, const std::string& path, RangeCheck&
   }
 }
 
-/// Why there is nothing where this wall would be; null if it is there.
+/// The reason why this wall does not exist; null if it exists.
 const char* why_absent(const Scene& scene, std::size_t wall) {
   const std::size_t axis = wall / 2;
   if (wall == 5 && !scene.vat->lid) return "must be left out: the vat has no lid";
@@ -54,7 +54,7 @@ void check_wall(const Scene& scene, std::size_t wall, RangeCheck& check) {
   }
 }
 
-/// Where the world repeats itself a vat has no walls, and its box is the world's.
+/// Along periodic axes a vat has no walls, and its box must be that of the world.
 void check_vat_in_periodic(const Vat& vat, const Periodicity& periodic, RangeCheck& check) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);

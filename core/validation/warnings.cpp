@@ -19,7 +19,7 @@
 namespace vat {
 namespace {
 
-constexpr Real kOverlap = 0.1;  // of the distance at which two particles touch; less is no matter
+constexpr Real kOverlap = 0.1;  // in contact distances; smaller overlaps have no effect
 
 std::string number(Real value) {
   char text[32];
@@ -27,7 +27,7 @@ std::string number(Real value) {
   return text;
 }
 
-/// Every particle of the scene at the start, with the body that it belongs to.
+/// All particles of the scene at the start, with their bodies.
 struct Start {
   std::vector<SampledBody> bodies;
   std::vector<Vec3> positions;
@@ -49,7 +49,7 @@ Start sample_all(const Scene& scene) {
 
 using BodyPair = std::pair<Index, Index>;
 
-/// Pairs of particles of two bodies that overlap, counted by pair of bodies.
+/// The number of overlapping pairs of particles, for each pair of bodies.
 std::map<BodyPair, std::size_t> count_overlaps(const Scene& scene, const Start& start) {
   std::map<BodyPair, std::size_t> overlaps;
   if (start.radii.empty() || !scene.forces.contacts) return overlaps;
@@ -76,11 +76,12 @@ void warn_of_overlaps(const Scene& scene, const Start& start, std::vector<Warnin
   for (const auto& [bodies, count] : count_overlaps(scene, start)) {
     warnings.push_back({"bodies_overlap", body_path(bodies.second),
                         "overlaps \"" + scene.bodies[bodies.first].name + "\" at the start, at " +
-                            std::to_string(count) + " pairs of particles: they will jump apart"});
+                            std::to_string(count) +
+                            " pairs of particles: they will separate abruptly"});
   }
 }
 
-/// The distance from the nearest wall that the vat has.
+/// The distance from the nearest wall of the vat.
 Real wall_gap(const Scene& scene, const Vec3& p) {
   const Vat& vat = *scene.vat;
   Real nearest = std::numeric_limits<Real>::infinity();
@@ -104,13 +105,13 @@ void warn_of_walls(const Scene& scene, const Start& start, std::vector<Warning>&
     if (count > 0) {
       warnings.push_back({"wall_overlap", body_path(b),
                           "overlaps the vat's walls at the start, with " + std::to_string(count) +
-                              " particles: it will jump away from them"});
+                              " particles: it will be pushed away abruptly"});
     }
   }
 }
 
-/// In 3-d a support radius of 1.3 to 3 spacings reaches about 8 to 110 neighbours, of which the
-/// kernels of [MCG03] want 20 to 60; one of 4 some 250, which is for the viscosity of thick
+/// In three dimensions, a support radius of 1.3 to 3 spacings has about 8 to 110 neighbours; the
+/// kernels of [MCG03] need 20 to 60. One of 4 has about 250, which suits the viscosity of thick
 /// liquids.
 void warn_of_support(const Scene& scene, std::vector<Warning>& warnings) {
   constexpr Real kLeast = 1.3;
@@ -118,12 +119,11 @@ void warn_of_support(const Scene& scene, std::vector<Warning>& warnings) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
     if (body.kind != BodyKind::liquid || body.spacing == 0) continue;
-    const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
-    const Real ratio = material->liquid->support_radius / body.spacing;
+    const Real ratio = material_of(scene, body).liquid->support_radius / body.spacing;
     if (ratio >= kLeast && ratio <= most) continue;
     warnings.push_back({"support_radius", body_path(b) + "/spacing",
                         "the support radius is " + number(ratio) + " spacings; " + number(kLeast) +
-                            " to " + number(most) + " gives good sums"});
+                            " to " + number(most) + " are suitable"});
   }
 }
 
@@ -134,7 +134,7 @@ void warn_of_loose_particles(const Scene& scene, const Start& start,
                        start.bodies[b].positions.size() > 1 && start.bodies[b].springs.empty();
     if (loose) {
       warnings.push_back({"no_springs", body_path(b),
-                          "has no springs: neither its material nor the body gives any"});
+                          "has no springs: neither its material nor the body defines any"});
     }
   }
 }
@@ -145,13 +145,13 @@ void warn_of_steps(const Scene& scene, const Start& start, std::vector<Warning>&
     if (limit.step > 0 && (!is_fixed || scene.numerics.step <= limit.step)) continue;
     const std::string remedy =
         limit.step > 0 ? "is longer than " + number(limit.step) + " s, at which " + limit.reason
-                       : "is too long whatever it is: " + limit.reason;
+                       : "no step is short enough: " + limit.reason;
     warnings.push_back({"unstable_step", "/numerics/step", remedy + " (" + limit.path + ")"});
   }
 }
 
-/// The rotation of a rigid body is integrated step by step: beyond half a radian it is not
-/// followed.
+/// The rotation of a rigid body is integrated step by step, accurately up to half a radian in a
+/// step.
 void warn_of_rotation(const Scene& scene, std::vector<Warning>& warnings) {
   constexpr Real kMaxTurn = 0.5;
   if (scene.numerics.control != StepControl::fixed) return;
@@ -161,18 +161,18 @@ void warn_of_rotation(const Scene& scene, std::vector<Warning>& warnings) {
     const Real turn = body.angular_velocity.norm() * scene.numerics.step;
     if (turn <= kMaxTurn) continue;
     warnings.push_back({"turns_too_fast", body_path(b) + "/angular_velocity",
-                        "turns by " + number(turn) + " radians in a step: up to " +
-                            number(kMaxTurn) + " are followed well"});
+                        "rotates by " + number(turn) + " radians in a step: up to " +
+                            number(kMaxTurn) + " are accurate"});
   }
 }
 
-/// Least radius of the bodies of each material, and how many bodies there are.
+/// The minimum radius of the bodies of a material, and the number of these bodies.
 struct Partners {
   std::size_t count = 0;
   Real least_radius = kMaxLength;
 };
 
-/// The least distance at which a particle of the body meets a wall or another body.
+/// The minimum distance at which a particle of the body interacts with a wall or another body.
 Real least_notice(const Scene& scene, const InterfaceTable& table,
                   const std::vector<Partners>& partners, const BodyDescription& body, Real radius) {
   const std::size_t material = material_index(scene.materials, body.material);
@@ -211,12 +211,13 @@ void warn_of_speed(const Scene& scene, const Start& start, std::vector<Warning>&
     const bool is_fixed = scene.numerics.control == StepControl::fixed;
     if (!is_fixed || speed * scene.numerics.step <= notice) continue;
     warnings.push_back({"too_fast", body_path(b) + "/velocity",
-                        "starts with " + number(speed) + " m/s: in a step it goes further than " +
-                            number(notice) + " m, at which it meets others"});
+                        "starts with " + number(speed) +
+                            " m/s: in one step it moves further than " + number(notice) +
+                            " m, the distance at which it interacts with others"});
   }
 }
 
-/// Their own symmetry keeps such particles on the streamlines along which voids open.
+/// In a perfect lattice, symmetry keeps particles on the streamlines along which voids open.
 void warn_of_lattices(const Scene& scene, const Start& start, std::vector<Warning>& warnings) {
   if (scene.pressure_solver != PressureSolver::tait) return;
   if (!fills_world(scene, pointers_to(start.bodies))) return;
@@ -225,7 +226,7 @@ void warn_of_lattices(const Scene& scene, const Start& start, std::vector<Warnin
     if (body.kind != BodyKind::liquid || body.jitter > 0 || body.spacing == 0) continue;
     warnings.push_back({"perfect_lattice", body_path(b) + "/jitter",
                         "fills its world as a perfect lattice, in which flows tear voids; a jitter "
-                        "of 0.1 does away with them"});
+                        "of 0.1 prevents them"});
   }
 }
 
@@ -242,7 +243,7 @@ void warn_of_soft_liquids(const Scene& scene, const Start& start, std::vector<Wa
     warnings.push_back({"soft_liquid", "/materials/" + std::to_string(m) + "/liquid/stiffness",
                         "is below " + number(least) +
                             ", ten times the liquid's own weight over its "
-                            "density: at its floor it is pressed together by more than a tenth"});
+                            "density: at the bottom it is compressed by more than a tenth"});
   }
 }
 

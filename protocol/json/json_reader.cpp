@@ -203,8 +203,8 @@ Vec3 ObjectReader::vector(std::string_view key, Real min, Real max,
   return to_vector(*value, path_of(key), min, max, *errors_).value_or(otherwise);
 }
 
-std::size_t ObjectReader::choice(std::string_view key,
-                                 std::initializer_list<std::string_view> names,
+template <class Names>
+std::size_t ObjectReader::choose(std::string_view key, const Names& names,
                                  std::optional<std::size_t> fallback) {
   const Json* value = member(key, !fallback);
   if (value == nullptr) return fallback.value_or(0);
@@ -216,6 +216,17 @@ std::size_t ObjectReader::choice(std::string_view key,
   }
   add_error(*errors_, value->is_string() ? "unknown_name" : "wrong_type", path_of(key), rule);
   return fallback.value_or(0);
+}
+
+std::size_t ObjectReader::choice(std::string_view key,
+                                 std::initializer_list<std::string_view> names,
+                                 std::optional<std::size_t> fallback) {
+  return choose(key, names, fallback);
+}
+
+std::size_t ObjectReader::choice(std::string_view key, std::span<const char* const> names,
+                                 std::optional<std::size_t> fallback) {
+  return choose(key, names, fallback);
 }
 
 const Json* ObjectReader::array(std::string_view key, std::size_t max, bool required) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,6 +85,8 @@ class ObjectReader {
   /// Returns the index of the member's text in `names`.
   std::size_t choice(std::string_view key, std::initializer_list<std::string_view> names,
                      std::optional<std::size_t> fallback = {});
+  std::size_t choice(std::string_view key, std::span<const char* const> names,
+                     std::optional<std::size_t> fallback = {});
   /// Returns the member as an array of at most `max` elements; null if it is absent or invalid.
   const Json* array(std::string_view key, std::size_t max, bool required = false);
 
@@ -91,6 +94,9 @@ class ObjectReader {
   void refuse_unknown();
 
  private:
+  template <class Names>
+  std::size_t choose(std::string_view key, const Names& names, std::optional<std::size_t> fallback);
+
   const Json* value_;
   std::string path_;
   Errors* errors_;

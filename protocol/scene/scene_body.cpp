@@ -261,8 +261,7 @@ BodyDescription to_body(const Json& value, const std::string& path, const MeshSo
   ObjectReader reader(value, path, errors);
   BodyDescription body;
   body.name = reader.text("name", kMaxNameLength);
-  // The order of BodyKind.
-  body.kind = static_cast<BodyKind>(reader.choice("kind", {"liquid", "deformable", "rigid"}));
+  body.kind = read_enum<BodyKind>(reader, "kind");
   body.material = reader.text("material", kMaxNameLength);
   if (const Json* shape = reader.member("shape", true)) {
     body.shape = to_shape(*shape, reader.path_of("shape"), meshes, errors);

@@ -144,21 +144,20 @@ void read_part(ObjectReader& reader, std::string_view key, Target& target, const
   if (errors.size() == errors_before) target = std::move(value);
 }
 
-/// Reads a value of an enumeration by name.
+/// Reads a value of an enumeration by name. Without the member it keeps its default.
 template <class Enum>
-void read_enum(ObjectReader& reader, std::string_view key,
-               std::initializer_list<std::string_view> names, Enum& value) {
-  value = static_cast<Enum>(reader.choice(key, names, static_cast<std::size_t>(value)));
+void read_choice(ObjectReader& reader, std::string_view key, Enum& value) {
+  value = scene_parts::read_enum<Enum>(reader, key, value);
 }
 
 /// Reads the members that apply to all liquids of the scene.
 void read_liquid_model(ObjectReader& reader, Scene& scene) {
-  read_enum(reader, "pressure_solver", {"gas", "tait", "incompressible"}, scene.pressure_solver);
+  read_choice(reader, "pressure_solver", scene.pressure_solver);
   scene.printed_pressure_force =
       reader.boolean("printed_pressure_force", scene.printed_pressure_force);
-  read_enum(reader, "kernel", {"wendland_c2", "cubic_spline"}, scene.kernel);
-  read_enum(reader, "pair_precision", {"single", "double"}, scene.pair_precision);
-  read_enum(reader, "surface_tension_model", {"curvature", "cohesion"}, scene.surface_model);
+  read_choice(reader, "kernel", scene.kernel);
+  read_choice(reader, "pair_precision", scene.pair_precision);
+  read_choice(reader, "surface_tension_model", scene.surface_model);
 }
 
 PartialScene read_document(const Json& document, const MeshSource& meshes, Errors& errors) {

@@ -4,21 +4,35 @@
 #include <initializer_list>
 
 #include "core/limits.h"
+#include "core/scene/material_members.h"
 
 namespace vat::scene_parts {
 namespace {
 
-LiquidConstants to_liquid(const Json& value, std::string path, Errors& errors) {
+template <class Part>
+void read_members(ObjectReader& reader, Part& part) {
+  for (const Member<Part>& member : kMembersOf<Part>) {
+    if (const auto* flag = std::get_if<bool Part::*>(&member.value)) {
+      part.** flag = reader.boolean(member.name, part.**flag);
+    } else if (const auto* real = std::get_if<Real Part::*>(&member.value)) {
+      const std::optional<Real> fallback =
+          member.is_required ? std::nullopt : std::optional(part.**real);
+      part.** real = reader.real(member.name, member.min, member.max, fallback);
+    } else if (reader.has(member.name)) {
+      part.**std::get_if<std::optional<Real> Part::*>(&member.value) =
+          reader.real(member.name, member.min, member.max);
+    }
+  }
+}
+
+/// Reads a part of a material that has numbers only.
+template <class Part>
+Part to_part(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
-  LiquidConstants liquid;
-  liquid.stiffness = reader.real("stiffness", 0, kMaxStiffness);
-  liquid.viscosity = reader.real("viscosity", kAnyMin, kAnyMax);
-  liquid.support_radius = reader.real("support_radius", kMinLength, kMaxLength);
-  liquid.artificial_viscosity =
-      reader.real("artificial_viscosity", 0, kMaxArtificialViscosity, liquid.artificial_viscosity);
-  liquid.surface_tension = reader.real("surface_tension", 0, kMaxSurfaceTension, 0);
+  Part part;
+  read_members(reader, part);
   reader.refuse_unknown();
-  return liquid;
+  return part;
 }
 
 LatticeSprings to_lattice_springs(const Json& value, std::string path, Errors& errors) {
@@ -36,32 +50,16 @@ LatticeSprings to_lattice_springs(const Json& value, std::string path, Errors& e
   return springs;
 }
 
-Plasticity to_plasticity(const Json& value, std::string path, Errors& errors) {
-  ObjectReader reader(value, std::move(path), errors);
-  Plasticity plasticity;
-  plasticity.yield_strain = reader.real("yield_strain", kAnyMin, kAnyMax);
-  plasticity.hardening = reader.real("hardening", kAnyMin, kAnyMax, plasticity.hardening);
-  plasticity.relaxation_time =
-      reader.real("relaxation_time", kAnyMin, kAnyMax, plasticity.relaxation_time);
-  plasticity.max_strain = reader.real("max_strain", kAnyMin, kAnyMax, plasticity.max_strain);
-  reader.refuse_unknown();
-  return plasticity;
-}
-
 }  // namespace
 
 SpringConstants to_spring_constants(ObjectReader& reader) {
   SpringConstants constants;
-  constants.stiffness = reader.real("stiffness", 0, kMaxStiffness);
-  constants.damping = reader.real("damping", kAnyMin, kAnyMax, constants.damping);
+  read_members(reader, constants);
   return constants;
 }
 
 SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors) {
-  ObjectReader reader(value, std::move(path), errors);
-  const SpringConstants constants = to_spring_constants(reader);
-  reader.refuse_unknown();
-  return constants;
+  return to_part<SpringConstants>(value, std::move(path), errors);
 }
 
 namespace {
@@ -74,9 +72,7 @@ class LawReader {
  public:
   LawReader(ObjectReader& reader, Errors& errors) : reader_(reader), errors_(errors) {
     const std::size_t errors_before = errors.size();
-    // The order of InterfaceLaw.
-    law_ = static_cast<InterfaceLaw>(
-        reader.choice("law", {"penalty", "lennard_jones", "sph", "projection"}, std::size_t{0}));
+    law_ = read_enum<InterfaceLaw>(reader, "law", InterfaceLaw::penalty);
     is_known_ = errors.size() == errors_before;
   }
 
@@ -127,9 +123,9 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Material material;
   material.name = reader.text("name", kMaxNameLength);
-  material.density = reader.real("density", kAnyMin, kAnyMax, material.density);
+  read_members(reader, material);
   if (const Json* liquid = reader.member("liquid")) {
-    material.liquid = to_liquid(*liquid, reader.path_of("liquid"), errors);
+    material.liquid = to_part<LiquidConstants>(*liquid, reader.path_of("liquid"), errors);
   }
   if (const Json* springs = reader.member("springs")) {
     material.springs = to_lattice_springs(*springs, reader.path_of("springs"), errors);
@@ -137,17 +133,9 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
   if (const Json* contact = reader.member("self_contact")) {
     material.self_contact = to_spring_constants(*contact, reader.path_of("self_contact"), errors);
   }
-  material.implicit_springs = reader.boolean("implicit_springs", material.implicit_springs);
   if (const Json* plasticity = reader.member("plasticity")) {
-    material.plasticity = to_plasticity(*plasticity, reader.path_of("plasticity"), errors);
+    material.plasticity = to_part<Plasticity>(*plasticity, reader.path_of("plasticity"), errors);
   }
-  if (reader.has("tearing_strain")) {
-    material.tearing_strain = reader.real("tearing_strain", kAnyMin, kAnyMax);
-  }
-  if (reader.has("elongation_limit")) {
-    material.elongation_limit = reader.real("elongation_limit", kAnyMin, kAnyMax);
-  }
-  material.bulk_modulus = reader.real("bulk_modulus", kAnyMin, kAnyMax, material.bulk_modulus);
   reader.refuse_unknown();
   return material;
 }

@@ -17,6 +17,14 @@ namespace vat::scene_parts {
 inline constexpr std::size_t kMaxFileName = 256;
 inline constexpr std::size_t kMaxInterfaces = 4096;  // all pairs of 64 materials and the vat
 
+/// Reads a value of an enumeration by name. Without a fallback the member is required.
+template <class Enum>
+Enum read_enum(ObjectReader& reader, std::string_view key, std::optional<Enum> fallback = {}) {
+  std::optional<std::size_t> index;
+  if (fallback) index = static_cast<std::size_t>(*fallback);
+  return static_cast<Enum>(reader.choice(key, kNamesOf<Enum>, index));
+}
+
 /// Reads a list of vectors with components of at most `bound` in magnitude.
 std::vector<Vec3> read_vectors(ObjectReader& reader, std::string_view key, Real bound,
                                bool required, Errors& errors);
@@ -37,8 +45,6 @@ Emitter to_emitter(const Json& value, std::string path, Errors& errors);
 Drain to_drain(const Json& value, std::string path, Errors& errors);
 IncompressibleSolve to_incompressible(const Json& value, std::string path, Errors& errors);
 ForceSwitches to_force_switches(const Json& value, std::string path, Errors& errors);
-/// Reads the member "integrator". Without a fallback it is required.
-IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback = {});
 Numerics to_numerics(const Json& value, std::string path, Errors& errors);
 /// Reads a field whose values have a magnitude of at most `bound`, including its waves.
 VectorField to_field(const Json& value, std::string path, Real bound, Errors& errors);

@@ -140,24 +140,13 @@ ForceSwitches to_force_switches(const Json& value, std::string path, Errors& err
   return forces;
 }
 
-IntegratorId read_integrator(ObjectReader& reader, std::optional<IntegratorId> fallback) {
-  std::optional<std::size_t> usual;
-  if (fallback) usual = static_cast<std::size_t>(*fallback);
-  // The order of IntegratorId.
-  return static_cast<IntegratorId>(reader.choice(
-      "integrator",
-      {"explicit_euler", "symplectic_euler", "velocity_verlet", "heun", "runge_kutta_4"}, usual));
-}
-
 Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Numerics numerics;
-  numerics.integrator = read_integrator(reader, numerics.integrator);
+  numerics.integrator = read_enum<IntegratorId>(reader, "integrator", numerics.integrator);
   numerics.step = reader.real("step", kMinStep, kMaxStep, numerics.step);
   numerics.tick = reader.real("tick", kMinStep, kMaxTick, numerics.tick);
-  // The order of StepControl.
-  numerics.control = static_cast<StepControl>(reader.choice(
-      "control", {"fixed", "adaptive", "local"}, static_cast<std::size_t>(numerics.control)));
+  numerics.control = read_enum<StepControl>(reader, "control", numerics.control);
   numerics.tolerance = reader.real("tolerance", kMinAccuracy, kMaxTolerance, numerics.tolerance);
   if (reader.has("accuracy")) {
     numerics.accuracy = reader.real("accuracy", kMinAccuracy, kMaxAccuracy, kMaxAccuracy);

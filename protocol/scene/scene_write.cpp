@@ -1,5 +1,6 @@
 #include <type_traits>
 
+#include "core/scene/material_members.h"
 #include "protocol/scene/scene_json.h"
 
 namespace vat {
@@ -15,8 +16,19 @@ Json to_json(const std::vector<Vec3>& vectors) {
   return list;
 }
 
+template <class Part>
+Json members_of(const Part& part) {
+  Json json = Json::object();
+  for (const Member<Part>& member : kMembersOf<Part>) {
+    if (const auto* flag = std::get_if<bool Part::*>(&member.value))
+      json[member.name] = part.**flag;
+    if (const auto number = member.number_in(part)) json[member.name] = *number;
+  }
+  return json;
+}
+
 Json to_json(const SpringConstants& constants) {
-  return {{"stiffness", constants.stiffness}, {"damping", constants.damping}};
+  return members_of(constants);
 }
 
 Json to_json(const LatticeSprings& springs) {
@@ -28,26 +40,12 @@ Json to_json(const LatticeSprings& springs) {
 }
 
 Json to_json(const Material& material) {
-  Json json = {{"name", material.name}, {"density", material.density}};
-  if (material.liquid) {
-    json["liquid"] = {{"stiffness", material.liquid->stiffness},
-                      {"viscosity", material.liquid->viscosity},
-                      {"support_radius", material.liquid->support_radius},
-                      {"artificial_viscosity", material.liquid->artificial_viscosity},
-                      {"surface_tension", material.liquid->surface_tension}};
-  }
+  Json json = members_of(material);
+  json["name"] = material.name;
+  if (material.liquid) json["liquid"] = members_of(*material.liquid);
   if (material.springs) json["springs"] = to_json(*material.springs);
   if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
-  json["implicit_springs"] = material.implicit_springs;
-  if (material.plasticity) {
-    json["plasticity"] = {{"yield_strain", material.plasticity->yield_strain},
-                          {"hardening", material.plasticity->hardening},
-                          {"relaxation_time", material.plasticity->relaxation_time},
-                          {"max_strain", material.plasticity->max_strain}};
-  }
-  if (material.tearing_strain) json["tearing_strain"] = *material.tearing_strain;
-  json["bulk_modulus"] = material.bulk_modulus;
-  if (material.elongation_limit) json["elongation_limit"] = *material.elongation_limit;
+  if (material.plasticity) json["plasticity"] = members_of(*material.plasticity);
   return json;
 }
 

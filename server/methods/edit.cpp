@@ -57,7 +57,8 @@ SessionAction read_world_set_material(ObjectReader& params, Errors&) {
 
 SessionAction read_world_set_numerics(ObjectReader& params, Errors& errors) {
   std::optional<IntegratorId> integrator;
-  if (params.has("integrator")) integrator = scene_parts::read_integrator(params);
+  if (params.has("integrator"))
+    integrator = scene_parts::read_enum<IntegratorId>(params, "integrator");
   std::optional<Real> step;
   if (params.has("step")) step = params.real("step", kAnyMin, kAnyMax);
   if (!integrator && !step) {

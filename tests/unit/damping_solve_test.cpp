@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/stepping/integrator.h"
+#include "core/stepping/stepper.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 #include "tests/support/thread_runner.h"
@@ -82,10 +82,14 @@ Real force_error(const Scene& scene) {
   const Controls controls;
   Workspace work;
   const ForceModel force_model{model, controls, work};
-  IntegratorScratch scratch;
   State state = probe.state();
   state.forces_current = false;
-  take_step(IntegratorId::velocity_verlet, force_model, state, 0, kStep, scratch);
+  const GuardBounds guard = guard_bounds(model);
+  const StepBounds bounds = find_step_bounds(model);
+  AdvanceReport report;
+  Stepper stepper;
+  EXPECT_TRUE(stepper.take_nominal_step({force_model, state, guard, bounds, report}));
+  EXPECT_EQ(report.undone_steps, 0U);
   EXPECT_TRUE(must_solve_damping(state.bound, kStep));
   const std::vector<Vec3> kept = state.forces.particle;
   force_model.evaluate(state.now, kStep, state.forces);

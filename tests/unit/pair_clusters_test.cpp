@@ -47,7 +47,7 @@ class Cloud {
   }
 
   Points places;  ///< by source
-  SearchPlaces search;
+  SearchCoordinates search;
   std::array<SourceGroup, 2> groups;
 
  private:

@@ -23,7 +23,7 @@ constexpr Index kMirrored = 500;
 struct Pairs {
   std::vector<PairPlace> places;
   std::vector<PairMotion> motions;
-  PlaceGrid grid{{4, -1, -1}, 2};
+  PositionGrid grid{{4, -1, -1}, 2};
   std::vector<PackedPlace> packed_places;
   std::vector<PackedMotion> packed_motions;
   std::vector<PairViscosity> viscosities;
@@ -64,7 +64,7 @@ struct Pairs {
                                grid.coordinate(p.z, 2), single(p.weight)});
       packed_motions.push_back({single(m.pressure), single(m.vx), single(m.vy), single(m.vz)});
     }
-    packed_places.back() = {PlaceGrid::kFar, PlaceGrid::kFar, PlaceGrid::kFar, 0};
+    packed_places.back() = {PositionGrid::kFar, PositionGrid::kFar, PositionGrid::kFar, 0};
   }
 
   PairInputs inputs(bool mixed) const {
@@ -263,10 +263,10 @@ TEST_P(PairSumsOf, MeanHasWeightsAndMoments) {
   });
 }
 
-TEST(PlaceGrid, RoundsToItsUnitAndKeepsToItself) {
-  const PlaceGrid grid({-3, 2, 5}, 7);
-  EXPECT_LE(grid.unit, 2 * 7.0 / PlaceGrid::kCount);
-  EXPECT_GE(grid.unit, 7.0 / PlaceGrid::kCount);
+TEST(PositionGrid, RoundsToItsUnitAndKeepsToItself) {
+  const PositionGrid grid({-3, 2, 5}, 7);
+  EXPECT_LE(grid.unit, 2 * 7.0 / PositionGrid::kCount);
+  EXPECT_GE(grid.unit, 7.0 / PositionGrid::kCount);
   for (const Real x : {0.0, 0.1, 3.3, 6.999, 7.0}) {
     const PackedPlace packed{grid.coordinate(x - 3, 0), grid.coordinate(x + 2, 1),
                              grid.coordinate(x + 5, 2), 0};
@@ -274,7 +274,7 @@ TEST(PlaceGrid, RoundsToItsUnitAndKeepsToItself) {
     EXPECT_LE(error.cwiseAbs().maxCoeff(), 0.51 * grid.unit);
   }
   EXPECT_EQ(grid.coordinate(-4, 0), 0);
-  EXPECT_EQ(grid.coordinate(1e300, 0), PlaceGrid::kCount);
+  EXPECT_EQ(grid.coordinate(1e300, 0), PositionGrid::kCount);
   EXPECT_EQ(grid.coordinate(std::numeric_limits<Real>::quiet_NaN(), 0), 0);
 }
 

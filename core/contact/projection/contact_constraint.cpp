@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/limits.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -82,6 +83,7 @@ void recall(const std::vector<ContactImpulse>& last, std::vector<ContactConstrai
 
 void record(const std::vector<ContactConstraint>& constraints, Real dt,
             std::vector<ContactImpulse>& contacts) {
+  VAT_CHECK(dt > 0);
   constexpr Real kSteady = 2;
   contacts.clear();
   for (const ContactConstraint& contact : constraints) {
@@ -97,7 +99,7 @@ void record(const std::vector<ContactConstraint>& constraints, Real dt,
 bool ConstraintSearch::find(const ForceModel& f, const Configuration& at, const VatMotion& vat,
                             std::vector<ContactConstraint>& constraints) {
   constraints.clear();
-  // Before there is memory for all of them.
+  // Checked before memory for all of them is allocated.
   if (f.model.contact_reach > 0 &&
       f.work.of<ContactForceScratch>().contacts.size() > 4 * kMaxProjections)
     return false;

@@ -10,17 +10,17 @@
 
 namespace vat {
 
-/// What moves with one end of a contact. A free particle is touched at its centre and a rigid body
-/// at its surface, so that the angular momentum of any two is kept.
+/// The part that moves with one end of a contact. The contact point of a free particle is its
+/// centre, that of a rigid body is at its surface, so that angular momentum is conserved.
 struct ContactEnd {
   Index particle = kNoParticle;  ///< kNoParticle: a wall
-  Index rigid = kNoParticle;     ///< the body's place among the rigid ones; kNoParticle: a free one
-  Real inverse_mass = 0;         ///< of the particle or the body; 0: nothing moves it [1/kg]
-  Vec3 arm = Vec3::Zero();       ///< from the body's centre of mass to the point of contact [m]
+  Index rigid = kNoParticle;     ///< index of the rigid body; kNoParticle: a free particle
+  Real inverse_mass = 0;         ///< of the particle or the body; 0: it does not move [1/kg]
+  Vec3 arm = Vec3::Zero();       ///< from the centre of mass of the body to the contact point [m]
 };
 
-/// A contact by projection, of two particles or of one and a wall: their distance is not to be
-/// below the threshold.
+/// A contact by projection between two particles, or a particle and a wall: their distance must be
+/// at least the threshold.
 struct ContactConstraint {
   std::array<ContactEnd, 2> ends{};
   int wall = -1;
@@ -28,15 +28,15 @@ struct ContactConstraint {
   Real friction = 0;
   Real restitution = 0;
 
-  Vec3 normal = Vec3::Zero();  ///< of impulses, towards the first end
-  Real mobility = 0;           ///< speed of parting by a unit impulse along the normal [1/kg]
-  Real approach = 0;           ///< speed of parting before the step's impulses [m/s]
-  Real parting = 0;            ///< speed at which they are to part at the step's end [m/s]
+  Vec3 normal = Vec3::Zero();  ///< direction of impulses on the first end
+  Real mobility = 0;           ///< separation speed by a unit impulse along the normal [1/kg]
+  Real approach = 0;           ///< separation speed before the impulses of the step [m/s]
+  Real parting = 0;            ///< required separation speed at the end of the step [m/s]
   Real push = 0;               ///< impulse along the normal [N s]
   Vec3 friction_impulse = Vec3::Zero();  ///< impulse across the normal [N s]
-  ContactImpulse last{};                 ///< of the step before
-  Vec3 drift = Vec3::Zero();             ///< impulse at the start of this one [N s]
-  // Of the conjugate gradients [N s].
+  ContactImpulse last{};                 ///< of the last step
+  Vec3 drift = Vec3::Zero();             ///< impulse at the start of the step [N s]
+  // Vectors of the conjugate gradients [N s]:
   Vec3 gradient = Vec3::Zero();
   Vec3 direction = Vec3::Zero();
 
@@ -47,20 +47,21 @@ struct ContactConstraint {
   }
 };
 
-/// A rigid body as contacts see it.
+/// The motion and inertia of a rigid body for contacts.
 struct RigidMotion {
-  Vec3 velocity;         ///< [m/s] of the centre of mass
+  Vec3 velocity;         ///< of the centre of mass [m/s]
   Vec3 spin;             ///< [rad/s]
-  Mat3 inverse_inertia;  ///< in world axes; zero for a held body, as is its inverse mass
+  Mat3 inverse_inertia;  ///< in world axes; zero for a held body, like its inverse mass
   Real inverse_mass;     ///< [1/kg]
 };
 
-/// A body's motion, of the orientation and momenta of `state`.
+/// The motion of a body with the orientation and momenta of `state`.
 RigidMotion rigid_motion(const RigidModel& rigid, const RigidState& state, bool is_held);
 
-/// The contacts that the configuration has or nearly has, in an order that depends on it alone:
-/// those of projections, of which something moves one end. Needs the list of contacts; walls are as
-/// `vat`. False, and none, where there are more than kMaxProjections.
+/// Finds the contacts by projection with at least one end that moves, including those with a small
+/// gap, in an order that depends on the configuration only. Needs the list of contacts. `vat` is
+/// the motion of the walls. Returns false, without contacts, if there are more than
+/// kMaxProjections.
 class ConstraintSearch {
  public:
   bool find(const ForceModel& force_model, const Configuration& at, const VatMotion& vat,
@@ -70,13 +71,13 @@ class ConstraintSearch {
   std::vector<std::vector<ContactConstraint>> blocks_;  ///< by block of particles
 };
 
-/// Gives contacts what they did in the step before; both are by particle and other.
+/// Sets the impulses of the last step. Both lists are ordered by particle and other.
 void recall(const std::vector<ContactImpulse>& last, std::vector<ContactConstraint>& constraints);
-/// What they did in this one, of `dt` [s].
+/// Stores the impulses of this step of length `dt` [s].
 void record(const std::vector<ContactConstraint>& constraints, Real dt,
             std::vector<ContactImpulse>& contacts);
 
-/// How far beyond its threshold a contact is taken in, in thresholds: impulses may close the gap.
+/// The gap up to which contacts are included, in thresholds: impulses may close it.
 inline constexpr Real kContactMargin = 0.1;
 
 }  // namespace vat

@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "core/laws/pair_direction.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// From the second end's particle to the first's, in a periodic world to its nearest image.
+/// The vector from the second end's particle to the first one; in a periodic world to its nearest
+/// image.
 Vec3 between(const Model& model, const Configuration& at, const ContactConstraint& contact) {
   const Vec3 x = at.position[contact.ends[0].particle] - at.position[contact.ends[1].particle];
   return model.periodic.any() ? model.periodic.nearest(x) : x;
@@ -15,10 +17,10 @@ Vec3 between(const Model& model, const Configuration& at, const ContactConstrain
 
 }  // namespace
 
-/// Both at one point between the particles, or at the wall.
+/// Sets both arms to one point between the particles, or at the wall.
 void ContactSolve::set_arms(ContactConstraint& contact, Real distance) const {
   auto& [first, second] = contact.ends;
-  Real share = 1;  // of the distance, from the first
+  Real share = 1;  // of the distance, from the first end
   if (first.rigid == kNoParticle) {
     share = 0;
   } else if (second.rigid != kNoParticle) {
@@ -36,7 +38,8 @@ void ContactSolve::set_arms(ContactConstraint& contact, Real distance) const {
 
 void ContactSolve::set_geometry(const Configuration& predicted,
                                 std::vector<ContactConstraint>& constraints) {
-  // Beyond this the ends pass each other rather than meet, and only where they get to counts.
+  VAT_CHECK(dt > 0 && at.rigid.size() == model().rigid_bodies.size());
+  // At larger angles the ends pass each other, and the predicted normal is used.
   constexpr Real kMinCosine = 0.5;
   rigid.resize(at.rigid.size());
   for (std::size_t b = 0; b < rigid.size(); ++b) {
@@ -79,6 +82,7 @@ Real ContactSolve::mobility(const ContactEnd& end, const Vec3& direction) const 
 
 void ContactSolve::apply(const ContactEnd& end, const Vec3& impulse) {
   if (end.inverse_mass == 0) return;
+  VAT_ASSERT(end.rigid == kNoParticle || end.rigid < rigid.size());
   if (end.rigid == kNoParticle) {
     at.velocity[end.particle] += end.inverse_mass * impulse;
     return;
@@ -97,7 +101,7 @@ Vec3 ContactSolve::slip(const ContactConstraint& contact) const {
   return velocity(contact.ends[0]) - vat.velocity - wall.velocity;
 }
 
-/// The impulses that it adds may be such as a contact cannot have; the next sweep takes them back.
+/// The extrapolated impulses may violate the constraints; the next sweep corrects them.
 Real ContactSolve::extrapolate(std::vector<ContactConstraint>& constraints, Real last) {
   Real size = 0;
   for (ContactConstraint& contact : constraints) {

@@ -7,6 +7,7 @@
 #include "core/liquid/gas/liquid.h"
 #include "core/state/kick_drift.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -21,19 +22,19 @@ VatMotion vat_at(const Model& model, Real time) {
   return model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
 }
 
-/// The list of contacts at the configuration, with the margin of those that are nearly ones.
+/// Updates the list of contacts at the configuration, with the margin of contacts.
 void update_list(const ForceModel& f, Configuration& at, Real time) {
+  ContactForceScratch& contact_buffers = f.work.of<ContactForceScratch>();
   if (f.model.contact_reach <= 0) return;
   Forces none;
   StepContext context{f.model, f.controls, time, f.step, at, none, f.work, f.runner};
   const Real slack = kContactMargin * f.model.contact_reach;
-  if (f.work.of<ContactForceScratch>().contacts.is_current(context, slack)) return;
+  if (contact_buffers.contacts.is_current(context, slack)) return;
   if (f.model.liquid_count > 0) sort_liquid(context);
-  f.work.of<ContactForceScratch>().contacts.update(context, slack);
+  contact_buffers.contacts.update(context, slack);
 }
 
-/// Gaps at the end of the step [m], from the poses that were predicted and what velocities have
-/// changed since.
+/// Gaps at the end of the step [m], from the predicted poses and the changes of velocities since.
 struct Gaps {
   const Model& model;
   const VatMotion& vat;
@@ -73,11 +74,12 @@ void ContactProjection::predict(const ForceModel& f, Configuration& now, Real dt
 }
 
 void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time, Real dt) {
-  // Beyond the first for what turns: it is predicted as if its turn were small.
+  // Further rounds are for rotations: the prediction is linear in the change of a rotation.
   constexpr int kMaxRounds = 4;
-  constexpr Real kTolerance = 1e-6;  // of a threshold
+  constexpr Real kTolerance = 1e-6;  // in thresholds
   const Model& model = f.model;
   start_ = now;
+  VAT_CHECK(dt > 0 && now.rigid.size() == model.rigid_bodies.size());
   pose_bodies(model, start_);
   predict(f, now, dt);
   const VatMotion before = vat_at(model, time);
@@ -87,7 +89,7 @@ void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time
   if (constraints_.empty()) return;
 
   VatMotion moving = before;
-  moving.velocity = (vat.offset - before.offset) / dt;  // so that what sticks goes as far
+  moving.velocity = (vat.offset - before.offset) / dt;  // sticking contacts move as far as the wall
   ContactSolve solve{f, moving, start_, rigid_, dt};
   solve.set_geometry(now, constraints_);
   predicted_ = rigid_;
@@ -116,10 +118,11 @@ void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time
 }
 
 void ContactProjection::finish(const ForceModel& f, Configuration& now, Real time, Real dt) {
-  constexpr Real kTouching = 1e-3;  // of a threshold
+  constexpr Real kTouching = 1e-3;  // in thresholds
   now.contacts.clear();
   if (constraints_.empty()) return;
   const Model& model = f.model;
+  VAT_CHECK(dt > 0 && now.position.size() == model.particle_count);
   const VatMotion vat = vat_at(model, time + dt);
   pose_bodies(model, now);
   rigid_.resize(model.rigid_bodies.size());
@@ -130,7 +133,7 @@ void ContactProjection::finish(const ForceModel& f, Configuration& now, Real tim
   ContactSolve solve{f, vat, now, rigid_, dt};
   solve.set_geometry(now, constraints_);
 
-  // What gravity alone brings about in two steps is rest.
+  // The rebound that gravity causes in two steps counts as rest.
   const Real slow = model.scene.forces.gravity ? 2 * dt * model.scene.gravity.norm() : 0;
   for (ContactConstraint& contact : constraints_) {
     contact.friction_impulse -= contact.friction_impulse.dot(contact.normal) * contact.normal;

@@ -7,6 +7,7 @@
 #include "core/laws/pair_direction.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -32,7 +33,7 @@ void sort_liquid(StepContext& c) {
 
 namespace {
 
-/// rho_i = sum_j m_j W(x_i - x_j, h), the particle itself included.                   Boldt eq. 10
+/// rho_i = sum_j m_j W(x_i - x_j, h), including the particle itself.                  Boldt eq. 10
 template <bool periodic>
 Real sum_density(const Model& model, const CellSortedPoints& points, Index self,
                  std::span<const Index> neighbours) {
@@ -55,12 +56,14 @@ Real sum_density(const Model& model, const CellSortedPoints& points, Index self,
 
 template <bool periodic>
 void compute_density(StepContext& c) {
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
-  find_pairs<periodic>(
-      c.model, c.work, c.runner, [&](Index slot, std::span<const Index> neighbours) {
-        c.work.of<LiquidScratch>().density[order[slot]] =
-            sum_density<periodic>(c.model, c.work.of<LiquidScratch>().liquid, slot, neighbours);
-      });
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  VAT_CHECK(c.configuration.position.size() >= c.model.liquid_count);
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  find_pairs<periodic>(c.model, c.work, c.runner,
+                       [&](Index slot, std::span<const Index> neighbours) {
+                         buffers.density[order[slot]] =
+                             sum_density<periodic>(c.model, buffers.liquid, slot, neighbours);
+                       });
 }
 
 }  // namespace
@@ -70,13 +73,14 @@ void compute_liquid_density(StepContext& c) {
 }
 
 void compute_liquid_pressure(StepContext& c) {
-  c.work.of<LiquidScratch>().pressure.resize(c.model.liquid_count);
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  buffers.pressure.resize(c.model.liquid_count);
+  VAT_CHECK(buffers.density.size() == c.model.liquid_count);
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const LiquidModel& liquid = liquid_of(c.model, static_cast<Index>(i));
-      c.work.of<LiquidScratch>().pressure[i] =
-          std::max(Real{0}, liquid.stiffness *
-                                (c.work.of<LiquidScratch>().density[i] - liquid.rest_density));
+      buffers.pressure[i] =
+          std::max(Real{0}, liquid.stiffness * (buffers.density[i] - liquid.rest_density));
     }
   });
 }
@@ -85,34 +89,33 @@ namespace {
 
 template <LiquidTerms terms>
 void fill_records(StepContext& c) {
-  const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const CellSortedPoints& points = buffers.liquid;
   const std::span<const Index> order = points.grid.order();
-  c.work.of<LiquidScratch>().liquid_records.resize(order.size());
-  if constexpr (terms.filled) c.work.of<LiquidScratch>().filling.resize(order.size());
+  buffers.liquid_records.resize(order.size());
+  if constexpr (terms.filled) buffers.filling.resize(order.size());
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const Index i = order[slot];
-      LiquidRecord& record = c.work.of<LiquidScratch>().liquid_records[slot];
+      LiquidRecord& record = buffers.liquid_records[slot];
       record.position = {points.x[slot], points.y[slot], points.z[slot]};
-      record.volume = c.model.mass[i] / c.work.of<LiquidScratch>().density[i];
+      record.volume = c.model.mass[i] / buffers.density[i];
       if constexpr (terms.viscosity) record.velocity = c.configuration.velocity[i];
       if constexpr (terms.pressure)
-        record.pressure =
-            liquid_of(c.model, i).pressure_share * c.work.of<LiquidScratch>().pressure[i];
+        record.pressure = liquid_of(c.model, i).pressure_share * buffers.pressure[i];
       if constexpr (terms.filled) {
-        c.work.of<LiquidScratch>().filling[slot] =
-            c.work.of<LiquidScratch>().density[i] / c.work.of<LiquidScratch>().filled_density[i];
+        buffers.filling[slot] = buffers.density[i] / buffers.filled_density[i];
       }
     }
   });
 }
 
 // Pressure: -V_i V_j (p_i + p_j) grad W. Boldt and [MCG03] eq. 10 have half of it (pressure_share),
-// which tends to half the pressure gradient in the bulk (there sum_j V_j grad W is near zero);
-// Boldt also prints densities for the pressures and drops the sign, which pulls.
+// which converges to half of the pressure gradient (in the interior, sum_j V_j grad W is near
+// zero). Boldt also prints densities for pressures and omits the sign, which attracts.
 // Viscosity: mu V_i V_j (v_j - v_i) laplacian W.                                  [MCG03] eq. 14
-// Both are forces on particles: the papers' force densities times the particle's volume, which the
-// caller multiplies by.
+// Both are forces on particles: the force densities of the papers times the volume of the particle,
+// by which the caller multiplies.
 template <LiquidTerms terms>
 inline Vec3 liquid_pair_force(const LiquidModel& liquid, const LiquidRecord& i,
                               const LiquidRecord& j, Real r, const Vec3& direction, Real filling) {
@@ -130,26 +133,26 @@ inline Vec3 liquid_pair_force(const LiquidModel& liquid, const LiquidRecord& i,
 
 template <LiquidTerms terms, bool periodic>
 void add_pair_forces(StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
   fill_records<terms>(c);
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
+  const std::span<const Index> order = buffers.liquid.grid.order();
   const int dimensions = c.model.scene.dimensions;
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
-    const PairBlock& pairs = c.work.of<LiquidScratch>().liquid_pairs[begin / kBlockSize];
+    const PairBlock& pairs = buffers.liquid_pairs[begin / kBlockSize];
     for (std::size_t s = begin; s < end; ++s) {
-      const LiquidRecord& own = c.work.of<LiquidScratch>().liquid_records[s];
+      const LiquidRecord& own = buffers.liquid_records[s];
       const LiquidModel& liquid = liquid_of(c.model, order[s]);
       Vec3 sum = Vec3::Zero();
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
         const Index slot = pairs.slots[k];
-        const LiquidRecord& other = c.work.of<LiquidScratch>().liquid_records[slot];
+        const LiquidRecord& other = buffers.liquid_records[slot];
         Vec3 x_ij = own.position - other.position;
         if constexpr (periodic) x_ij = c.model.periodic.nearest(x_ij);
         const Real r = x_ij.norm();
         const Vec3 direction = pair_direction(x_ij, r, order[s], order[slot], dimensions);
         Real filling = 1;
-        if constexpr (terms.filled)
-          filling =
-              c.work.of<LiquidScratch>().filling[s] * c.work.of<LiquidScratch>().filling[slot];
+        if constexpr (terms.filled) filling = buffers.filling[s] * buffers.filling[slot];
         sum += liquid_pair_force<terms>(liquid, own, other, r, direction, filling);
       }
       c.forces.particle[order[s]] += own.volume * sum;

@@ -4,24 +4,25 @@ namespace vat {
 
 struct StepContext;
 
-/// Stage: cell order of the liquid particles.
+/// Stage: sorts the liquid particles into cells.
 void sort_liquid(StepContext& context);
 
-/// Stage: density by summation, Boldt eq. 10 with poly6; keeps the neighbours found. Where a
-/// collapsed liquid has more than max_pairs() of them, says so in the workspace and leaves a
-/// density that is not a number, so that the step fails.
+/// Stage: computes the density by summation, Boldt eq. 10 with poly6, and stores the neighbours. If
+/// a collapsed liquid has more than max_pairs(), sets too_many_pairs and one density to NaN, so
+/// that the step fails.
 void compute_liquid_density(StepContext& context);
 
-/// Stage: p = k (rho - rho_0), Boldt eq. 14, and never below zero: a free surface lacks neighbours,
-/// and the pull of a negative pressure there makes particles clump.
+/// Stage: p = k (rho - rho_0), Boldt eq. 14, at least zero. A free surface has few neighbours, and
+/// particles with a negative pressure there would form clumps.
 void compute_liquid_pressure(StepContext& context);
 
-/// Which forces a liquid has. Chosen when a scene is compiled: pairs do not ask.
+/// The forces of a liquid, chosen when a scene is compiled, so that loops over pairs have no
+/// conditions.
 struct LiquidTerms {
   bool pressure = true;
   bool viscosity = true;
-  /// Viscosity counts volumes by the filled density: beside a wall that drags the liquid along, the
-  /// summed one lacks what is beyond the wall.
+  /// Viscosity uses volumes of the filled density: at a no-slip wall, the summed density does not
+  /// include the liquid beyond the wall.
   bool filled = false;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/support/check.h"
+
 namespace vat {
 
 void Complementarity::resize(std::size_t count) {
@@ -47,6 +49,7 @@ Real Complementarity::clamp(TaskRunner* runner) {
 
 void Complementarity::find_excess(TaskRunner* runner, SolveReport& report) {
   for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    VAT_CHECK(start_excess_.size() == x.size() && product_.size() == x.size());
     for (std::size_t i = begin; i < end; ++i) excess[i] = start_excess_[i] - product_[i];
   });
   find_gradient(runner, report);

@@ -4,54 +4,57 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/support/check.h"
 #include "core/support/parallel.h"
 #include "core/types.h"
 
 namespace vat {
 
-/// Until when a Complementarity is solved. Residuals are |excess| over the unknown's scale, of
-/// those excesses that are above 0, or whose x is.
+/// Stopping criteria of a Complementarity. Residuals are |excess| / scale of the unknowns whose
+/// excess or x is above 0.
 struct SolveLimits {
   Real mean = 0;
   Real greatest = 0;
   int most_iterations = 0;
-  Real row = 0;  ///< of A: the sum of magnitudes over the diagonal, at most
+  Real row = 0;  ///< upper bound of the row sums of |A| / diagonal
 };
 
-/// Find x >= 0 whose excess e(x) = e(0) - A x is nowhere above 0, and 0 where x > 0, with A
-/// symmetric and positive semi-definite.
+/// Finds x >= 0 with the excess e(x) = e(0) - A x <= 0, and e = 0 where x > 0, for a symmetric,
+/// positive semi-definite A.
 ///
-/// By conjugate gradients with the diagonal as preconditioner (E. Polak, G. Ribiere, Rev. Franc.
-/// Inform. Rech. Oper. 16 (1969) 35) for the x that are above 0 or whose excess is; once these are
-/// solved, x below 0 become 0, and where the mean excess may then be too much it is found anew, and
-/// the search begins anew (an active set that is corrected as a whole, as by M. Hintermueller, K.
-/// Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865). The same bits for any number of threads.
+/// Uses conjugate gradients with the diagonal as preconditioner (E. Polak, G. Ribiere, Rev. Franc.
+/// Inform. Rech. Oper. 16 (1969) 35) for the unknowns whose x or excess is above 0. After their
+/// solution, negative x are set to 0. If the mean excess may then exceed its limit, it is computed
+/// again and the search restarts (an active set that is updated as a whole, as by M. Hintermueller,
+/// K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865). The result has the same bits for all numbers
+/// of threads.
 class Complementarity {
  public:
   std::vector<Real> x;
   std::vector<Real> excess;    ///< e(x), kept up to date
-  std::vector<Real> diagonal;  ///< of A, or a bound of it; above 0
+  std::vector<Real> diagonal;  ///< of A, or an upper bound; above 0
   std::vector<Real> scale;     ///< of the residuals; above 0
 
   void resize(std::size_t count);
 
-  /// From the present x >= 0 and its excess. `system.act(d)` and then
-  /// `system.find_product(product)` set product = A d; `system.add(share)` adds that share of what
-  /// d did to what all of them have done, and `system.replace()` makes what d did all. At the end
-  /// no x is below 0; what was done is that of x before those were set to 0, less x at the start,
-  /// and the mean allows for it.
+  /// Solves from the present x >= 0 and its excess. `system.act(d)` and then
+  /// `system.find_product(product)` compute product = A d. `system.add(share)` adds this share of
+  /// the effect of d to the total effect, and `system.replace()` replaces the total effect by that
+  /// of d. At the end no x is negative. The total effect is that of the change of x before negative
+  /// x were set to 0; the mean includes the difference.
   template <class System>
   SolveReport solve(const SolveLimits& limits, TaskRunner* runner, System& system) {
+    VAT_CHECK(excess.size() == x.size() && diagonal.size() == x.size() && scale.size() == x.size());
     SolveReport report;
     bool is_new = true;
     keep_start(runner);
     find_gradient(runner, report);
     const auto is_open = [&] {
-      // A NaN ends it, and is the guard's to see.
+      // A NaN ends the solve; the guard detects it.
       return !std::isnan(report.mean) &&
              (report.mean > limits.mean || report.greatest > limits.greatest);
     };
-    // The last one is to close the solve.
+    // The last iteration closes the solve.
     while (is_open() && report.iterations + 2 <= limits.most_iterations) {
       const Real slope = choose_direction(is_new, runner);
       system.act(direction_);
@@ -77,27 +80,28 @@ class Complementarity {
   }
 
  private:
-  /// Sums and greatest values over one block.
+  /// Sums and maxima over one block.
   struct Sums {
     Real residual = 0;
     Real greatest = 0;
-    Real square = 0;  ///< g.D g of the gradient g = D^-1 e where x may change
-    Real mixed = 0;   ///< the same with that before
+    Real square = 0;  ///< g.D g of the gradient g = D^-1 e for the x that may change
+    Real mixed = 0;   ///< g.D g_last with the preceding gradient
   };
 
   void keep_start(TaskRunner* runner);
   void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
-  /// Sets x below 0 to 0, and the direction to the way from the start to x. The mean of their
-  /// changes times the diagonal over the scale.
+  /// Sets negative x to 0, and the direction to the change of x since the start. Returns the mean
+  /// of these changes times diagonal / scale.
   Real clamp(TaskRunner* runner);
-  /// Of x, by the product of the way from the start; and gradient and residuals there.
+  /// Updates the excess at x by the product of the matrix and the change since the start, and the
+  /// gradient and residuals there.
   void find_excess(TaskRunner* runner, SolveReport& report);
-  /// d = g + beta d, or g where that does not lead down; the slope d.e.
+  /// d = g + beta d, or g if that is no descent direction. Returns the slope d.e.
   Real choose_direction(bool is_new, TaskRunner* runner);
   Real follow(Real share, TaskRunner* runner);
-  /// To the least x.A x / 2 - e(0).x along the direction.
+  /// The length to the minimum of x.A x / 2 - e(0).x along the direction.
   Real length_of_step(TaskRunner* runner, Real slope);
-  /// Goes so far along the direction, and finds gradient and residuals there.
+  /// Moves x by this length along the direction, and computes gradient and residuals.
   void take_step(Real length, TaskRunner* runner, SolveReport& report);
   template <class F>
   Real sum(TaskRunner* runner, F&& f);

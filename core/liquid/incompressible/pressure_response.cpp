@@ -7,11 +7,12 @@
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/state/rigid_motion.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Between a sum along g x and one of V dW/dx.
+/// The factor between a sum along g x and one of V dW/dx.
 Real gradient_factor(const Model& model, const LiquidModel& liquid) {
   return slope_factor(model, liquid) / liquid.slope_scale;
 }
@@ -20,7 +21,7 @@ PairMotion turned(const PairImage& image, const PairMotion& source) {
   return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
 }
 
-/// G / rho of the liquid that it is greatest of.
+/// The maximum of G / rho over the liquids.
 Real greatest_mobility(const Model& model) {
   const auto mobility = by_material(
       model, [](const LiquidModel& liquid) { return liquid.slope_scale / liquid.rest_density; });
@@ -65,9 +66,10 @@ PairInputs PressureResponse::charged_inputs() const {
 }
 
 void PressureResponse::set_liquid_motion(std::size_t slot, const Vec3& motion) {
+  LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   scratch_.liquid_motion[slot] = motion;
-  const Vec3 weighted = f_.work.of<LiquidScratch>().sources.weight(slot) * motion;
-  f_.work.of<LiquidScratch>().sources.set_motion(slot, motion_of(0, weighted));
+  const Vec3 weighted = buffers.sources.weight(slot) * motion;
+  buffers.sources.set_motion(slot, motion_of(0, weighted));
 }
 
 void PressureResponse::charge(std::span<const Real> pressure) {
@@ -77,26 +79,27 @@ void PressureResponse::charge(std::span<const Real> pressure) {
 
 void PressureResponse::accelerate(std::span<const Real> pressure) {
   charge(pressure);
+  VAT_CHECK(pressure.size() == order_.size());
   accelerate_liquid(pressure);
   if (solids_move_) push_solids(pressure);
 }
 
 void PressureResponse::accelerate_liquid(std::span<const Real> pressure) {
+  LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   const auto factor = by_material(f_.model, [&](const LiquidModel& liquid) {
     return slope_factor(f_.model, liquid) / liquid.rest_density;
   });
   const auto set_acceleration = [&](const TargetCluster&, Index s, const Real* sums) {
     const Index i = order_[s];
     const Real own = f_.model.inverse_mass[i] > 0 ? factor[f_.model.material[i]] : 0;
-    const Vec3 sum = pressure[s] * f_.work.of<LiquidScratch>().volume_slopes[s].gradient +
-                     Eigen::Map<const Vec3>(sums);
+    const Vec3 sum = pressure[s] * buffers.volume_slopes[s].gradient + Eigen::Map<const Vec3>(sums);
     set_liquid_motion(s, -own * sum);
   };
-  f_.work.of<LiquidScratch>().liquid_clusters.for_each_sum<3>(f_.runner, charged_inputs(),
-                                                              sums_.gradient, set_acceleration);
+  buffers.liquid_clusters.for_each_sum<3>(f_.runner, charged_inputs(), sums_.gradient,
+                                          set_acceleration);
 }
 
-/// The forces on solid particles and bodies, and the accelerations of all solid particles.
+/// Computes the forces on solid particles and bodies, and the accelerations of all solid particles.
 void PressureResponse::push_solids(std::span<const Real> pressure) {
   if (has_several_liquids(f_.model)) {
     set_slope_weights(context_);
@@ -113,10 +116,11 @@ void PressureResponse::push_solids(std::span<const Real> pressure) {
 }
 
 void PressureResponse::sum_solid_forces() {
+  LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   const Model& model = f_.model;
   const Real factor = -2 * slope_factor(model, *model.liquids[model.material[0]]);
-  const Index first = f_.work.of<LiquidScratch>().sources.first_solid();
-  f_.work.of<LiquidScratch>().solid_clusters.for_each_sum<3>(
+  const Index first = buffers.sources.first_solid();
+  buffers.solid_clusters.for_each_sum<3>(
       f_.runner, charged_inputs(), sums_.gradient,
       [&](const TargetCluster&, Index n, const Real* sums) {
         const Index b = solids_[n - first];
@@ -143,7 +147,7 @@ void PressureResponse::sum_rigid_forces() {
   }
 }
 
-/// By forces alone: what turns a body that spins anyway is no part of it.
+/// The acceleration by forces only, without that of a body's own rotation.
 Vec3 PressureResponse::solid_acceleration(Index particle) const {
   const Model& model = f_.model;
   if (particle < model.free_count) {
@@ -179,7 +183,9 @@ void PressureResponse::compress(std::span<Real> product, std::span<const Real> s
 
 template <class Scale>
 void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
-  PairSources& sources = f_.work.of<LiquidScratch>().sources;
+  VAT_CHECK(rate.size() == order_.size());
+  LiquidScratch& buffers = f_.work.of<LiquidScratch>();
+  PairSources& sources = buffers.sources;
   sources.set_other_motions(
       f_.runner,
       [&](std::size_t s) {
@@ -189,11 +195,10 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
       turned);
   const auto factor = by_material(
       f_.model, [&](const LiquidModel& liquid) { return gradient_factor(f_.model, liquid); });
-  f_.work.of<LiquidScratch>().liquid_clusters.for_each_sum<1>(
+  buffers.liquid_clusters.for_each_sum<1>(
       f_.runner, pair_inputs(context_), sums_.divergence,
       [&](const TargetCluster&, Index s, const Real* sum) {
-        const Real own =
-            scratch_.liquid_motion[s].dot(f_.work.of<LiquidScratch>().volume_slopes[s].gradient);
+        const Real own = scratch_.liquid_motion[s].dot(buffers.volume_slopes[s].gradient);
         rate[s] = (own - *sum) * factor[f_.model.material[order_[s]]] * scale(s);
       });
 }
@@ -206,6 +211,7 @@ void PressureResponse::replace() {
 void PressureResponse::add(Real share) {
   const bool is_first = !has_whole_;
   const auto add_to = [&](std::vector<Vec3>& whole, const std::vector<Vec3>& part) {
+    VAT_CHECK(is_first || whole.size() == part.size());
     whole.resize(part.size());
     for_blocks(f_.runner, part.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
@@ -250,14 +256,14 @@ void PressureResponse::shift(Real share) {
   });
 }
 
-/// G / rho; 0 where nothing moves it.
+/// G / rho; 0 for a particle that does not move.
 Real PressureResponse::mobility_of_liquid(Index particle) const {
   if (f_.model.inverse_mass[particle] == 0) return 0;
   const LiquidModel& liquid = liquid_of(f_.model, particle);
   return liquid.slope_scale / liquid.rest_density;
 }
 
-/// The inverse mass of the motion that a force on a solid particle starts, at most.
+/// An upper bound of the inverse mass that a force on a solid particle moves.
 Real PressureResponse::mobility_of(Index particle) const {
   const Model& model = f_.model;
   if (particle < model.free_count) return model.inverse_mass[particle];
@@ -267,10 +273,11 @@ Real PressureResponse::mobility_of(Index particle) const {
                                   model.local_position[particle - model.free_count].squaredNorm();
 }
 
-/// With solids as mobile as each of them is by itself.
+/// Each solid particle counts with its own mobility.
 void PressureResponse::find_slopes() {
+  LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   const Model& model = f_.model;
-  f_.work.of<LiquidScratch>().sources.set_motions(
+  buffers.sources.set_motions(
       f_.runner,
       [&](std::size_t s) {
         return PairMotion{mobility_of_liquid(order_[s]) / greatest_mobility_, 0, 0, 0};
@@ -280,21 +287,21 @@ void PressureResponse::find_slopes() {
       },
       [](const PairImage&, const PairMotion& source) { return source; });
   const Real scale = reference_kernel(model).scale() * greatest_mobility_;
-  f_.work.of<LiquidScratch>().volume_slopes.resize(order_.size());
-  f_.work.of<LiquidScratch>().liquid_clusters.for_each_sum<kResponseSums>(
+  buffers.volume_slopes.resize(order_.size());
+  buffers.liquid_clusters.for_each_sum<kResponseSums>(
       f_.runner, pair_inputs(context_), sums_.response,
       [&](const TargetCluster&, Index s, const Real* sums) {
         const Real slope_scale = liquid_of(model, order_[s]).slope_scale;
         const Real solids = slope_scale * sums[4] * sums[4];
-        f_.work.of<LiquidScratch>().volume_slopes[s] = {Eigen::Map<const Vec3>(sums),
-                                                        sums[3] + solids / scale};
+        buffers.volume_slopes[s] = {Eigen::Map<const Vec3>(sums), sums[3] + solids / scale};
       });
 }
 
-/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with the least
-/// density for all others.
+/// V_i G (|sum_j V_j grad W_ij|^2 / rho_i + V_i sum_j V_j |grad W_ij|^2 / rho_j), with the minimum
+/// density for all other particles.
 void PressureResponse::find_diagonal(std::span<Real> diagonal) {
   const Model& model = f_.model;
+  VAT_CHECK(diagonal.size() == order_.size());
   const Real scale = reference_kernel(model).scale() * greatest_mobility_;
   const auto factor = by_material(model, [&](const LiquidModel& liquid) {
     const Real gradient = gradient_factor(model, liquid);

@@ -11,48 +11,49 @@
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/liquid/tait/weakly_compressible.h"
 #include "core/rigid/rigid.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-constexpr Real kGreatestOverMean = 36;     // of densities
-constexpr Real kGreatestDivergence = 200;  // of changes of density, which places correct
-constexpr Real kLeftAlone = 0.2;           // of the density tolerance, by velocities
-constexpr Real kClosing = 0.5;             // of what is missing at rest density, in a step
-constexpr int kMaxCorrections = 12;        // rounds of Newton's method
-constexpr Real kRow = 16;                  // of a lattice in space with a support of 3 spacings
-constexpr Real kLinearShare = 0.25;        // of the density tolerance, for the solve of one round
-constexpr Real kMaxExpansion = 0.05;       // in one round: further, linear theory leads astray
-constexpr Real kAlone = 1;                 // the diagonal of a particle with nothing around it
+constexpr Real kGreatestOverMean = 36;  // ratio of maximum and mean, for densities
+constexpr Real kGreatestDivergence =
+    200;  // ratio for changes of density, which the correction of positions removes
+constexpr Real kLeftAlone = 0.2;      // share of the density tolerance that the velocities leave
+constexpr Real kClosing = 0.5;        // share of a gap that is closed in one step
+constexpr int kMaxCorrections = 12;   // rounds of Newton's method
+constexpr Real kRow = 16;             // for a lattice in space with a support radius of 3 spacings
+constexpr Real kLinearShare = 0.25;   // share of the density tolerance for the solve of one round
+constexpr Real kMaxExpansion = 0.05;  // per round; linear theory is inaccurate beyond it
+constexpr Real kAlone = 1;            // the diagonal of a particle without neighbours
 
-/// Of the vat's walls over the step.
+/// The velocity of the walls of the vat over the step.
 Vec3 wall_velocity(const Model& model, Real time, Real dt) {
   if (!model.scene.vat) return Vec3::Zero();
   const Vat& vat = *model.scene.vat;
   return (vat_motion(vat, time + dt).offset - vat_motion(vat, time).offset) / dt;
 }
 
-/// Solves over the liquid's slots, for pressures times dt^2.
+/// Solves over the slots of the liquid, for pressures times dt^2.
 class VolumeSolve {
  public:
-  /// The workspace has cells, pairs and densities of the present places.
-  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, bool solids_move,
-              VolumeScratch& scratch)
+  /// The workspace must have cells, pairs and densities of the present positions.
+  VolumeSolve(const ForceModel& f, Configuration& now, Real dt, bool solids_move)
       : f_(f),
         now_(now),
         dt_(dt),
-        s_(scratch),
-        response_(f, now, scratch.response, solids_move),
-        problem_(scratch.problem),
+        s_(f.work.of<VolumeScratch>()),
+        response_(f, now, s_.response, solids_move),
+        problem_(s_.problem),
         order_(f.work.of<LiquidScratch>().liquid.grid.order()) {
     set_up();
   }
 
   SolveReport project_velocities(const Vec3& wall_velocity);
-  /// The number of iterations.
+  /// Returns the number of iterations.
   int shift_places();
 
-  // What Complementarity asks for.
+  // Required by Complementarity.
   void act(std::span<const Real> change) { response_.accelerate(change); }
   void find_product(std::span<Real> product) {
     response_.compress(product, problem_.scale, -dt_ * dt_);
@@ -68,7 +69,7 @@ class VolumeSolve {
     });
   }
   void set_up();
-  /// The whole of the response's accelerations is then that by the change of x.
+  /// The total accelerations of the response are then those of the change of x.
   SolveReport solve(Real mean, Real greatest);
 
   const ForceModel& f_;
@@ -81,6 +82,8 @@ class VolumeSolve {
 };
 
 void VolumeSolve::set_up() {
+  VAT_CHECK(dt_ > 0 && order_.size() == f_.model.liquid_count);
+  VAT_CHECK(f_.work.of<LiquidScratch>().density.size() >= order_.size());
   problem_.resize(order_.size());
   s_.relative_density.resize(order_.size());
   response_.find_diagonal(problem_.diagonal);
@@ -97,6 +100,7 @@ void VolumeSolve::set_up() {
 SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   const IncompressibleSolve& wanted = f_.model.scene.incompressible;
   response_.see_velocities(wall_velocity);
+  VAT_CHECK(now_.pressure.size() == order_.size());
   response_.compress(problem_.excess);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
@@ -135,15 +139,14 @@ SolveReport VolumeSolve::solve(Real mean, Real greatest) {
   return problem_.solve(limits, f_.runner, *this);
 }
 
-/// Puts back liquid that has passed a wall, before anything is found in places that a later step
-/// would have to find anew.
+/// Moves back liquid that has passed a wall, before cells and pairs are found.
 void hold_liquid_inside(const ForceModel& f, Real time, Configuration& now) {
   const std::uint64_t stops =
-      hold_particles_inside(f.model, time, f.model.liquid_count, f.runner, now);
+      enforce_walls_on_particles(f.model, time, f.model.liquid_count, f.runner, now);
   if (f.report != nullptr) f.report->wall_stops += stops;
 }
 
-/// Cells, pairs and densities of places that have changed.
+/// Finds cells, pairs and densities after a change of positions.
 void find_density(StepContext& c) {
   sort_liquid(c);
   if (has_solids(c.model)) sort_solids_in_liquid(c);
@@ -151,14 +154,14 @@ void find_density(StepContext& c) {
   compute_tait_density(c);
 }
 
-/// How much is too dense.
+/// Measures the densities above the rest density.
 void measure_excess(const StepContext& c, SolveReport& report) {
   report.mean = 0;
   report.greatest = 0;
   for (Index i = 0; i < c.model.liquid_count; ++i) {
     const Real excess =
         c.work.of<LiquidScratch>().density[i] / liquid_of(c.model, i).rest_density - 1;
-    // A NaN is the guard's to see.
+    // The guard detects a NaN.
     report.mean += std::max(Real{0}, excess) / c.model.liquid_count;
     report.greatest = std::max(report.greatest, excess);
   }
@@ -167,32 +170,32 @@ void measure_excess(const StepContext& c, SolveReport& report) {
 }  // namespace
 
 void recall_pressure(StepContext& c) {
+  VAT_CHECK(c.configuration.pressure.size() == c.model.liquid_count);
   c.work.of<LiquidScratch>().pressure = c.configuration.pressure;
 }
 
-SolveReport project_velocities(const ForceModel& f, Configuration& now, Real time, Real dt,
-                               VolumeScratch& scratch) {
-  return VolumeSolve(f, now, dt, true, scratch)
-      .project_velocities(wall_velocity(f.model, time, dt));
+void project_velocities(const ForceModel& f, State& state, Real time, Real dt) {
+  VolumeSolve solve(f, state.now, dt, true);
+  state.volume.velocities = solve.project_velocities(wall_velocity(f.model, time, dt));
 }
 
-SolveReport correct_density(const ForceModel& f, Configuration& now, Real time,
-                            VolumeScratch& scratch) {
+void correct_density(const ForceModel& f, State& state, Real time) {
+  Configuration& now = state.now;
   Forces unused;
   StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};
   const Real tolerance = f.model.scene.incompressible.density_tolerance;
   if (!f.model.rigid_bodies.empty()) pose_rigid_bodies(c);
-  SolveReport report;
+  SolveReport& report = state.volume.places;
+  report = {};
   for (int round = 0;; ++round) {
     hold_liquid_inside(f, time, now);
     find_density(c);
     measure_excess(c, report);
     const bool is_solved =
         report.mean <= tolerance && report.greatest <= kGreatestOverMean * tolerance;
-    if (is_solved || round == kMaxCorrections || f.work.of<LiquidScratch>().too_many_pairs)
-      return report;
+    if (is_solved || round == kMaxCorrections || f.work.of<LiquidScratch>().too_many_pairs) return;
     constexpr Real kUnit = 1;  // shifts take no time
-    report.iterations += VolumeSolve(f, now, kUnit, false, scratch).shift_places();
+    report.iterations += VolumeSolve(f, now, kUnit, false).shift_places();
   }
 }
 

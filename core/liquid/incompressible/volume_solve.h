@@ -6,41 +6,41 @@
 
 namespace vat {
 
-/// Kept between steps, so that a steady one allocates nothing.
+/// Buffers of the solves of incompressible liquids.
 struct VolumeScratch {
+  static constexpr Method kMethod = Method::incompressible;
+
   ResponseScratch response;
   Complementarity problem;
   std::vector<Real> relative_density;  ///< by slot
 };
 
-/// The pressure that the last step ended with.
+/// Stage: the pressure at the end of the last step.
 void recall_pressure(StepContext& context);
 
-// A step of an incompressible liquid ends with two solves, for the velocities and for the places:
-// the divergence-free and the constant-density solve of J. Bender and D. Koschier (IEEE Trans. Vis.
-// Comput. Graph. 23 (2017) 1193), both unilateral, for the liquid may come apart.
+// A step of an incompressible liquid contains two solves, for velocities and for positions: the
+// divergence-free and the constant-density solve of J. Bender and D. Koschier (IEEE Trans. Vis.
+// Comput. Graph. 23 (2017) 1193). Both are unilateral, because the liquid may separate.
 
-/// Makes the velocities, over a step of `dt` that begins at `time` in the present places, those of
-/// an incompressible liquid.
+/// Makes the velocities those of an incompressible liquid, for a step of `dt` from `time` at the
+/// present positions. Sets the report of the velocities.
 ///
 /// With s = rho / rho_0 and the rate D of PressureResponse, impulses dt F(p), p >= 0, change the
-/// velocities of liquid and solids until dt D_i(v) <= r_i. Where s_i < 1, r_i = (1 - s_i) / 2: half
-/// of a gap is closed. Where s_i is above 1 by more than a fifth of the density tolerance, the rest
-/// of it, the tolerance at most, makes r_i negative: what steps leave too dense is undone before
-/// the places need it, with a speed that the tolerance bounds. Closer to 1 liquid at rest hovers,
-/// and undoing that would be noise in its pressure. Impulses of the last step are part of the
-/// forces already; only the difference is solved for.
-SolveReport project_velocities(const ForceModel& force_model, Configuration& now, Real time,
-                               Real dt, VolumeScratch& scratch);
+/// velocities of liquid and solids until dt D_i(v) <= r_i. For s_i < 1, r_i = (1 - s_i) / 2, which
+/// closes half of a gap. If s_i exceeds 1 by more than a fifth of the density tolerance, r_i is
+/// minus the excess beyond it, at most the tolerance. This removes the excess density of steps
+/// before positions must be corrected, with a speed that the tolerance limits. Liquid at rest
+/// fluctuates closer to 1; removing that would cause noise in its pressure. The forces already
+/// include the impulses of the last step, so that only the difference is solved.
+void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
-/// Moves liquid that is too dense in the places at a step's end, the time `time`, until s <= 1 but
-/// for the scene's density tolerance, measured and not by linear theory: Newton's method, with a
-/// shift by D_i(shift) = 1 - s_i in each of its rounds.
+/// Moves liquid with excess density at the end of a step, at `time`, until s <= 1 within the
+/// density tolerance of the scene, as measured and not by linear theory. Uses Newton's method, with
+/// a shift of D_i(shift) = 1 - s_i in each round. Sets the report of the positions.
 ///
-/// The shifts leave velocities alone (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)
-/// 264), so that places that are too dense give no energy: what overlaps at a start makes room, and
-/// does not explode. What has passed a wall is put back first, see hold_particles_inside().
-SolveReport correct_density(const ForceModel& force_model, Configuration& now, Real time,
-                            VolumeScratch& scratch);
+/// The shifts do not change velocities (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)
+/// 264), so that excess density adds no energy: bodies that overlap at the start separate without
+/// an explosion. Liquid beyond a wall is moved back first, see enforce_walls_on_particles().
+void correct_density(const ForceModel& force_model, State& state, Real time);
 
 }  // namespace vat

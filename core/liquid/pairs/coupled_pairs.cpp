@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/liquid/pairs/liquid_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -20,18 +21,20 @@ bool has_central_viscosity(const Model& model) {
 }
 
 PairInputs pair_inputs(const StepContext& c) {
+  VAT_CHECK(c.model.liquid_count > 0);
   PairInputs inputs = c.work.of<LiquidScratch>().sources.inputs();
   inputs.inverse_support = 1 / support_of(c.model);
   return inputs;
 }
 
 PairInputs force_inputs(const StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   PairInputs inputs = pair_inputs(c);
   inputs.viscosity =
       c.model.liquids[c.model.material[0]]->central_viscosity * inputs.inverse_support;
   if (has_several_liquids(c.model)) {
-    inputs.viscosities = c.work.of<LiquidScratch>().viscosities.data();
-    inputs.target_viscosities = c.work.of<LiquidScratch>().target_viscosities.data();
+    inputs.viscosities = buffers.viscosities.data();
+    inputs.target_viscosities = buffers.target_viscosities.data();
   }
   return inputs;
 }
@@ -46,36 +49,37 @@ namespace {
 
 constexpr PairViscosity kNone{0, 0, 1};
 
-/// mu / h of liquid.
+/// mu / h of a liquid particle.
 Real relative_viscosity(const StepContext& c, Index particle) {
   return liquid_of(c.model, particle).central_viscosity / support_of(c.model);
 }
 
-/// f(source) of each but the padding.
+/// Sets the viscosity of each source to f(source), and that of the padding to 0.
 template <class F>
 void set_viscosities(const StepContext& c, F&& f) {
-  const std::size_t count = c.work.of<LiquidScratch>().sources.count();
-  c.work.of<LiquidScratch>().viscosities.resize(count + 1);
-  c.work.of<LiquidScratch>().viscosities[count] = kNone;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const std::size_t count = buffers.sources.count();
+  buffers.viscosities.resize(count + 1);
+  buffers.viscosities[count] = kNone;
   for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n)
-      c.work.of<LiquidScratch>().viscosities[n] = f(static_cast<Index>(n));
+    for (std::size_t n = begin; n < end; ++n) buffers.viscosities[n] = f(static_cast<Index>(n));
   });
 }
 
-/// Of liquid towards liquid: mu_ij is 2 mu_i mu_j / (mu_i + mu_j), see mean_viscosity().
+/// Between liquids, mu_ij is 2 mu_i mu_j / (mu_i + mu_j); see mean_viscosity().
 PairViscosity mean_of(Real mu) {
-  // Not 0 over 0 between two without any.
+  // Avoids 0 / 0 between two inviscid liquids.
   constexpr Real kLeast = static_cast<Real>(std::numeric_limits<float>::min());
   return {2 * mu, 1, std::max(mu, kLeast)};
 }
 
 void set_target_viscosities(const StepContext& c) {
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
-  c.work.of<LiquidScratch>().target_viscosities.resize(order.size());
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  buffers.target_viscosities.resize(order.size());
   for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      c.work.of<LiquidScratch>().target_viscosities[s] = relative_viscosity(c, order[s]);
+      buffers.target_viscosities[s] = relative_viscosity(c, order[s]);
     }
   });
 }
@@ -83,9 +87,10 @@ void set_target_viscosities(const StepContext& c) {
 }  // namespace
 
 void set_liquid_viscosities(const StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   constexpr PairViscosity kOfTarget{1, 0, 1};
-  const PairSources& sources = c.work.of<LiquidScratch>().sources;
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
+  const PairSources& sources = buffers.sources;
+  const std::span<const Index> order = buffers.liquid.grid.order();
   set_viscosities(c, [&](Index n) {
     if (n >= sources.first_mirrored()) return kNone;
     const Index source = sources.source_of(n);
@@ -96,21 +101,22 @@ void set_liquid_viscosities(const StepContext& c) {
 }
 
 void set_solid_viscosities(const StepContext& c) {
-  const PairSources& sources = c.work.of<LiquidScratch>().sources;
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const PairSources& sources = buffers.sources;
+  const std::span<const Index> order = buffers.liquid.grid.order();
   set_viscosities(c, [&](Index n) {
     if (n >= sources.first_mirrored()) return kNone;
     const Index source = sources.source_of(n);
     if (source >= sources.first_solid()) return kNone;
     return PairViscosity{relative_viscosity(c, order[source]), 0, 1};
   });
-  c.work.of<LiquidScratch>().target_viscosities.assign(
-      c.work.of<LiquidScratch>().solids_in_liquid.grid.order().size(), 1);
+  buffers.target_viscosities.assign(buffers.solids_in_liquid.grid.order().size(), 1);
 }
 
 void set_image_viscosities(const StepContext& c) {
-  const PairSources& sources = c.work.of<LiquidScratch>().sources;
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const PairSources& sources = buffers.sources;
+  const std::span<const Index> order = buffers.liquid.grid.order();
   set_viscosities(c, [&](Index n) {
     if (n < sources.first_mirrored_liquid()) return kNone;
     return mean_of(relative_viscosity(c, order[sources.source_of(n)]));
@@ -135,16 +141,16 @@ ImageMotion::ImageMotion(const StepContext& c)
       is_same_liquid_(!has_several_liquids(c.model)) {}
 
 PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& source) const {
+  LiquidScratch& buffers = c_.work.of<LiquidScratch>();
   const Vec3 velocity = image.turn({source.vx, source.vy, source.vz});
   const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
-  // Where there is no pressure, the weight beyond a wall adds none.
+  // Without pressure, the weight of liquid beyond a wall adds no pressure.
   const bool is_free = !c_.model.is_filled && source.pressure <= 0;
   if (!is_mirrored || is_free) return vat::motion_of(source.pressure, velocity);
-  const Vec3 position = c_.work.of<LiquidScratch>().sources.place(image.source);
-  const bool is_first =
-      is_same_liquid_ || image.source >= c_.work.of<LiquidScratch>().sources.first_solid();
-  const LiquidModel& liquid = liquid_of(
-      c_.model, is_first ? 0 : c_.work.of<LiquidScratch>().liquid.grid.order()[image.source]);
+  const Vec3 position = buffers.sources.place(image.source);
+  const bool is_first = is_same_liquid_ || image.source >= buffers.sources.first_solid();
+  const LiquidModel& liquid =
+      liquid_of(c_.model, is_first ? 0 : buffers.liquid.grid.order()[image.source]);
   if (!c_.model.scene.central_field) {
     Vec3 way = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis) {

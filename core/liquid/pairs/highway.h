@@ -1,10 +1,10 @@
-/// Highway, with the instruction sets of PairSums: included by each file that is compiled for all
-/// of them, after HWY_TARGET_INCLUDE.
+/// Highway, with the instruction sets of PairSums. Each file that is compiled for all sets includes
+/// it after HWY_TARGET_INCLUDE.
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
 #endif
 #ifndef HWY_BROKEN_EMU128
-#define HWY_BROKEN_EMU128 1  // so that every compiler makes the plain loops of HWY_SCALAR
+#define HWY_BROKEN_EMU128 1  // every compiler builds the scalar loops of HWY_SCALAR
 #endif
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"

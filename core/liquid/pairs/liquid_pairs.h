@@ -10,14 +10,14 @@
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
-/// The neighbours of liquid particles, found and summed over in one pass.
+/// Search of the neighbours of liquid particles, and sums over them in the same pass.
 namespace vat {
 
 inline const LiquidModel& liquid_of(const Model& model, std::size_t particle) {
   return *model.liquids[model.material[particle]];
 }
 
-/// Makes room for `wanted` slots; by quarters, since a vector by itself would double.
+/// Provides at least `wanted` slots. The size grows by a quarter; a vector would double it.
 inline void make_room(std::vector<Index>& slots, std::size_t wanted) {
   if (slots.size() >= wanted) return;
   const std::size_t size = std::max(wanted, slots.size() + slots.size() / 4);
@@ -25,12 +25,13 @@ inline void make_room(std::vector<Index>& slots, std::size_t wanted) {
   slots.resize(size);
 }
 
-/// Slots nearer to `place` than `support`, but `self`, appended to `found` from `count` on; the new
-/// count. Every candidate is written and only a neighbour advances the count: no branch to
-/// mispredict.
+/// Appends the slots closer to `place` than `support`, except `self`, to `found` from `count` on,
+/// and returns the new count. Every candidate is written, and only neighbours advance the count,
+/// which avoids mispredicted branches.
 inline std::size_t find_near(const CellSortedPoints& points, const Vec3& place, Index self,
                              Real support, std::vector<Index>& found, std::size_t count) {
-  constexpr Index kChunk = 1024;  // room for candidates at a time: a crowded cell may hold them all
+  constexpr Index kChunk = 1024;  // candidates for which space is provided at once: a crowded cell
+                                  // may contain all particles
   const Real x = place.x();
   const Real y = place.y();
   const Real z = place.z();
@@ -54,7 +55,7 @@ inline std::size_t find_near(const CellSortedPoints& points, const Vec3& place, 
   return count;
 }
 
-/// The neighbours of slot `self`, in the same way; in a periodic world, of all its images.
+/// Appends the neighbours of slot `self`; in a periodic world, including images.
 template <bool periodic>
 std::size_t find_neighbours(const PeriodicBox& box, const CellSortedPoints& points, Index self,
                             Real support, std::vector<Index>& found, std::size_t count) {
@@ -66,7 +67,7 @@ std::size_t find_neighbours(const PeriodicBox& box, const CellSortedPoints& poin
   return count;
 }
 
-/// Keeps of found[first, count) the slots of the same material as slot `self`.
+/// Removes the slots of other materials than that of slot `self` from found[first, count).
 inline std::size_t keep_material(const Model& model, std::span<const Index> order, Index self,
                                  std::vector<Index>& found, std::size_t first, std::size_t count) {
   const Index material = model.material[order[self]];
@@ -77,14 +78,15 @@ inline std::size_t keep_material(const Model& model, std::span<const Index> orde
   return static_cast<std::size_t>(kept - begin);
 }
 
-/// Fills one block's pairs, and calls visit(slot, slots of neighbours) for each. Once the blocks
-/// together have found more than `most`, the rest get no neighbours.
+/// Fills the pairs of one block, and calls visit(slot, slots of neighbours) for each slot. If the
+/// blocks together find more than `most` pairs, the remaining slots get no neighbours.
 template <bool periodic, class Visit>
 void fill_block(const Model& model, Scratch& work, std::size_t begin, std::size_t end,
                 std::atomic<std::size_t>& pair_count, std::size_t most, Visit&& visit) {
-  const CellSortedPoints& points = work.of<LiquidScratch>().liquid;
+  LiquidScratch& buffers = work.of<LiquidScratch>();
+  const CellSortedPoints& points = buffers.liquid;
   const std::span<const Index> order = points.grid.order();
-  PairBlock& pairs = work.of<LiquidScratch>().liquid_pairs[begin / kBlockSize];
+  PairBlock& pairs = buffers.liquid_pairs[begin / kBlockSize];
   std::size_t count = 0;
   for (std::size_t s = begin; s < end; ++s) {
     const auto self = static_cast<Index>(s);
@@ -103,23 +105,23 @@ void fill_block(const Model& model, Scratch& work, std::size_t begin, std::size_
   pairs.begin[end - begin] = static_cast<Index>(count);
 }
 
-/// Fills liquid_pairs, and calls visit(slot, slots of neighbours) for each slot. Where a collapsed
-/// liquid has more than max_pairs() of them, says so in the workspace and leaves a density that is
-/// not a number, so that the step fails.
+/// Fills liquid_pairs, and calls visit(slot, slots of neighbours) for each slot. If a collapsed
+/// liquid has more than max_pairs(), sets too_many_pairs and one density to NaN, so that the step
+/// fails.
 template <bool periodic, class Visit>
 void find_pairs(const Model& model, Scratch& work, TaskRunner* runner, Visit&& visit) {
-  const std::size_t slots = work.of<LiquidScratch>().liquid.grid.order().size();
-  work.of<LiquidScratch>().density.resize(model.liquid_count);
-  work.of<LiquidScratch>().liquid_pairs.resize(block_count(slots));
+  LiquidScratch& buffers = work.of<LiquidScratch>();
+  const std::size_t slots = buffers.liquid.grid.order().size();
+  buffers.density.resize(model.liquid_count);
+  buffers.liquid_pairs.resize(block_count(slots));
   const std::size_t most = max_pairs(model.liquid_count);
   std::atomic<std::size_t> pair_count = 0;
   for_blocks(runner, slots, [&](std::size_t begin, std::size_t end) {
     fill_block<periodic>(model, work, begin, end, pair_count, most, visit);
   });
-  work.of<LiquidScratch>().too_many_pairs = pair_count > most;
-  // One particle is enough for the guard to see; which blocks were cut off depends on threads.
-  if (work.of<LiquidScratch>().too_many_pairs)
-    work.of<LiquidScratch>().density[0] = std::numeric_limits<Real>::quiet_NaN();
+  buffers.too_many_pairs = pair_count > most;
+  // One particle suffices for the guard. The incomplete blocks depend on the threads.
+  if (buffers.too_many_pairs) buffers.density[0] = std::numeric_limits<Real>::quiet_NaN();
 }
 
 }  // namespace vat

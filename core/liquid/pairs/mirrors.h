@@ -8,12 +8,12 @@
 
 namespace vat {
 
-/// A reflection at one wall of the vat, or at two or three that meet in an edge or corner.
+/// A reflection at one wall of the vat, or at two or three walls that meet in an edge or corner.
 struct Mirror {
-  std::array<bool, 3> axes{};       ///< along which it reflects
-  Vec3 twice_plane = Vec3::Zero();  ///< 2 w of the walls' places w, along those [m]
+  std::array<bool, 3> axes{};       ///< the reflected axes
+  Vec3 twice_plane = Vec3::Zero();  ///< along reflected axes: 2 w for the wall's position w [m]
 
-  /// A direction as the mirror has it.
+  /// The reflection of a direction.
   Vec3 turn(const Vec3& x) const {
     const auto turned = [&](std::size_t axis, Real along) { return axes[axis] ? -along : along; };
     return {turned(0, x.x()), turned(1, x.y()), turned(2, x.z())};
@@ -21,7 +21,7 @@ struct Mirror {
   Vec3 place(const Vec3& x) const { return twice_plane + turn(x); }
 };
 
-/// Calls f(mirror) for the reflections that put something inside the vat within `radius` of `p`.
+/// Calls f(mirror) for the reflections whose images may be within `radius` of `p`.
 template <class F>
 void for_each_mirror(const Model& model, const VatMotion& motion, const Vec3& p, Real radius,
                      F&& f) {

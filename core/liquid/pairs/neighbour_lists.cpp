@@ -3,17 +3,20 @@
 
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 template <bool periodic>
 void list_liquid(const Model& model, Scratch& work, TaskRunner* runner) {
-  const CellSortedPoints& points = work.of<LiquidScratch>().liquid;
+  LiquidScratch& buffers = work.of<LiquidScratch>();
+  const CellSortedPoints& points = buffers.liquid;
   const std::span<const Index> order = points.grid.order();
-  work.of<LiquidScratch>().liquid_records.resize(order.size());
+  buffers.liquid_records.resize(order.size());
+  VAT_CHECK(model.rest_volume.size() == model.particle_count);
   find_pairs<periodic>(model, work, runner, [&](Index s, std::span<const Index>) {
-    LiquidRecord& record = work.of<LiquidScratch>().liquid_records[s];
+    LiquidRecord& record = buffers.liquid_records[s];
     record.position = {points.x[s], points.y[s], points.z[s]};
     record.volume = model.rest_volume[order[s]];
   });
@@ -41,13 +44,12 @@ void list_near(const Model& model, const CellSortedPoints& from, const CellSorte
 }  // namespace
 
 void list_neighbours(const Model& model, Scratch& work, TaskRunner* runner) {
+  LiquidScratch& buffers = work.of<LiquidScratch>();
   model.periodic.any() ? list_liquid<true>(model, work, runner)
                        : list_liquid<false>(model, work, runner);
   if (!has_solids(model)) return;
-  list_near(model, work.of<LiquidScratch>().liquid, work.of<LiquidScratch>().solids_in_liquid,
-            runner, work.of<LiquidScratch>().solids_of_liquid);
-  list_near(model, work.of<LiquidScratch>().solids_in_liquid, work.of<LiquidScratch>().liquid,
-            runner, work.of<LiquidScratch>().liquid_of_solids);
+  list_near(model, buffers.liquid, buffers.solids_in_liquid, runner, buffers.solids_of_liquid);
+  list_near(model, buffers.solids_in_liquid, buffers.liquid, runner, buffers.liquid_of_solids);
 }
 
 void list_neighbours(StepContext& c) {

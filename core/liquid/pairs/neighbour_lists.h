@@ -7,12 +7,12 @@ struct StepContext;
 class Scratch;
 class TaskRunner;
 
-/// Lists, particle by particle, of what clusters of pairs hold together, for stages and solves of
-/// coupled liquids that visit single pairs: liquid near liquid, and solids near liquid, both ways;
-/// with the records' places and volumes. The workspace has the cells of the present places.
+/// Lists the neighbours of each particle, for stages and solves of coupled liquids that visit
+/// single pairs: liquid near liquid, and solids near liquid, in both directions. Also sets
+/// positions and volumes of the records. The cells must be those of the present positions.
 void list_neighbours(const Model& model, Scratch& work, TaskRunner* runner);
 
-/// The same as a stage.
+/// list_neighbours() as a stage.
 void list_neighbours(StepContext& context);
 
 }  // namespace vat

@@ -5,12 +5,15 @@
 #include "core/liquid/pairs/scratch.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 void fill_liquid_density(StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Vat& vat = *c.model.scene.vat;
   const VatMotion motion = vat_motion(vat, c.time);
-  c.work.of<LiquidScratch>().filled_density.resize(c.model.liquid_count);
+  VAT_CHECK(buffers.density.size() == c.model.liquid_count);
+  buffers.filled_density.resize(c.model.liquid_count);
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const LiquidModel& liquid = liquid_of(c.model, i);
@@ -19,8 +22,7 @@ void fill_liquid_density(StepContext& c) {
         const Real d = wall_distance(vat, motion, wall, c.configuration.position[i]);
         filling += liquid.half_space.filling(d);
       }
-      c.work.of<LiquidScratch>().filled_density[i] =
-          c.work.of<LiquidScratch>().density[i] + liquid.rest_density * filling;
+      buffers.filled_density[i] = buffers.density[i] + liquid.rest_density * filling;
     }
   });
 }
@@ -31,11 +33,11 @@ Real no_slip_drag(const Model& model, const Scratch& work, Index i, Real d) {
   return liquid.viscosity * volume * liquid.half_space.drag(d);
 }
 
-// The liquid beyond the wall has v(s) - v_i = -(v_i - v_wall) s/d at the distance s from the
-// particle along the wall's normal, so that it has the wall's velocity at the wall, s = d. Summed
-// as any other viscous force, with an integral for the sum over V_j: F_i = -mu V_i (v_i - v_wall) *
-// integral of s/d laplacian W, along the wall only: what keeps liquid from going through is the
-// wall's spring.
+// The velocity of the liquid beyond the wall is v(s) = v_i - (v_i - v_wall) s/d at the distance s
+// from the particle along the wall's normal, so that it is the wall's velocity at s = d. The sum is
+// that of other viscous forces, with an integral in place of the sum over V_j: F_i = -mu V_i (v_i -
+// v_wall) * integral of s/d laplacian W, along the wall only. The spring of the wall keeps liquid
+// from passing through.
 void add_no_slip_forces(StepContext& c) {
   const Vat& vat = *c.model.scene.vat;
   const VatMotion motion = vat_motion(vat, c.time);

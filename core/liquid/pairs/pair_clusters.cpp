@@ -6,12 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/support/check.h"
 #include "core/support/grow.h"
 
 namespace vat {
 namespace {
 
-/// Around some sources, in the coordinates of the search.
+/// The box around some sources, in the coordinates of the search.
 struct SearchBox {
   std::array<float, 3> low{};
   std::array<float, 3> high{};
@@ -20,7 +21,7 @@ struct SearchBox {
     low.fill(std::numeric_limits<float>::infinity());
     high.fill(-std::numeric_limits<float>::infinity());
   }
-  /// Coordinate, in magnitude.
+  /// The maximum coordinate in magnitude.
   Real greatest() const {
     float most = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -28,7 +29,7 @@ struct SearchBox {
     }
     return static_cast<Real>(most);
   }
-  void extend(const SearchPlaces& places, Index source) {
+  void extend(const SearchCoordinates& places, Index source) {
     const std::array<float, 3> p = {places.x[source], places.y[source], places.z[source]};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], p[axis]);
@@ -37,12 +38,12 @@ struct SearchBox {
   }
 };
 
-Vec3 to_point(const SearchPlaces& places, const std::array<float, 3>& p) {
+Vec3 to_point(const SearchCoordinates& places, const std::array<float, 3>& p) {
   return places.origin +
          Vec3(static_cast<Real>(p[0]), static_cast<Real>(p[1]), static_cast<Real>(p[2]));
 }
 
-/// Room for `wanted`.
+/// Provides space for `wanted` entries.
 void make_room(std::vector<Index>& found, std::size_t wanted) {
   if (found.size() < wanted) resize_closely(found, wanted);
 }
@@ -64,13 +65,13 @@ void collect_targets(const SourceGroup& targets, std::size_t begin, std::size_t 
   }
 }
 
-/// Slots of a chunk: few enough that those of a thousand particles are shared evenly by threads.
+/// Slots of a chunk: small enough that threads share a thousand particles evenly.
 constexpr std::size_t kChunkSize = 128;
 
-/// Finds the candidates of clusters, one after the other.
+/// Finds the candidates of clusters in sequence.
 class CandidateSearch {
  public:
-  CandidateSearch(const PairSearch& search, const SearchPlaces& places,
+  CandidateSearch(const PairSearch& search, const SearchCoordinates& places,
                   std::span<const SourceGroup> groups)
       : search_(search),
         places_(places),
@@ -78,11 +79,11 @@ class CandidateSearch {
         cull_(cull_function(search.instructions)),
         lanes_(lane_count(search.instructions)) {}
 
-  /// Appends them to `found` from `count` on; the new count.
+  /// Appends the candidates to `found` from `count` on, and returns the new count.
   std::size_t find(TargetCluster& cluster, std::vector<Index>& found, std::size_t count) const {
     SearchBox box;
     for (Index i = cluster.begin; i < cluster.end; ++i) box.extend(places_, i);
-    // More than coordinates and their differences are rounded by.
+    // More than the rounding errors of coordinates and their differences.
     const Real reach = search_.reach * (1 + 1e-6) + 4e-7 * box.greatest();
     const Vec3 low = to_point(places_, box.low);
     const Vec3 high = to_point(places_, box.high);
@@ -104,12 +105,13 @@ class CandidateSearch {
     make_room(found, count + lanes_);
     while ((count - cluster.first_candidate) % lanes_ != 0) found[count++] = search_.padding;
     cluster.candidate_count = static_cast<Index>(count - cluster.first_candidate);
+    VAT_ASSERT(cluster.candidate_count % lanes_ == 0 && count <= found.size());
     return count;
   }
 
  private:
   const PairSearch& search_;
-  const SearchPlaces& places_;
+  const SearchCoordinates& places_;
   const std::span<const SourceGroup> groups_;
   const CullFunction cull_;
   const std::size_t lanes_;
@@ -118,8 +120,9 @@ class CandidateSearch {
 }  // namespace
 
 bool PairClusters::build(const PairSearch& search, const SourceGroup& targets,
-                         const SearchPlaces& places, std::span<const SourceGroup> groups,
+                         const SearchCoordinates& places, std::span<const SourceGroup> groups,
                          TaskRunner* runner) {
+  VAT_CHECK(search.reach > 0 && targets.grid != nullptr);
   const CandidateSearch candidates(search, places, groups);
   const std::size_t slots = targets.grid->order().size();
   chunks_.resize(block_count(slots, kChunkSize));

@@ -12,41 +12,42 @@
 
 namespace vat {
 
-/// Sources in the order of a grid's cells: slot s is source first + s.
+/// Sources in the order of the cells of a grid: slot s is source first + s.
 struct SourceGroup {
   const UniformGrid* grid = nullptr;
   Index first = 0;
 };
 
-/// Coordinates of all sources for the search, about a common origin: rounded, as culling may be
-/// generous.
-struct SearchPlaces {
+/// Coordinates of all sources for the search, relative to a common origin. They are rounded; the
+/// search adds a margin.
+struct SearchCoordinates {
   Vec3 origin = Vec3::Zero();
   std::vector<float> x;
   std::vector<float> y;
   std::vector<float> z;
 };
 
-/// How pairs are searched for.
+/// Parameters of the search of pairs.
 struct PairSearch {
-  Real reach = 0;             ///< [m] pairs further apart need not be found
-  Index padding = 0;          ///< source that adds nothing to any sum
+  Real reach = 0;             ///< maximum distance of pairs [m]
+  Index padding = 0;          ///< index of a source that adds nothing to sums
   Index first_mirrored = 0;   ///< sources from here on are images in walls
-  std::size_t most_work = 0;  ///< targets times candidates, in all; beyond, there are none
+  std::size_t most_work = 0;  ///< maximum of targets times candidates in total
   InstructionSet instructions = InstructionSet::baseline;
 };
 
-/// All pairs of targets and sources within a reach of each other, as clusters of targets and the
-/// candidates of each: memory is by cluster, not by pair.
+/// All pairs of targets and sources within a reach, stored as clusters of targets with their
+/// candidates. Memory grows with the number of clusters, not of pairs.
 class PairClusters {
  public:
-  /// Of each target in `targets` with all sources of `groups`, the last liquid's images in walls.
-  /// False where there was too much work; which clusters went without candidates then depends on
-  /// threads.
-  bool build(const PairSearch& search, const SourceGroup& targets, const SearchPlaces& places,
+  /// Finds the pairs of each target in `targets` with all sources of `groups`; the last group is
+  /// images of liquid in walls. Returns false if the work exceeds the limit. The clusters without
+  /// candidates then depend on the threads.
+  bool build(const PairSearch& search, const SourceGroup& targets, const SearchCoordinates& places,
              std::span<const SourceGroup> groups, TaskRunner* runner);
 
-  /// Calls f(inputs, clusters) for parts of them, side by side, with `inputs` and the candidates.
+  /// Calls f(inputs, clusters) for parts of the clusters in parallel. `inputs` has the candidates
+  /// of the part.
   template <class F>
   void for_each_chunk(TaskRunner* runner, const PairInputs& inputs, F&& f) const {
     for_blocks<1>(runner, chunks_.size(), [&](std::size_t begin, std::size_t) {
@@ -57,8 +58,8 @@ class PairClusters {
     });
   }
 
-  /// Calls f(cluster, target, sums) for each source that is a target, those of a part one after the
-  /// other, with the `width` numbers that `sum` gives for it.
+  /// Calls f(cluster, target, sums) for each target, in order within each part, with the `width`
+  /// numbers of `sum`.
   template <std::size_t width, class F>
   void for_each_sum(TaskRunner* runner, const PairInputs& inputs, PairSums::Function sum,
                     F&& f) const {
@@ -80,7 +81,7 @@ class PairClusters {
  private:
   static constexpr Index kTargetsAtOnce = 256;
 
-  /// How many of the clusters, one behind the other, have no more targets than that together.
+  /// The number of leading clusters that have at most kTargetsAtOnce targets together.
   static std::size_t size_of_batch(std::span<const TargetCluster> clusters) {
     const auto beyond = std::ranges::find_if(clusters, [&](const TargetCluster& cluster) {
       return cluster.end - clusters.front().begin > kTargetsAtOnce;
@@ -88,7 +89,7 @@ class PairClusters {
     return static_cast<std::size_t>(beyond - clusters.begin());
   }
 
-  /// Of the cells that begin in one block of slots.
+  /// The clusters of the cells that begin in one block of slots.
   struct Chunk {
     std::vector<TargetCluster> clusters;
     std::vector<Index> candidates;

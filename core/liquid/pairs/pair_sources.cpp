@@ -8,6 +8,7 @@
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -16,8 +17,8 @@ Vec3 place_of(const CellSortedPoints& points, std::size_t slot) {
   return {points.x[slot], points.y[slot], points.z[slot]};
 }
 
-/// Where nothing has an image: further than `reach` inside the vat and the box of a world that
-/// repeats itself.
+/// The positions without images: farther than `reach` from all walls and from the sides of a
+/// periodic box.
 class ShowBox {
  public:
   ShowBox(const Model& model, const VatMotion& motion, Real reach) {
@@ -51,8 +52,7 @@ class ShowBox {
   Vec3 high_;
 };
 
-/// Calls f(image) for the images in a world that repeats itself of source `n` at `p` within `reach`
-/// of it.
+/// Calls f(image) for the periodic images of source `n` at `p` that reach into the box.
 template <class F>
 void for_each_shifted(const Model& model, Index n, const Vec3& p, Real reach, F&& f) {
   model.periodic.for_each_image(p, reach, [&](const Vec3& shift) {
@@ -60,7 +60,7 @@ void for_each_shifted(const Model& model, Index n, const Vec3& p, Real reach, F&
   });
 }
 
-/// The same of those in walls.
+/// Calls f(image) for the images of source `n` at `p` in walls.
 template <class F>
 void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, const Vec3& p,
                        Real reach, F&& f) {
@@ -72,7 +72,8 @@ void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, con
   });
 }
 
-/// Around all sources: an image is as far outside a wall as its source is inside, within `reach`.
+/// The box of all sources. An image is as far outside a wall as its source is inside, within
+/// `reach`.
 std::array<Vec3, 2> box_around(const UniformGrid& liquid, const UniformGrid* solids, Real reach) {
   Vec3 low = liquid.origin();
   Vec3 high = liquid.end();
@@ -127,21 +128,23 @@ Index PairSources::source_of(Index n) const {
   if (n < images_begin_) return n;
   const auto group = std::ranges::find_if(
       images_, [&](const ImageGroup& one) { return n - one.first < one.count(); });
+  VAT_ASSERT(group != images_.end());
   return group->image(n - group->first).source;
 }
 
 void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
+  VAT_ASSERT(n < count_);
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const bool is_solid = kind == shifted_solids || kind == mirrored_solids;
   const bool is_mirrored = kind == mirrored_solids || kind == mirrored_liquid;
-  const CellSortedPoints& points =
-      is_solid ? c.work.of<LiquidScratch>().solids_in_liquid : c.work.of<LiquidScratch>().liquid;
+  const CellSortedPoints& points = is_solid ? buffers.solids_in_liquid : buffers.liquid;
   const Index first = is_solid ? solids_ : 0;
   const std::size_t count = points.grid.order().size();
   const VatMotion motion = motion_of(c);
   const ShowBox shown(c.model, motion, reach);
   found_.resize(block_count(count));
   for_blocks(c.runner, count, [&](std::size_t begin, std::size_t end) {
-    // Taken out, so that threads do not share the cache line of its size.
+    // Moved out, so that threads do not share the cache line of its size.
     std::vector<PackedImage> found = std::move(found_[begin / kBlockSize]);
     found.clear();
     const auto add = [&](const PairImage& image) { add_closely(found, offsets_.pack(image)); };
@@ -156,11 +159,11 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
   });
 }
 
-/// What was found, in one column, and sorted.
+/// Collects the found images in one column, and sorts them.
 void PairSources::join_images(const StepContext& c, Images kind) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const bool is_solid = kind == shifted_solids || kind == mirrored_solids;
-  const CellSortedPoints& points =
-      is_solid ? c.work.of<LiquidScratch>().solids_in_liquid : c.work.of<LiquidScratch>().liquid;
+  const CellSortedPoints& points = is_solid ? buffers.solids_in_liquid : buffers.liquid;
   const Index first = is_solid ? solids_ : 0;
   std::size_t total = 0;
   found_begin_.clear();
@@ -183,6 +186,7 @@ void PairSources::join_images(const StepContext& c, Images kind) {
 }
 
 void PairSources::set_places(const StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const auto set = [&](const CellSortedPoints& points, Index first) {
     for_blocks(c.runner, points.grid.order().size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
@@ -190,8 +194,8 @@ void PairSources::set_places(const StepContext& c) {
       }
     });
   };
-  set(c.work.of<LiquidScratch>().liquid, 0);
-  if (images_begin_ > solids_) set(c.work.of<LiquidScratch>().solids_in_liquid, solids_);
+  set(buffers.liquid, 0);
+  if (images_begin_ > solids_) set(buffers.solids_in_liquid, solids_);
 }
 
 void PairSources::set_image_places(Images kind, TaskRunner* runner) {
@@ -205,10 +209,12 @@ void PairSources::set_image_places(Images kind, TaskRunner* runner) {
 }
 
 void PairSources::set_weights(const StepContext& c, const WeightFactors& factors) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
+  VAT_CHECK(c.model.rest_volume.size() == c.model.particle_count);
   const Real scale = model.liquids[model.material[0]]->kernel.scale();
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
-  const std::span<const Index> solids = c.work.of<LiquidScratch>().solids_in_liquid.grid.order();
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  const std::span<const Index> solids = buffers.solids_in_liquid.grid.order();
   for_blocks(c.runner, images_begin_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const bool is_solid = n >= solids_;
@@ -227,7 +233,7 @@ void PairSources::set_weights(const StepContext& c, const WeightFactors& factors
 }
 
 void PairSources::make_room(std::size_t count) {
-  constexpr std::size_t kMaxLanes = 16;  // loads may reach beyond the last
+  constexpr std::size_t kMaxLanes = 16;  // loads may extend beyond the last source
   const auto grow = [&](auto& column, std::size_t room) {
     resize_closely(column, std::max(column.size(), room));
   };
@@ -253,11 +259,11 @@ void PairSources::set_place(std::size_t n, const Vec3& p) {
   }
 }
 
-/// Far from all that count, and finite in single precision.
+/// The padding is far from all positions, and finite in single precision.
 void PairSources::add_padding(Real reach) {
   constexpr Real kFar = 1e6;
   if (is_single_) {
-    packed_places_[count_] = {PlaceGrid::kFar, PlaceGrid::kFar, PlaceGrid::kFar, 0};
+    packed_places_[count_] = {PositionGrid::kFar, PositionGrid::kFar, PositionGrid::kFar, 0};
   } else {
     const Vec3 far = search_.origin - Vec3::Constant(kFar * reach);
     places_[count_] = {far.x(), far.y(), far.z(), 0};
@@ -275,6 +281,7 @@ void PairSources::make_room_for_motions() {
 }
 
 PairInputs PairSources::inputs() const {
+  VAT_CHECK((is_single_ ? packed_places_.size() : places_.size()) > count_);
   PairInputs inputs;
   inputs.grid = grid_;
   inputs.first_mirrored = first_mirrored();
@@ -309,25 +316,27 @@ std::array<SourceGroup, 3> PairSources::liquid_groups(const UniformGrid& liquid)
 }
 
 bool PairSources::is_current(const StepContext& c) const {
-  return version_ > 0 && liquid_version_ == c.work.of<LiquidScratch>().liquid.version &&
-         solid_version_ == c.work.of<LiquidScratch>().solids_in_liquid.version &&
-         wall_offset_ == motion_of(c).offset;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  return version_ > 0 && liquid_version_ == buffers.liquid.version &&
+         solid_version_ == buffers.solids_in_liquid.version && wall_offset_ == motion_of(c).offset;
 }
 
 void PairSources::build(const StepContext& c, Real reach) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  VAT_CHECK(reach > 0);
   ++version_;
-  liquid_version_ = c.work.of<LiquidScratch>().liquid.version;
-  solid_version_ = c.work.of<LiquidScratch>().solids_in_liquid.version;
+  liquid_version_ = buffers.liquid.version;
+  solid_version_ = buffers.solids_in_liquid.version;
   wall_offset_ = motion_of(c).offset;
-  const CellSortedPoints& liquid = c.work.of<LiquidScratch>().liquid;
-  const CellSortedPoints& solids = c.work.of<LiquidScratch>().solids_in_liquid;
+  const CellSortedPoints& liquid = buffers.liquid;
+  const CellSortedPoints& solids = buffers.solids_in_liquid;
   const bool solid = has_solids(c.model);
   solids_ = static_cast<Index>(liquid.grid.order().size());
   images_begin_ = solids_ + (solid ? static_cast<Index>(solids.grid.order().size()) : 0);
   search_.origin = liquid.grid.origin();
   const auto [low, high] = box_around(liquid.grid, solid ? &solids.grid : nullptr, reach);
   const Real span = (high - low).maxCoeff();
-  grid_ = PlaceGrid(low, span);
+  grid_ = PositionGrid(low, span);
   is_single_ = c.model.scene.pair_precision == PairPrecision::single_precision &&
                span <= kMaxSupports * reach;
   Index end = images_begin_;
@@ -349,6 +358,8 @@ void PairSources::build(const StepContext& c, Real reach) {
     set_image_places(kind, c.runner);
   }
   count_ = end;
+  VAT_CHECK(images_begin_ <= count_ &&
+            (is_single_ ? packed_places_.size() : places_.size()) > count_);
   add_padding(reach);
   set_weights(c, {});
 }

@@ -16,25 +16,25 @@ namespace vat {
 struct CellSortedPoints;
 struct StepContext;
 
-/// What walls, or a world that repeats itself, show of a particle.
+/// The image of a particle in walls or in a periodic world.
 struct PairImage {
-  Vec3 offset;                 ///< of the image from the particle, once that is turned [m]
-  Index source;                ///< the particle
-  std::array<bool, 3> axes{};  ///< along which the image is reflected
+  Vec3 offset;                 ///< from the reflected particle to the image [m]
+  Index source;                ///< index of the particle
+  std::array<bool, 3> axes{};  ///< the reflected axes
 
   Vec3 turn(const Vec3& x) const { return Mirror{axes, {}}.turn(x); }
   Vec3 place(const Vec3& p) const { return offset + turn(p); }
-  /// The mirror alone, of an image in walls.
+  /// The reflection without periodic shifts, for an image in walls.
   Mirror mirror() const;
 };
 
-/// The same in few bytes: of each axis, which of the offsets that there are along it.
+/// A PairImage in few bytes: for each axis, the index of its offset.
 struct PackedImage {
   Index source;
   std::array<std::uint8_t, 3> offsets;
 };
 
-/// The offsets of images along each axis.
+/// The possible offsets of images along each axis.
 class ImageOffsets {
  public:
   ImageOffsets() = default;
@@ -62,23 +62,24 @@ struct WeightFactors {
   WeightFactors() { liquid.fill(1); }
 };
 
-/// All that acts in a coupled liquid's sums over pairs: liquid in the order of its cells, solids in
-/// theirs; images of solids, and of liquid, in a world that repeats itself; images of solids, and
-/// of liquid, in walls; and one more that adds nothing, for padding.
+/// All sources of the sums over pairs of coupled liquids: liquid and solids in the order of their
+/// cells; images of solids and of liquid in a periodic world; images of solids and of liquid in
+/// walls; and one source without effect, for padding.
 class PairSources {
  public:
-  /// From the workspace's sorted points, with images of those within `reach` [m] of walls, and
-  /// weights with factors of 1.
+  /// Collects the sorted points of the workspace, with images of the points within `reach` [m] of
+  /// walls. The factors of the weights are 1.
   void build(const StepContext& context, Real reach);
-  /// Whether build() would find the same places.
+  /// Returns whether build() would find the same positions.
   bool is_current(const StepContext& context) const;
-  /// Rises with each build().
+  /// Increases with each build().
   std::uint64_t version() const { return version_; }
-  /// Weights are rest volumes times the scale of the first liquid's kernel and these factors.
+  /// Weights are rest volume times the scale of the first liquid's kernel times these factors.
   void set_weights(const StepContext& context, const WeightFactors& factors);
 
   void make_room_for_motions();
-  /// motion(s) of liquid slots, solid(s) of solid slots, and image(image, motion of its source).
+  /// Sets motions: motion(s) for liquid slots, solid(s) for solid slots, and image(image, motion of
+  /// its source).
   template <class Liquid, class Solid, class Image>
   void set_motions(TaskRunner* runner, Liquid&& liquid, Solid&& solid, Image&& image) {
     make_room_for_motions();
@@ -87,7 +88,7 @@ class PairSources {
     });
     set_other_motions(runner, solid, image);
   }
-  /// The same where those of liquid are set already, by set_motion() with room made for them.
+  /// Sets the motions of solids and images, after those of liquid have been set by set_motion().
   template <class Solid, class Image>
   void set_other_motions(TaskRunner* runner, Solid&& solid, Image&& image) {
     for_blocks(runner, images_begin_ - solids_, [&](std::size_t begin, std::size_t end) {
@@ -117,55 +118,55 @@ class PairSources {
     }
   }
 
-  /// Charges are weights times charge(s) of liquid slots; of images those of their sources; and 0
-  /// of solids.
+  /// Sets charges, the weights times charge(s) for liquid slots. Images have the charges of their
+  /// sources, and solids have 0.
   template <class Charge>
   void set_charges(TaskRunner* runner, Charge&& charge) {
     is_single_ ? charge_copies(runner, packed_places_, packed_charges_, charge)
                : charge_copies(runner, places_, charges_, charge);
   }
 
-  /// Those of sources there is room for.
+  /// The number of sources for which motions can be stored.
   std::size_t motion_count() const { return std::max(packed_motions_.size(), motions_.size()); }
 
-  /// Inputs with the places and motions; or with charges in place of weights.
+  /// Inputs with positions and motions, or with charges in place of weights.
   PairInputs inputs() const;
   PairInputs charged_inputs() const;
   Real weight(std::size_t n) const {
     return is_single_ ? static_cast<Real>(packed_places_[n].weight) : places_[n].weight;
   }
-  /// [m], rounded as in the sums.
+  /// Position [m], rounded as in the sums.
   Vec3 place(std::size_t n) const {
     if (is_single_) return grid_.place(packed_places_[n]);
     return {places_[n].x, places_[n].y, places_[n].z};
   }
 
-  /// In which sums are to be made: the scene's, or double where that asks for too much.
+  /// The precision of the sums: that of the scene, or double if the extent is too large.
   PairPrecision precision() const {
     return is_single_ ? PairPrecision::single_precision : PairPrecision::double_precision;
   }
-  /// Without the padding.
+  /// The number of sources, without the padding.
   std::size_t count() const { return count_; }
   Index first_solid() const { return solids_; }
   Index first_image() const { return images_begin_; }
-  /// The particle that an image is of; a particle itself.
+  /// The particle of an image; for a particle, itself.
   Index source_of(Index n) const;
-  /// The first image in a wall; and the first of liquid.
+  /// The first image in a wall, and the first one of liquid.
   Index first_mirrored() const { return images_[mirrored_solids].first; }
   Index first_mirrored_liquid() const { return images_[mirrored_liquid].first; }
-  /// As above; and of them those of liquid.
+  /// All groups of sources, and those of liquid.
   std::array<SourceGroup, 6> groups(const UniformGrid& liquid, const UniformGrid& solids) const;
   std::array<SourceGroup, 3> liquid_groups(const UniformGrid& liquid) const;
-  const SearchPlaces& search_places() const { return search_; }
+  const SearchCoordinates& search_coordinates() const { return search_; }
 
  private:
   struct ImageGroup {
     std::vector<PackedImage> all;  ///< in the order of their sources
     UniformGrid grid;
-    Index first = 0;  ///< source
+    Index first = 0;  ///< first source
 
     std::size_t count() const { return all.size(); }
-    /// That in a slot.
+    /// The image in a slot.
     const PackedImage& image(std::size_t slot) const { return all[grid.order()[slot]]; }
   };
   enum Images : std::uint8_t { shifted_solids, shifted_liquid, mirrored_solids, mirrored_liquid };
@@ -202,31 +203,31 @@ class PairSources {
       });
     }
   }
-  /// Room for `count` sources and the padding; what there is of the last time is written over.
+  /// Provides space for `count` sources and the padding. Existing content is overwritten later.
   void make_room(std::size_t count);
   void set_place(std::size_t n, const Vec3& place);
   void set_places(const StepContext& c);
   void set_image_places(Images kind, TaskRunner* runner);
   void add_padding(Real reach);
 
-  bool is_single_ = true;           ///< which columns are filled: the packed ones, or the others
-  std::vector<PairPlace> places_;   ///< by source, and the padding, as the next
-  std::vector<PairPlace> charges_;  ///< the same with charges in place of weights
+  bool is_single_ = true;           ///< whether the packed columns are used, or the others
+  std::vector<PairPlace> places_;   ///< by source, with the padding
+  std::vector<PairPlace> charges_;  ///< places_ with charges in place of weights
   std::vector<PairMotion> motions_;
-  PlaceGrid grid_;
+  PositionGrid grid_;
   std::vector<PackedPlace> packed_places_;
   std::vector<PackedPlace> packed_charges_;
   std::vector<PackedMotion> packed_motions_;
 
   std::size_t count_ = 0;
-  Index solids_ = 0;  ///< first source that is a solid
+  Index solids_ = 0;  ///< first solid source
   Index images_begin_ = 0;
   std::array<ImageGroup, 4> images_;
   ImageOffsets offsets_;
   std::vector<std::vector<PackedImage>> found_;  ///< by block of particles
-  std::vector<std::size_t> found_begin_;         ///< the same: of its images among all
-  std::vector<Vec3> image_points_;               ///< of the group last found
-  SearchPlaces search_;
+  std::vector<std::size_t> found_begin_;  ///< by block of particles: index of its first image
+  std::vector<Vec3> image_points_;        ///< of the group found last
+  SearchCoordinates search_;
   std::uint64_t version_ = 0;
   std::uint64_t liquid_version_ = 0;
   std::uint64_t solid_version_ = 0;

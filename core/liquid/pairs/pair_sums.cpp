@@ -9,7 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/liquid/pairs/pair_sums.cpp"  // NOLINT
 #include "core/liquid/pairs/highway.h"
-// Once for each instruction set, by the line above:
+// Included once for each instruction set, by the line above:
 #include "core/liquid/pairs/pair_loops-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,7 +25,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vat {
-PlaceGrid::PlaceGrid(const Vec3& corner, Real span)
+PositionGrid::PositionGrid(const Vec3& corner, Real span)
     : origin(corner),
       unit(std::exp2(std::ceil(std::log2(span / kCount)))),
       inverse_unit(1 / unit) {}
@@ -34,7 +34,7 @@ const PairSums& pair_sums(InstructionSet set, PairPrecision precision, KernelId 
 #if HWY_ARCH_X86
   if (set == InstructionSet::avx512) return N_AVX3::sums_of(precision, kernel);
   if (set == InstructionSet::avx2) return N_AVX2::sums_of(precision, kernel);
-  // Older processors do the same with their plain instructions.
+  // Older processors compute the same bits with scalar instructions.
   if (__builtin_cpu_supports("ssse3")) return N_SSSE3::sums_of(precision, kernel);
 #endif
   return pair_sums_without_vectors(precision, kernel);

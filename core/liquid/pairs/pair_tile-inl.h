@@ -1,5 +1,5 @@
-// The candidates of a cluster as columns that vectors load, for one instruction set: included once
-// for each of them, like pair_loops-inl.h.
+// The candidates of a cluster as columns for vector loads, for one instruction set. This file is
+// included once for each set, like pair_loops-inl.h.
 #if defined(VAT_PAIR_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VAT_PAIR_TILE_INL_H
 #undef VAT_PAIR_TILE_INL_H
@@ -17,15 +17,16 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Candidates of a cluster, a part at a time, about its centre and over the support radius.
+/// The number of candidates that are processed at once, relative to the cluster's centre and in
+/// units of the support radius.
 constexpr std::size_t kTile = 512;
 
-/// The columns of a tile that a loop reads besides x, y, z and weight.
-struct TileParts {
+/// The columns of a tile that a loop reads in addition to x, y, z and weight.
+struct TileColumns {
   bool velocity = false;
   bool pressure = false;
-  bool share = false;        ///< 0 of images, 1 of others
-  bool image_share = false;  ///< 1 of images, 0 of others
+  bool share = false;        ///< 0 for images, 1 for others
+  bool image_share = false;  ///< 1 for images, 0 for others
   bool viscosity = false;
 };
 
@@ -44,7 +45,7 @@ struct Tile {
   alignas(64) T resistance[kTile];
 };
 
-/// About a cluster's centre, over the support radius.
+/// Coordinates relative to a cluster's centre, in units of the support radius.
 template <class T>
 struct Frame;
 
@@ -79,7 +80,7 @@ struct Frame<float> {
   }
 };
 
-template <TileParts parts, class T>
+template <TileColumns parts, class T>
 HWY_INLINE void fill_viscosity(const PairInputs& in, const Index* candidates, std::size_t count,
                                Tile<T>& tile) {
   if constexpr (parts.share) {
@@ -102,7 +103,7 @@ HWY_INLINE void fill_viscosity(const PairInputs& in, const Index* candidates, st
   }
 }
 
-template <TileParts parts, class T>
+template <TileColumns parts, class T>
 HWY_INLINE void fill_tile(const PairInputs& in, const Frame<T>& frame, const Index* candidates,
                           std::size_t count, Tile<T>& tile) {
   for (std::size_t k = 0; k < count; ++k) {
@@ -127,7 +128,7 @@ HWY_INLINE void fill_tile(const PairInputs& in, const Frame<T>& frame, const Ind
 using Floats = hn::ScalableTag<float>;
 using FloatVec = hn::Vec<Floats>;
 
-/// Records candidates[0], [4], ... of 16 bytes, one behind the other.
+/// Loads the records candidates[0], [4], ... of 16 bytes each.
 template <std::size_t lanes, class Record>
 HWY_INLINE auto load_records(const Record* records, const Index* candidates) {
   const hn::FixedTag<float, lanes> d;
@@ -162,8 +163,8 @@ HWY_INLINE Columns load_columns(const Record* records, const Index* candidates) 
           hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23))};
 }
 
-/// `count`: a multiple of the lanes.
-template <TileParts parts>
+/// `count` must be a multiple of the number of lanes.
+template <TileColumns parts>
 HWY_INLINE void fill_tile(const PairInputs& in, const Frame<float>& frame, const Index* candidates,
                           std::size_t count, Tile<float>& tile) {
   const Floats d;

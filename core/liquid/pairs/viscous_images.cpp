@@ -5,19 +5,20 @@
 #include "core/evaluation/force_model.h"
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// What a mirror makes of velocities: v -> factor v + shift, axis by axis.
+/// The mirrored velocity: v -> factor v + shift, axis by axis.
 struct MirroredVelocity {
-  bool is_dragged = false;  ///< one of its walls, at least, is no_slip
+  bool is_dragged = false;  ///< at least one of its walls is no_slip
   Vec3 factor = Vec3::Ones();
   Vec3 shift = Vec3::Zero();
 };
 
-/// Of a mirror seen from `place` inside: one wall after the other, each in its own frame. A wall
-/// that is not no_slip leaves the part along it.
+/// The mirrored velocity for a mirror seen from `place` inside: one wall after the other, each in
+/// its own frame. A slip wall keeps the velocity along it.
 MirroredVelocity mirrored_velocity(const Vat& vat, const VatMotion& motion, const Mirror& mirror,
                                    const Vec3& place) {
   MirroredVelocity result;
@@ -35,7 +36,7 @@ MirroredVelocity mirrored_velocity(const Vat& vat, const VatMotion& motion, cons
   return result;
 }
 
-/// Calls f(particle, velocity's mirror, strength by axis) for the images of liquid near slot `self`
+/// Calls f(particle, mirrored velocity, strength by axis) for the images of liquid near slot `self`
 /// that take part.
 template <class F>
 void for_each_viscous_image(const Model& model, const Scratch& work, const VatMotion& motion,
@@ -61,17 +62,18 @@ void for_each_viscous_image(const Model& model, const Scratch& work, const VatMo
 
 }  // namespace
 
-// Of an image the pressure's place has whether it takes part anyway, of a particle whether all do.
+// The pressure of a source tells whether it takes part: for an image itself, for a particle all its
+// images.
 void add_viscous_image_forces(StepContext& c) {
-  Scratch& work = c.work;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
   const VatMotion motion = motion_of(c);
-  const std::span<const Index> order = work.of<LiquidScratch>().liquid.grid.order();
+  const std::span<const Index> order = buffers.liquid.grid.order();
   const std::vector<Vec3>& velocities = c.configuration.velocity;
   const auto is_thick_at = [&](Index i) -> Real {
     return is_thick(liquid_of(model, i), model.scene.dimensions);
   };
-  work.of<LiquidScratch>().sources.set_motions(
+  buffers.sources.set_motions(
       c.runner,
       [&](std::size_t s) { return vat::motion_of(is_thick_at(order[s]), velocities[order[s]]); },
       [](std::size_t) { return PairMotion{}; },
@@ -79,19 +81,19 @@ void add_viscous_image_forces(StepContext& c) {
         const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
         if (image.source >= order.size() || !is_mirrored) return PairMotion{};
         const Mirror mirror = image.mirror();
-        const MirroredVelocity mirrored = mirrored_velocity(
-            *model.scene.vat, motion, mirror, work.of<LiquidScratch>().sources.place(image.source));
+        const MirroredVelocity mirrored = mirrored_velocity(*model.scene.vat, motion, mirror,
+                                                            buffers.sources.place(image.source));
         const Vec3 velocity(source.vx, source.vy, source.vz);
         return vat::motion_of(mirrored.is_dragged ? 1 : source.pressure,
                               mirrored.factor.cwiseProduct(velocity) + mirrored.shift);
       });
   if (has_several_liquids(model)) set_image_viscosities(c);
   PairInputs inputs = force_inputs(c);
-  inputs.first_mirrored = work.of<LiquidScratch>().sources.first_mirrored_liquid();
+  inputs.first_mirrored = buffers.sources.first_mirrored_liquid();
   const PairSums& table = pair_sums_of(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
-  work.of<LiquidScratch>().liquid_clusters.for_each_chunk(
+  buffers.liquid_clusters.for_each_chunk(
       c.runner, inputs, [&](const PairInputs& in, auto clusters) {
         for (const TargetCluster& cluster : clusters) {
           if (!cluster.has_mirrored) continue;
@@ -107,6 +109,7 @@ void add_viscous_image_forces(StepContext& c) {
 }
 
 void ViscousImages::collect(const ForceModel& f, Real time) {
+  VAT_CHECK(f.model.scene.vat.has_value());
   const VatMotion motion = vat_motion(*f.model.scene.vat, time);
   const std::size_t count = f.work.of<LiquidScratch>().liquid.grid.order().size();
   blocks_.resize(block_count(count));
@@ -127,6 +130,7 @@ void ViscousImages::collect(const ForceModel& f, Real time) {
 void ViscousImages::add(const ForceModel& f, const std::vector<Vec3>& w,
                         std::vector<Vec3>& force) const {
   const std::span<const Index> order = f.work.of<LiquidScratch>().liquid.grid.order();
+  VAT_CHECK(blocks_.size() == block_count(order.size()) && force.size() >= order.size());
   for_blocks(f.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     const Block& block = blocks_[begin / kBlockSize];
     for (std::size_t s = begin; s < end; ++s) {

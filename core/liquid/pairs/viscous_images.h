@@ -10,22 +10,22 @@ namespace vat {
 
 struct ForceModel;
 
-/// Stage: viscosity between liquids and walls that are mirrors (Model::is_coupled). Seen from a
-/// no-slip wall, an image has its particle's velocity turned round, so that it is zero in the
-/// middle (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, sec. 3.5); from a slip
-/// one, as mirrored, which resists what presses against the wall. Particles and images have the
-/// liquid's own viscous force, but for what couples two axes in it: that cancels between images on
-/// both sides, and without it the force is symmetric in any two particles and never adds energy.
+/// Stage: adds the viscosity between liquids and mirror walls (Model::is_coupled). In a no-slip
+/// wall, an image has the reversed velocity of its particle, so that the velocity is zero midway
+/// (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, sec. 3.5). In a slip wall it
+/// has the mirrored velocity, which resists compression against the wall. The force is the liquid's
+/// viscous force without the terms that couple two axes. These terms cancel between the images on
+/// both sides; without them, the force is symmetric in two particles and never adds energy.
 ///
-/// Slip walls take part where a liquid is thicker than its artificial viscosity is, which is for
-/// sound and not for walls.
+/// Slip walls take part if a liquid's viscosity exceeds its artificial viscosity, which is meant
+/// for sound, not for walls.
 void add_viscous_image_forces(StepContext& context);
 
-/// The same as a symmetric, negative semi-definite matrix D; see DampingMatrix.
+/// The viscous forces of images as a symmetric, negative semi-definite matrix D; see DampingMatrix.
 class ViscousImages {
  public:
   void collect(const ForceModel& force_model, Real time);
-  /// force += D w, both with an entry for each particle.
+  /// force += D w, with an entry for each particle.
   void add(const ForceModel& force_model, const std::vector<Vec3>& w,
            std::vector<Vec3>& force) const;
 

@@ -9,14 +9,14 @@
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
-/// What the stages of the weakly compressible liquid share.
+/// Functions that the stages of weakly compressible liquids share.
 namespace vat {
 
 inline Vec3 nearest_image(const Model& model, const Vec3& x) {
   return model.periodic.any() ? model.periodic.nearest(x) : x;
 }
 
-/// The acceleration of free fall at a place, seen from the vat.
+/// The acceleration of free fall at a position, in the frame of the vat.
 inline Vec3 fall_in_vat(const Model& model, const VatMotion& motion, const Vec3& position) {
   Vec3 fall = -motion.acceleration;
   if (!model.scene.forces.gravity) return fall;
@@ -28,27 +28,27 @@ inline Vec3 fall_in_vat(const Model& model, const VatMotion& motion, const Vec3&
   return fall;
 }
 
-/// 2 (d + 2) mu between two liquids: the harmonic mean, through which the slower one lets as much
-/// through as the other (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq. 22).
+/// 2 (d + 2) mu between two liquids: the harmonic mean, with which both liquids have the same shear
+/// stress at their interface (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq.
+/// 22).
 inline Real mean_viscosity(const LiquidModel& a, const LiquidModel& b) {
   const Real sum = a.central_viscosity + b.central_viscosity;
   return sum > 0 ? 2 * a.central_viscosity * b.central_viscosity / sum : 0;
 }
 
-/// |x|^2 + 0.01 h^2 with the smoothing length h, half of the support radius, as in Monaghan's form:
-/// with the support radius in its place the viscosity would be a thirtieth too small.
+/// |x|^2 + 0.01 h^2 with the smoothing length h, half of the support radius, as in Monaghan's form.
+/// With the support radius in place of h, the viscosity would be a thirtieth too small.
 inline Real softened_square(const LiquidModel& liquid, Real r) {
   const Real h = liquid.support_radius / 2;
   return r * r + Real{0.01} * h * h;
 }
 
-/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2, up to s = 1.03, and from there on linear
-/// in the volume 1 / s. Only impacts press a liquid further together, with pressures rho c v that
-/// are those of the chosen speed of sound; and the denser a lattice, the shorter its stable step.
-/// On this line that stays above 0.77 h / c up to twice the density, the limit in
-/// find_step_limits(); with s^7 it is 0.62 h / c at s = 1.1 already. From twice the density on it
-/// goes along its tangent: the line has an end, and a liquid that is too soft for its own weight
-/// would fall together.
+/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2, up to s = 1.03; beyond, it is linear in
+/// the volume 1 / s. Only impacts compress a liquid further, with pressures rho c v of the chosen
+/// speed of sound. The stable step decreases with the density of a lattice: with the linear part it
+/// stays above 0.77 h / c up to twice the density, the limit in find_step_limits(), and with s^7 it
+/// is 0.62 h / c at s = 1.1. From twice the density on, the pressure follows the tangent: the
+/// linear part is bounded, and a liquid that is too soft for its own weight would collapse.
 inline Real tait_pressure(Real s) {
   constexpr Real kEnd = 1.03;
   constexpr Real kPressure = (kEnd * kEnd * kEnd * kEnd * kEnd * kEnd * kEnd - 1) / 7;
@@ -62,7 +62,7 @@ inline Real tait_pressure(Real s) {
   return (s2 * s2 * s2 * s - 1) / 7;
 }
 
-/// What a liquid with a free surface bears at the density s, over that at rest.
+/// The minimum pressure of a liquid with a free surface at the relative density s.
 inline Real least_pressure(const LiquidModel& liquid, Real s) {
   return 0 - liquid.tensile_strength * s * s;
 }
@@ -71,13 +71,13 @@ inline bool has_solids(const Model& model) {
   return model.particle_count > model.liquid_count;
 }
 
-/// That of all liquids, which coupled ones share.
+/// The support radius, which coupled liquids share.
 inline Real support_of(const Model& model) {
   return model.liquids[model.material[0]]->support_radius;
 }
 
-/// Of the cells of coupled liquids and of solids in them: at rest they hold some eight particles,
-/// or nine in the plane [m].
+/// Size of the cells of coupled liquids and of solids in them [m]. At rest a cell contains about
+/// eight particles, or nine in the plane.
 inline Real pair_cell_size(const Model& model) {
   const Real in_spacings = model.scene.dimensions == 3 ? 2 : 3;
   return in_spacings * model.liquids[model.material[0]]->spacing;
@@ -87,7 +87,7 @@ inline VatMotion motion_of(const StepContext& c) {
   return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
 }
 
-/// Calls f(slot, x, mirror) for the walls' images of points within `radius` of `place`; x leads
+/// Calls f(slot, x, mirror) for the images in walls of points within `radius` of `place`. x points
 /// from the image to the place.
 template <class F>
 void for_each_image(const Model& model, const VatMotion& motion, const CellSortedPoints& points,
@@ -107,9 +107,9 @@ void for_each_image(const Model& model, const VatMotion& motion, const CellSorte
   });
 }
 
-/// The pressure of a particle's image near a place. The mirror keeps energy, but turns gravity's
-/// part across the wall round; the rest is what the weight beyond the wall would add, as far as
-/// there is pressure where there is a free surface.
+/// The pressure of a particle's image near a position. The mirror conserves energy, but reverses
+/// the component of gravity across the wall. The correction is the weight of the liquid beyond the
+/// wall; at a free surface it is limited by the pressure.
 class ImagePressure {
  public:
   ImagePressure(const Model& model, const VatMotion& motion, const Vec3& place)
@@ -126,7 +126,7 @@ class ImagePressure {
     const Real more = liquid.rest_density * fall_.dot(way);
     if (may_pull_) return pressure + more;
     if (pressure <= 0) return pressure;
-    // What the weight of one layer of particles makes.
+    // The pressure under one layer of particles.
     const Real layer = liquid.rest_density * acceleration_ * liquid.spacing;
     return std::max(Real{0}, pressure + pressure / (pressure + layer) * more);
   }

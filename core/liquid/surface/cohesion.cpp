@@ -6,6 +6,7 @@
 
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -14,8 +15,8 @@ Vec3 place_of(const CellSortedPoints& points, Index slot) {
   return {points.x[slot], points.y[slot], points.z[slot]};
 }
 
-/// Calls f(slot, x) for points nearer to `place` than `reach`, with x from there. Of a run of slots
-/// the near ones are found first, with no branch to mispredict.
+/// Calls f(slot, x) for points closer to `place` than `reach`, with x pointing from the point to
+/// `place`. For each run of slots it first finds the near points, without mispredicted branches.
 template <class F>
 void for_each_near(const Model& model, const CellSortedPoints& points, const Vec3& place,
                    Real reach, F&& f) {
@@ -49,12 +50,12 @@ void for_each_near(const Model& model, const CellSortedPoints& points, const Vec
   model.periodic.for_each_image(place, reach, [&](const Vec3& shift) { search(place + shift); });
 }
 
-/// Over A and the particle's volume, along x from the other one.
+/// The force of a particle at -x, divided by A and the volume of the other particle.
 Vec3 pull(const CohesionKernel& kernel, Real share, Real volume, const Vec3& x) {
   return (volume * kernel.slope_over_r(x.norm(), share)) * x;
 }
 
-/// The same by the walls.
+/// The force of the walls, divided by A and the particle's volume.
 Vec3 pull_of_walls(const Model& model, const VatMotion& motion, Real share, const Vec3& place) {
   Vec3 sum = Vec3::Zero();
   for (const int wall : model.walls) {
@@ -69,6 +70,7 @@ Vec3 pull_of_walls(const Model& model, const VatMotion& motion, Real share, cons
 
 void add_cohesion(StepContext& c) {
   const Model& model = c.model;
+  VAT_CHECK(model.cohesion && model.rest_volume.size() == model.particle_count);
   const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
   const std::span<const Index> order = points.grid.order();
   const CohesionKernel& kernel = *model.cohesion;
@@ -95,8 +97,8 @@ void add_cohesion(StepContext& c) {
 
 namespace {
 
-/// The forces on the points of one kind, the first of which is particle `first`, by those of the
-/// other; with pull(i, j, x) of theirs, over i's volume.
+/// Adds the forces on the points of one kind, whose first one is particle `first`, by those of the
+/// other kind. pull(i, j, x) is the force on i, divided by the volume of i.
 template <class Pull>
 void add_pulls(StepContext& c, const CellSortedPoints& points, Index first,
                const CellSortedPoints& others, Index first_other, Pull&& pull) {
@@ -118,9 +120,10 @@ void add_pulls(StepContext& c, const CellSortedPoints& points, Index first,
 }  // namespace
 
 void add_adhesion(StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  const CellSortedPoints& liquid = c.work.of<LiquidScratch>().liquid;
-  const CellSortedPoints& solids = c.work.of<LiquidScratch>().solids_in_liquid;
+  const CellSortedPoints& liquid = buffers.liquid;
+  const CellSortedPoints& solids = buffers.solids_in_liquid;
   const auto pull_of = [&](Index in_liquid, Index in_solid, Index other, const Vec3& x) {
     const Index material = model.material[in_liquid];
     const Real share = model.adhesion_share(material, model.material[in_solid]);

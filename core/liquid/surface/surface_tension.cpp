@@ -7,12 +7,13 @@
 
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// One liquid particle and what is around it.
-struct Place {
+/// A liquid particle and its neighbourhood.
+struct Neighbourhood {
   const StepContext& c;
   const VatMotion& motion;
   Index slot;
@@ -34,10 +35,10 @@ struct Place {
   }
 };
 
-/// Calls f(slot, x, mirror) for the liquid's particles in reach, with x from there, and for their
-/// images; without a mirror, it is null.
+/// Calls f(slot, x, mirror) for the liquid particles in reach and for their images, with x pointing
+/// to the particle at the place. The mirror is null for particles.
 template <class F>
-void for_each_liquid(const Place& at, F&& f) {
+void for_each_liquid(const Neighbourhood& at, F&& f) {
   const StepContext& c = at.c;
   const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
   const PairBlock& pairs = c.work.of<LiquidScratch>().liquid_pairs[at.slot / kBlockSize];
@@ -53,9 +54,9 @@ void for_each_liquid(const Place& at, F&& f) {
                  [&](Index slot, const Vec3& x, const Mirror& mirror) { f(slot, x, &mirror); });
 }
 
-/// Calls f(solid particle, x) for those in reach, and for their images.
+/// Calls f(solid particle, x) for the solid particles in reach and their images.
 template <class F>
-void for_each_solid(const Place& at, F&& f) {
+void for_each_solid(const Neighbourhood& at, F&& f) {
   const StepContext& c = at.c;
   if (!has_solids(c.model)) return;
   const CellSortedPoints& solids = c.work.of<LiquidScratch>().solids_in_liquid;
@@ -76,17 +77,18 @@ void for_each_solid(const Place& at, F&& f) {
 
 /// Calls f(place) for each liquid particle.
 template <class F>
-void for_each_place(const StepContext& c, F&& f) {
+void for_each_neighbourhood(const StepContext& c, F&& f) {
   const VatMotion motion = motion_of(c);
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
-      f(Place{c, motion, static_cast<Index>(slot)});
+      f(Neighbourhood{c, motion, static_cast<Index>(slot)});
     }
   });
 }
 
-/// The normal of a surface that meets a wall, of normal `inwards`, at the contact angle, turned as
-/// `normal` is along the wall; zero where it is not.
+/// The normal of a surface at the contact angle with a wall, in the direction of `normal` along the
+/// wall. `inwards` is the direction of the wall's normal. Zero if `normal` has no component along
+/// the wall.
 Vec3 contact_normal(const Vec3& normal, int axis, Real inwards, Real cosine) {
   Vec3 along = normal;
   along[axis] = 0;
@@ -97,13 +99,13 @@ Vec3 contact_normal(const Vec3& normal, int axis, Real inwards, Real cosine) {
   return result;
 }
 
-Real wall_cosine(const Place& at) {
+Real wall_cosine(const Neighbourhood& at) {
   return at.c.model.wall_cosines[at.c.model.material[at.particle_of(at.slot)]];
 }
 
-/// What is `normal` here in an image: turned round from the normal of contact, so that this is what
-/// the surface has at the wall.
-Vec3 image_normal(const Place& at, Vec3 normal, const Mirror& mirror) {
+/// The normal of the image of a particle with `normal`: reflected at the contact normal, so that
+/// the surface has the contact normal at the wall.
+Vec3 image_normal(const Neighbourhood& at, Vec3 normal, const Mirror& mirror) {
   const Real cosine = wall_cosine(at);
   if (cosine == 0) return mirror.turn(normal);
   const Vec3 place = at.position();
@@ -116,8 +118,8 @@ Vec3 image_normal(const Place& at, Vec3 normal, const Mirror& mirror) {
   return normal;
 }
 
-/// Normals near walls go over into the normal of contact.
-Vec3 turn_at_walls(const Place& at, Vec3 normal) {
+/// Interpolates normals near walls to the contact normal.
+Vec3 turn_at_walls(const Neighbourhood& at, Vec3 normal) {
   const Model& model = at.c.model;
   const Real cosine = wall_cosine(at);
   if (cosine == 0) return normal;
@@ -133,7 +135,7 @@ Vec3 turn_at_walls(const Place& at, Vec3 normal) {
   return normal;
 }
 
-SurfaceRecord surface_at(const Place& at) {
+SurfaceRecord surface_at(const Neighbourhood& at) {
   const LiquidModel& liquid = at.liquid();
   const SmoothingKernel& kernel = liquid.kernel;
   Vec3 gradient = Vec3::Zero();
@@ -151,8 +153,8 @@ SurfaceRecord surface_at(const Place& at) {
   return {liquid.slope_scale * gradient, std::max(Real{0}, 1 - sum)};
 }
 
-/// The kernel-weighted mean of the gradients around, as a direction.
-Vec3 normal_at(const Place& at) {
+/// The kernel-weighted mean of the gradients of the neighbours, as a direction.
+Vec3 normal_at(const Neighbourhood& at) {
   const std::vector<SurfaceRecord>& surface = at.c.work.of<SurfaceScratch>().surface;
   const LiquidModel& liquid = at.liquid();
   const Vec3& own = surface[at.slot].gradient;
@@ -168,8 +170,9 @@ Vec3 normal_at(const Place& at) {
   return length > 0 ? turn_at_walls(at, sum / length) : Vec3(Vec3::Zero());
 }
 
-/// The surface's own curvature, of one that particles below it see.
-Real lift_to_surface(const Place& at, Real curvature) {
+/// The curvature of the surface, from the curvature of the parallel surface of the particles below
+/// it.
+Real lift_to_surface(const Neighbourhood& at, Real curvature) {
   const int dimensions = at.c.model.scene.dimensions;
   const Real share = kSurfaceDepth / (dimensions - 1) + kSurfaceBulge;
   const Real h = at.liquid().support_radius;
@@ -177,7 +180,7 @@ Real lift_to_surface(const Place& at, Real curvature) {
 }
 
 /// -div n over particles at the surface and their images.
-Real curvature_at(const Place& at) {
+Real curvature_at(const Neighbourhood& at) {
   const std::vector<Vec3>& normals = at.c.work.of<SurfaceScratch>().surface_normals;
   const SmoothingKernel& kernel = at.liquid().kernel;
   const Vec3& own = normals[at.slot];
@@ -195,15 +198,15 @@ Real curvature_at(const Place& at) {
   return lift_to_surface(at, -divergence / weight);
 }
 
-/// Half the derivative of the energy of cohesion by s_i [Pa].
-Real cohesion_of(const Place& at, Index slot) {
+/// Half the derivative of the cohesion energy by s_i [Pa].
+Real cohesion_of(const Neighbourhood& at, Index slot) {
   const LiquidModel& liquid = liquid_of(at.c.model, at.particle_of(slot));
   return 2 * kCohesion * liquid.surface_tension / liquid.support_radius *
          at.c.work.of<SurfaceScratch>().surface[slot].kernel_deficiency;
 }
 
-/// Over the particle's volume.
-Vec3 cohesion_at(const Place& at) {
+/// The force of cohesion, divided by the particle's volume.
+Vec3 cohesion_at(const Neighbourhood& at) {
   const LiquidModel& liquid = at.liquid();
   const Real own = cohesion_of(at, at.slot);
   Vec3 sum = Vec3::Zero();
@@ -217,39 +220,45 @@ Vec3 cohesion_at(const Place& at) {
 }  // namespace
 
 void find_surface(StepContext& c) {
-  c.work.of<SurfaceScratch>().surface.resize(c.model.liquid_count);
-  for_each_place(
-      c, [&](const Place& at) { c.work.of<SurfaceScratch>().surface[at.slot] = surface_at(at); });
+  SurfaceScratch& surface_buffers = c.work.of<SurfaceScratch>();
+  VAT_CHECK(c.work.of<LiquidScratch>().liquid.grid.order().size() == c.model.liquid_count);
+  surface_buffers.surface.resize(c.model.liquid_count);
+  for_each_neighbourhood(
+      c, [&](const Neighbourhood& at) { surface_buffers.surface[at.slot] = surface_at(at); });
 }
 
 void find_surface_normals(StepContext& c) {
-  c.work.of<SurfaceScratch>().surface_normals.resize(c.model.liquid_count);
-  for_each_place(c, [&](const Place& at) {
-    c.work.of<SurfaceScratch>().surface_normals[at.slot] = normal_at(at);
+  SurfaceScratch& surface_buffers = c.work.of<SurfaceScratch>();
+  VAT_CHECK(surface_buffers.surface.size() == c.model.liquid_count);
+  surface_buffers.surface_normals.resize(c.model.liquid_count);
+  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
+    surface_buffers.surface_normals[at.slot] = normal_at(at);
   });
 }
 
 namespace {
 
-/// Over the particle's volume: that of the surface's curvature.
-Vec3 squeeze_at(const Place& at) {
-  const Vec3& normal = at.c.work.of<SurfaceScratch>().surface_normals[at.slot];
+/// The force of curvature, divided by the particle's volume.
+Vec3 squeeze_at(const Neighbourhood& at) {
+  SurfaceScratch& surface_buffers = at.c.work.of<SurfaceScratch>();
+  const Vec3& normal = surface_buffers.surface_normals[at.slot];
   if (normal.isZero(0)) return Vec3::Zero();
-  const Real delta = 2 * at.c.work.of<SurfaceScratch>().surface[at.slot].gradient.norm();
+  const Real delta = 2 * surface_buffers.surface[at.slot].gradient.norm();
   return (at.liquid().surface_tension * curvature_at(at) * delta) * normal;
 }
 
-/// What the particle's share in corrections goes by: sigma times its part of the surface.
-Real share_of(const Place& at) {
-  if (at.c.work.of<SurfaceScratch>().surface_normals[at.slot].isZero(0)) return 0;
+/// The weight of the particle in corrections: sigma times its part of the surface.
+Real share_of(const Neighbourhood& at) {
+  SurfaceScratch& surface_buffers = at.c.work.of<SurfaceScratch>();
+  if (surface_buffers.surface_normals[at.slot].isZero(0)) return 0;
   return at.liquid().surface_tension * at.volume(at.slot) *
-         at.c.work.of<SurfaceScratch>().surface[at.slot].gradient.norm();
+         surface_buffers.surface[at.slot].gradient.norm();
 }
 
 SurfaceSum sum_surface(StepContext& c, const std::vector<Vec3>& force) {
   std::vector<SurfaceSum>& sums = c.work.of<SurfaceScratch>().surface_sums;
   sums.assign(block_count(force.size()), {});
-  for_each_place(c, [&](const Place& at) {
+  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
     SurfaceSum& sum = sums[at.slot / kBlockSize];
     const Real share = share_of(at);
     const Vec3 x = at.position();
@@ -264,8 +273,8 @@ SurfaceSum sum_surface(StepContext& c, const std::vector<Vec3>& force) {
   return all;
 }
 
-/// Makes the forces of curvature, by slot, and their torques add up to nothing: what is left over
-/// is taken back as a rigid body's motion of the surface, weighted with sigma times area.
+/// Makes the sums of the curvature forces, by slot, and of their torques zero. Subtracts the
+/// remainder as a rigid motion of the surface, weighted with sigma times area.
 void balance(StepContext& c, std::vector<Vec3>& force) {
   const SurfaceSum all = sum_surface(c, force);
   if (!(all.share > 0)) return;
@@ -276,11 +285,11 @@ void balance(StepContext& c, std::vector<Vec3>& force) {
     const Mat3 second = all.second_moment - all.share * center * center.transpose();
     const Mat3 inertia = second.trace() * Mat3::Identity() - second;
     const Eigen::LDLT<Mat3> solver(inertia);
-    // Points on a line, which have no torque along it.
+    // For points on a line, there is no torque along it.
     const bool is_line = !(solver.vectorD().minCoeff() > 1e-9 * inertia.trace());
     if (!is_line) turn = solver.solve(all.torque - center.cross(all.force));
   }
-  for_each_place(c, [&](const Place& at) {
+  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
     force[at.slot] -= share_of(at) * (excess + turn.cross(at.position() - center));
   });
 }
@@ -289,11 +298,12 @@ void balance(StepContext& c, std::vector<Vec3>& force) {
 
 void add_surface_tension(StepContext& c) {
   std::vector<Vec3>& squeeze = c.work.of<SurfaceScratch>().surface_forces;
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
   squeeze.resize(c.model.liquid_count);
-  for_each_place(c,
-                 [&](const Place& at) { squeeze[at.slot] = at.volume(at.slot) * squeeze_at(at); });
+  for_each_neighbourhood(
+      c, [&](const Neighbourhood& at) { squeeze[at.slot] = at.volume(at.slot) * squeeze_at(at); });
   if (c.model.walls.empty() && !has_solids(c.model)) balance(c, squeeze);
-  for_each_place(c, [&](const Place& at) {
+  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
     const Vec3 pull = cohesion_at(at);
     c.forces.particle[at.particle_of(at.slot)] += squeeze[at.slot] + at.volume(at.slot) * pull;
   });

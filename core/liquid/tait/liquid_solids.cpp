@@ -4,8 +4,9 @@
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/scratch.h"
 #include "core/liquid/tait/weakly_compressible.h"
+#include "core/support/check.h"
 
-// Solids in a weakly compressible liquid.
+// Solids in weakly compressible liquids.
 
 namespace vat {
 
@@ -15,54 +16,55 @@ void sort_solids_in_liquid(StepContext& c) {
       points.subspan(c.model.liquid_count), pair_cell_size(c.model), c.model.periodic, c.runner);
 }
 
-// The mean pressure around a place, weighted with the kernel, and extrapolated by the weight of the
-// liquid between.
+// The mean pressure around a position, weighted with the kernel and extrapolated by the weight of
+// the liquid in between.
 void extrapolate_pressure(StepContext& c) {
-  Scratch& work = c.work;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  const CellSortedPoints& solids = work.of<LiquidScratch>().solids_in_liquid;
-  const std::span<const Index> order = work.of<LiquidScratch>().liquid.grid.order();
+  VAT_CHECK(buffers.pressure.size() == c.model.liquid_count);
+  const CellSortedPoints& solids = buffers.solids_in_liquid;
+  const std::span<const Index> order = buffers.liquid.grid.order();
   const std::size_t count = solids.grid.order().size();
   const Real support = support_of(model);
   const ImageMotion image_motion(c);
-  work.of<LiquidScratch>().sources.set_motions(
+  buffers.sources.set_motions(
       c.runner,
       [&](std::size_t s) {
-        return PairMotion{work.of<LiquidScratch>().pressure[order[s]],
-                          liquid_of(model, order[s]).rest_density, 0, 0};
+        return PairMotion{buffers.pressure[order[s]], liquid_of(model, order[s]).rest_density, 0,
+                          0};
       },
       [](std::size_t) { return PairMotion{}; },
       [&](const PairImage& image, const PairMotion& source) {
         return PairMotion{image_motion(image, source).pressure, source.vx, 0, 0};
       });
-  work.of<LiquidScratch>().solid_pressure.resize(count);
+  buffers.solid_pressure.resize(count);
   const auto set_pressure = [&](const TargetCluster&, Index target, const Real* sums) {
-    const std::size_t s = target - work.of<LiquidScratch>().sources.first_solid();
+    const std::size_t s = target - buffers.sources.first_solid();
     const Vec3 fall = fall_in_vat(model, {}, {solids.x[s], solids.y[s], solids.z[s]});
     const Real weight = sums[3];
     const Real sum = sums[4] + support * fall.dot(Eigen::Map<const Vec3>(sums));
     const Real mean = weight > 0 ? sum / weight : 0;
-    work.of<LiquidScratch>().solid_pressure[s] = model.is_filled ? mean : std::max(Real{0}, mean);
+    buffers.solid_pressure[s] = model.is_filled ? mean : std::max(Real{0}, mean);
   };
-  work.of<LiquidScratch>().solid_clusters.for_each_sum<kMeanSums>(
-      c.runner, solid_force_inputs(c), pair_sums_of(c).mean, set_pressure);
+  buffers.solid_clusters.for_each_sum<kMeanSums>(c.runner, solid_force_inputs(c),
+                                                 pair_sums_of(c).mean, set_pressure);
 }
 
 void add_tait_forces_on_solids(StepContext& c) {
-  Scratch& work = c.work;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  const std::span<const Index> order = work.of<LiquidScratch>().solids_in_liquid.grid.order();
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
+  const std::span<const Index> order = buffers.solids_in_liquid.grid.order();
   const bool is_mixed = has_several_liquids(model);
   if (is_mixed) set_solid_viscosities(c);
   set_slope_weights(c);
   const PairSums& table = pair_sums_of(c);
   const auto sum = has_central_viscosity(model) ? table.force : table.pressure;
   const Real factor = slope_factor(model, *model.liquids[model.material[0]]);
-  work.of<LiquidScratch>().solid_clusters.for_each_sum<3>(
+  buffers.solid_clusters.for_each_sum<3>(
       c.runner, solid_force_inputs(c), sum,
       [&](const TargetCluster&, Index target, const Real* sums) {
-        const Index b =
-            model.liquid_count + order[target - work.of<LiquidScratch>().sources.first_solid()];
+        const Index b = model.liquid_count + order[target - buffers.sources.first_solid()];
         c.forces.particle[b] += model.rest_volume[b] * factor * Eigen::Map<const Vec3>(sums);
       });
 }

@@ -3,18 +3,20 @@
 
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// Calls f(volume, gradient of W, slot, mirror) for everything near liquid slot `self`: other
-/// liquid, without a mirror; its images; solids and their images, with the slot kNoParticle.
+/// Calls f(volume, gradient of W, slot, mirror) for all sources near liquid slot `self`: other
+/// liquid, without a mirror; its images; and solids and their images, with the slot kNoParticle.
 template <class F>
 void for_each_near(const StepContext& c, const VatMotion& motion, Index self, F&& f) {
-  const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
-  const CellSortedPoints& solids = c.work.of<LiquidScratch>().solids_in_liquid;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const CellSortedPoints& points = buffers.liquid;
+  const CellSortedPoints& solids = buffers.solids_in_liquid;
   const LiquidModel& liquid = liquid_of(c.model, points.grid.order()[self]);
-  const Vec3& place = c.work.of<LiquidScratch>().liquid_records[self].position;
+  const Vec3& place = buffers.liquid_records[self].position;
   const auto visit = [&](Real volume, const Vec3& x, Index slot, const Mirror* mirror) {
     const Real r = x.norm();
     if (r >= liquid.support_radius) return;
@@ -23,14 +25,14 @@ void for_each_near(const StepContext& c, const VatMotion& motion, Index self, F&
   const auto solid_volume = [&](Index slot) {
     return c.model.rest_volume[c.model.liquid_count + solids.grid.order()[slot]];
   };
-  const PairBlock& pairs = c.work.of<LiquidScratch>().liquid_pairs[self / kBlockSize];
+  const PairBlock& pairs = buffers.liquid_pairs[self / kBlockSize];
   const std::size_t k = self % kBlockSize;
   for (Index p = pairs.begin[k]; p < pairs.begin[k + 1]; ++p) {
-    const LiquidRecord& other = c.work.of<LiquidScratch>().liquid_records[pairs.slots[p]];
+    const LiquidRecord& other = buffers.liquid_records[pairs.slots[p]];
     visit(other.volume, nearest_image(c.model, place - other.position), pairs.slots[p], nullptr);
   }
   if (has_solids(c.model)) {
-    const PairBlock& near = c.work.of<LiquidScratch>().solids_of_liquid[self / kBlockSize];
+    const PairBlock& near = buffers.solids_of_liquid[self / kBlockSize];
     for (Index p = near.begin[k]; p < near.begin[k + 1]; ++p) {
       const Index slot = near.slots[p];
       const Vec3 position(solids.x[slot], solids.y[slot], solids.z[slot]);
@@ -40,7 +42,7 @@ void for_each_near(const StepContext& c, const VatMotion& motion, Index self, F&
   if (c.model.walls.empty()) return;
   for_each_image(c.model, motion, points, place, liquid.support_radius,
                  [&](Index slot, const Vec3& x, const Mirror& mirror) {
-                   visit(c.work.of<LiquidScratch>().liquid_records[slot].volume, x, slot, &mirror);
+                   visit(buffers.liquid_records[slot].volume, x, slot, &mirror);
                  });
   if (!has_solids(c.model)) return;
   for_each_image(c.model, motion, solids, place, liquid.support_radius,
@@ -62,6 +64,7 @@ void for_each_slot(const StepContext& c, F&& f) {
 void compute_transport_velocity(StepContext& c) {
   const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
   const VatMotion motion = motion_of(c);
+  VAT_CHECK(order.size() == c.model.liquid_count);
   c.forces.transport.resize(c.model.liquid_count);
   for_each_slot(c, [&](Index s) {
     const LiquidModel& liquid = liquid_of(c.model, order[s]);
@@ -74,11 +77,13 @@ void compute_transport_velocity(StepContext& c) {
 }
 
 void add_transport_forces(StepContext& c) {
-  const std::span<const Index> order = c.work.of<LiquidScratch>().liquid.grid.order();
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  VAT_CHECK(c.forces.transport.size() == c.model.liquid_count);
   const VatMotion motion = motion_of(c);
   const std::vector<Vec3>& transport = c.forces.transport;
   for_each_slot(c, [&](Index s) {
-    const LiquidRecord& own = c.work.of<LiquidScratch>().liquid_records[s];
+    const LiquidRecord& own = buffers.liquid_records[s];
     const Vec3& velocity = c.configuration.velocity[order[s]];
     const Vec3& w = transport[order[s]];
     Vec3 sum = Vec3::Zero();

@@ -7,14 +7,15 @@
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// What of s_i a particle and its own images in walls, up to seven in a corner, may not have: they
-/// do not count for more than liquid at rest. Alone they have no pressure, and the mirror turns
-/// back what flies into a corner as it does at a face. By their pressure they would be on a spring
-/// of up to six times c / h, where a step allows for half of that.
+/// The part of s_i to subtract, because a particle and its own images in walls, up to seven in a
+/// corner, must not exceed the density at rest. A single particle then has no pressure, and the
+/// mirror reflects it in a corner as at a face. With their pressure, it would be on a spring of up
+/// to six times c / h, and the step allows for half of that.
 Real own_excess(const StepContext& c, const VatMotion& motion, const LiquidModel& liquid,
                 std::size_t slot) {
   const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
@@ -31,43 +32,39 @@ Real own_excess(const StepContext& c, const VatMotion& motion, const LiquidModel
 }  // namespace
 
 void find_pair_clusters(StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   Scratch& work = c.work;
   const Real reach = support_of(c.model);
-  if (work.of<LiquidScratch>().sources.is_current(c) &&
-      work.of<LiquidScratch>().pairs_version == work.of<LiquidScratch>().sources.version()) {
-    if (has_solids(c.model)) work.of<LiquidScratch>().sources.set_weights(c, {});
+  if (buffers.sources.is_current(c) && buffers.pairs_version == buffers.sources.version()) {
+    if (has_solids(c.model)) buffers.sources.set_weights(c, {});
     return;
   }
-  work.of<LiquidScratch>().sources.build(c, reach);
-  const auto groups = work.of<LiquidScratch>().sources.groups(
-      work.of<LiquidScratch>().liquid.grid, work.of<LiquidScratch>().solids_in_liquid.grid);
+  buffers.sources.build(c, reach);
+  VAT_CHECK(c.model.is_coupled);
+  const auto groups = buffers.sources.groups(buffers.liquid.grid, buffers.solids_in_liquid.grid);
   PairSearch search;
   search.reach = reach;
-  search.padding = static_cast<Index>(work.of<LiquidScratch>().sources.count());
-  search.first_mirrored = work.of<LiquidScratch>().sources.first_mirrored();
+  search.padding = static_cast<Index>(buffers.sources.count());
+  search.first_mirrored = buffers.sources.first_mirrored();
   search.most_work = max_pair_work(c.model.liquid_count);
   search.instructions = work.instructions;
-  const SearchPlaces& places = work.of<LiquidScratch>().sources.search_places();
-  bool is_whole =
-      work.of<LiquidScratch>().liquid_clusters.build(search, groups[0], places, groups, c.runner);
+  const SearchCoordinates& places = buffers.sources.search_coordinates();
+  bool is_whole = buffers.liquid_clusters.build(search, groups[0], places, groups, c.runner);
   if (has_solids(c.model)) {
-    const auto liquid =
-        work.of<LiquidScratch>().sources.liquid_groups(work.of<LiquidScratch>().liquid.grid);
-    is_whole &=
-        work.of<LiquidScratch>().solid_clusters.build(search, groups[1], places, liquid, c.runner);
+    const auto liquid = buffers.sources.liquid_groups(buffers.liquid.grid);
+    is_whole &= buffers.solid_clusters.build(search, groups[1], places, liquid, c.runner);
   }
-  work.of<LiquidScratch>().too_many_pairs = !is_whole;
-  work.of<LiquidScratch>().pairs_version = work.of<LiquidScratch>().sources.version();
+  buffers.too_many_pairs = !is_whole;
+  buffers.pairs_version = buffers.sources.version();
 }
 
 void compute_tait_density(StepContext& c) {
-  Scratch& work = c.work;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  if (work.of<LiquidScratch>().density_version == work.of<LiquidScratch>().sources.version())
-    return;
+  if (buffers.density_version == buffers.sources.version()) return;
   const VatMotion motion = motion_of(c);
-  const std::span<const Index> order = work.of<LiquidScratch>().liquid.grid.order();
-  work.of<LiquidScratch>().density.resize(model.liquid_count);
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  buffers.density.resize(model.liquid_count);
   const PairSums& table = pair_sums_of(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return scale_factor(model, liquid); });
@@ -78,34 +75,34 @@ void compute_tait_density(StepContext& c) {
     const Index material = model.material[i];
     Real sum = *sums * factor[material];
     if (cluster.has_mirrored && sum > 1) sum -= own_excess(c, motion, liquid_of(model, i), slot);
-    work.of<LiquidScratch>().density[i] = rest_density[material] * sum;
+    buffers.density[i] = rest_density[material] * sum;
   };
   if (model.is_incompressible && !has_solids(model)) {
-    work.of<LiquidScratch>().volume_slopes.resize(order.size());
+    buffers.volume_slopes.resize(order.size());
     const auto set_both = [&](const TargetCluster& cluster, Index slot, const Real* sums) {
       set_density(cluster, slot, sums);
-      work.of<LiquidScratch>().volume_slopes[slot] = {Eigen::Map<const Vec3>(sums + 1), sums[4]};
+      buffers.volume_slopes[slot] = {Eigen::Map<const Vec3>(sums + 1), sums[4]};
     };
-    work.of<LiquidScratch>().liquid_clusters.for_each_sum<kVolumeSums>(c.runner, pair_inputs(c),
-                                                                       table.volume, set_both);
+    buffers.liquid_clusters.for_each_sum<kVolumeSums>(c.runner, pair_inputs(c), table.volume,
+                                                      set_both);
   } else {
-    work.of<LiquidScratch>().liquid_clusters.for_each_sum<1>(c.runner, pair_inputs(c),
-                                                             table.density, set_density);
+    buffers.liquid_clusters.for_each_sum<1>(c.runner, pair_inputs(c), table.density, set_density);
   }
-  // One particle is enough for the guard to see; which clusters were cut off depends on threads.
-  if (work.of<LiquidScratch>().too_many_pairs)
-    work.of<LiquidScratch>().density[0] = std::numeric_limits<Real>::quiet_NaN();
-  work.of<LiquidScratch>().density_version = work.of<LiquidScratch>().sources.version();
+  // One particle suffices for the guard. The incomplete clusters depend on the threads.
+  if (buffers.too_many_pairs) buffers.density[0] = std::numeric_limits<Real>::quiet_NaN();
+  buffers.density_version = buffers.sources.version();
 }
 
 void compute_tait_pressure(StepContext& c) {
-  c.work.of<LiquidScratch>().pressure.resize(c.model.liquid_count);
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  buffers.pressure.resize(c.model.liquid_count);
+  VAT_CHECK(buffers.density.size() == c.model.liquid_count);
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const LiquidModel& liquid = liquid_of(c.model, i);
-      const Real s = c.work.of<LiquidScratch>().density[i] / liquid.rest_density;
+      const Real s = buffers.density[i] / liquid.rest_density;
       const Real pressure = liquid.rest_density * liquid.stiffness * tait_pressure(s);
-      c.work.of<LiquidScratch>().pressure[i] =
+      buffers.pressure[i] =
           c.model.is_filled ? pressure : std::max(least_pressure(liquid, s), pressure);
     }
   });
@@ -115,22 +112,22 @@ namespace {
 
 /// p / s^2 of liquid particle i.
 Real pressure_term(const StepContext& c, Index i) {
-  const Real s = c.work.of<LiquidScratch>().density[i] / liquid_of(c.model, i).rest_density;
-  return c.work.of<LiquidScratch>().pressure[i] / (s * s);
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const Real s = buffers.density[i] / liquid_of(c.model, i).rest_density;
+  return buffers.pressure[i] / (s * s);
 }
 
-/// Pressures and velocities, of images too.
+/// Sets pressures and velocities, including those of images.
 void set_motions(StepContext& c) {
-  Scratch& work = c.work;
-  const std::span<const Index> order = work.of<LiquidScratch>().liquid.grid.order();
-  const std::span<const Index> solids = work.of<LiquidScratch>().solids_in_liquid.grid.order();
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  const std::span<const Index> solids = buffers.solids_in_liquid.grid.order();
   const std::vector<Vec3>& velocity = c.configuration.velocity;
-  work.of<LiquidScratch>().sources.set_motions(
+  buffers.sources.set_motions(
       c.runner,
       [&](std::size_t s) { return motion_of(pressure_term(c, order[s]), velocity[order[s]]); },
       [&](std::size_t s) {
-        return motion_of(work.of<LiquidScratch>().solid_pressure[s],
-                         velocity[c.model.liquid_count + solids[s]]);
+        return motion_of(buffers.solid_pressure[s], velocity[c.model.liquid_count + solids[s]]);
       },
       ImageMotion(c));
 }
@@ -138,16 +135,18 @@ void set_motions(StepContext& c) {
 }  // namespace
 
 void add_tait_forces(StepContext& c) {
-  Scratch& work = c.work;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  const std::span<const Index> order = work.of<LiquidScratch>().liquid.grid.order();
+  VAT_CHECK(buffers.pressure.size() == c.model.liquid_count &&
+            c.forces.particle.size() == c.model.particle_count);
+  const std::span<const Index> order = buffers.liquid.grid.order();
   set_motions(c);
   if (has_several_liquids(model)) set_liquid_viscosities(c);
   const PairSums& table = pair_sums_of(c);
   const auto sum = has_central_viscosity(model) ? table.force : table.pressure;
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
-  work.of<LiquidScratch>().liquid_clusters.for_each_sum<3>(
+  buffers.liquid_clusters.for_each_sum<3>(
       c.runner, force_inputs(c), sum, [&](const TargetCluster&, Index slot, const Real* sums) {
         const Index i = order[slot];
         c.forces.particle[i] +=

@@ -4,31 +4,31 @@ namespace vat {
 
 struct StepContext;
 
-/// Stages of the weakly compressible liquid: one kernel for density and force, Tait's equation of
-/// state, a pressure force that derives from an energy, central viscosity.
+/// Stages of weakly compressible liquids, with one kernel for density and force, Tait's equation of
+/// state, a pressure force that derives from an energy, and central viscosity.
 ///
 /// With the rest volume V_i = m_i / rho_0 and s_i = rho_i / rho_0 = sum_j V_j W_ij over liquid,
-/// solids and the walls' mirror images, the energy sum_i V_i u(s_i), du/ds = p / s^2, gives F_i =
-/// -V_i sum_j V_j (p_i/s_i^2 + p_j/s_j^2) grad_i W_ij (J. J. Monaghan, Rep. Prog. Phys. 68 (2005)
-/// 1703, sec. 3; rest volumes for masses allow liquids of different density). The kernel is scaled
-/// so that a cubic lattice at rest has the rest density, and its gradient so that such a lattice
-/// feels a pressure's slope in full: without, a column of liquid is up to 7 % too steep.
+/// solids and the mirror images in walls, the energy sum_i V_i u(s_i), du/ds = p / s^2, leads to
+/// F_i = -V_i sum_j V_j (p_i/s_i^2 + p_j/s_j^2) grad_i W_ij (J. J. Monaghan, Rep. Prog. Phys. 68
+/// (2005) 1703, sec. 3; rest volumes in place of masses allow liquids of different densities). The
+/// kernel is scaled so that a cubic lattice at rest has the rest density. Its gradient is scaled so
+/// that the lattice has the exact force of a pressure gradient; without this, the pressure gradient
+/// in a column of liquid is up to 7 % too large.
 ///
-/// A wall of the vat is a mirror: the liquid's images complete it (A. Colagrossi, M. Landrini, J.
-/// Comput. Phys. 191 (2003) 448), which keeps energy, with the weight between the two sides added
-/// to the images' pressure. Along walls the liquid slips freely, but for no_slip ones
-/// (core/liquid/pairs/viscous_images.h). Solid particles take part with their volumes, at rest
-/// density, and with a pressure of their surroundings.
+/// A wall of the vat is a mirror. The images of the liquid complete the sums (A. Colagrossi, M.
+/// Landrini, J. Comput. Phys. 191 (2003) 448) and conserve energy. The weight of the liquid in
+/// between is added to the pressure of the images. Along walls the liquid slips without friction,
+/// except along no_slip walls (core/liquid/pairs/viscous_images.h). Solid particles take part with
+/// their volumes, the rest density, and the pressure of the surrounding liquid.
 
-/// Into cells.
+/// Sorts solids into cells.
 void sort_solids_in_liquid(StepContext& context);
 
-/// Which liquid, solids and images may be near which liquid particles, and which liquid and images
-/// of it near which solids. Of a collapsed liquid, where that is more than max_pair_work(), says so
-/// in the workspace.
+/// Finds the liquid, solids and images near liquid particles, and the liquid and its images near
+/// solids. Sets too_many_pairs if a collapsed liquid exceeds max_pair_work().
 void find_pair_clusters(StepContext& context);
 
-/// density = s_i rho_0. It is NaN after too many pairs, so that the step fails.
+/// density = s_i rho_0. One density is NaN after too many pairs, so that the step fails.
 void compute_tait_density(StepContext& context);
 
 /// p = rho_0 c^2/7 ((rho/rho_0)^7 - 1), linear in 1/rho from 1.03 rho_0 and in rho from 2 rho_0.
@@ -37,11 +37,12 @@ void compute_tait_density(StepContext& context);
 /// (core/liquid/surface/cohesion.h).
 void compute_tait_pressure(StepContext& context);
 
-/// The pressure of solid particles, from that of the liquid around them and the weight between (S.
-/// Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq. 27), with the same bound.
+/// Computes the pressure of solid particles from that of the surrounding liquid and the weight in
+/// between (S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq. 27), with the
+/// same minimum.
 void extrapolate_pressure(StepContext& context);
 
-/// The forces on liquid particles, and on the solids that push them.
+/// Add the forces on liquid particles, and on solids.
 void add_tait_forces(StepContext& context);
 void add_tait_forces_on_solids(StepContext& context);
 

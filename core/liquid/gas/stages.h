@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/model/model.h"
+#include "core/stage/plan.h"
+
+namespace vat {
+
+/// Adds the stages of liquids with the solver `gas`.
+void add_gas_stages(const Model& model, PlanBuilder& plan);
+
+}  // namespace vat

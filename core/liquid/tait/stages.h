@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/model/model.h"
+#include "core/stage/plan.h"
+
+namespace vat {
+
+/// Adds the stages of liquids with the solver `tait`.
+void add_tait_stages(const Model& model, PlanBuilder& plan);
+
+/// Adds the stages that precede the pressure in liquids that interact with solids and walls by
+/// SPH.
+void add_coupled_density_stages(const Model& model, PlanBuilder& plan);
+
+/// Adds the stages that follow the pressure.
+void add_coupled_force_stages(const Model& model, PlanBuilder& plan);
+
+}  // namespace vat

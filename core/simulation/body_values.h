@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/body.h"
+#include "core/types.h"
+
+namespace vat {
+
+/// Pose and motion of a rigid body.
+struct RigidPose {
+  Vec3 center_of_mass;    ///< [m]
+  Quat orientation;       ///< from body axes, those of the body's shape, to world axes
+  Vec3 velocity;          ///< of the centre of mass [m/s]
+  Vec3 angular_velocity;  ///< world axes [rad/s]
+};
+
+/// Read-only view of one body, valid until the simulation next changes. The index of a particle is
+/// its position in the lists. Emitted particles are appended. If particles are drained, later ones
+/// move up and keep their order. The number of a particle never changes: the n initial particles
+/// have 0 to n - 1, and each emitted one has the next number.
+struct BodyView {
+  BodyId id;
+  std::string_view name;
+  BodyKind kind;
+  std::string_view material;
+  std::span<const Vec3> positions;        ///< world axes [m]
+  std::span<const Vec3> velocities;       ///< world axes [m/s]
+  std::span<const Real> masses;           ///< [kg]
+  std::span<const Real> radii;            ///< [m]
+  std::optional<RigidPose> pose;          ///< rigid bodies
+  std::span<const Vec3> local_positions;  ///< rigid bodies: about the centre of mass, body axes [m]
+  bool is_asleep = false;                 ///< see Scene::sleeping
+  std::span<const Index> numbers{};       ///< ascending; empty: numbers are indices
+};
+
+/// SPH fields of one liquid body at the present positions, one value for each particle.
+struct LiquidFields {
+  std::vector<Real> density;   ///< [kg/m^3]
+  std::vector<Real> pressure;  ///< [Pa]
+};
+
+/// New position and motion of a body. Absent values stay unchanged.
+struct BodyPlacement {
+  Vec3 center_of_mass = Vec3::Zero();  ///< [m]
+  std::optional<Quat> orientation{};   ///< rigid bodies, as in RigidPose
+  std::optional<Vec3> velocity{};      ///< of the whole body, without rotation [m/s]
+};
+
+/// Positions and motion of the particles of a body, as in BodyView.
+struct BodyMotion {
+  std::vector<Vec3> positions;      ///< liquid and deformable bodies, world axes [m]
+  std::vector<Vec3> velocities;     ///< liquid and deformable bodies [m/s]
+  std::optional<RigidPose> pose{};  ///< rigid bodies, in place of both lists
+};
+
+}  // namespace vat

@@ -1,0 +1,34 @@
+#include "core/stepping/liquid_solver.h"
+
+#include <algorithm>
+
+#include "core/liquid/gas/stages.h"
+#include "core/liquid/incompressible/stages.h"
+#include "core/liquid/incompressible/volume_solve.h"
+#include "core/liquid/tait/stages.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+constexpr LiquidSolver kLiquidSolvers[] = {
+    {PressureSolver::gas, &add_gas_stages},
+    {PressureSolver::tait, &add_tait_stages},
+    {PressureSolver::incompressible, &add_incompressible_stages, &project_velocities,
+     &correct_density},
+};
+
+}  // namespace
+
+const LiquidSolver& liquid_solver_of(PressureSolver id) {
+  const auto* found = std::ranges::find(kLiquidSolvers, id, &LiquidSolver::id);
+  VAT_CHECK(found != std::end(kLiquidSolvers));
+  return *found;
+}
+
+const LiquidSolver* acting_liquid_solver(const Model& model) {
+  const bool acts = model.liquid_count > 0 && model.scene.forces.pressure;
+  return acts ? &liquid_solver_of(model.scene.pressure_solver) : nullptr;
+}
+
+}  // namespace vat
