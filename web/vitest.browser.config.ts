@@ -18,7 +18,7 @@ export default defineConfig({
   },
   test: {
     include: ['tests/browser/**/*.test.ts'],
-    globalSetup: 'tests/browser/setup.ts',
+    globalSetup: 'tests/browser/support/setup.ts',
     // One process for all files, one after the other: they share a browser, and load takes long.
     fileParallelism: false,
     pool: 'forks',

@@ -27,7 +27,7 @@ void add_grab(const Grab& grab, StepContext& c) {
   VAT_CHECK(grab.particle < c.model.bodies[grab.body].particles.size() && grab.held_mass > 0);
   const Index held = first + grab.particle;
   const PeriodicBox& box = c.model.periodic;
-  const Vec3 way = (grab.target - c.configuration.position[held] + 0 * box.nearest(grab.target));
+  const Vec3 way = box.nearest(box.wrap(grab.target) - box.wrap(c.configuration.position[held]));
   Vec3 force = grab.stiffness * way - grab.damping * c.configuration.velocity[held];
   const Real size = force.norm();
   if (size > grab.max_force) force *= grab.max_force / size;

@@ -10,7 +10,7 @@
 #include "core/support/instruction_set.h"
 #include "server/access/access.h"
 #include "server/messages/limits.h"
-#include "server/storage/storage_limits.h"
+#include "server/storage/sqlite/storage_limits.h"
 
 namespace vat {
 

@@ -6,7 +6,7 @@
 
 #include "core/support/check.h"
 #include "protocol/json/json_reader.h"
-#include "server/storage/compression.h"
+#include "server/storage/sqlite/compression.h"
 
 namespace vat {
 namespace {

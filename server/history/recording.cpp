@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/saved/sealed_bytes.h"
-#include "server/storage/compression.h"
-#include "server/storage/storage_error.h"
+#include "server/storage/sqlite/compression.h"
+#include "server/storage/sqlite/storage_error.h"
 
 namespace vat {
 

@@ -10,7 +10,7 @@
 #include "protocol/json/json_reader.h"
 #include "server/access/role.h"
 #include "server/messages/error_table.h"
-#include "server/storage/storage_error.h"
+#include "server/storage/sqlite/storage_error.h"
 #include "server/support/limit_excess.h"
 
 /// JSON-RPC 2.0 messages and the errors of PROTOCOL.md.

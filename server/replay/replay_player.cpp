@@ -9,7 +9,7 @@
 #include "server/messages/describe.h"
 #include "server/session/core/scene_loading.h"
 #include "server/session/core/session_restore.h"
-#include "server/storage/compression.h"
+#include "server/storage/sqlite/compression.h"
 #include "server/support/thread_time.h"
 
 namespace vat {

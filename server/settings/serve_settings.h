@@ -8,7 +8,7 @@
 
 #include "server/messages/limits.h"
 #include "server/settings/setting.h"
-#include "server/storage/storage_limits.h"
+#include "server/storage/sqlite/storage_limits.h"
 
 namespace vat {
 

@@ -7,8 +7,8 @@
 
 #include "core/support/byte_io.h"
 #include "core/support/check.h"
-#include "server/storage/compression.h"
-#include "server/storage/schema.h"
+#include "server/storage/sqlite/compression.h"
+#include "server/storage/sqlite/schema.h"
 
 namespace vat {
 namespace {

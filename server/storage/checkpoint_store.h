@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/storage/database.h"
+#include "server/storage/sqlite/database.h"
 #include "server/support/owned_mutex.h"
 
 namespace vat {

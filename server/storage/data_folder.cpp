@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "server/storage/storage_error.h"
+#include "server/storage/sqlite/storage_error.h"
 
 namespace vat {
 namespace {

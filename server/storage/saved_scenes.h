@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/storage/main_database.h"
+#include "server/storage/sqlite/main_database.h"
 #include "server/support/limit_excess.h"
 
 namespace vat {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "server/storage/schema.h"
+#include "server/storage/sqlite/schema.h"
 
 namespace vat {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "server/storage/log_entry.h"
-#include "server/storage/main_database.h"
+#include "server/storage/sqlite/main_database.h"
 
 namespace vat {
 

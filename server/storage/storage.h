@@ -14,7 +14,7 @@
 #include "server/storage/saved_states.h"
 #include "server/storage/session_store.h"
 #include "server/storage/storage_counts.h"
-#include "server/storage/storage_limits.h"
+#include "server/storage/sqlite/storage_limits.h"
 #include "server/storage/token_store.h"
 #include "server/support/clock.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "server/storage/main_database.h"
+#include "server/storage/sqlite/main_database.h"
 
 namespace vat {
 

@@ -3,18 +3,18 @@
 #include <CLI/CLI.hpp>
 
 #include "server/cli/common/command.h"
-#include "tests/bench/accuracy.h"
-#include "tests/bench/codec.h"
+#include "tests/bench/accuracy/accuracy.h"
+#include "tests/bench/codec/codec.h"
 #include "tests/bench/compare.h"
-#include "tests/bench/document.h"
-#include "tests/bench/fanout.h"
-#include "tests/bench/instructions.h"
-#include "tests/bench/race.h"
+#include "tests/bench/document/document.h"
+#include "tests/bench/fanout/fanout.h"
+#include "tests/bench/instructions/instructions.h"
+#include "tests/bench/race/race.h"
 #include "tests/bench/seeks.h"
-#include "tests/bench/soak.h"
-#include "tests/bench/speed.h"
-#include "tests/bench/stability.h"
-#include "tests/bench/validate.h"
+#include "tests/bench/soak/soak.h"
+#include "tests/bench/speed/speed.h"
+#include "tests/bench/stability/stability.h"
+#include "tests/bench/validate/validate.h"
 
 namespace vat::bench {
 

@@ -2,10 +2,10 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { afterAll, describe, expect, it } from 'vitest';
-import { cutOff, faults } from './faults';
-import { Server } from './server';
-import type { Look } from './viewer';
-import { kPhone, unfold, Visits } from './visits';
+import { cutOff, faults } from './support/faults';
+import { Server } from './support/server';
+import type { Look } from './support/viewer';
+import { kPhone, unfold, Visits } from './support/visits';
 
 /** Accessibility of each part of the page: axe finds no serious fault, and no text is cut off. */
 const data = mkdtempSync(join(tmpdir(), 'vat-access-')); // for a recording to show

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { BodyState, SceneBody } from '../../web/client/index';
-import { kInTime, unfold, Visits } from './visits';
+import { kInTime, unfold, Visits } from './support/visits';
 
 /** A scene is built: bodies are added, moved, changed and deleted, and each change is undone. */
 const visits = new Visits();

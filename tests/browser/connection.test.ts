@@ -1,12 +1,12 @@
 import { afterEach, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
-import { Observer } from './observer';
-import { Proxy } from './proxy';
-import type { Ways } from './proxy';
-import { kAdminToken, Server } from './server';
-import { openPage } from './shared';
-import type { Look, Viewer } from './viewer';
-import { says } from './visits';
+import { Observer } from './support/observer';
+import { Proxy } from './support/proxy';
+import type { Ways } from './support/proxy';
+import { kAdminToken, Server } from './support/server';
+import { openPage } from './support/shared';
+import type { Look, Viewer } from './support/viewer';
+import { says } from './support/visits';
 
 /** Servers that are full, older, stuck, stopped or closed to strangers: the page says so. */
 let server: Server;

@@ -1,9 +1,9 @@
 import { afterAll, beforeAll, expect, it } from 'vitest';
-import { Observer } from './observer';
-import { Server } from './server';
-import { openPage } from './shared';
-import type { Viewer } from './viewer';
-import { kInTime } from './visits';
+import { Observer } from './support/observer';
+import { Server } from './support/server';
+import { openPage } from './support/shared';
+import type { Viewer } from './support/viewer';
+import { kInTime } from './support/visits';
 
 /** Curves over time, and what a tick is spent on. */
 const server = new Server();

@@ -3,8 +3,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Locator } from 'playwright-core';
 import { afterAll, beforeEach, expect, it } from 'vitest';
-import { Server } from './server';
-import { kInTime, unfold, Visits } from './visits';
+import { Server } from './support/server';
+import { kInTime, unfold, Visits } from './support/visits';
 
 /** Saved states and scenes, recordings and replays. */
 const data = mkdtempSync(join(tmpdir(), 'vat-kept-'));

@@ -2,8 +2,8 @@ import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, it } from 'vitest';
 import type { Scene } from '../../web/client/index';
-import { Server } from './server';
-import { Visits } from './visits';
+import { Server } from './support/server';
+import { Visits } from './support/visits';
 
 /**
  * The work of the page's thread for many particles, by counts: the number of times that V8 ran each

@@ -1,8 +1,8 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { differenceFromReference, pixelsOf, statisticsOf } from './pixels';
-import type { Region } from './pixels';
-import type { Look } from './viewer';
-import { kInTime, Visits } from './visits';
+import { differenceFromReference, pixelsOf, statisticsOf } from './support/pixels';
+import type { Region } from './support/pixels';
+import type { Look } from './support/viewer';
+import { kInTime, Visits } from './support/visits';
 
 /** How the view draws the session: pictures of states that stand still. */
 const visits = new Visits();

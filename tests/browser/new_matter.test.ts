@@ -2,8 +2,8 @@ import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { BodyState, Scene, Vector } from '../../web/client/index';
 import { makeBody, materialsFor } from '../../web/viewer/build/body_choice';
 import { newInterfaces, withNewMaterials } from '../../web/viewer/build/new_materials';
-import { Observer } from './observer';
-import { sharedServer } from './shared';
+import { Observer } from './support/observer';
+import { sharedServer } from './support/shared';
 
 /** Materials that the page adds to a scene, on the real server, in all scenes that ship. */
 let observer: Observer;

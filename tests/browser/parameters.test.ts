@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Scene } from '../../web/client/index';
-import { kInTime, unfold, Visits } from './visits';
+import { kInTime, unfold, Visits } from './support/visits';
 
 /** Constants of a scene, gravity and the vat: changed within their ranges, and restored. */
 const visits = new Visits();

@@ -1,8 +1,8 @@
 import { expect, it } from 'vitest';
-import { Observer } from './observer';
-import { Server } from './server';
-import { openPage } from './shared';
-import { kInTime, unfold, Visits } from './visits';
+import { Observer } from './support/observer';
+import { Server } from './support/server';
+import { openPage } from './support/shared';
+import { kInTime, unfold, Visits } from './support/visits';
 
 /** Other people in the session, the scenes they choose together, and links. */
 const visits = new Visits(new Server(['--scene', 'rigid-stack']));

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { kInTime, kPhone, says, unfold, Visits } from './visits';
+import { kInTime, kPhone, says, unfold, Visits } from './support/visits';
 
 /** The page on a phone: the sheet with the controls, and the sensors. */
 const visits = new Visits();

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { kInTime, Visits } from './visits';
+import { kInTime, Visits } from './support/visits';
 
 /** Liquid that is poured: drops, and taps of a scene. */
 const visits = new Visits();

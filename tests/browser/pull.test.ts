@@ -1,8 +1,8 @@
 import type { Page } from 'playwright-core';
 import { expect, it } from 'vitest';
 import { formatCount } from '../../web/viewer/panel/format';
-import type { Viewer } from './viewer';
-import { kInTime, Visits } from './visits';
+import type { Viewer } from './support/viewer';
+import { kInTime, Visits } from './support/visits';
 
 /** Input to the picture itself: mouse, pen, fingers and keys. */
 const visits = new Visits();

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
-import { kAdminToken, Server } from './server';
-import { kInTime, Visits } from './visits';
+import { kAdminToken, Server } from './support/server';
+import { kInTime, Visits } from './support/visits';
 
 /** Sessions that change or close, refusals, and pages that do not draw. */
 const visits = new Visits(new Server());

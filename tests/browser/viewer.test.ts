@@ -1,10 +1,10 @@
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { BodyState } from '../../web/client/index';
-import { Observer } from './observer';
-import { Server } from './server';
-import { openPage } from './shared';
-import type { Viewer } from './viewer';
-import { kInTime } from './visits';
+import { Observer } from './support/observer';
+import { Server } from './support/server';
+import { openPage } from './support/shared';
+import type { Viewer } from './support/viewer';
+import { kInTime } from './support/visits';
 
 /** One user's visit to the real server: each test continues the one before. */
 const server = new Server();

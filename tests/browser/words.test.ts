@@ -3,11 +3,11 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { afterEach, expect, it } from 'vitest';
-import { Observer } from './observer';
-import { kAdminToken, Server } from './server';
-import { openPage, sharedServer } from './shared';
-import type { Look, Viewer } from './viewer';
-import { says } from './visits';
+import { Observer } from './support/observer';
+import { kAdminToken, Server } from './support/server';
+import { openPage, sharedServer } from './support/shared';
+import type { Look, Viewer } from './support/viewer';
+import { says } from './support/visits';
 
 /** What the page says where it, the browser or the server's files are not as they should be. */
 const pages: Viewer[] = [];

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/bench/document.h"
+#include "tests/bench/document/document.h"
 #include "tests/bench/document/markers.h"
 #include "tests/bench/document/page_tables.h"
 #include "tests/bench/report/table.h"
-#include "tests/bench/validate_table.h"
+#include "tests/bench/validate/validate_table.h"
 #include "tests/cli/program.h"
 #include "tests/validation/cases.h"
 

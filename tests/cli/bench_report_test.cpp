@@ -9,7 +9,7 @@
 #include "protocol/json/json_reader.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"
-#include "tests/bench/validate.h"
+#include "tests/bench/validate/validate.h"
 #include "tests/cli/program.h"
 #include "tests/validation/order.h"
 

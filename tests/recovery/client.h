@@ -10,7 +10,7 @@
 
 #include "protocol/json/json_reader.h"
 #include "server/script/client.h"
-#include "tests/server/message_record.h"
+#include "tests/server/fixture/message_record.h"
 #include "tests/support/patience.h"
 
 namespace vat::test {

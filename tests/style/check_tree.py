@@ -1,20 +1,23 @@
-"""check_tree.py ROOT: holds the checkout at ROOT to every rule; exits 1 and lists the faults."""
+"""check_tree.py ROOT: checks the checkout at ROOT by all rules. Lists the faults and exits 1 if
+there are any."""
 
 import sys
 
 import document_rules
+import fault_rules
 import folder_order
 import import_cycles
 import source_rules
 from tree import read_tree
 
-RULES = source_rules.RULES + folder_order.RULES + import_cycles.RULES + document_rules.RULES
+MODULES = (source_rules, folder_order, import_cycles, document_rules, fault_rules)
+RULES = tuple(rule for module in MODULES for rule in module.RULES)
 
 
 def main():
     tree = read_tree(sys.argv[1])
     if "CMakeLists.txt" not in tree.files:
-        print(f"{sys.argv[1]} is no checkout")
+        print(f"{sys.argv[1]} is not a checkout")
         return 2
     faults = [(rule.__name__, fault) for rule in RULES for fault in rule(tree)]
     for name, fault in faults:

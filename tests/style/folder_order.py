@@ -23,7 +23,7 @@ FOLDER_ORDER = (
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
     "protocol/json", "protocol/scene", "protocol/frame",
     # files, sockets and measurements, without sessions
-    "server/support", "server/output", "server/storage", "server/access", "server/transport",
+    "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
     # what a session consists of
     "server/clients", "server/frames", "server/people", "server/history", "server/session/ticks",

@@ -1,5 +1,6 @@
 """Each rule accepts a tree that keeps it and refuses each way to break it."""
 
+import json
 import os
 import re
 import shutil
@@ -7,7 +8,9 @@ import subprocess
 import tempfile
 import unittest
 
+import check_tree
 import document_rules
+import fault_rules
 import folder_order
 import import_cycles
 import source_rules
@@ -51,7 +54,7 @@ class SourceRules(RuleTest):
             "protocol/a.cpp": '#include <nlohmann/json.hpp>\n#include "core/a.h"\n',
             "server/a.cpp": '#include <CLI/CLI.hpp>\n#include "protocol/a.h"\n',
             "server/transport/a.cpp": "#include <websocketpp/server.hpp>\n",
-            "tests/unit/a.cpp": '#include "server/a.h"\n#include <gtest/gtest.h>\n',
+            "tests/core/a.cpp": '#include "server/a.h"\n#include <gtest/gtest.h>\n',
         })
 
     def test_layering_refuses_upward_and_foreign_includes(self):
@@ -121,10 +124,16 @@ class SourceRules(RuleTest):
     def test_file_length(self):
         longest = "x\n" * source_rules.MAX_LINES
         self.accepts(source_rules.file_length, {"a.cpp": longest, "web/package-lock.json": "\n" * 999})
-        self.refuses(source_rules.file_length, {"web/a.ts": longest + "x\n"}, "web/a.ts", "501")
+        self.refuses(source_rules.file_length, {"web/a.ts": longest + "x\n"}, "web/a.ts", "401")
         written = "// Written from a/ by `b`; not to be edited.\n"
         self.accepts(source_rules.file_length, {"web/a.ts": written + longest})
-        self.refuses(source_rules.file_length, {"web/a.ts": longest + written}, "web/a.ts", "501")
+        self.refuses(source_rules.file_length, {"web/a.ts": longest + written}, "web/a.ts", "401")
+
+    def test_folder_size(self):
+        rule = source_rules.folder_size
+        most = {f"web/a/{number}.ts": "" for number in range(source_rules.MAX_SOURCES)}
+        self.accepts(rule, most | {"web/a/b/c.ts": "", "web/a/scene.json": ""})
+        self.refuses(rule, most | {"web/a/c.css": ""}, "web/a: 26 sources")
 
     def test_line_ends(self):
         self.accepts(source_rules.line_ends, {"a.md": "x\n", "empty.txt": ""})
@@ -217,11 +226,21 @@ class DocumentRules(RuleTest):
         self.refuses(rule, self.changed(files, "tests/a/a.cpp", "Other, One", "Other, DISABLED_One"),
                      "Other.*")
 
+    def test_known_faults(self):
+        rule = fault_rules.known_faults
+        fault = {"name": "f", "file": "core/a.cpp", "before": "a + b", "detected_by": ["unit/A.B"]}
+        files = {"core/a.cpp": "return a + b;\n", "tests/faults/core.json": json.dumps([fault])}
+        self.accepts(rule, files)
+        self.refuses(rule, files | {"core/a.cpp": "return a - b;\n"}, "f: its text occurs 0 times")
+        self.refuses(rule, files | {"core/a.cpp": "a + b + a + b"}, "f: its text occurs 2 times")
+        undetected = json.dumps([fault | {"detected_by": []}])
+        self.refuses(rule, files | {"tests/faults/core.json": undetected}, "f: no test detects it")
+
 
 class Coverage(unittest.TestCase):
     def test_every_rule_has_a_test(self):
         tests = {name for case in (SourceRules, DocumentRules) for name in dir(case)}
-        for rule in source_rules.RULES + document_rules.RULES:
+        for rule in check_tree.RULES:
             self.assertTrue(any(t.startswith(f"test_{rule.__name__}") for t in tests), rule.__name__)
 
 

@@ -1,10 +1,13 @@
 """Rules for source files: layers, form, words. A rule is a function: Tree -> list of faults."""
 
+import posixpath
 import re
+from collections import Counter
 
 CPP = (".cpp", ".h")
 SOURCE = CPP + (".ts", ".js", ".css", ".html", ".py", ".sh")
-MAX_LINES = 500
+MAX_LINES = 400
+MAX_SOURCES = 25  # in one folder
 GENERATED = re.compile(r"// Written from .*; not to be edited\.\n")  # the first line of such files
 
 # What each layer may include: prefixes of "quoted" headers and of <angled> ones with a folder or
@@ -113,6 +116,15 @@ def file_length(tree):
     ]
 
 
+def folder_size(tree):
+    counts = Counter(posixpath.dirname(path) for path, _ in tree.matching([""], SOURCE))
+    return [
+        f"{folder}: {count} sources; at most {MAX_SOURCES}"
+        for folder, count in sorted(counts.items())
+        if count > MAX_SOURCES
+    ]
+
+
 def line_ends(tree):
     faults = []
     for path, text in sorted(tree.files.items()):
@@ -160,6 +172,6 @@ def header_docstrings(tree):
 
 
 RULES = (
-    layering, determinism, clock, waiting, file_length, line_ends, encoding, tabs, denied_words,
+    layering, determinism, clock, waiting, file_length, folder_size, line_ends, encoding, tabs, denied_words,
     header_docstrings,
 )

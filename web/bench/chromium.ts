@@ -1,7 +1,7 @@
 import { once } from 'node:events';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { launchChromium } from '../../tests/browser/chromium';
+import { launchChromium } from '../../tests/browser/support/chromium';
 import type { DecodeTimes } from './decode_times';
 
 /** With these a page's clock has steps of 5 µs, otherwise 100. */

@@ -9,7 +9,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { build } from 'vite';
-import { chromiumPath } from '../../tests/browser/chromium';
+import { chromiumPath } from '../../tests/browser/support/chromium';
 import { timesInChromium } from './chromium';
 import type { DecodeTimes } from './decode_times';
 

@@ -8,9 +8,9 @@ import { mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { Observer } from '../../tests/browser/observer';
-import { Server } from '../../tests/browser/server';
-import { Viewer } from '../../tests/browser/viewer';
+import { Observer } from '../../tests/browser/support/observer';
+import { Server } from '../../tests/browser/support/server';
+import { Viewer } from '../../tests/browser/support/viewer';
 
 const kTarget = fileURLToPath(new URL('../animation.webp', import.meta.url));
 const kScene = 'sliding-vat-liquid';

@@ -5,9 +5,9 @@
  */
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { Observer } from '../../tests/browser/observer';
-import { Server } from '../../tests/browser/server';
-import { Viewer } from '../../tests/browser/viewer';
+import { Observer } from '../../tests/browser/support/observer';
+import { Server } from '../../tests/browser/support/server';
+import { Viewer } from '../../tests/browser/support/viewer';
 import { compress } from './webp';
 
 const kFolder = fileURLToPath(new URL('../viewer/scenes/', import.meta.url));

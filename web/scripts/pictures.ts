@@ -7,10 +7,10 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { Observer } from '../../tests/browser/observer';
-import { Server } from '../../tests/browser/server';
-import { Viewer } from '../../tests/browser/viewer';
-import type { Look } from '../../tests/browser/viewer';
+import { Observer } from '../../tests/browser/support/observer';
+import { Server } from '../../tests/browser/support/server';
+import { Viewer } from '../../tests/browser/support/viewer';
+import type { Look } from '../../tests/browser/support/viewer';
 import { compress } from './webp';
 
 const kFolder = fileURLToPath(new URL('../pictures/', import.meta.url));

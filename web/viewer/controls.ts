@@ -1,13 +1,13 @@
 import type { Event, SceneReference, SessionDescription } from '../client/index';
 import { Builder } from './build/builder';
-import { ParameterForms } from './build/parameter_forms';
+import { ParameterForms } from './build/parameters/parameter_forms';
 import { Pour } from './build/pour';
 import type { SceneDocument } from './build/scene_document';
 import { VatPad } from './build/vat_pad';
 import { Kept } from './kept/kept';
-import { DeviceTilt } from './panel/device_tilt';
+import { DeviceTilt } from './panel/gravity/device_tilt';
 import { Gallery } from './panel/gallery';
-import { Gravity } from './panel/gravity';
+import { Gravity } from './panel/gravity/gravity';
 import type { Keys } from './panel/keys';
 import { Playback } from './panel/playback';
 import { SceneFile } from './panel/scene_file';

@@ -4,7 +4,7 @@
 
 #include "core/limits.h"
 #include "server/session/core/scene_loading.h"
-#include "server/storage/compression.h"
+#include "server/storage/sqlite/compression.h"
 #include "server/support/base64.h"
 
 namespace vat {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tests/validation/cases/liquid_solvers.h"
+#include "tests/validation/cases/liquid/liquid_solvers.h"
 
 namespace vat::bench {
 

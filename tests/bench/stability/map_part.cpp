@@ -7,8 +7,8 @@
 #include "core/limits.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/stability/stability_parts.h"
-#include "tests/stability/projection_map.h"
-#include "tests/stability/step_map.h"
+#include "tests/stability/maps/projection_map.h"
+#include "tests/stability/maps/step_map.h"
 
 namespace vat::bench {
 namespace {

@@ -4,12 +4,12 @@
 
 #include "server/support/task_runner.h"
 #include "tests/bench/stability/stability_parts.h"
-#include "tests/stability/adversarial.h"
+#include "tests/stability/adversarial/adversarial.h"
 #include "tests/stability/closed_pairs.h"
 #include "tests/stability/long_run.h"
-#include "tests/stability/properties.h"
-#include "tests/stability/random_scene.h"
-#include "tests/stability/shrink.h"
+#include "tests/stability/random/properties.h"
+#include "tests/stability/random/random_scene.h"
+#include "tests/stability/random/shrink.h"
 
 namespace vat::bench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "server/support/task_runner.h"
 #include "tests/bench/stability/stability_parts.h"
-#include "tests/stability/random_vat.h"
+#include "tests/stability/random/random_vat.h"
 
 namespace vat::bench {
 

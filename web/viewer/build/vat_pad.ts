@@ -1,6 +1,6 @@
 import type { SessionDescription, Vector } from '../../client/index';
-import { BallPad } from '../panel/ball_pad';
-import type { Place } from '../panel/ball_pad';
+import { BallPad } from '../panel/gravity/ball_pad';
+import type { Place } from '../panel/gravity/ball_pad';
 import { element } from '../panel/elements';
 import { ask } from '../panel/desk';
 import type { Desk } from '../panel/desk';

@@ -1,0 +1,57 @@
+#include "server/storage/sqlite/schema.h"
+
+#include <filesystem>
+
+namespace vat {
+namespace {
+
+void check_health(Database& database) {
+  Statement check = database.prepare("PRAGMA quick_check(1)");
+  if (!check.step()) return;
+  const std::string verdict(check.text(0));
+  check.reset();
+  if (verdict == "ok") return;
+  throw StorageError(StorageError::Kind::corrupt, database.path() + " is damaged: " + verdict);
+}
+
+/// Refuses files that this program must not change.
+void inspect(const std::string& path, const Schema& schema) {
+  Database database(path, Database::Mode::read);
+  const std::int64_t version = database.number("PRAGMA user_version");
+  const std::int64_t application = database.number("PRAGMA application_id");
+  if (application != std::int64_t{schema.application}) {
+    if (version == 0 && database.number("SELECT count(*) FROM sqlite_master") == 0) return;
+    throw StorageError(StorageError::Kind::corrupt, path + " is a database of another program");
+  }
+  const auto present = static_cast<std::int64_t>(schema.steps.size());
+  if (version > present) {
+    throw StorageError(StorageError::Kind::newer,
+                       path + " is of a later version of this program: its schema is " +
+                           std::to_string(version) + ", and at most " + std::to_string(present) +
+                           " can be read here");
+  }
+  check_health(database);
+}
+
+void migrate(Database& database, const Schema& schema) {
+  const auto version = static_cast<std::size_t>(database.number("PRAGMA user_version"));
+  if (version >= schema.steps.size()) return;
+  Transaction transaction(database);
+  for (const char* const step : schema.steps.subspan(version)) database.execute(step);
+  database.execute(("PRAGMA user_version = " + std::to_string(schema.steps.size())).c_str());
+  database.execute(("PRAGMA application_id = " + std::to_string(schema.application)).c_str());
+  transaction.commit();
+}
+
+}  // namespace
+
+Database open_database(const std::string& path, const Schema& schema) {
+  std::error_code missing;
+  if (std::filesystem::file_size(path, missing) > 0 && !missing) inspect(path, schema);
+  Database database(path, Database::Mode::create);
+  database.use_log();
+  migrate(database, schema);
+  return database;
+}
+
+}  // namespace vat

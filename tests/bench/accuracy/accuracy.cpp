@@ -1,0 +1,100 @@
+#include "tests/bench/accuracy/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+#include "server/cli/common/command.h"
+#include "server/support/task_runner.h"
+#include "tests/bench/accuracy/accuracy_report.h"
+#include "tests/bench/accuracy/control_report.h"
+#include "tests/bench/accuracy/law_report.h"
+#include "tests/bench/accuracy/solver_report.h"
+#include "tests/bench/options.h"
+
+namespace vat::bench {
+
+namespace {
+
+constexpr const char* kSolversName = "solvers";
+constexpr SweepSettings kQuick{.repetitions = 1, .stride = 3, .longest_run = 0.2};
+
+ProblemResult solve_with_all(const ProblemEntry& entry, const SweepSettings& settings,
+                             TaskRunner* runner) {
+  const Problem problem = entry.make(runner);
+  ProblemResult result{entry.name, problem.title, problem.error_name, {}};
+  std::cout << entry.name << ": " << problem.title << std::endl;
+  for (const Method& method : all_methods()) {
+    std::vector<Solution> solutions = sweep(problem, method, settings, runner);
+    if (solutions.empty()) continue;
+    std::cout << "  " << name_of(method) << ": " << solutions.size() << " solutions";
+    const auto best = std::ranges::min(solutions, {}, [](const Solution& solution) {
+      return solution.failure.empty() ? solution.error : HUGE_VAL;
+    });
+    std::cout << ", least error " << (best.failure.empty() ? short_text(best.error) : best.failure)
+              << std::endl;
+    std::ranges::move(solutions, std::back_inserter(result.solutions));
+  }
+  return result;
+}
+
+Status solvers(const Options& options, TaskRunner* runner) {
+  std::cout << kSolversName << ": pressure solvers, error against time" << std::endl;
+  const auto results =
+      options.quick ? compare_solvers(1, 20, runner) : compare_solvers(5, 40, runner);
+  std::cout << to_markdown(solvers_table(results)) << std::endl;
+  return write_solvers(results, options.output);
+}
+
+int accuracy(const Options& options) {
+  const std::vector<ProblemEntry>& problems = all_problems();
+  std::vector<std::string> names;
+  for (const ProblemEntry& entry : problems) names.push_back(entry.name);
+  names.push_back(kSolversName);
+  if (options.list) {
+    print_names(names);
+    return kExitOk;
+  }
+  const Result<std::vector<std::size_t>> chosen = choose(options.cases, names);
+  if (!chosen) return fail("accuracy", chosen.errors());
+  if (const Status found = find_gnuplot(); !found) return fail("accuracy", found.errors());
+  ThreadPoolRunner runner(options.threads);
+  std::vector<ProblemResult> results;
+  for (const std::size_t index : chosen.value()) {
+    if (index == problems.size()) {
+      if (const Status done = solvers(options, &runner); !done) {
+        return fail(options.output, done.errors());
+      }
+      continue;
+    }
+    if (options.quick && options.cases.empty() && problems[index].is_long) continue;
+    results.push_back(
+        solve_with_all(problems[index], options.quick ? kQuick : SweepSettings{}, &runner));
+  }
+  if (results.empty()) return kExitOk;
+  const std::vector<LawPair> pairs = pairs_of_laws(results);
+  Status written = write_accuracy(results, options.output);
+  if (written) written = write_laws(pairs, options.output);
+  if (!written) return fail(options.output, written.errors());
+  std::cout << '\n'
+            << to_markdown(cheapest_table(results)) << '\n'
+            << to_markdown(control_table(results)) << '\n';
+  if (!pairs.empty()) std::cout << to_markdown(laws_table(pairs)) << '\n';
+  std::cout << "written to " << options.output << '\n';
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_accuracy_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "accuracy", "Run time against error: every integrator and step control, ever finer steps");
+  const auto options = std::make_shared<Options>();
+  add_options(*command, *options);
+  command->footer("Exit codes: 0 fine, 1 a problem cannot be solved or written, 2 wrong usage.");
+  command->callback([options, &exit_code] { exit_code = accuracy(*options); });
+}
+
+}  // namespace vat::bench

@@ -1,0 +1,89 @@
+import { readFileSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import type { Viewer } from './viewer';
+
+/** A small picture: red, green, blue of each pixel, 0 to 255. */
+export interface Pixels {
+  width: number;
+  height: number;
+  data: number[];
+  /** The same as a file, in base64. */
+  png: string;
+}
+
+/** A part of a picture, each from 0 to 1 from its upper left corner. */
+export interface Region {
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
+}
+
+/** Small enough that single pixels, which drivers round differently, average out. */
+const kWidth = 96;
+
+/** The canvas as it is seen, scaled down. */
+export async function pixelsOf(viewer: Viewer): Promise<Pixels> {
+  return scaledDown(viewer, await viewer.picture());
+}
+
+async function scaledDown(viewer: Viewer, address: string): Promise<Pixels> {
+  const page = await viewer.blankPage();
+  return page.evaluate(readPixels, [address, kWidth] as const);
+}
+
+/** Mean red, green and blue of a region, and the standard deviation of their sum. */
+export function statisticsOf(
+  { width, height, data }: Omit<Pixels, 'png'>,
+  { left, top, right, bottom }: Region,
+): { red: number; green: number; blue: number; deviation: number } {
+  const sums = [0, 0, 0];
+  let squares = 0;
+  let count = 0;
+  for (let y = Math.floor(top * height); y < Math.ceil(bottom * height); ++y) {
+    for (let x = Math.floor(left * width); x < Math.ceil(right * width); ++x) {
+      const at = 3 * (y * width + x);
+      const parts = data.slice(at, at + 3);
+      parts.forEach((part, channel) => (sums[channel]! += part));
+      squares += parts.reduce((sum, part) => sum + part, 0) ** 2;
+      ++count;
+    }
+  }
+  const [red = 0, green = 0, blue = 0] = sums.map((sum) => sum / count);
+  const mean = red + green + blue;
+  return { red, green, blue, deviation: Math.sqrt(Math.max(squares / count - mean ** 2, 0)) };
+}
+
+/**
+ * Mean difference of a channel, in steps of 255, from the reference picture of this name. With
+ * VAT_WRITE_PICTURES set, the picture becomes the reference.
+ */
+export async function differenceFromReference(viewer: Viewer, name: string): Promise<number> {
+  const path = fileURLToPath(new URL(`../pictures/${name}.png`, import.meta.url));
+  const now = await pixelsOf(viewer);
+  if (process.env.VAT_WRITE_PICTURES) writeFileSync(path, Buffer.from(now.png, 'base64'));
+  const kept = readFileSync(path).toString('base64');
+  const { data } = await scaledDown(viewer, `data:image/png;base64,${kept}`);
+  if (data.length !== now.data.length) throw new Error('the pictures differ in size');
+  return now.data.reduce((all, value, i) => all + Math.abs(value - data[i]!), 0) / data.length;
+}
+
+/** Runs in the browser. */
+async function readPixels([address, width]: readonly [string, number]): Promise<Pixels> {
+  const image = new Image();
+  image.src = address;
+  await image.decode();
+  const height = Math.round((image.height * width) / image.width);
+  const canvas = new OffscreenCanvas(width, height);
+  const context = canvas.getContext('2d');
+  if (!context) throw new Error('the browser cannot draw');
+  context.imageSmoothingQuality = 'high';
+  context.drawImage(image, 0, 0, width, height);
+  const data: number[] = [];
+  context
+    .getImageData(0, 0, width, height)
+    .data.forEach((value, i) => void (i % 4 < 3 && data.push(value)));
+  const file = await canvas.convertToBlob();
+  const png = btoa(String.fromCharCode(...new Uint8Array(await file.arrayBuffer())));
+  return { width, height, data, png };
+}

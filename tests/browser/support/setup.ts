@@ -1,0 +1,31 @@
+import { existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { chromium } from 'playwright-core';
+import type { TestProject } from 'vitest/node';
+import { launchOptions } from './chromium';
+import { Server } from './server';
+
+declare module 'vitest' {
+  interface ProvidedContext {
+    /** Endpoint of the Chromium process that all files share. */
+    chromium: string;
+    /** Page of the server that most files share. */
+    server: string;
+  }
+}
+
+const kPage = fileURLToPath(new URL('../../../web/dist/index.html', import.meta.url));
+
+/** Starts the browser and the server of the whole suite. Returns what ends both. */
+export default async function start({ provide }: TestProject): Promise<() => Promise<void>> {
+  if (!existsSync(kPage)) throw new Error(`no ${kPage}: type npm --prefix web run build`);
+  const server = new Server(['--max-scenes-per-second', '1000']);
+  await server.start();
+  const browser = await chromium.launchServer(launchOptions());
+  provide('chromium', browser.wsEndpoint());
+  provide('server', server.url);
+  return async () => {
+    await browser.close();
+    await server.kill();
+  };
+}

@@ -1,0 +1,162 @@
+import { afterAll, afterEach, beforeAll, expect } from 'vitest';
+import type { Scene } from '../../../web/client/index';
+import { Observer } from './observer';
+import type { Host } from './server';
+import { openPage, sharedServer } from './shared';
+import type { Look, Viewer } from './viewer';
+
+/** Limit and period of polls. */
+export const kInTime = { timeout: 120_000, interval: 50 };
+
+/** A phone, held upright. */
+export const kPhone: Look = {
+  viewport: { width: 390, height: 800 },
+  hasTouch: true,
+  isMobile: true,
+};
+
+/** Layout as with one pixel per point, and a quarter of the pixels to draw. */
+const kCoarse: Look = { deviceScaleFactor: 0.5 };
+
+/** Between two visits the session runs this scene, so that the page begins anew with the next. */
+const kNothing: Scene = { format: 'vat.scene/1', name: 'nothing', materials: [], bodies: [] };
+
+type Visit = Look & {
+  tick?: number;
+  /** Settings of the view, in the form of links. */
+  view?: string;
+};
+
+/**
+ * A server for the tests of a file, a second client in its first session, and one page, which
+ * `visit` takes from scene to scene. A page is replaced where a visit needs another kind of device,
+ * and after a test that failed. A test fails if the page had a problem.
+ */
+export class Visits {
+  private client: Observer | undefined;
+  private page: Viewer | undefined;
+  private device = '';
+
+  constructor(readonly server: Host = sharedServer) {
+    beforeAll(async () => {
+      await server.start();
+      this.client = await Observer.join(server.url);
+    });
+    afterEach(async ({ task }) => {
+      const problems = this.page?.problems.splice(0) ?? [];
+      const isGone = this.page && new URL(this.page.page.url()).search !== '';
+      if (task.result?.state === 'fail' || problems.length > 0 || isGone) await this.leave();
+      expect(problems).toEqual([]);
+    });
+    afterAll(async () => {
+      await this.leave();
+      this.client?.leave();
+      await server.kill();
+    });
+  }
+
+  get observer(): Observer {
+    if (!this.client) throw new Error('the server has not been started');
+    return this.client;
+  }
+
+  get isOpen(): boolean {
+    return this.page !== undefined;
+  }
+
+  get viewer(): Viewer {
+    if (!this.page) throw new Error('this test has visited no scene');
+    return this.page;
+  }
+
+  /** Shows a scene that stands still at this tick. */
+  async visit(scene: string, { tick = 0, view = '', ...look }: Visit = {}): Promise<void> {
+    const { observer } = this;
+    await observer.request('control.pause', {}); // also for the scenes to come
+    await observer.request('scene.load', { scene: kNothing });
+    await this.open(look);
+    await this.viewer.untilScene('nothing');
+    await this.viewer.page.evaluate(closeAll);
+    await this.set(view);
+    await observer.request('control.set_speed', { speed: 1 });
+    await observer.request('scene.load', { scene });
+    if (tick > 0) await observer.request('control.step', { ticks: tick });
+    await this.viewer.untilScene(scene);
+    await this.viewer.untilTick(tick, tick);
+  }
+
+  /** Gives the view these settings, and the others their defaults. */
+  async set(view: string): Promise<void> {
+    await this.viewer.page.evaluate(changeView, view);
+  }
+
+  /** The scene as it is now. */
+  async scene(): Promise<Scene> {
+    return (await this.observer.request('scene.get', { current: true })).scene;
+  }
+
+  private async open({ colorScheme = 'light', ...look }: Look): Promise<void> {
+    const device = { ...kCoarse, ...look };
+    if (!this.page || this.device !== JSON.stringify(device)) {
+      await this.leave();
+      this.device = JSON.stringify(device);
+      this.page = await openPage(this.server.url, device);
+    }
+    await this.page.page.emulateMedia({ colorScheme });
+  }
+
+  private async leave(): Promise<void> {
+    await this.page?.close();
+    this.page = undefined;
+  }
+}
+
+/** Opens one section of the panel alone; on a phone the sheet that has the sections opens first. */
+export async function unfold({ page }: Viewer, id: string): Promise<void> {
+  await page.evaluate((open) => {
+    const sheet = document.getElementById('sheet')!;
+    if (sheet.checkVisibility() && sheet.ariaExpanded === 'false') sheet.click();
+    const sections = document.querySelectorAll<HTMLDetailsElement>('#sections > details[id]');
+    for (const section of sections) {
+      section.open = section.id === open;
+    }
+  }, id);
+}
+
+/** Waits until the element with this id is shown and has these words. */
+export async function says({ page }: Viewer, id: string, words: string): Promise<void> {
+  await page.waitForFunction(
+    ([where, what]) => {
+      const element = document.getElementById(where);
+      return element?.checkVisibility() && element.textContent?.includes(what);
+    },
+    [id, words] as const,
+  );
+}
+
+/** Runs in the browser: the page as after it was loaded. */
+function closeAll(): void {
+  for (const dialog of document.querySelectorAll('dialog')) dialog.close();
+  document.getElementById('notices')!.replaceChildren();
+  const sheet = document.getElementById('sheet')!;
+  if (sheet.ariaExpanded === 'true') sheet.click();
+  for (const section of document.querySelectorAll<HTMLDetailsElement>('#sections > details[id]')) {
+    section.open = section.id === 'numbers-details';
+  }
+  (document.activeElement as HTMLElement | null)?.blur();
+}
+
+/** Runs in the browser. */
+function changeView(view: string): void {
+  const given = new Map(view.split(',').map((part) => part.split(':') as [string, string]));
+  const options = document.getElementById('view-options')!;
+  for (const control of options.querySelectorAll<HTMLInputElement | HTMLSelectElement>(
+    'input, select',
+  )) {
+    const value = given.get(control.id.replace('view-', ''));
+    if (control instanceof HTMLSelectElement) control.value = value ?? control.options[0]!.value;
+    else if (control.type === 'checkbox') control.checked = value === 'true';
+    else control.value = value ?? (control.type === 'range' ? '0.5' : '');
+    control.dispatchEvent(new Event(control.type === 'range' ? 'input' : 'change'));
+  }
+}

@@ -1,0 +1,465 @@
+#include "core/validation/validate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/limits.h"
+#include "core/simulation/simulation.h"
+#include "core/validation/validate_parts.h"
+#include "tests/support/errors.h"
+#include "tests/core/sampling/mesh_shapes.h"
+
+namespace vat::validate_test {
+namespace {
+
+constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+
+/// One body of each kind, every list with an element.
+Scene valid_scene() {
+  Scene scene;
+  scene.name = "valid";
+  scene.materials.resize(3);
+  scene.materials[0].name = "water";
+  scene.materials[0].liquid = LiquidConstants{100, 1, 0.1};
+  scene.materials[1].name = "rubber";
+  scene.materials[1].springs = LatticeSprings{{{100, 1}}, {{50, 1}}, {{20, 1}}};
+  scene.materials[1].self_contact = SpringConstants{100, 1};
+  scene.materials[2].name = "wood";
+  scene.interfaces = {{{"water", "vat"}, {100, 1}, 0.05}, {{"wood", "wood"}, {100, 1}, {}}};
+  scene.vat = Vat{{0, 0, 0}, {1, 1, 1}, true, SlideMotion{{1, 0, 0}, 0.1, 1}};
+  scene.bodies.resize(4);
+  scene.bodies[0] = {"pool", BodyKind::liquid, "water", BoxShape{{0.5, 0.5, 0.1}, {1, 1, 0.2}},
+                     0.05};
+  scene.bodies[1] = {"cube", BodyKind::deformable, "rubber",
+                     BoxShape{{0.5, 0.5, 0.4}, {0.2, 0.2, 0.2}}, 0.05};
+  scene.bodies[2] = {"ball", BodyKind::rigid, "wood", SphereShape{{0.5, 0.5, 0.8}, 0.1}, 0.05};
+  scene.bodies[3].name = "pendulum";
+  scene.bodies[3].kind = BodyKind::deformable;
+  scene.bodies[3].material = "wood";
+  scene.bodies[3].shape =
+      ParticleShape{{{0.1, 0.1, 0.9}, {0.1, 0.1, 0.7}}, {}, {1, 1}, {0.01, 0.01}, {0}};
+  scene.bodies[3].springs = {{0, 1, {100, 0}, {}}};
+  return scene;
+}
+
+ParticleShape& particles(Scene& scene) {
+  return std::get<ParticleShape>(scene.bodies[3].shape);
+}
+
+TEST(Validate, FindsNothingWrongInAValidScene) {
+  const Errors errors = find_errors(valid_scene());
+  EXPECT_TRUE(errors.empty()) << errors.front().path << ' ' << errors.front().message;
+  EXPECT_TRUE(find_errors(Scene{}).empty());
+}
+
+struct Mistake {
+  const char* error;
+  std::function<void(Scene&)> make;
+};
+
+const Mistake kMistakes[] = {
+    {"bad_text /name", [](Scene& s) { s.name.assign(kMaxNameLength + 1, 'x'); }},
+    {"bad_text /title", [](Scene& s) { s.title.assign(kMaxTextLength + 1, 'x'); }},
+    {"out_of_range /gravity", [](Scene& s) { s.gravity.y() = kNan; }},
+    {"out_of_range /gravity", [](Scene& s) { s.gravity.z() = -1001; }},
+    {"out_of_range /default_interface/stiffness",
+     [](Scene& s) { s.default_interface.stiffness = -1; }},
+    {"out_of_range /default_interface/friction",
+     [](Scene& s) { s.default_interface.friction = -0.1; }},
+    {"out_of_range /default_interface/friction",
+     [](Scene& s) { s.default_interface.friction = kNan; }},
+    {"out_of_range /vat/min", [](Scene& s) { s.vat->min.x() = -kInfinity; }},
+    {"out_of_range /vat/motion/axis", [](Scene& s) { s.vat->motion->axis.setZero(); }},
+    {"out_of_range /vat/motion/stroke", [](Scene& s) { s.vat->motion->stroke = kNan; }},
+    {"out_of_range /vat/motion/period", [](Scene& s) { s.vat->motion->period = 0; }},
+    {"out_of_range /vat/motion/period", [](Scene& s) { s.vat->motion->stroke = 1e5; }},
+    {"out_of_range /sleeping/speed",
+     [](Scene& s) {
+       s.sleeping = Sleeping{0, 0.5};
+     }},
+    {"out_of_range /sleeping/speed",
+     [](Scene& s) {
+       s.sleeping = Sleeping{1.5, 0.5};
+     }},
+    {"out_of_range /sleeping/after",
+     [](Scene& s) {
+       s.sleeping = Sleeping{0.01, 0};
+     }},
+    {"out_of_range /sleeping/after",
+     [](Scene& s) {
+       s.sleeping = Sleeping{0.01, kNan};
+     }},
+    {"out_of_range /numerics/step", [](Scene& s) { s.numerics.step = 0; }},
+    {"out_of_range /numerics/tick", [](Scene& s) { s.numerics.tick = 2; }},
+    {"out_of_range /numerics/tick", [](Scene& s) { s.numerics.tick = 0.0205; }},
+    {"out_of_range /numerics/tick", [](Scene& s) { s.numerics.step = 0.1; }},
+    {"out_of_range /numerics/tick", [](Scene& s) { s.numerics.step = 1e-6; }},
+    {"duplicate /materials/2/name",
+     [](Scene& s) {
+       s.materials.push_back(s.materials[2]);
+       std::swap(s.materials[2], s.materials[3]);
+       s.materials[3].name = "stone";
+       s.materials[2].name = "rubber";
+       s.bodies[2].material = s.bodies[3].material = "stone";
+       s.interfaces[1].materials = {"stone", "stone"};
+     }},
+    {"reserved_name /materials/3/name",
+     [](Scene& s) {
+       s.materials.push_back(s.materials[2]);
+       s.materials.back().name = "vat";
+     }},
+    {"bad_text /materials/3/name", [](Scene& s) { s.materials.emplace_back(); }},
+    {"out_of_range /materials/0/density", [](Scene& s) { s.materials[0].density = 0; }},
+    {"out_of_range /materials/0/liquid/stiffness",
+     [](Scene& s) { s.materials[0].liquid->stiffness = -1; }},
+    {"out_of_range /materials/0/liquid/viscosity",
+     [](Scene& s) { s.materials[0].liquid->viscosity = kInfinity; }},
+    {"out_of_range /materials/0/liquid/support_radius",
+     [](Scene& s) { s.materials[0].liquid->support_radius = 0; }},
+    {"out_of_range /materials/1/springs/shear/stiffness",
+     [](Scene& s) { s.materials[1].springs->shear->stiffness = -1; }},
+    {"out_of_range /materials/1/springs/bend/damping",
+     [](Scene& s) { s.materials[1].springs->bend->damping = kNan; }},
+    {"out_of_range /materials/1/self_contact/damping",
+     [](Scene& s) { s.materials[1].self_contact->damping = -1; }},
+    {"too_many /materials",
+     [](Scene& s) {
+       while (s.materials.size() <= kMaxMaterials) {
+         s.materials.push_back(s.materials[2]);
+         s.materials.back().name = "m" + std::to_string(s.materials.size());
+       }
+     }},
+    {"unknown_name /interfaces/0/materials/0",
+     [](Scene& s) { s.interfaces[0].materials[0] = "oil"; }},
+    {"unknown_name /interfaces/0/materials",
+     [](Scene& s) { s.interfaces[0].materials[0] = "vat"; }},
+    {"duplicate /interfaces/2/materials",
+     [](Scene& s) {
+       s.interfaces.push_back(InterfaceDescription{{"vat", "water"}, {1, 1}, {}});
+     }},
+    {"out_of_range /interfaces/1/stiffness",
+     [](Scene& s) { s.interfaces[1].constants.stiffness = 1e13; }},
+    {"out_of_range /interfaces/0/friction",
+     [](Scene& s) { s.interfaces[0].constants.friction = 10.1; }},
+    {"out_of_range /interfaces/0/threshold",
+     [](Scene& s) { s.interfaces[0].threshold = 8.1 * 0.05; }},
+    {"out_of_range /interfaces/0/threshold", [](Scene& s) { s.interfaces[0].threshold = 0; }},
+    {"duplicate /bodies/1/name", [](Scene& s) { s.bodies[1].name = "pool"; }},
+    {"bad_text /bodies/1/name", [](Scene& s) { s.bodies[1].name = ""; }},
+    {"unknown_name /bodies/1/material", [](Scene& s) { s.bodies[1].material = "x"; }},
+    {"not_liquid /bodies/0/material", [](Scene& s) { s.bodies[0].material = "wood"; }},
+    {"out_of_range /bodies/2/spacing", [](Scene& s) { s.bodies[2].spacing = kNan; }},
+    {"too_many /bodies/2/spacing", [](Scene& s) { s.bodies[2].spacing = 1e-5; }},
+    {"out_of_range /bodies/2/mass", [](Scene& s) { s.bodies[2].mass = 0; }},
+    {"out_of_range /bodies/2/radius", [](Scene& s) { s.bodies[2].radius = -1; }},
+    {"out_of_range /bodies/0/spacing",
+     [](Scene& s) { s.materials[0].liquid->support_radius = 8.1 * 0.05; }},
+    {"out_of_range /bodies/1/radius", [](Scene& s) { s.bodies[1].radius = 4.1 * 0.05; }},
+    {"unknown_name /bodies/1/material",
+     [](Scene& s) {
+       s.bodies[1].material = "x";
+       s.bodies[1].springs = s.bodies[3].springs;
+     }},
+    {"out_of_range /bodies/2/orientation",
+     [](Scene& s) { s.bodies[2].orientation = Quat(0, 0, 0, 0); }},
+    {"out_of_range /bodies/2/velocity", [](Scene& s) { s.bodies[2].velocity.x() = 1e5; }},
+    {"out_of_range /bodies/2/angular_velocity",
+     [](Scene& s) { s.bodies[2].angular_velocity.x() = kNan; }},
+    {"outside_vat /bodies/2", [](Scene& s) { s.bodies[2].position.x() = 0.5; }},
+    {"outside_vat /bodies/2", [](Scene& s) { s.bodies[2].position.z() = 0.3; }},
+    {"not_allowed /bodies/2/springs", [](Scene& s) { s.bodies[2].springs = s.bodies[3].springs; }},
+    {"out_of_range /bodies/2/shape/radius",
+     [](Scene& s) {
+       s.bodies[2].shape = SphereShape{{0.5, 0.5, 0.8}, -1};
+     }},
+    {"out_of_range /bodies/2/shape/size",
+     [](Scene& s) {
+       s.bodies[2].shape = BoxShape{{0.5, 0.5, 0.8}, {1, 0, 1}};
+     }},
+    {"out_of_range /bodies/2/shape/axis",
+     [](Scene& s) {
+       s.bodies[2].shape = CylinderShape{{0.5, 0.5, 0.8}, {0, 0, 0}, 0.1, 0.1};
+     }},
+    {"open_mesh /bodies/2/shape",
+     [](Scene& s) {
+       MeshShape mesh = box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+       mesh.triangles.pop_back();
+       s.bodies[2].shape = mesh;
+     }},
+    {"inverted_mesh /bodies/2/shape",
+     [](Scene& s) {
+       s.bodies[2].shape = inside_out(box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9}));
+     }},
+    {"out_of_range /bodies/2/shape/triangles/3",
+     [](Scene& s) {
+       MeshShape mesh = box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+       mesh.triangles[3][1] = 8;
+       s.bodies[2].shape = mesh;
+     }},
+    {"no_particles /bodies/2/spacing",
+     [](Scene& s) {
+       // Two boxes with the centre of both, the only lattice point, between them.
+       s.bodies[2].spacing = 0.3;
+       s.bodies[2].shape = joined(box_mesh({0.4, 0.4, 0.7}, {0.45, 0.6, 0.9}),
+                                  box_mesh({0.55, 0.4, 0.7}, {0.6, 0.6, 0.9}));
+     }},
+    {"out_of_range /bodies/3/shape/positions", [](Scene& s) { particles(s).positions.clear(); }},
+    {"out_of_range /bodies/3/shape/positions/1",
+     [](Scene& s) { particles(s).positions[1].z() = kNan; }},
+    {"wrong_length /bodies/3/shape/masses", [](Scene& s) { particles(s).masses = {1}; }},
+    {"out_of_range /bodies/3/shape/masses/0", [](Scene& s) { particles(s).masses[0] = 0; }},
+    {"out_of_range /bodies/3/shape/radii/1", [](Scene& s) { particles(s).radii[1] = kInfinity; }},
+    {"wrong_length /bodies/3/shape/velocities",
+     [](Scene& s) { particles(s).velocities = {Vec3::Zero()}; }},
+    {"out_of_range /bodies/3/shape/fixed/0", [](Scene& s) { particles(s).fixed = {2}; }},
+    {"duplicate /bodies/3/shape/fixed", [](Scene& s) { particles(s).fixed.assign(2, 1); }},
+    {"not_allowed /bodies/3/mass", [](Scene& s) { s.bodies[3].mass = 2; }},
+    {"not_allowed /bodies/3/radius", [](Scene& s) { s.bodies[3].radius = 0.01; }},
+    {"missing /bodies/3/mass", [](Scene& s) { particles(s).masses.clear(); }},
+    {"missing /bodies/3/radius", [](Scene& s) { particles(s).radii.clear(); }},
+    {"out_of_range /bodies/3/springs/0/particles", [](Scene& s) { s.bodies[3].springs[0].b = 2; }},
+    {"out_of_range /bodies/3/springs/0/particles", [](Scene& s) { s.bodies[3].springs[0].b = 0; }},
+    {"out_of_range /bodies/3/springs/0/stiffness",
+     [](Scene& s) { s.bodies[3].springs[0].constants.stiffness = -1; }},
+    {"out_of_range /bodies/3/springs/0/rest_length",
+     [](Scene& s) { s.bodies[3].springs[0].rest_length = -1; }},
+    {"out_of_range /materials/0/tearing_strain",
+     [](Scene& s) { s.materials[0].tearing_strain = 0; }},
+    {"out_of_range /materials/0/plasticity/yield_strain",
+     [](Scene& s) {
+       s.materials[0].plasticity = Plasticity{-1, 0, 0, 0.5};
+     }},
+    {"out_of_range /materials/0/plasticity/hardening",
+     [](Scene& s) {
+       s.materials[0].plasticity = Plasticity{0.1, -1, 0, 0.5};
+     }},
+    {"out_of_range /materials/0/plasticity/relaxation_time",
+     [](Scene& s) {
+       s.materials[0].plasticity = Plasticity{0.1, 0, -1, 0.5};
+     }},
+    {"out_of_range /materials/0/plasticity/max_strain",
+     [](Scene& s) {
+       s.materials[0].plasticity = Plasticity{0.1, 0, 0, 1};
+     }},
+};
+
+TEST(Validate, FindsEveryMistakeAlone) {
+  for (const auto& [error, make] : kMistakes) {
+    Scene scene = valid_scene();
+    make(scene);
+    EXPECT_EQ(test::errors_of(find_errors(scene)), error);
+    EXPECT_FALSE(Simulation::create(scene).ok()) << error;
+  }
+}
+
+TEST(Validate, NamesTheIntegratorAndTheSolverThatItCannotDrive) {
+  Scene scene = valid_scene();
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.numerics.integrator = IntegratorId::runge_kutta_4;
+  const Errors errors = find_errors(scene);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].path, "/numerics/integrator");
+  EXPECT_THAT(errors[0].message, testing::AllOf(testing::HasSubstr("incompressible"),
+                                                testing::HasSubstr("runge_kutta_4")));
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  EXPECT_THAT(find_errors(scene), testing::IsEmpty());
+  scene.numerics.control = StepControl::local;
+  EXPECT_FALSE(find_errors(scene).empty());
+  scene.bodies.resize(1);  // springs would need steps too short for a method of order 1
+  scene.numerics = {};
+  scene.numerics.accuracy = 0.01;
+  EXPECT_THAT(find_errors(scene), testing::IsEmpty());
+  const Simulation simulation = Simulation::create(scene).value();
+  EXPECT_EQ(simulation.scene().numerics.integrator, IntegratorId::symplectic_euler);
+  EXPECT_EQ(simulation.scene().numerics.control, StepControl::adaptive);
+}
+
+TEST(Validate, ReportsEveryMistakeAtOnce) {
+  Scene scene = valid_scene();
+  scene.numerics.step = -1;
+  scene.materials[0].density = kNan;
+  scene.bodies[0].spacing = 0;
+  scene.bodies[2].mass = -1;
+  EXPECT_EQ(test::errors_of(find_errors(scene)),
+            "out_of_range /materials/0/density\nout_of_range /numerics/step\n"
+            "out_of_range /bodies/0/spacing\nout_of_range /bodies/2/mass");
+}
+
+TEST(Validate, LimitsTheTotals) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.materials[0].name = "m";
+  scene.materials[0].springs = LatticeSprings{{{1, 0}}, {{1, 0}}, {{1, 0}}};
+  const BoxShape box{{0, 0, 0}, {1, 1, 1}};
+  scene.bodies = {{"a", BodyKind::rigid, "m", box, 0.0125},
+                  {"b", BodyKind::rigid, "m", box, 0.0125}};
+  const auto codes = [&] { return test::errors_of(find_errors(scene)); };
+  EXPECT_EQ(codes(), "too_many /bodies");  // 2 x 80^3 particles
+  scene.bodies[0].spacing = 0.02;
+  EXPECT_EQ(codes(), "");
+  scene.bodies = {{"a", BodyKind::deformable, "m", box, 0.0125}};
+  EXPECT_EQ(codes(), "too_many /bodies");  // 12 x 80^3 springs
+}
+
+/// More particles in one place than may all be neighbours of one another.
+ParticleShape crowd() {
+  constexpr Real kDistance = 0.01;
+  ParticleShape shape;
+  for (int i = 0; i < 15 * 15 * 15; ++i) {
+    shape.positions.push_back(kDistance * Vec3(i % 15, i / 15 % 15, i / 225));
+  }
+  return shape;
+}
+
+Scene crowded_scene(BodyKind kind, Real radius) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "m";
+  scene.materials[0].liquid = LiquidConstants{1, 1, 0.02};
+  scene.bodies.resize(1);
+  scene.bodies[0] = {"crowd", kind, "m", crowd(), 0};
+  scene.bodies[0].mass = 1;
+  scene.bodies[0].radius = radius;
+  return scene;
+}
+
+TEST(Validate, LimitsTheNeighboursOfALiquid) {
+  Scene scene = crowded_scene(BodyKind::liquid, 0.005);
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  scene.materials[0].liquid->support_radius = 100;
+  const Errors errors = find_errors(scene);  // 3375^2 neighbours
+  ASSERT_EQ(test::errors_of(errors), "too_many /bodies");
+  EXPECT_THAT(errors[0].message, testing::HasSubstr("support radius of \"m\""));
+}
+
+TEST(Validate, LimitsTheNeighboursWithinABody) {
+  Scene scene = crowded_scene(BodyKind::deformable, 100);
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");  // they do not collide
+  scene.materials[0].self_contact = SpringConstants{1, 0};
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies");
+  scene.bodies[0].radius = 0.005;
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+}
+
+TEST(Validate, LimitsTheNeighboursOfOtherBodies) {
+  Scene scene = crowded_scene(BodyKind::rigid, 0.005);
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[1].name = "another";
+  scene.bodies[1].position = {0.15, 0, 0};
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  scene.interfaces = {{{"m", "m"}, {1, 0}, 1.0}};
+  const Errors errors = find_errors(scene);
+  ASSERT_EQ(test::errors_of(errors), "too_many /bodies");
+  EXPECT_THAT(errors[0].message, testing::HasSubstr("threshold of \"crowd\" and \"another\""));
+  scene.interfaces.clear();
+  scene.bodies[1].radius = 1;
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies");
+}
+
+TEST(Validate, LetsALargeParticleLieInALiquid) {
+  Scene scene = crowded_scene(BodyKind::liquid, 0.005);  // each of 3375 has it in reach
+  scene.bodies.push_back(
+      {"ball", BodyKind::rigid, "m", ParticleShape{{{0, 0, 1}}, {}, {1}, {1}, {}}});
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+}
+
+TEST(Validate, LimitsTheLatticesTogetherAndStopsAtTheFirstExcess) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.materials[0].name = "m";
+  // Few particles in a large box: 1.7 m along a diagonal, 170^3 lattice points.
+  const CylinderShape rod{{0, 0, 0}, {1, 1, 1}, 0.01, 1.7 * std::sqrt(3.0)};
+  for (int i = 0; i < 100; ++i) {
+    scene.bodies.push_back({"rod " + std::to_string(i), BodyKind::rigid, "m", rod, 0.01});
+  }
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies/1/spacing");
+  scene.bodies.resize(1);
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+}
+
+TEST(Validate, LimitsTheTrianglesOfAllMeshes) {
+  MeshShape mesh;
+  mesh.triangles.resize(kMaxMeshTriangles);
+  Allowance allowance;
+  for (std::size_t taken = kMaxMeshTriangles; taken <= kMaxSceneTriangles;
+       taken += kMaxMeshTriangles) {
+    EXPECT_EQ(allowance.take_mesh(mesh), nullptr);
+  }
+  EXPECT_FALSE(allowance.is_exceeded());
+  EXPECT_NE(allowance.take_mesh(mesh), nullptr);
+  EXPECT_TRUE(allowance.is_exceeded());
+}
+
+TEST(Validate, ChecksABodyToBeAdded) {
+  Scene scene = valid_scene();
+  BodyDescription body = scene.bodies[2];
+  EXPECT_EQ(find_body_errors(scene, body, "/body").at(0).path, "/body/name");
+  body.name = "another ball";
+  EXPECT_TRUE(find_body_errors(scene, body, "/body").empty());
+  body.material = "cheese";
+  const Errors errors = find_body_errors(scene, body, "/body");
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].path, "/body/material");
+}
+
+TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
+  Scene scene = valid_scene();
+  const std::vector<Vec3> far = {{0.9, 0.9, 0.9}};
+  const std::vector<Real> radius = {0.01};
+  CurrentScene present;
+  present.bodies.assign(scene.bodies.size(), {far, radius, 0});
+  scene.bodies[0].spacing = 1e-5;  // could not be sampled
+  BodyDescription body = scene.bodies[2];
+  body.name = "another ball";
+  EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "");
+  present.bodies[1].springs = kMaxSprings;
+  EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "");
+  present.bodies[1].springs = kMaxSprings + 1;
+  EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "too_many /body");
+}
+
+TEST(Validate, AddsABodyWhereTheVatIsNow) {
+  Scene scene = valid_scene();
+  scene.bodies.clear();
+  BodyDescription body = valid_scene().bodies[2];  // 0.4 to 0.6 m of 0 to 1 m
+  CurrentScene present;
+  const auto codes = [&] {
+    return test::errors_of(find_body_errors(scene, present, body, "/body"));
+  };
+  EXPECT_EQ(codes(), "");
+  present.vat_offset = {0.5, 0, 0};
+  EXPECT_EQ(codes(), "outside_vat /body");
+  body.position = {0.8, 0, 0};  // beyond the wall at time 0
+  EXPECT_EQ(codes(), "");
+}
+
+TEST(Validate, ChecksAnInterfaceAlone) {
+  const Scene scene = crowded_scene(BodyKind::rigid, 0.005);
+  Scene two = scene;
+  two.bodies.push_back(scene.bodies[0]);
+  const std::vector<Vec3>& points = std::get<ParticleShape>(scene.bodies[0].shape).positions;
+  const std::vector<Real> radii(points.size(), 0.005);
+  CurrentScene present;
+  present.bodies.assign(2, {points, radii, 0});
+  InterfaceDescription interface { {"m", "m"}, {1, 0}, 0.01 };
+  const auto codes = [&] {
+    return test::errors_of(find_interface_errors(two, present, interface, "/interface"));
+  };
+  EXPECT_EQ(codes(), "");
+  interface.constants.damping = -1;
+  EXPECT_EQ(codes(), "out_of_range /interface/damping");
+  interface.constants.damping = 0;
+  interface.materials[1] = "x";
+  EXPECT_EQ(codes(), "unknown_name /interface/materials/1");
+  interface.materials[1] = "m";
+  interface.threshold = 1;
+  EXPECT_EQ(codes(), "too_many /interface");
+}
+
+}  // namespace
+}  // namespace vat::validate_test

@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "tests/protocol/scene/scene_json_cases.h"
+
+namespace vat::scene_json_mistakes_test {
+namespace {
+
+constexpr const char* kFolder = VAT_SOURCE_DIR "/tests/golden/errors/";
+
+using CodeAndPath = std::pair<std::string, std::string>;
+using Mistakes = std::multiset<CodeAndPath>;
+using Pointer = Json::json_pointer;
+
+Json golden(const std::string& name) {
+  std::ifstream file(kFolder + name);
+  return Json::parse(file);
+}
+
+/// What is wrong in thirty-mistakes.json.
+Mistakes all_mistakes() {
+  Mistakes mistakes;
+  for (const Json& error : golden("thirty-mistakes.errors.json")) {
+    mistakes.emplace(error["code"], error["path"]);
+  }
+  return mistakes;
+}
+
+Mistakes mistakes_of(const Result<Scene>& scene) {
+  Mistakes mistakes;
+  if (scene.ok()) return mistakes;
+  for (const Error& error : scene.errors()) mistakes.emplace(error.code, error.path);
+  return mistakes;
+}
+
+/// Those of `mistakes` that are at or below `part`, as they are where that part is at `place`.
+Mistakes moved(const Mistakes& mistakes, const std::string& part, const std::string& place) {
+  Mistakes found;
+  for (const auto& [code, path] : mistakes) {
+    if (path == part || path.rfind(part + "/", 0) == 0) {
+      found.emplace(code, place + path.substr(part.size()));
+    }
+  }
+  return found;
+}
+
+/// A scene without a mistake, with a liquid and a solid material of `document`.
+Json fine_scene(const Json& document) {
+  return {
+      {"format", "vat.scene/1"},
+      {"materials", {document["materials"][0], document["materials"][1]}},
+      {"interfaces", Json::array()},
+      {"vat",
+       {{"min", {0, 0, 0}}, {"max", {1, 1, 1}}, {"motion", {{"type", "slide"}, {"stroke", 0.1}}}}},
+      {"bodies", Json::array()}};
+}
+
+TEST(SceneMistakes, OneFileTellsAllOfThemAtOnceAndNothingElse) {
+  const Mistakes expected = all_mistakes();
+  ASSERT_GE(expected.size(), 30U);
+
+  const Result<Scene> scene = read_scene_file(std::string(kFolder) + "thirty-mistakes.json");
+  ASSERT_FALSE(scene.ok());
+  for (const Error& error : scene.errors()) EXPECT_GT(error.message.size(), 10U) << error.path;
+  EXPECT_EQ(mistakes_of(scene), expected);
+}
+
+/// Each mistake is refused on its own account: with the others gone, it is still there, and alone.
+class SceneMistakesAlone : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(read(fine_scene(document_)).ok()); }
+
+  static Result<Scene> read(const Json& scene) {
+    return read_scene(scene, meshes_in_folder(kFolder));
+  }
+
+  /// Puts the part with the mistake into a fine scene, at `place`.
+  void expect_refused(const std::string& part, const std::string& place) const {
+    Json scene = fine_scene(document_);
+    scene[Pointer(place)] = document_[Pointer(part)];
+    const Mistakes expected = moved(mistakes_, part, place);
+    EXPECT_EQ(expected.size(), 1U) << part;
+    EXPECT_EQ(mistakes_of(read(scene)), expected) << part;
+  }
+
+  const Json document_ = golden("thirty-mistakes.json");
+  const Mistakes mistakes_ = all_mistakes();
+};
+
+TEST_F(SceneMistakesAlone, OutsideOfLists) {
+  for (const char* part : {"/title", "/gravity", "/colour", "/default_interface", "/numerics",
+                           "/vat/motion/axis", "/vat/motion/period"}) {
+    expect_refused(part, part);
+  }
+}
+
+TEST_F(SceneMistakesAlone, InLists) {
+  // These repeat what stands before them in their list.
+  const std::set<std::string> need_a_neighbour{"/interfaces/5", "/bodies/34"};
+  std::size_t tried = 0;
+  for (const std::string list : {"/materials", "/interfaces", "/bodies"}) {
+    const std::string end =
+        list + "/" + std::to_string(fine_scene(document_)[Pointer(list)].size());
+    for (std::size_t i = 0; i < document_[Pointer(list)].size(); ++i) {
+      const std::string part = list + "/" + std::to_string(i);
+      if (moved(mistakes_, part, part).empty() || need_a_neighbour.count(part) > 0) continue;
+      expect_refused(part, end);
+      ++tried;
+    }
+  }
+  const std::size_t outside_of_lists = 7;
+  EXPECT_EQ(tried + need_a_neighbour.size() + outside_of_lists, mistakes_.size());
+}
+
+}  // namespace
+}  // namespace vat::scene_json_mistakes_test

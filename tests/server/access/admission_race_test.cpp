@@ -1,0 +1,205 @@
+// Many who ask at the same moment for the last places: as many get one as there are, each round.
+
+#include <algorithm>
+#include <atomic>
+#include <barrier>
+#include <thread>
+
+#include "tests/server/fixture/session_fixture.h"
+#include "tests/server/transport/transport_fixture.h"
+
+namespace vat::test::admission_race_test {
+namespace {
+
+constexpr int kAsking = 16;
+constexpr std::size_t kPlaces = 3;
+constexpr int kRounds = 20;
+
+/// Calls `ask(i)` for each i below kAsking, at once, each on a thread of its own.
+template <class Ask>
+void all_at_once(Ask&& ask) {
+  std::barrier start(kAsking);
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < kAsking; ++i) {
+    threads.emplace_back([&, i] {
+      start.arrive_and_wait();
+      ask(i);
+    });
+  }
+}
+
+class AdmissionRace : public testing::Test {
+ protected:
+  AdmissionRace() { limits.max_sessions_per_address = limits.max_sessions = 100; }
+
+  /// A server with one session, `s1`.
+  TestServer& serve() {
+    ServerSettings settings = test_settings(limits);
+    settings.threads = 4;
+    server = std::make_unique<TestServer>(catalogue, settings);
+    EXPECT_TRUE(server->create_session("first", to_scene(mixed_scene_text())).ok());
+    return *server;
+  }
+  void connect_all() {
+    for (int i = 0; i < kAsking; ++i) {
+      clients.push_back(std::make_unique<TestClient>(*server, i + 1));
+    }
+  }
+  /// How many of all clients get a result; the others must get this limit.
+  std::size_t admitted(const char* method, const Json& params, const std::string& limit,
+                       std::size_t maximum = kPlaces) {
+    std::vector<Json> replies(kAsking);
+    all_at_once([&](int i) { replies[i] = clients[i]->call(method, params); });
+    std::size_t count = 0;
+    for (const Json& reply : replies) {
+      if (reply.contains("result")) {
+        ++count;
+      } else {
+        EXPECT_EQ(reply.at("error").at("code"), 1005);
+        EXPECT_EQ(reply.at("error").at("data").at("limit"), limit);
+        EXPECT_EQ(reply.at("error").at("data").at("maximum"), maximum);
+      }
+    }
+    return count;
+  }
+  void close_all_but_the_first() {
+    const Json listed = clients[0]->result("session.list");
+    for (const Json& session : listed.at("sessions")) {
+      const std::string id = session.at("session");
+      if (id == "s1") continue;
+      const bool is_closed = std::ranges::any_of(clients, [&](const auto& client) {
+        return client->call("session.close", {{"session", id}}).contains("result");
+      });
+      EXPECT_TRUE(is_closed) << id;
+    }
+  }
+
+  ServerLimits limits = unhurried_limits();
+  const Catalogue catalogue = make_catalogue();
+  std::unique_ptr<TestServer> server;
+  std::vector<std::unique_ptr<TestClient>> clients;
+};
+
+TEST_F(AdmissionRace, ForTheLastConnections) {
+  limits.max_connections = kPlaces;
+  serve();
+  for (int round = 0; round < kRounds; ++round) {
+    clients.resize(kAsking);
+    all_at_once([&](int i) { clients[i] = std::make_unique<TestClient>(*server, i + 1); });
+    EXPECT_EQ(std::ranges::count_if(
+                  clients, [](const auto& client) { return !client->connection->close_code(); }),
+              kPlaces);
+    clients.clear();
+  }
+}
+
+TEST_F(AdmissionRace, ForTheLastPlacesOfASession) {
+  limits.max_clients_per_session = kPlaces;
+  serve();
+  connect_all();
+  for (int round = 0; round < kRounds; ++round) {
+    for (int again = 0; again < 2; ++again) {  // who is in already may join again
+      EXPECT_EQ(admitted("session.join", {{"session", "s1"}}, "clients_per_session"), kPlaces);
+    }
+    for (const auto& client : clients) client->call("session.leave");
+  }
+}
+
+TEST_F(AdmissionRace, ForTheLastSessions) {
+  limits.max_sessions = 1 + kPlaces;
+  serve();
+  connect_all();
+  for (int round = 0; round < kRounds; ++round) {
+    EXPECT_EQ(
+        admitted("session.create", {{"name", "n"}, {"scene", "mixed"}}, "sessions", 1 + kPlaces),
+        kPlaces);
+    close_all_but_the_first();
+  }
+}
+
+TEST_F(AdmissionRace, ForTheLastSessionsOfAnAddress) {
+  limits.max_sessions_per_address = kPlaces;
+  serve();
+  connect_all();
+  for (int round = 0; round < kRounds; ++round) {
+    EXPECT_EQ(
+        admitted("session.create", {{"name", "n"}, {"scene", "mixed"}}, "sessions_per_address"),
+        kPlaces);
+    close_all_but_the_first();
+  }
+}
+
+// A lease, not a limit; but it is asked for as these are.
+TEST_F(AdmissionRace, ForTheHoldOfABody) {
+  serve();
+  connect_all();
+  for (const auto& client : clients) client->result("session.join", {{"session", "s1"}});
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Json> replies(kAsking);
+    all_at_once([&](int i) {
+      replies[i] = clients[i]->call("grab.start",
+                                    {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.5}}});
+    });
+    int held = 0;
+    for (int i = 0; i < kAsking; ++i) {
+      if (replies[i].contains("error")) {
+        EXPECT_EQ(replies[i].at("error").at("data").at("kind"), "busy");
+      } else {
+        ++held;
+        clients[i]->result("grab.end", {{"grab", replies[i].at("result").at("grab")}});
+      }
+    }
+    EXPECT_EQ(held, 1);
+  }
+}
+
+/// Real sockets, at several endpoints. Each round has a server of its own: who was there before may
+/// count until the server has seen it go.
+class TransportRace : public testing::Test {
+ protected:
+  TransportRace() {
+    settings.port = 0;
+    settings.endpoints = 3;
+  }
+  void expect_places() {
+    for (int round = 0; round < kRounds / 4; ++round) EXPECT_EQ(admitted(), kPlaces);
+  }
+
+  TransportSettings settings;
+
+ private:
+  std::size_t admitted() {
+    Recorder echo;
+    echo.echo = true;
+    const auto transport =
+        make_websocket_transport(settings, echo, [](std::string_view, std::string_view) {
+          return HttpResponse{200, "text/plain", "", {}};
+        });
+    const std::uint16_t port = transport->start();
+    std::vector<std::unique_ptr<WsClient>> clients(kAsking);
+    std::atomic<std::size_t> count = 0;
+    all_at_once([&](int i) {
+      try {
+        clients[i] = std::make_unique<WsClient>(port);
+        clients[i]->send_text("here");
+        count += clients[i]->read_message().payload == "here" ? 1 : 0;
+      } catch (const std::runtime_error&) {
+        // This one was refused.
+      }
+    });
+    return count;
+  }
+};
+
+TEST_F(TransportRace, ForTheLastConnections) {
+  settings.max_connections = kPlaces;
+  expect_places();
+}
+
+TEST_F(TransportRace, ForTheLastConnectionsOfAnAddress) {
+  settings.max_connections_per_address = kPlaces;
+  expect_places();
+}
+
+}  // namespace
+}  // namespace vat::test::admission_race_test

@@ -1,0 +1,297 @@
+#include "server/clients/client_outbox.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "protocol/frame/frame_codec.h"
+#include "tests/server/fixture/fake_connection.h"
+
+namespace vat::test::client_outbox_test {
+namespace {
+
+SharedFrame make_frame(const PublishedState& state) {
+  GridFrame frame;
+  make_grid_frame(state, {make_frame_grid(Vec3::Zero(), Vec3::Ones(), 0), {}}, frame);
+  const std::vector<std::uint8_t> bytes = encode_key_frame(frame);
+  return std::make_shared<const std::string>(bytes.begin(), bytes.end());
+}
+
+SharedFrame make_frame(std::uint32_t number) {
+  PublishedState state;
+  state.header.number = number;
+  return make_frame(state);
+}
+
+std::string make_text(std::size_t bytes) {
+  return "\"" + std::string(bytes - 2, 'x') + "\"";
+}
+
+class CountingWaker final : public FrameWaker {
+ public:
+  void wake(ConnectionId) override { ++count; }
+  int count = 0;
+};
+
+constexpr std::uint32_t kEpoch = 5;
+constexpr std::size_t kQueueBytes = 1024 * 1024;
+constexpr std::size_t kMessageCost = ControlQueue::kMessageCost;
+
+class Outbox : public testing::Test {
+ protected:
+  Outbox() {
+    outbox.start_epoch(membership, kEpoch);
+    subscribe();
+  }
+  void subscribe() { subscription = outbox.subscribe(membership, waker, now); }
+  /// Sends frames as long as it is ready for them.
+  void offer(std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t number = first; number <= last; ++number) {
+      if (outbox.frame_channel(subscription).is_ready) send(number);
+    }
+  }
+  void send(std::uint32_t number) {
+    outbox.send_frame(subscription, kEpoch, make_frame(number), now);
+  }
+  std::uint32_t last_number() const { return connection->frames().back().header.number; }
+  std::size_t frame_count() const { return connection->frames().size(); }
+
+  SteadyClock::time_point now{std::chrono::hours(1)};
+  const std::shared_ptr<FakeConnection> connection = std::make_shared<FakeConnection>(1);
+  const std::shared_ptr<CountingWaker> waker = std::make_shared<CountingWaker>();
+  ClientOutbox outbox{connection, kQueueBytes};
+  std::uint64_t membership = outbox.join();
+  std::uint64_t subscription = 0;
+};
+
+TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
+  offer(1, 50);
+  ASSERT_EQ(frame_count(), 3u);
+  EXPECT_EQ(last_number(), 3u);
+  EXPECT_TRUE(outbox.acknowledge(1, now));
+  offer(51, 60);
+  ASSERT_EQ(frame_count(), 4u);
+  EXPECT_EQ(last_number(), 51u);
+}
+
+TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
+  offer(1, 3);
+  EXPECT_TRUE(outbox.acknowledge(1, now));
+  EXPECT_EQ(waker->count, 0) << "none was missed";
+  offer(4, 10);
+  EXPECT_TRUE(outbox.acknowledge(2, now));
+  EXPECT_TRUE(outbox.acknowledge(3, now));
+  EXPECT_EQ(waker->count, 1);
+  offer(11, 20);
+  outbox.unsubscribe();
+  EXPECT_TRUE(outbox.acknowledge(5, now));
+  EXPECT_EQ(waker->count, 1) << "it wants none any more";
+}
+
+TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
+  offer(1, 3);
+  EXPECT_TRUE(outbox.acknowledge(3, now));
+  offer(4, 10);
+  EXPECT_EQ(frame_count(), 6u);
+  EXPECT_TRUE(outbox.acknowledge(2, now)) << "late, and of no effect";
+  offer(11, 12);
+  EXPECT_EQ(frame_count(), 6u);
+}
+
+TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
+  EXPECT_FALSE(outbox.acknowledge(0, now));
+  EXPECT_FALSE(outbox.acknowledge(1, now));
+  offer(1, 5);
+  EXPECT_FALSE(outbox.acknowledge(4, now));
+  EXPECT_FALSE(outbox.acknowledge(0xffffffff, now));
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready) << "the window is still full";
+}
+
+// What a peer that stops reading costs beyond the system's buffers.
+TEST_F(Outbox, OneFrameAtMostWaitsForTheSocket) {
+  connection->stall(true);
+  offer(1, 50);
+  EXPECT_EQ(frame_count(), 1u);
+  connection->stall(false);
+  offer(51, 60);
+  EXPECT_EQ(frame_count(), 3u);
+}
+
+TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
+  connection->stall(true);
+  outbox.send_event(membership, R"("event")");
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
+}
+
+// The transport may be late to say that the socket has taken it.
+TEST_F(Outbox, WhatIsAcknowledgedWaitsNoLonger) {
+  connection->stall(true);
+  offer(1, 1);
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
+  EXPECT_TRUE(outbox.acknowledge(1, now));
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
+}
+
+TEST_F(Outbox, FramesInFlightDoNotCountAfterAJoin) {
+  offer(1, 4);
+  membership = outbox.join();
+  subscribe();
+  offer(10, 12);
+  ASSERT_EQ(frame_count(), 6u);
+  EXPECT_EQ(last_number(), 12u);
+  EXPECT_FALSE(outbox.acknowledge(13, now));
+  EXPECT_TRUE(outbox.acknowledge(12, now));
+}
+
+TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
+  const std::uint64_t old = membership;
+  offer(1, 2);
+  outbox.leave();
+  outbox.send_event(old, R"("left")");
+  send(5);
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
+  EXPECT_EQ(outbox.subscribe(old, waker, now), 0u);
+  EXPECT_EQ(frame_count(), 2u);
+  membership = outbox.join();
+  outbox.send_event(old, R"("late")");
+  send(6);
+  EXPECT_EQ(frame_count(), 2u);
+  EXPECT_TRUE(connection->texts().empty());
+  outbox.send_event(membership, R"("new")");
+  EXPECT_EQ(connection->texts(), std::vector<Json>{"new"});
+}
+
+TEST_F(Outbox, NothingOfAnEarlierSubscriptionOrEpochIsSent) {
+  const std::uint64_t old = subscription;
+  subscribe();
+  EXPECT_FALSE(outbox.frame_channel(old).is_ready);
+  outbox.send_frame(old, kEpoch, make_frame(1), now);
+  EXPECT_EQ(frame_count(), 0u);
+  outbox.start_epoch(membership, kEpoch + 1);
+  send(2);
+  EXPECT_EQ(frame_count(), 0u);
+  outbox.send_frame(subscription, kEpoch + 1, make_frame(3), now);
+  EXPECT_EQ(frame_count(), 1u);
+  outbox.unsubscribe();
+  outbox.send_frame(subscription, kEpoch + 1, make_frame(4), now);
+  EXPECT_EQ(frame_count(), 1u);
+}
+
+TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
+  connection->stall(true);
+  const std::string event = make_text(1024 - kMessageCost);
+  for (int i = 0; i < 1024; ++i) outbox.send_event(membership, event);
+  EXPECT_FALSE(connection->close_code().has_value()) << "1 MiB is allowed";
+  outbox.send("1");
+  EXPECT_EQ(connection->close_code(), 4008);
+  const std::size_t queued = connection->queued();
+  EXPECT_LE(queued, kQueueBytes);
+  for (int i = 0; i < 1000; ++i) {
+    outbox.send(event);
+    offer(1, 1);
+  }
+  EXPECT_EQ(connection->queued(), queued) << "it grows no more";
+  EXPECT_EQ(frame_count(), 0u);
+}
+
+TEST_F(Outbox, FramesDoNotCountForTheControlQueue) {
+  connection->stall(true);
+  PublishedState state;
+  state.header.number = 1;
+  state.bodies.resize(1);
+  state.bodies[0].id = 1;
+  state.bodies[0].positions.assign(200'000, Vec3::Zero());
+  const SharedFrame frame = make_frame(state);
+  outbox.send_frame(subscription, kEpoch, frame, now);
+  EXPECT_EQ(connection->queued(), frame->size());
+  outbox.send("1");
+  EXPECT_FALSE(connection->close_code().has_value());
+}
+
+TEST_F(Outbox, WhatTheSocketHasTakenIsQueuedNoLonger) {
+  const std::string event = make_text(500'000);
+  for (int i = 0; i < 20; ++i) {
+    connection->stall(true);
+    outbox.send_event(membership, event);
+    outbox.send_event(membership, event);
+    connection->stall(false);  // takes both
+  }
+  EXPECT_FALSE(connection->close_code().has_value());
+}
+
+TEST_F(Outbox, TwoMessagesMayBeLongerThanTheQueue) {
+  connection->stall(true);
+  constexpr std::size_t kWhole = kQueueBytes - kMessageCost;
+  outbox.send(make_text(3 * kQueueBytes));
+  outbox.send(make_text(kWhole));
+  outbox.send(make_text(kWhole + 1));
+  EXPECT_FALSE(connection->close_code().has_value());
+  outbox.send(make_text(kWhole + 1));
+  EXPECT_EQ(connection->close_code(), 4008);
+}
+
+// Joining again and again would otherwise send key frames without end.
+TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
+  connection->stall(true);
+  offer(1, 1);
+  membership = outbox.join();
+  outbox.start_epoch(membership, kEpoch);
+  subscribe();
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
+  connection->stall(false);
+  EXPECT_FALSE(outbox.acknowledge(1, now)) << "of the membership before";
+  EXPECT_EQ(waker->count, 1) << "but it tells that there may be room";
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
+}
+
+TEST_F(Outbox, WhoAcknowledgesNothingIsClosedOnceThePatienceIsOver) {
+  constexpr std::chrono::seconds kPatience(30);
+  offer(1, 1);
+  now += kPatience / 2;
+  offer(2, 2);
+  now += kPatience / 2 - std::chrono::milliseconds(1);
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value());
+  EXPECT_TRUE(outbox.acknowledge(1, now));
+  now += kPatience / 2;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value()) << "the second is no older than that";
+  now += std::chrono::milliseconds(1);
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_EQ(connection->close_code(), 4008);
+  EXPECT_FALSE(outbox.frame_channel(subscription).is_open);
+}
+
+TEST_F(Outbox, SilenceIsAllowedWhereThereIsNothingToAcknowledge) {
+  constexpr std::chrono::seconds kPatience(30);
+  offer(1, 3);
+  EXPECT_TRUE(outbox.acknowledge(3, now));
+  now += 10 * kPatience;
+  outbox.close_if_silent(now, kPatience);
+  offer(4, 4);
+  outbox.unsubscribe();
+  now += 10 * kPatience;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value());
+  subscribe();
+  now += kPatience / 2;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_FALSE(connection->close_code().has_value()) << "it has subscribed a moment ago";
+  now += kPatience;
+  outbox.close_if_silent(now, kPatience);
+  EXPECT_EQ(connection->close_code(), 4008);
+}
+
+TEST_F(Outbox, CommandsInFlightAreBounded) {
+  EXPECT_FALSE(outbox.begin_command(10, 2, 100));
+  EXPECT_EQ(outbox.begin_command(91, 2, 100).value().limit, "command_bytes_in_flight");
+  EXPECT_FALSE(outbox.begin_command(90, 2, 100));
+  EXPECT_EQ(outbox.begin_command(0, 2, 100).value().limit, "commands_in_flight");
+  outbox.end_command(10);
+  EXPECT_TRUE(outbox.begin_command(11, 2, 100));
+  EXPECT_FALSE(outbox.begin_command(10, 2, 100));
+}
+
+}  // namespace
+}  // namespace vat::test::client_outbox_test

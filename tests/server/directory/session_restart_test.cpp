@@ -1,0 +1,241 @@
+// What outlives a server beside the sessions themselves: who was in them, and who may come in.
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "server/storage/sqlite/database.h"
+#include "tests/server/fixture/host.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::session_restart_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+class Restart : public testing::Test {
+ protected:
+  Restart() : catalogue(make_catalogue()) { restart(); }
+  void restart() {
+    host.reset();
+    host.emplace(catalogue, folder, limits, clock);
+  }
+  std::unique_ptr<TestClient> connect() {
+    return std::make_unique<TestClient>(host->server, ++last_);
+  }
+  std::unique_ptr<TestClient> connect_admin() {
+    auto admin = connect();
+    admin->result("access.enter", {{"token", kAdminToken}});
+    admin->result("session.join", {{"session", "s1"}});
+    return admin;
+  }
+  bool is_good(const std::string& token) {
+    return connect()->call("access.enter", {{"token", token}}).contains("result");
+  }
+
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.file("data");
+  const Catalogue catalogue;
+  ServerLimits limits = unhurried_limits();
+  ManualClock clock;
+  std::optional<Host> host;
+
+ private:
+  ConnectionId last_ = 10;
+};
+
+TEST_F(Restart, InvitationsStayGoodForTheUsesThatAreLeft) {
+  std::string twice;
+  std::string always;
+  {
+    const auto admin = connect_admin();
+    twice = admin->result("session.invite", {{"role", "viewer"}, {"uses", 2}}).at("token");
+    always = admin->result("session.invite", {{"role", "controller"}}).at("token");
+  }
+  EXPECT_TRUE(is_good(twice));
+  restart();
+  {
+    const auto guest = connect();
+    const Json entered = guest->result("access.enter", {{"token", always}});
+    EXPECT_EQ(entered.at("role"), "controller");
+    EXPECT_EQ(entered.at("session"), "s1");
+  }
+  EXPECT_TRUE(is_good(twice));
+  EXPECT_FALSE(is_good(twice));
+  restart();
+  EXPECT_FALSE(is_good(twice)) << "used up before";
+  EXPECT_TRUE(is_good(always));
+}
+
+TEST_F(Restart, InvitationsEndInTimeAndWithTheirSession) {
+  std::string brief;
+  std::string of_second;
+  {
+    const auto admin = connect_admin();
+    brief = admin->result("session.invite", {{"role", "viewer"}, {"expires", 1}}).at("token");
+    const Json second = admin->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+    admin->result("session.join", {{"session", second.at("session")}});
+    of_second = admin->result("session.invite", {{"role", "viewer"}}).at("token");
+    admin->result("session.close", {{"session", second.at("session")}});
+  }
+  clock.advance(1s);
+  restart();
+  EXPECT_FALSE(is_good(brief));
+  EXPECT_FALSE(is_good(of_second));
+  host.reset();
+  EXPECT_EQ(
+      Database(folder + "/vat.db", Database::Mode::read).number("SELECT count(*) FROM tokens"), 0);
+}
+
+TEST_F(Restart, WhoComesBackHasItsRoleAndItsFrames) {
+  Json joined;
+  {
+    const auto admin = connect_admin();
+    const auto guest = connect();
+    joined = guest->result("session.join", {{"session", "s1"}, {"name", "Bo"}});
+    guest->result("frames.subscribe", {{"every", 7},
+                                       {"max_error", 0.01},
+                                       {"detail", 2},
+                                       {"region", {{"min", {0, 0, 0}}, {"max", {1, 1, 0.5}}}},
+                                       {"attributes", {{"speed", 0.5}}}});
+    admin->result("participant.set_role",
+                  {{"participant", joined.at("participant")}, {"role", "viewer"}});
+  }
+  restart();
+  const auto guest = connect();
+  const Json back =
+      guest->result("session.join", {{"session", "s1"}, {"resume", joined.at("resume")}});
+  EXPECT_TRUE(back.at("resumed"));
+  EXPECT_EQ(back.at("name"), "Bo");
+  EXPECT_EQ(back.at("role"), "viewer");
+  const GridFrame frame = guest->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(frame.detail, 2);
+  EXPECT_TRUE(frame.has_region);
+  EXPECT_DOUBLE_EQ(frame.scale.attribute_quanta[0], 1.0);
+}
+
+TEST_F(Restart, WhoIsWrittenDownWhileTheSessionStandsStillIsThereAfterACrash) {
+  const auto guest = connect();
+  const Json joined = guest->result("session.join", {{"session", "s1"}, {"name", "Bo"}});
+  // A beat comes with a status, each half second, and a second after the last one at the earliest.
+  clock.advance(1s);
+  host->server.flush();
+  const auto is_written = [&] {
+    return Database(folder + "/vat.db", Database::Mode::read)
+               .number("SELECT participants LIKE '%\"Bo\"%' FROM sessions WHERE number = 1") == 1;
+  };
+  EXPECT_TRUE(is_written());
+}
+
+TEST_F(Restart, WhoWasKickedStaysSo) {
+  Json joined;
+  {
+    const auto admin = connect_admin();
+    const auto guest = connect();
+    joined = guest->result("session.join", {{"session", "s1"}, {"name", "Bo"}});
+    admin->result("participant.kick", {{"participant", joined.at("participant")}});
+  }
+  restart();
+  const auto guest = connect();
+  const Json back =
+      guest->result("session.join", {{"session", "s1"}, {"resume", joined.at("resume")}});
+  EXPECT_FALSE(back.at("resumed"));
+  EXPECT_GT(back.at("participant"), joined.at("participant"));
+}
+
+TEST_F(Restart, WhatHasExpiredDoesNotComeBack) {
+  limits.expire_after = 60s;
+  limits.hibernate_after = 1s;
+  limits.resume_time = 0ms;
+  restart();
+  {
+    const auto other = connect();
+    other->result("session.create", {{"name", "brief"}, {"scene", "mixed"}});
+    EXPECT_EQ(other->result("session.list").at("sessions").size(), 2U);
+    clock.advance(80s);
+    EXPECT_EQ(other->result("session.list").at("sessions").size(), 1U);
+  }
+  restart();
+  EXPECT_EQ(connect()->result("session.list").at("sessions").size(), 1U);
+}
+
+TEST_F(Restart, AdminsSeeAllSessionsAndTheirPeople) {
+  const auto admin = connect_admin();
+  const auto guest = connect();
+  guest->result("session.join", {{"session", "s1"}, {"name", "Bo"}});
+  const Json sessions = admin->result("server.sessions").at("sessions");
+  ASSERT_EQ(sessions.size(), 1U);
+  EXPECT_EQ(sessions[0].at("session"), "s1");
+  EXPECT_EQ(sessions[0].at("kind"), "live");
+  const Json& people = sessions[0].at("participants");
+  ASSERT_EQ(people.size(), 3U);
+  EXPECT_EQ(people[0].at("name"), "Ada");
+  EXPECT_EQ(people[1].at("role"), "admin");
+  EXPECT_EQ(people[2].at("name"), "Bo");
+  EXPECT_EQ(people[2].at("address"), "127.0.0.1");
+  EXPECT_FALSE(people[2].at("away"));
+  EXPECT_EQ(guest->error("server.sessions").at("data").at("least_role"), "admin");
+  guest->disconnect();
+  const Json later = admin->result("session.hash");  // its turn comes behind that of the end
+  const Json away = admin->result("server.sessions").at("sessions")[0].at("participants")[2];
+  EXPECT_TRUE(away.at("away"));
+  EXPECT_FALSE(away.contains("address"));
+  admin->result("replay.open", {{"session", "s1"}});
+  EXPECT_EQ(admin->result("server.sessions").at("sessions")[1].at("kind"), "replay");
+  // This server has nobody who would end it.
+  EXPECT_EQ(admin->error("server.drain").at("code"), 1006);
+}
+
+TEST_F(Restart, WhoIsLetIntoOneSessionOpensNoRecording) {
+  const auto guest = connect();
+  const Json invited = connect_admin()->result("session.invite", {{"role", "controller"}});
+  guest->result("access.enter", {{"token", invited.at("token")}});
+  const Json error = guest->error("replay.open", {{"recording", "x"}});
+  EXPECT_EQ(error.at("data").at("kind"), "not_allowed");
+}
+
+TEST_F(Restart, WhatCannotBeLoggedIsRefusedCountedAndChangesNothing) {
+  const std::string before = host->hash();
+  EXPECT_THAT(host->server.metrics(), HasSubstr("\nvat_storage_failures_total 0\n"));
+  Database other(folder + "/vat.db", Database::Mode::create);
+  other.execute("DROP TABLE log");
+  const Json error = host->client->error("world.set_gravity", {{"gravity", {0, 0, 0}}});
+  EXPECT_EQ(error.at("code"), 1010);
+  EXPECT_EQ(error.at("data").at("kind"), "storage_failed");
+  EXPECT_EQ(host->hash(), before);
+  EXPECT_THAT(host->server.metrics(), HasSubstr("\nvat_storage_failures_total 1\n"));
+}
+
+// A folder that version 1 of the schema has left: a ball that is held, after 50 ticks.
+TEST(StoredByVersion1, ComesBackAsItWas) {
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.file("data");
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"/vat.db", "/checkpoints.db"}) {
+    std::filesystem::copy_file(VAT_SOURCE_DIR "/tests/recovery/version1" + std::string(name),
+                               folder + name);
+    EXPECT_EQ(Database(folder + name, Database::Mode::read).number("PRAGMA user_version"), 1);
+  }
+  const Catalogue catalogue = make_catalogue();
+  {
+    ManualClock clock;
+    Host host(catalogue, folder, unhurried_limits(), clock);
+    EXPECT_TRUE(host.client->events("session.diverged").empty());
+    EXPECT_EQ(host.tick(), 50U);
+    EXPECT_EQ(host.hash(), "5c0e6d6e4e745f62");
+    const Json ada = host.client->result("session.join",
+                                         {{"session", "s1"}, {"resume", "C9inCU4TBD5hfCvIpfS9AA"}});
+    EXPECT_TRUE(ada.at("resumed"));
+    host.client->result("grab.move", {{"grab", 1}, {"target", {0, 0, 1}}});
+    host.client->result("session.save", {{"name", "of version 1"}});
+  }
+  Database now(folder + "/vat.db", Database::Mode::read);
+  EXPECT_EQ(now.number("PRAGMA user_version"), 2);
+  EXPECT_GE(now.number("SELECT count(*) FROM log"), 7);
+  EXPECT_EQ(now.number("SELECT count(*) FROM scenes"), 0);
+}
+
+}  // namespace
+}  // namespace vat::test::session_restart_test

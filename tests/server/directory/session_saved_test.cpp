@@ -1,0 +1,420 @@
+// States of sessions and scenes that users save.
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "server/session/core/saved_state.h"
+#include "server/session/core/scene_loading.h"
+#include "server/storage/sqlite/database.h"
+#include "tests/server/fixture/host.h"
+#include "tests/server/fixture/session_fixture.h"
+#include "tests/support/lone_environment.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::session_saved_test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Both with a data folder and without one.
+class SavedStatesTest : public testing::TestWithParam<bool> {
+ protected:
+  SavedStatesTest() : catalogue(make_catalogue()) { host.emplace(catalogue, folder(), limits); }
+  std::string folder() const { return GetParam() ? temporary.file("data") : ""; }
+  void restart(std::optional<ServerLimits> others = {}) {
+    host.reset();
+    host.emplace(catalogue, folder(), others.value_or(limits));
+  }
+  TestClient& client() { return *host->client; }
+
+  const TemporaryFolder temporary;
+  const Catalogue catalogue;
+  ServerLimits limits = unhurried_limits();
+  std::optional<Host> host;
+};
+
+const Json kFirst = {{"name", "first"}};
+
+TEST_P(SavedStatesTest, ALoadGoesOnExactly) {
+  host->client->result("control.reset");
+  const std::string start = host->hash();
+  client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});
+  host->step(7);
+  const Json saved = client().result("session.save", kFirst);
+  EXPECT_EQ(saved.at("tick"), 7);
+  EXPECT_EQ(saved.at("hash"), host->hash());
+  host->step(5);
+  const std::string later = host->hash();
+  client().result("world.remove_body", {{"body", 2}});
+  client().result("scene.load", {{"scene", "unstable"}});
+  client().mark();
+  EXPECT_EQ(client().result("session.load", kFirst).at("tick"), 7);
+  const Json description = client().wait_event(
+      "session.description", [](const Json& d) { return d.at("bodies").size() == 3; });
+  EXPECT_EQ(description.at("gravity"), Json({1.0, 0.0, -9.0}));
+  EXPECT_EQ(host->hash(), saved.at("hash"));
+  host->step(5);
+  EXPECT_EQ(host->tick(), 12U);
+  EXPECT_EQ(host->hash(), later);
+  client().result("control.reset");  // of what it was loaded with when it was saved
+  EXPECT_EQ(host->hash(), start);
+}
+
+TEST_P(SavedStatesTest, WhatWasHeldIsLetGo) {
+  const Json grab =
+      client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  host->step(3);
+  client().result("session.save", kFirst);
+  const std::string held = host->hash();
+  client().result("session.load", kFirst);
+  EXPECT_NE(host->hash(), held) << "a grab of nobody pulls";
+  EXPECT_TRUE(client()
+                  .call("grab.move", {{"grab", grab.at("grab")}, {"target", {0, 0, 0}}})
+                  .contains("error"));
+  const Json next =
+      client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  EXPECT_GT(next.at("grab"), grab.at("grab"));
+}
+
+TEST_P(SavedStatesTest, AreListedReplacedAndDeleted) {
+  EXPECT_TRUE(client().result("session.saves").at("states").empty());
+  host->step(2);
+  client().result("session.save", {{"name", "b"}});
+  host->step(1);
+  client().result("session.save", {{"name", "a"}});
+  host->step(1);
+  const std::string newest = host->hash();
+  client().result("session.save", {{"name", "b"}});
+  const Json states = client().result("session.saves").at("states");
+  ASSERT_EQ(states.size(), 2U);
+  EXPECT_EQ(states[0].at("name"), "a");
+  EXPECT_EQ(states[1].at("name"), "b");
+  EXPECT_EQ(states[1].at("hash"), newest);
+  EXPECT_EQ(states[1].at("saved_by"), "Ada");
+  EXPECT_EQ(states[1].at("at_tick").get<std::uint64_t>(), host->tick());
+  client().result("session.delete_save", {{"name", "a"}});
+  EXPECT_EQ(client().result("session.saves").at("states").size(), 1U);
+  for (const char* method : {"session.load", "session.delete_save"}) {
+    const Json error = client().error(method, {{"name", "a"}});
+    EXPECT_EQ(error.at("data").at("errors")[0].at("code"), "no_such_state") << method;
+    EXPECT_EQ(error.at("data").at("path"), "/name");
+  }
+}
+
+TEST_P(SavedStatesTest, AreOfTheirSessionAlone) {
+  client().result("session.save", kFirst);
+  const Json second = client().result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  client().result("session.join", {{"session", second.at("session")}});
+  EXPECT_TRUE(client().result("session.saves").at("states").empty());
+  client().error("session.load", kFirst);
+}
+
+TEST_P(SavedStatesTest, CountAndBytesAreLimited) {
+  limits.max_states_per_session = 2;
+  const std::size_t bytes = client().result("session.save", kFirst).at("bytes");
+  const auto refused = [&](const std::string& name, const std::string& limit, std::size_t maximum) {
+    const Json error = client().error("session.save", {{"name", name}});
+    EXPECT_EQ(error.at("data").at("kind"), "limit_reached");
+    EXPECT_EQ(error.at("data").at("limit"), limit);
+    EXPECT_EQ(error.at("data").at("maximum"), maximum);
+  };
+  restart(limits);
+  client().result("session.save", kFirst);
+  client().result("session.save", {{"name", "second"}});
+  refused("third", "states_per_session", 2);
+  client().result("session.save", kFirst);  // in place of the one that was
+  EXPECT_EQ(client().result("session.saves").at("states").size(), 2U);
+
+  limits.max_states_per_session = 100;
+  limits.max_state_bytes_per_session = 2 * bytes + bytes / 2;
+  restart(limits);
+  for (const char* name : {"first", "second"}) client().result("session.save", {{"name", name}});
+  refused("third", "state_bytes_per_session", limits.max_state_bytes_per_session);
+
+  limits.max_state_bytes_in_all = limits.max_state_bytes_per_session;
+  limits.max_state_bytes_per_session *= 10;
+  restart(limits);
+  for (const char* name : {"first", "second"}) client().result("session.save", {{"name", name}});
+  const Json second = client().result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  client().result("session.join", {{"session", second.at("session")}});
+  refused("third", "state_bytes_in_all", limits.max_state_bytes_in_all);
+  client().result("session.join", {{"session", "s1"}});
+  client().result("session.delete_save", {{"name", "second"}});
+  client().result("session.save", {{"name", "third"}});
+}
+
+TEST_P(SavedStatesTest, ATooLargeOneIsNotLoadedAndChangesNothing) {
+  client().result("session.save", kFirst);
+  client().result("scene.load", {{"scene", "unstable"}});
+  if (!GetParam()) return;  // the limits are those of another server
+  ServerLimits few = limits;
+  few.max_particles = 10;
+  restart(few);
+  const std::string before = host->hash();
+  EXPECT_EQ(client().error("session.load", kFirst).at("data").at("limit"), "particles");
+  EXPECT_EQ(host->hash(), before);
+  restart();
+  EXPECT_EQ(host->hash(), before);
+}
+
+// The log has all that it needs: what was saved may be gone by then.
+TEST_P(SavedStatesTest, ALoadIsThereAfterARestartAndSoIsWhatWasSaved) {
+  host->step(4);
+  client().result("session.save", kFirst);
+  client().result("session.save", {{"name", "second"}});
+  host->step(3);
+  client().result("session.load", kFirst);
+  client().result("session.delete_save", kFirst);
+  host->step(2);
+  const std::string before = host->hash();
+  restart();
+  if (!GetParam()) {
+    EXPECT_TRUE(client().result("session.saves").at("states").empty());
+    return;
+  }
+  EXPECT_EQ(host->hash(), before);
+  // Without its checkpoints, so by the log alone.
+  host.reset();
+  Database(folder() + "/checkpoints.db", Database::Mode::create).execute("DELETE FROM checkpoints");
+  restart();
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  EXPECT_EQ(host->hash(), before);
+  EXPECT_EQ(host->tick(), 6U);
+  EXPECT_EQ(client().result("session.saves").at("states").size(), 1U);
+  client().result("session.load", {{"name", "second"}});
+  EXPECT_EQ(host->tick(), 4U);
+}
+
+TEST_P(SavedStatesTest, GoWithTheirSession) {
+  const Json second = client().result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  client().result("session.join", {{"session", second.at("session")}});
+  client().result("session.save", kFirst);
+  client().result("session.close", {{"session", second.at("session")}});
+  host.reset();
+  if (!GetParam()) return;
+  EXPECT_EQ(
+      Database(folder() + "/states.db", Database::Mode::read).number("SELECT count(*) FROM states"),
+      0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Storage, SavedStatesTest, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Folder" : "Memory"; });
+
+class SavedScenesTest : public SavedStatesTest {
+ protected:
+  /// The entry of scene.list; null where there is none.
+  Json listed(const std::string& name) {
+    const Json scenes = client().result("scene.list").at("scenes");
+    for (const Json& one : scenes) {
+      if (one.at("name") == name) return one;
+    }
+    return nullptr;
+  }
+  std::string save(const std::string& name) {
+    return client().result("scene.save", {{"name", name}, {"scene", scene}}).at("key");
+  }
+
+  const Json scene = Json::parse(R"({"format": "vat.scene/1", "title": "A ball",
+      "materials": [{"name": "wood", "density": 600}],
+      "bodies": [{"name": "ball", "kind": "rigid", "material": "wood", "spacing": 0.1,
+                  "shape": {"type": "sphere", "radius": 0.1}}]})");
+};
+
+TEST_P(SavedScenesTest, AreUsedWhereThoseOfTheCatalogueAre) {
+  save("my ball");
+  const Json entry = listed("my ball");
+  ASSERT_TRUE(entry.is_object());
+  EXPECT_EQ(entry.at("title"), "A ball");
+  EXPECT_EQ(entry.at("saved_by"), "Ada");
+  EXPECT_GT(entry.at("saved"), 1e9);
+  EXPECT_FALSE(listed("mixed").contains("saved_by"));
+  client().result("scene.load", {{"scene", scene}});
+  const std::string ball = host->hash();
+  client().result("scene.load", {{"scene", "mixed"}});
+  client().result("scene.load", {{"scene", "my ball"}});
+  EXPECT_EQ(host->hash(), ball);
+  const Json made = client().result("session.create", {{"name", "n"}, {"scene", "my ball"}});
+  client().result("session.join", {{"session", made.at("session")}});
+  client().result("control.pause");
+  client().result("control.reset");
+  EXPECT_EQ(host->hash(), ball);
+}
+
+TEST_P(SavedScenesTest, WithoutASceneItIsWhatTheSessionGoesBackTo) {
+  client().result("control.reset");
+  const std::string start = host->hash();
+  host->step(3);
+  client().result("world.remove_body", {{"body", 2}});
+  client().result("scene.save", {{"name", "mine"}});
+  client().result("scene.load", {{"scene", "mine"}});
+  EXPECT_EQ(host->hash(), start);
+}
+
+TEST_P(SavedScenesTest, OnlyTheKeyOrAnAdminChangesOne) {
+  const std::string key = save("mine");
+  for (const Json& params : {Json{{"name", "mine"}}, Json{{"name", "mine"}, {"key", "wrong"}}}) {
+    EXPECT_EQ(client().error("scene.save", params).at("code"), 1006);
+    EXPECT_EQ(client().error("scene.delete", params).at("code"), 1006);
+  }
+  EXPECT_EQ(listed("mine").at("title"), "A ball");
+  Json other = scene;
+  other["title"] = "Another";
+  EXPECT_FALSE(client()
+                   .result("scene.save", {{"name", "mine"}, {"key", key}, {"scene", other}})
+                   .contains("key"));
+  EXPECT_EQ(listed("mine").at("title"), "Another");
+  client().result("scene.delete", {{"name", "mine"}, {"key", key}});
+  EXPECT_TRUE(listed("mine").is_null());
+  EXPECT_EQ(client().error("scene.delete", {{"name", "mine"}, {"key", key}}).at("data").at("kind"),
+            "no_such_scene");
+  save("mine");
+  client().result("access.enter", {{"token", kAdminToken}});
+  client().result("scene.delete", {{"name", "mine"}});
+  EXPECT_TRUE(listed("mine").is_null());
+}
+
+TEST_P(SavedScenesTest, WhatIsWrongIsRefused) {
+  EXPECT_EQ(client().error("scene.save", {{"name", "mixed"}, {"scene", scene}}).at("code"), 1006);
+  EXPECT_EQ(client().error("scene.save", {{"name", "x"}, {"scene", "mixed"}}).at("data").at("path"),
+            "/scene");
+  EXPECT_EQ(client().error("scene.save", {{"name", ""}, {"scene", scene}}).at("data").at("path"),
+            "/name");
+  Json broken = scene;
+  broken["bodies"][0]["material"] = "none";
+  EXPECT_EQ(client().error("scene.save", {{"name", "x"}, {"scene", broken}}).at("data").at("path"),
+            "/scene/bodies/0/material");
+  EXPECT_TRUE(listed("x").is_null());
+}
+
+TEST_P(SavedScenesTest, CountAndBytesAreLimited) {
+  client().result("scene.save", {{"name", "size"}, {"scene", scene}});
+  host.reset();
+  const auto refused = [&](TestClient& who, const std::string& limit) {
+    const Json error = who.error("scene.save", {{"name", "beyond"}, {"scene", scene}});
+    EXPECT_EQ(error.at("data").at("kind"), "limit_reached");
+    EXPECT_EQ(error.at("data").at("limit"), limit);
+  };
+  const auto elsewhere = [&] {
+    auto other = std::make_unique<TestClient>(host->server, 2, "10.0.0.2");
+    other->result("session.join");
+    return other;
+  };
+  std::filesystem::remove_all(temporary.file("data"));
+  limits.max_scenes_per_address = 2;
+  limits.max_scenes_in_all = 3;
+  restart(limits);
+  save("one");
+  const std::size_t bytes =
+      client().result("scene.save", {{"name", "two"}, {"scene", scene}}).at("bytes");
+  refused(client(), "scenes_per_address");
+  {
+    const auto other = elsewhere();
+    other->result("scene.save", {{"name", "three"}, {"scene", scene}});
+    refused(*other, "scenes_in_all");
+  }
+  host.reset();
+  std::filesystem::remove_all(temporary.file("data"));
+  limits = unhurried_limits();
+  limits.max_scene_bytes_per_address = 2 * bytes + bytes / 2;
+  limits.max_scene_bytes_in_all = 3 * bytes + bytes / 2;
+  restart(limits);
+  save("one");
+  save("two");
+  refused(client(), "scene_bytes_per_address");
+  const auto other = elsewhere();
+  other->result("scene.save", {{"name", "three"}, {"scene", scene}});
+  refused(*other, "scene_bytes_in_all");
+}
+
+TEST_P(SavedScenesTest, OneThatIsReplacedStaysThatOfItsAddress) {
+  limits.max_scenes_per_address = 1;
+  restart();
+  const Json saved = client().result("scene.save", {{"name", "one"}});
+  TestClient other(host->server, 20, "127.0.0.9");
+  other.result("session.join", {{"session", "s1"}});
+  other.result("scene.save", {{"name", "one"}, {"key", saved.at("key")}});
+  other.result("scene.save", {{"name", "two"}});
+  EXPECT_EQ(client().error("scene.save", {{"name", "three"}}).at("data").at("limit"),
+            "scenes_per_address");
+}
+
+TEST_P(SavedScenesTest, AreThereAfterARestartAndSoAreSessionsOfThem) {
+  const std::string key = save("mine");
+  client().result("scene.load", {{"scene", "mine"}});
+  host->step(5);
+  const std::string before = host->hash();
+  client().result("scene.delete", {{"name", "mine"}, {"key", key}});
+  save("other");
+  restart();
+  EXPECT_TRUE(listed("mine").is_null());
+  EXPECT_EQ(listed("other").is_object(), GetParam());
+  EXPECT_EQ(host->hash() == before, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Storage, SavedScenesTest, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Folder" : "Memory"; });
+
+// What a saved state may be where it is loaded again.
+
+class SavedStateEntries : public testing::Test {
+ protected:
+  SavedStateEntries() : scene_(Simulation::create(to_scene(mixed_scene_text())).value()) {}
+
+  /// Why a state is not restored; a limit by its name.
+  std::string fault(const SavedState& state, std::size_t particles_in_all = 1'000'000) {
+    ResourceBudget resources({particles_in_all, kUnlimitedResources.springs});
+    const SessionEnvironment environment = environment_.with(resources);
+    SessionCore core("s1", {"n"}, Simulation::create(to_scene(mixed_scene_text())).value(),
+                     environment);
+    try {
+      const ActionResult result =
+          read_restore(params_of_restore(state))(core, core.participants().find_or_add(1));
+      const auto* error = std::get_if<RpcError>(&result);
+      return error == nullptr ? "" : error->data.at("limit").get<std::string>();
+    } catch (const StorageError& error) {
+      return error.what();
+    }
+  }
+  /// Of a session that has more bodies than its scene.
+  SavedState grown() {
+    Simulation simulation = Simulation::create(to_scene(mixed_scene_text())).value();
+    const Snapshot as_loaded = simulation.snapshot();
+    BodyDescription body = simulation.scene().bodies.back();
+    body.name = "second";
+    body.position = {0.3, 0.7, 0.8};
+    EXPECT_TRUE(simulation.add_body(body).ok());
+    return make_saved_state({simulation.snapshot(), as_loaded, 3, {}}, "n", "Ann", 0);
+  }
+
+  const Simulation scene_;
+  LoneEnvironment environment_;
+};
+
+TEST_F(SavedStateEntries, AreUnpackedUpToWhatASessionMayBe) {
+  const std::size_t most = max_state_bytes(environment_.limits);
+  ASSERT_LT(most, std::size_t{1} << 30);
+  SavedState state = grown();
+  EXPECT_EQ(fault(state), "");
+  state.state = bytes_that_say(static_cast<std::uint32_t>(most));
+  EXPECT_THAT(fault(state), HasSubstr("incorrect"));
+  state.state = bytes_that_say(static_cast<std::uint32_t>(most + 1));
+  EXPECT_THAT(fault(state), HasSubstr("too large"));
+}
+
+TEST_F(SavedStateEntries, HaveNoMoreParticlesThanASessionMay) {
+  const std::size_t particles = resources_of(scene_).particles;
+  EXPECT_EQ(fault(grown(), particles), "particles_in_all");
+  environment_.limits.max_particles = particles;
+  EXPECT_EQ(fault(grown()), "particles");
+}
+
+TEST_F(SavedStateEntries, ThatAreNoObjectAreDamaged) {
+  SavedState state = grown();
+  state.fields = "[]";
+  EXPECT_THAT(fault(state), HasSubstr("no object"));
+}
+
+}  // namespace
+}  // namespace vat::test::session_saved_test

@@ -1,0 +1,315 @@
+#include "server/frames/frame_delivery.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <utility>
+
+#include "server/messages/limits.h"
+#include "tests/server/fixture/fake_connection.h"
+
+namespace vat::test::frame_delivery_test {
+namespace {
+
+class Wakes final : public FrameWaker {
+ public:
+  void wake(ConnectionId client) override { clients.push_back(client); }
+  std::vector<ConnectionId> clients;
+};
+
+/// A viewer, and what it has got.
+struct TestViewer {
+  std::shared_ptr<FakeConnection> connection;
+  std::shared_ptr<ClientOutbox> outbox;
+  std::vector<std::uint64_t> ticks() const {
+    std::vector<std::uint64_t> ticks;
+    for (const GridFrame& frame : connection->frames()) ticks.push_back(frame.header.tick);
+    return ticks;
+  }
+  FrameHeader last() const { return connection->frames().back().header; }
+};
+
+class FrameDeliveryTest : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kEpoch = 1;
+
+  TestViewer add(Subscription wish = {}) {
+    TestViewer viewer;
+    viewer.connection = std::make_shared<FakeConnection>(++last_id_);
+    viewer.outbox = std::make_shared<ClientOutbox>(viewer.connection);
+    const std::uint64_t membership = viewer.outbox->join();
+    viewer.outbox->start_epoch(membership, kEpoch);
+    delivery.add(viewer.outbox, viewer.outbox->subscribe(membership, wakes, now), std::move(wish));
+    return viewer;
+  }
+  /// One in which something has moved since all others.
+  void publish(std::uint64_t tick) { publish(tick, 1e-3 * static_cast<double>(++states_)); }
+  void publish(std::uint64_t tick, double x, bool playing = true) {
+    PublishedState state;
+    state.header.playing = playing;
+    state.header.epoch = kEpoch;
+    state.header.tick = tick;
+    state.bodies.resize(1);
+    state.bodies[0].id = 1;
+    state.bodies[0].positions.assign(particles, {x, 0.5, 0.5});
+    now += std::chrono::milliseconds(20);
+    delivery.publish(state, now);
+  }
+  void acknowledge_all(const TestViewer& viewer) {
+    EXPECT_TRUE(viewer.outbox->acknowledge(viewer.last().number, now));
+    delivery.retry(std::exchange(wakes->clients, {}), now);
+  }
+
+  static Subscription every(std::uint64_t ticks) {
+    Subscription wish;
+    wish.every = ticks;
+    return wish;
+  }
+  bool counted(const std::string& sample) const {
+    return metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
+  }
+
+  SteadyClock::time_point now{std::chrono::hours(1)};
+  ServerMetrics metrics;
+  const std::shared_ptr<Wakes> wakes = std::make_shared<Wakes>();
+  FrameDelivery delivery{Vat{Vec3::Zero(), Vec3::Ones(), true, {}}, metrics};
+
+  std::size_t particles = 1;
+
+ private:
+  ConnectionId last_id_ = 0;
+  int states_ = 0;
+};
+
+using Ticks = std::vector<std::uint64_t>;
+
+TEST_F(FrameDeliveryTest, AViewerGetsTheTicksThatItAskedFor) {
+  const TestViewer all = add();
+  const TestViewer third = add(every(3));
+  for (std::uint64_t tick = 1; tick <= 7; ++tick) {
+    publish(tick);
+    acknowledge_all(all);
+    acknowledge_all(third);
+  }
+  EXPECT_EQ(all.ticks(), (Ticks{1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(third.ticks(), (Ticks{1, 3, 6})) << "the first at once";
+}
+
+// The tick that it divides may never come here: a newer state has taken its place.
+TEST_F(FrameDeliveryTest, ATurnThatWasSkippedComesWithTheNextState) {
+  const TestViewer third = add(every(3));
+  for (const std::uint64_t tick : {1, 2, 4, 5, 7, 8}) {
+    publish(tick);
+    acknowledge_all(third);
+  }
+  EXPECT_EQ(third.ticks(), (Ticks{1, 4, 7}));
+}
+
+TEST_F(FrameDeliveryTest, WhoIsNotReadyGetsTheNewestOnceItIs) {
+  const TestViewer slow = add();
+  const TestViewer quick = add();
+  for (std::uint64_t tick = 1; tick <= 50; ++tick) {
+    publish(tick);
+    acknowledge_all(quick);
+  }
+  EXPECT_EQ(quick.ticks().size(), 50u);
+  EXPECT_EQ(slow.ticks(), (Ticks{1, 2, 3}));
+  acknowledge_all(slow);
+  EXPECT_EQ(slow.ticks(), (Ticks{1, 2, 3, 50}));
+  EXPECT_EQ(slow.last().number, 50u) << "4 to 49 are left out";
+  acknowledge_all(slow);
+  EXPECT_EQ(slow.ticks().size(), 4u) << "there is nothing new";
+}
+
+TEST_F(FrameDeliveryTest, WhatShowsNothingNewIsLeftOut) {
+  const TestViewer viewer = add();
+  publish(1, 0.5);
+  for (std::uint64_t tick = 2; tick < 10; ++tick) {
+    publish(tick, 0.5);
+    acknowledge_all(viewer);
+  }
+  publish(10, 0.6);
+  EXPECT_EQ(viewer.ticks(), (Ticks{1, 10}));
+  EXPECT_EQ(viewer.last().number, 2u);
+}
+
+TEST_F(FrameDeliveryTest, WhoComesToAStateAtRestGetsIt) {
+  const TestViewer first = add();
+  publish(1, 0.5);
+  acknowledge_all(first);
+  const TestViewer second = add();
+  publish(1, 0.5);
+  EXPECT_EQ(second.ticks(), (Ticks{1}));
+  EXPECT_EQ(first.ticks(), (Ticks{1}));
+}
+
+TEST_F(FrameDeliveryTest, AnEpochBeginsWithAFrameForAll) {
+  const TestViewer third = add(every(3));
+  publish(4);
+  acknowledge_all(third);
+  delivery.set_vat({});
+  publish(0);
+  EXPECT_EQ(third.ticks(), (Ticks{4, 0}));
+}
+
+TEST_F(FrameDeliveryTest, WhoWasRemovedGetsNothing) {
+  const TestViewer viewer = add();
+  publish(1);
+  delivery.remove(1);
+  publish(2);
+  delivery.retry(std::vector<ConnectionId>{1, 7}, now);
+  EXPECT_EQ(viewer.ticks(), (Ticks{1}));
+}
+
+TEST_F(FrameDeliveryTest, ViewersWhoHoldTheSameShareOneEncoding) {
+  std::vector<TestViewer> viewers;
+  for (int i = 0; i < 20; ++i) viewers.push_back(add());
+  publish(1);
+  publish(2);
+  EXPECT_TRUE(counted("vat_frames_encoded_total 2"));
+  const TestViewer late = add();
+  for (std::uint64_t tick = 3; tick <= 6; ++tick) {
+    for (const TestViewer& viewer : viewers) acknowledge_all(viewer);
+    publish(tick);
+  }
+  // Two for ticks 3 and 4, until the late one holds what the others hold.
+  EXPECT_TRUE(counted("vat_frames_encoded_total 8"));
+  EXPECT_TRUE(counted("vat_frames_sent_total " + std::to_string(20 * 6 + 3)));
+  EXPECT_EQ(late.ticks(), (Ticks{3, 4, 5}));
+}
+
+TEST_F(FrameDeliveryTest, ANewcomerToAStateAtRestSharesWhatComesNextSoon) {
+  const TestViewer first = add();
+  publish(1, 0.5);
+  const TestViewer second = add();
+  publish(5, 0.5);
+  for (std::uint64_t tick = 6; tick <= 8; ++tick) {
+    acknowledge_all(first);
+    acknowledge_all(second);
+    publish(tick);
+  }
+  EXPECT_EQ(second.ticks(), (Ticks{5, 6, 7, 8}));
+  EXPECT_TRUE(counted("vat_frames_encoded_total 7"));
+}
+
+// Twenty groups, each with steps of its own; ten of them have two viewers. Eight places, four of
+// them for those who wait longest: a viewer is passed over at most five times in a row.
+TEST_F(FrameDeliveryTest, NobodyWaitsForEverWhereThereAreTooManyGroups) {
+  constexpr std::size_t kGroups = 20;
+  constexpr std::uint64_t kTicks = 100;
+  std::vector<TestViewer> viewers;
+  for (std::size_t i = 0; i < kGroups; ++i) {
+    Subscription wish;
+    wish.max_error = 1e-4 * static_cast<double>(i + 1);
+    viewers.push_back(add(wish));
+    if (i < kGroups / 2) viewers.push_back(add(wish));
+  }
+  for (std::uint64_t tick = 1; tick <= kTicks; ++tick) {
+    publish(tick, 0.01 * static_cast<double>(tick));
+    for (const TestViewer& viewer : viewers) {
+      if (!viewer.ticks().empty()) acknowledge_all(viewer);
+    }
+  }
+  for (const TestViewer& viewer : viewers) {
+    std::uint64_t last = 0;
+    for (const std::uint64_t tick : viewer.ticks()) {
+      EXPECT_LE(tick - last, 1 + kGroups / (kMaxFrameGroups / 2));
+      last = tick;
+    }
+    EXPECT_GE(last + kGroups / (kMaxFrameGroups / 2), kTicks);
+  }
+  EXPECT_TRUE(counted("vat_frames_encoded_total " + std::to_string(kTicks * kMaxFrameGroups)));
+}
+
+TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOthers) {
+  const TestViewer quick = add();
+  std::vector<TestViewer> slow = {add(), add(), add()};
+  std::vector<std::size_t> acknowledged(slow.size());
+  std::uint64_t tick = 0;
+  for (; tick < 400; ++tick) {
+    publish(tick);
+    acknowledge_all(quick);
+    // Each takes a frame in 60 ms, which is one in three ticks, and they do so at different times.
+    for (std::size_t i = 0; i < slow.size(); ++i) {
+      const auto frames = slow[i].connection->frames();
+      if (tick % 3 != i || acknowledged[i] >= frames.size()) continue;
+      EXPECT_TRUE(slow[i].outbox->acknowledge(frames[acknowledged[i]++].header.number, now));
+      delivery.retry(std::exchange(wakes->clients, {}), now);
+    }
+  }
+  for (const TestViewer& viewer : slow) {
+    std::size_t few = 0;
+    std::size_t together = 0;
+    for (const GridFrame& frame : viewer.connection->frames()) {
+      if (frame.header.stride < 4) continue;
+      ++few;
+      if (frame.header.tick % 4 == 0) ++together;
+    }
+    EXPECT_GT(few, 20U) << "a quarter of the rate is what each can keep up with";
+    EXPECT_GT(4 * together, 3 * few) << "but for those that come late before it does";
+  }
+  EXPECT_EQ(quick.last().stride, 1U);
+  EXPECT_EQ(quick.ticks().size(), 400U);
+}
+
+TEST_F(FrameDeliveryTest, WhoIsKeptSlowSeesTheStateAtWhichTheSessionPauses) {
+  const TestViewer slow = add();
+  std::uint64_t tick = 1;
+  for (; slow.connection->frames().empty() || slow.last().stride < 4; ++tick) {
+    ASSERT_LT(tick, 1000U);
+    publish(tick);
+    if (tick % 12 == 0) acknowledge_all(slow);
+  }
+  for (acknowledge_all(slow); tick % 4 != 2; ++tick) {
+    publish(tick);
+    acknowledge_all(slow);
+  }
+  publish(tick, 0.9);
+  EXPECT_LT(slow.last().tick, tick) << "it is not its turn";
+  publish(tick, 0.9, false);
+  EXPECT_EQ(slow.last().tick, tick);
+}
+
+// An eighth of a small body is no body any more, and its frames are short as it is.
+TEST_F(FrameDeliveryTest, WhoIsSlowStillGetsAllOfFewParticles) {
+  for (const auto& [count, least] : {std::pair(1000U, 3), std::pair(16000U, 0)}) {
+    particles = count;
+    const TestViewer slow = add();
+    for (std::uint64_t tick = 1; tick < 1000; ++tick) {
+      publish(tick);
+      if (tick % 12 == 0) acknowledge_all(slow);
+    }
+    EXPECT_EQ(slow.connection->frames().back().detail, least) << count;
+    EXPECT_EQ(slow.last().stride, 4U);
+  }
+}
+
+// Whatever is dropped, skipped, or joined late: each frame that comes is decoded from the ones
+// before it, and shows the state of its tick.
+TEST_F(FrameDeliveryTest, EveryPathThroughTheFramesShowsTheSame) {
+  std::mt19937 random(1);
+  std::vector<TestViewer> viewers;
+  std::map<std::uint64_t, std::vector<std::uint16_t>> shown;  // by tick, on the finest grid
+  for (std::uint64_t tick = 1; tick <= 300; ++tick) {
+    if (random() % 10 == 0) viewers.push_back(add(every(1 + random() % 3)));
+    publish(tick);
+    for (const TestViewer& viewer : viewers) {
+      if (random() % 3 > 0 && !viewer.ticks().empty()) acknowledge_all(viewer);
+    }
+  }
+  std::size_t frames = 0;
+  for (const TestViewer& viewer : viewers) {
+    for (const GridFrame& frame : viewer.connection->frames()) {
+      if (frame.scale.grid.quantum > 2e-5 || frame.detail != kFullDetail) continue;
+      const auto& positions = frame.blocks.at(0).positions;
+      const auto first = shown.emplace(frame.header.tick, positions).first;
+      EXPECT_EQ(positions, first->second) << "tick " << frame.header.tick;
+      ++frames;
+    }
+  }
+  EXPECT_GT(frames, 1000U);
+}
+
+}  // namespace
+}  // namespace vat::test::frame_delivery_test

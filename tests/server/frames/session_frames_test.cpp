@@ -1,0 +1,333 @@
+// Frames and events: who gets which, how old, and at whose cost.
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <future>
+
+#include "protocol/scene/scene_json.h"
+#include "server/frames/frame_feed.h"
+#include "server/session/core/session_core.h"
+#include "tests/server/fixture/fake_connection.h"
+#include "tests/server/fixture/session_fixture.h"
+#include "tests/support/lone_environment.h"
+#include "tests/support/manual_clock.h"
+
+namespace vat::test::session_frames_test {
+namespace {
+
+class SessionFrames : public SessionTest {};
+
+TEST_F(SessionFrames, AreWhatTheSubscriptionAsksFor) {
+  client->result("control.step", {{"ticks", 5}});
+  client->result("frames.subscribe", {{"every", 5},
+                                      {"max_error", 1e-3},
+                                      {"detail", 2},
+                                      {"region", {{"min", {0, 0, 0}}, {"max", {1, 1, 0.5}}}},
+                                      {"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});
+  const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(frame.header.tick, 5U) << "the present state comes at once";
+  EXPECT_EQ(frame.header.number, 1U);
+  EXPECT_EQ(frame.header.epoch, 2U);
+  EXPECT_DOUBLE_EQ(frame.header.time, 0.1);
+  EXPECT_DOUBLE_EQ(frame.scale.grid.quantum, 2e-3);
+  EXPECT_EQ(frame.detail, 2);
+  EXPECT_TRUE(frame.has_region);
+  EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{2e-3, 1, 0, 0}));
+  ASSERT_EQ(frame.blocks.size(), 4U);
+  EXPECT_EQ(frame.blocks[0].kind, GridBlock::Kind::vat);
+  const std::size_t particles = frame.blocks[1].particle_count();
+  EXPECT_EQ(frame.blocks[1].attributes[0].size(), particles);
+  EXPECT_EQ(frame.blocks[1].attributes[1].size(), particles);
+  client->result("control.step", {{"ticks", 3}});
+  client->result("control.step", {{"ticks", 2}});
+  EXPECT_EQ(client->wait_frame([](const GridFrame& f) { return f.header.tick > 5; }).header.tick,
+            10U);
+}
+
+// The fixture's deformable cube and its pool have particles at 0.1 m.
+TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
+  const auto quantum = [this](const Json& params) {
+    client->result("frames.subscribe", params);
+    const std::uint32_t tick = client->result("control.step").at("tick").get<std::uint32_t>();
+    return client->wait_frame([=](const GridFrame& f) { return f.header.tick == tick; })
+        .scale.grid.quantum;
+  };
+  const double usual = 2 * 0.1 / 64;
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual);
+  const Json ball = {{"name", "marble"},
+                     {"kind", "rigid"},
+                     {"material", "wood"},
+                     {"spacing", 0.02},
+                     {"shape", {{"type", "sphere"}, {"radius", 0.04}}},
+                     {"position", {0.2, 0.8, 0.8}}};
+  client->result("world.add_body", {{"body", ball}});
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual) << "a rigid body has a pose";
+  Json block = ball;
+  block["name"] = "block";
+  block["kind"] = "deformable";
+  block["material"] = "rubber";
+  block["spacing"] = 0.05;
+  block["shape"] = {{"type", "box"}, {"center", {0, 0, 0}}, {"size", {0.1, 0.1, 0.1}}};
+  block["position"] = {0.8, 0.2, 0.8};
+  client->result("world.add_body", {{"body", block}});
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual / 2);
+  EXPECT_LT(quantum({{"max_error", 0}}), usual / 10);
+}
+
+// What nothing touches falls: with the acceleration of gravity over each tick.
+TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
+  client->result("world.set_gravity", {{"gravity", {0, 0, -5}}});
+  client->result("frames.subscribe", {{"attributes", {{"acceleration", 1e-3}}}});
+  const auto cube_at = [&](std::uint64_t tick) {
+    const GridFrame frame =
+        client->wait_frame([&](const GridFrame& f) { return f.header.tick == tick; });
+    EXPECT_EQ(frame.scale.attribute_quanta, (ByAttribute<double>{0, 0, 0, 2e-3}));
+    const GridBlock& cube = frame.blocks.at(2);
+    EXPECT_EQ(cube.attributes[3].size(), cube.particle_count());
+    return cube.attributes[3].empty() ? 0 : 2e-3 * cube.attributes[3].at(0);
+  };
+  EXPECT_EQ(cube_at(0), 0) << "no tick was run";
+  client->result("control.step");
+  EXPECT_NEAR(cube_at(1), 5, 1.1e-3);
+  client->result("world.set_gravity", {{"gravity", {3, 0, -4}}});
+  client->result("control.step", {{"ticks", 2}});
+  EXPECT_NEAR(cube_at(3), 5, 1.1e-3);
+  client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
+  client->result("control.step");
+  EXPECT_NEAR(cube_at(4), 1, 1.1e-3);
+}
+
+TEST_F(SessionFrames, NothingIsEncodedForNobody) {
+  client->result("control.step", {{"ticks", 20}});
+  EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 0\n"), std::string::npos);
+  client->result("frames.subscribe");
+  client->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 1\n"), std::string::npos);
+}
+
+TEST_F(SessionFrames, AnUnsubscribedClientGetsNone) {
+  client->result("frames.subscribe");
+  client->wait_frame([](const GridFrame&) { return true; });
+  client->result("frames.unsubscribe");
+  client->result("control.step", {{"ticks", 5}});
+  const auto other = join();  // a later subscriber's frame of a state is the last
+  other->result("frames.subscribe");
+  other->wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(client->connection->frames().size(), 1u);
+  client->result("frames.subscribe");
+  client->wait_frame([](const GridFrame& f) { return f.header.tick == 5; });
+}
+
+TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
+  client->result("frames.subscribe");
+  client->send("control.play");
+  std::uint32_t last = 0;
+  for (int i = 0; i < 20; ++i) {
+    const GridFrame frame =
+        client->wait_frame([&](const GridFrame& f) { return f.header.number > last; });
+    last = frame.header.number;
+    const Json reply = client->result("frames.ack", {{"number", last}});
+    EXPECT_GE(reply.at("tick"), frame.header.tick) << "no earlier than what it has seen";
+  }
+  client->result("session.leave");
+  EXPECT_EQ(client->result("frames.ack", {{"number", 1}}), Json::object());
+}
+
+TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
+  client->result("frames.subscribe");
+  for (int i = 0; i < 10; ++i) {
+    client->result("control.step", {{"ticks", 10}});  // the window fills, one frame is missed
+    client->mark();
+    client->result("control.reset");
+    const Json description = client->wait_event("session.description");
+    const std::size_t before = client->connection->frames().size();
+    const GridFrame first = client->wait_frame(
+        [&](const GridFrame& frame) { return frame.header.epoch == description.at("epoch"); });
+    EXPECT_EQ(first.header.tick, 0u);
+    const auto all = client->connection->frames();
+    for (std::size_t f = before; f < all.size(); ++f) {
+      EXPECT_EQ(all[f].header.epoch, description.at("epoch"));
+    }
+  }
+}
+
+TEST_F(SessionFrames, StatusesComeWithoutChangesToo) {
+  const Json status = client->wait_event("session.status");
+  EXPECT_EQ(status.at("clients"), 1);
+  EXPECT_EQ(status.at("playing"), false);
+  EXPECT_EQ(status.at("tick"), 0);
+  EXPECT_EQ(status.at("time"), 0);
+  EXPECT_EQ(status.at("speed"), 1);
+  EXPECT_GT(status.at("particles"), 0);
+}
+
+class SessionPatience : public SessionTest {
+ protected:
+  SessionPatience()
+      : SessionTest(limits_with(&ServerLimits::frame_patience, std::chrono::seconds(1))) {}
+};
+
+// Also where nothing moves: a frame was sent, and nobody knows whether it came.
+TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
+  client->result("frames.subscribe");
+  client->wait_frame([](const GridFrame&) { return true; });
+  const auto silent = join();
+  silent->result("frames.subscribe");
+  server.flush();
+  server.clock().advance(std::chrono::milliseconds(500));
+  EXPECT_FALSE(silent->connection->close_code().has_value());
+  server.clock().advance(std::chrono::milliseconds(1000));
+  EXPECT_EQ(silent->connection->close_code(), 4008);
+  EXPECT_FALSE(client->connection->close_code().has_value());
+}
+
+class SessionCoreTest : public testing::Test {
+ protected:
+  std::shared_ptr<FakeConnection> subscribe() {
+    const auto connection = std::make_shared<FakeConnection>(viewers_.size() + 1);
+    const auto outbox = std::make_shared<ClientOutbox>(connection);
+    viewers_.emplace_back(connection, outbox);
+    core.people().join(outbox, outbox->join(), {}, now);
+    core.notifier().subscribe(*core.participants().find_client(connection->id()), {}, now);
+    core.notifier().announce();
+    wait();
+    return connection;
+  }
+  /// Everybody acknowledges what comes.
+  void tick() {
+    ASSERT_TRUE(core.tick(now, true));
+    core.notifier().publish_tick();
+    wait();
+    for (const auto& [connection, outbox] : viewers_) {
+      ASSERT_TRUE(outbox->acknowledge(connection->frames().back().header.number, now));
+    }
+  }
+  /// Until the frame threads have done what was posted to them.
+  void wait() {
+    std::promise<void> done;
+    boost::asio::post(environment.shared.frame_threads, [&] { done.set_value(); });
+    done.get_future().wait();
+  }
+  bool counted(const std::string& sample) const {
+    return environment.shared.metrics.to_text({}).find('\n' + sample + '\n') != std::string::npos;
+  }
+
+  const LoneEnvironment environment;
+  const SteadyClock::time_point now = environment.clock.now();
+  SessionCore core{
+      "s1", {"one"}, Simulation::create(to_scene(mixed_scene_text())).value(), environment.shared};
+
+ private:
+  std::vector<std::pair<std::shared_ptr<FakeConnection>, std::shared_ptr<ClientOutbox>>> viewers_;
+};
+
+// The second frame of each builds on one frame, those after it on two, as everybody's.
+TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
+  const auto first = subscribe();
+  tick();
+  tick();
+  tick();
+  EXPECT_TRUE(counted("vat_frames_encoded_total 3"));
+  const auto second = subscribe();
+  const auto third = subscribe();
+  EXPECT_TRUE(second->frames().empty()) << "it comes with the next tick";
+  tick();
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2")) << "one for both";
+  EXPECT_TRUE(counted("vat_frames_encoded_total 5"));
+  for (const auto& connection : {first, second, third}) {
+    ASSERT_FALSE(connection->frames().empty());
+    EXPECT_EQ(connection->frames().back().header.tick, 4U);
+  }
+}
+
+TEST_F(SessionCoreTest, WhoComesWhileItPausesGetsAFrameAtOnce) {
+  core.set_playing(false);
+  EXPECT_EQ(subscribe()->frames().size(), 1U);
+}
+
+constexpr std::uint32_t kEpoch = 1;
+
+PublishedState make_state(std::uint64_t tick, bool has_speeds) {
+  PublishedState state;
+  state.header.epoch = kEpoch;
+  state.header.tick = tick;
+  state.bodies.resize(1);
+  state.bodies[0].id = 1;
+  state.bodies[0].positions = {{0.1, 0.2, 0.3}};
+  if (has_speeds) state.bodies[0].attributes[0] = {2.0F};
+  return state;
+}
+
+/// Keeps the pool's only thread from all other work.
+class Block {
+ public:
+  explicit Block(boost::asio::thread_pool& pool) {
+    boost::asio::post(pool, [released = released_.get_future().share()] { released.wait(); });
+  }
+  void release() { released_.set_value(); }
+
+ private:
+  std::promise<void> released_;
+};
+
+// A state that waits was published for those who were there before.
+TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
+  boost::asio::thread_pool pool(1);
+  ServerMetrics metrics;
+  const ManualClock clock;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
+  const auto connection = std::make_shared<FakeConnection>(1);
+  const auto outbox = std::make_shared<ClientOutbox>(connection);
+  const std::uint64_t membership = outbox->join();
+  outbox->start_epoch(membership, kEpoch);
+  Subscription wish;
+  wish.attribute_errors[0] = 0.01;
+
+  Block block(pool);
+  PublishedState state = make_state(7, false);
+  feed->publish(state);
+  EXPECT_TRUE(feed->add(outbox, outbox->subscribe(membership, feed, clock.now()), wish))
+      << "a further state should be published";
+  block.release();
+  std::promise<void> done;
+  boost::asio::post(pool, [&] { done.set_value(); });
+  done.get_future().wait();
+  EXPECT_TRUE(connection->frames().empty());
+
+  state = make_state(8, true);
+  feed->publish(state);
+  pool.join();
+  ASSERT_EQ(connection->frames().size(), 1U);
+  EXPECT_EQ(connection->frames()[0].header.tick, 8U);
+}
+
+// One that is filled, one that waits, one that is taken out of the mail and one that is shown: from
+// the fifth on a tick finds the memory that an earlier one has used.
+TEST(FrameFeed, FourStatesGoRound) {
+  constexpr std::size_t kParticles = 1000;
+  boost::asio::thread_pool pool(1);
+  ServerMetrics metrics;
+  const ManualClock clock;
+  const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
+  PublishedState state;
+  for (std::uint64_t tick = 1; tick <= 100; ++tick) {
+    if (tick > 4) {
+      ASSERT_EQ(state.bodies.size(), 1U);
+      ASSERT_GE(state.bodies[0].positions.capacity(), kParticles);
+    }
+    state.header = {.epoch = kEpoch, .tick = tick};
+    state.bodies.resize(1);
+    state.bodies[0].positions.assign(kParticles, Vec3(0, 0, 1e-3 * static_cast<double>(tick)));
+    feed->publish(state);
+    if (tick % 3 == 0) continue;  // the next one takes its place where it still waits
+    std::promise<void> done;
+    boost::asio::post(pool, [&] { done.set_value(); });
+    done.get_future().wait();
+  }
+  pool.join();
+}
+
+}  // namespace
+}  // namespace vat::test::session_frames_test

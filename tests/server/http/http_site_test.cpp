@@ -1,0 +1,255 @@
+// The viewer's site: paths, files and what is said about the server.
+
+#include "server/http/http_site.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "server/http/request_path.h"
+#include "tests/server/transport/transport_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::http_site_test {
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(RequestPath, Decodes) {
+  EXPECT_EQ(request_path("/"), "/");
+  EXPECT_EQ(request_path("/a/b.js"), "/a/b.js");
+  EXPECT_EQ(request_path("/a%20b%2Fc%c3%A4"), "/a b/c\xc3\xa4");
+  EXPECT_EQ(request_path("/a?../b"), "/a");
+  EXPECT_EQ(request_path("/a#b"), "/a");
+  EXPECT_EQ(request_path("/%2525"), "/%25");  // once, not twice
+  EXPECT_EQ(request_path("/...a/b..c/..d"), "/...a/b..c/..d");
+}
+
+// No paths, broken escapes, ways up, and zero bytes.
+TEST(RequestPath, RefusesWhatIsNotAPath) {
+  for (const char* target : {"",
+                             "a",
+                             "*",
+                             "?",
+                             "http://x/a",
+                             "example.org:80",
+                             "%2fa",
+                             "/%",
+                             "/%2",
+                             "/%zz",
+                             "/%2g",
+                             "/a%",
+                             "/%%41",
+                             "/%+1",
+                             "/..",
+                             "/../",
+                             "/../../etc/passwd",
+                             "/a/..",
+                             "/a/../b",
+                             "/./a",
+                             "/.",
+                             "/%2e%2e/a",
+                             "/.%2E/a",
+                             "/a%2f..%2fb",
+                             "/%2e",
+                             "/a/..?x",
+                             "/..\\..\\a",
+                             "/a\\b",
+                             "/a%5c..",
+                             "/a/%2e%2e",
+                             "/a%00.html"}) {
+    EXPECT_EQ(request_path(target), std::nullopt) << target;
+  }
+  EXPECT_EQ(request_path(std::string("/a\0b", 4)), std::nullopt);
+}
+
+/// A viewer, beside a file that is none of it.
+class HttpSite : public testing::Test {
+ protected:
+  HttpSite() {
+    folder.write("secret.txt", "secret");
+    folder.write("dist/index.html", "<title>vat</title>");
+    folder.write("dist/assets/index-1a2b3c.js", std::string("x\0\r\n", 4));
+    folder.write("dist/assets/deep/a b.js", "");
+    folder.write("dist/favicon.svg", "<svg/>");
+    folder.write("dist/.env", "secret");
+    folder.write("dist/.git/config", "secret");
+    fs::create_symlink(folder.path() / "secret.txt", folder.path() / "dist/link.txt");
+    fs::create_directory_symlink(folder.path(), folder.path() / "dist/linked");
+    fs::create_symlink(folder.path() / "nowhere", folder.path() / "dist/broken.txt");
+    site = make_site(folder.path() / "dist");
+  }
+  HttpHandler make_site(const fs::path& dist) {
+    Result<StaticFiles> files = StaticFiles::read(dist);
+    EXPECT_TRUE(files.ok());
+    return make_http_site(
+        std::move(files).value(),
+        {[] { return "vat_threads 4\n"; }, [this] { return phase; }, R"({"version":"1.2.3"})"});
+  }
+
+  const TemporaryFolder folder;
+  ServerPhase phase = ServerPhase::ready;
+  HttpHandler site;
+};
+
+std::string header(const HttpResponse& response, const std::string& name) {
+  for (const auto& [key, value] : response.headers) {
+    if (key == name) return value;
+  }
+  return "";
+}
+
+TEST_F(HttpSite, AnswersByThePath) {
+  const std::string for_ever = "public, max-age=31536000, immutable";
+  const std::string script(std::string("x\0\r\n", 4));
+  struct Case {
+    std::vector<const char*> targets;
+    int status;
+    std::string type, cache, body;
+  };
+  for (const Case& expected :
+       {Case{{"/", "/index.html", "/?session=1", "/#top"},
+             200,
+             "text/html; charset=utf-8",
+             "no-cache",
+             "<title>vat</title>"},
+        Case{{"/assets/index-1a2b3c.js"}, 200, "text/javascript; charset=utf-8", for_ever, script},
+        Case{{"/assets/deep/a%20b.js"}, 200, "text/javascript; charset=utf-8", for_ever, ""},
+        Case{{"/favicon.svg"}, 200, "image/svg+xml", "no-cache", "<svg/>"},
+        Case{{"/healthz"}, 200, "application/json", "no-store", "{\"status\":\"ok\"}\n"},
+        Case{{"/version"}, 200, "application/json", "no-store", "{\"version\":\"1.2.3\"}\n"},
+        Case{{"/metrics"},
+             200,
+             "text/plain; version=0.0.4; charset=utf-8",
+             "no-store",
+             "vat_threads 4\n"}}) {
+    for (const char* target : expected.targets) {
+      SCOPED_TRACE(target);
+      const HttpResponse reply = site("GET", target);
+      EXPECT_EQ(reply.status, expected.status);
+      EXPECT_EQ(reply.content_type, expected.type);
+      EXPECT_EQ(header(reply, "Cache-Control"), expected.cache);
+      EXPECT_EQ(reply.body, expected.body);
+      EXPECT_EQ(site("HEAD", target).status, expected.status);
+    }
+  }
+}
+
+TEST_F(HttpSite, OtherMethodsAreRefused) {
+  for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "PATCH", "get"}) {
+    const HttpResponse reply = site(method, "/");
+    EXPECT_EQ(reply.status, 405) << method;
+    EXPECT_EQ(header(reply, "Allow"), "GET, HEAD");
+    EXPECT_EQ(reply.body.find("<title>"), std::string::npos);
+  }
+}
+
+TEST_F(HttpSite, NoPathLeadsOutOfTheFolderOrToHiddenFilesAndLinks) {
+  const std::string absolute = folder.path().string() + "/secret.txt";
+  for (const char* target :
+       {"/../secret.txt", "/..%2fsecret.txt", "/%252e%252e/secret.txt", "/index.html%00.js",
+        "//index.html", "/INDEX.HTML", "//etc/passwd", "/link.txt", "/linked/secret.txt",
+        "/broken.txt", "/.env", "/.git/config", "/assets/", "/assets", "/assets/index-old.js",
+        "/~root", absolute.c_str()}) {
+    const HttpResponse reply = site("GET", target);
+    EXPECT_TRUE(reply.status == 400 || reply.status == 404) << target << ' ' << reply.status;
+    EXPECT_EQ(reply.body.find("secret"), std::string::npos) << target;
+    EXPECT_EQ(header(reply, "Cache-Control"), "no-store") << target;
+  }
+}
+
+TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
+  for (const char* target :
+       {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/%zz"}) {
+    const HttpResponse reply = site("GET", target);
+    EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;
+    EXPECT_EQ(header(reply, "Referrer-Policy"), "no-referrer") << target;
+    for (const char* part :
+         {"default-src 'self'", "worker-src 'self' blob:", "connect-src 'self' ws: wss:",
+          "style-src 'self' 'unsafe-inline'", "img-src 'self' data: blob:"}) {
+      EXPECT_THAT(header(reply, "Content-Security-Policy"), HasSubstr(part)) << target;
+    }
+  }
+}
+
+TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
+  const std::map<ServerPhase, std::string> phases = {{ServerPhase::starting, "starting"},
+                                                     {ServerPhase::recovering, "recovering"},
+                                                     {ServerPhase::ready, "ready"},
+                                                     {ServerPhase::draining, "draining"}};
+  for (const auto& [now, name] : phases) {
+    phase = now;
+    const HttpResponse reply = site("GET", "/readyz");
+    EXPECT_EQ(reply.status, now == ServerPhase::ready ? 200 : 503) << name;
+    EXPECT_EQ(reply.body, "{\"status\":\"" + name + "\"}\n");
+    EXPECT_EQ(site("GET", "/healthz").status, 200) << name;
+  }
+}
+
+TEST_F(HttpSite, WithoutAViewerTheRootSaysHowToBuildIt) {
+  const HttpHandler empty = make_site(folder.path() / "none");
+  EXPECT_EQ(empty("GET", "/").status, 503);
+  EXPECT_THAT(empty("GET", "/").body, HasSubstr("./vat serve"));
+  EXPECT_EQ(empty("GET", "/assets/x.js").status, 404);
+}
+
+TEST_F(HttpSite, AFileInPlaceOfTheFolderIsAnError) {
+  const Result<StaticFiles> files = StaticFiles::read(folder.path() / "secret.txt");
+  ASSERT_FALSE(files.ok());
+  EXPECT_THAT(files.errors().front().message, HasSubstr("secret.txt"));
+}
+
+TEST(StaticFiles, LimitsHold) {
+  TemporaryFolder folder;
+  folder.write("a", "12345");
+  folder.write("b", "12345");
+  EXPECT_TRUE(StaticFiles::read(folder.path(), {2, 10}).ok());
+  EXPECT_FALSE(StaticFiles::read(folder.path(), {1, 10}).ok());
+  EXPECT_FALSE(StaticFiles::read(folder.path(), {2, 9}).ok());
+}
+
+TEST(StaticFiles, ContentTypes) {
+  EXPECT_EQ(content_type_of("a.min.js"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(content_type_of("a.css"), "text/css; charset=utf-8");
+  EXPECT_EQ(content_type_of("a.png"), "image/png");
+  EXPECT_EQ(content_type_of("a.json"), "application/json");
+  EXPECT_EQ(content_type_of("a.js.map"), "application/json");
+  EXPECT_EQ(content_type_of("a.wasm"), "application/wasm");
+  EXPECT_EQ(content_type_of("LICENSE"), "application/octet-stream");
+}
+
+class ServedSite : public TransportTest {};
+
+// The command of the image, over a real socket.
+TEST_F(ServedSite, PassesTheHealthCheckOfTheImage) {
+  http_handler = make_http_site(StaticFiles::read("/none").value(),
+                                {[] { return ""; }, [] { return ServerPhase::ready; }, "{}"});
+  start();
+  std::ifstream file(VAT_SOURCE_DIR "/docker/Dockerfile");
+  std::ostringstream text;
+  text << file.rdbuf();
+  std::string recipe = std::regex_replace(text.str(), std::regex(R"(\\\n)"), " ");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(recipe, found, std::regex(R"(HEALTHCHECK .*CMD (\[.*\]))")));
+  std::string command = nlohmann::json::parse(found.str(1)).at(2);
+  const auto ask = [&](int at) {
+    const std::string there = std::regex_replace(command, std::regex("8080"), std::to_string(at));
+    return std::system(("exec bash -c \"" + there + "\" 2> /dev/null").c_str());
+  };
+  EXPECT_EQ(ask(port), 0) << command;
+  transport->stop();
+  EXPECT_NE(ask(port), 0);
+}
+
+}  // namespace
+
+}  // namespace vat::test::http_site_test

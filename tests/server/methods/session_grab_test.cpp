@@ -1,0 +1,174 @@
+// grab.*: a grab belongs to the client that started it and ends with it.
+
+#include "core/limits.h"
+#include "tests/server/fixture/session_fixture.h"
+
+namespace vat::test::session_grab_test {
+namespace {
+
+constexpr BodyId kBall = 3;
+
+class SessionGrabs : public SessionTest {
+ protected:
+  /// Height of the ball's centre of mass.
+  double height() {
+    const Json state = client->result("state.query", {{"bodies", {"ball"}}});
+    return state.at("bodies").at(0).at("center_of_mass").at(2);
+  }
+  /// What the simulation does with the same commands.
+  Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
+
+  const Json kTarget = {0.5, 0.5, 0.9};
+  const Vec3 target{0.5, 0.5, 0.9};
+};
+
+TEST_F(SessionGrabs, HoldMoveAndEnd) {
+  const std::uint64_t grab = client->grab(kBall);
+  client->result("control.step", {{"ticks", 50}});
+  const double held = height();
+  client->result("grab.move", {{"grab", grab}, {"target", {0.5, 0.5, 0.7}}});
+  client->result("control.step", {{"ticks", 50}});
+  EXPECT_LT(height(), held - 0.1);
+  client->result("grab.end", {{"grab", grab}});
+  client->result("control.step", {{"ticks", 20}});
+
+  ASSERT_TRUE(reference.grab_start(1, kBall, 0, target));
+  advance_ticks(reference, 50);
+  ASSERT_TRUE(reference.grab_move(1, Vec3(0.5, 0.5, 0.7)));
+  advance_ticks(reference, 50);
+  ASSERT_TRUE(reference.grab_end(1));
+  advance_ticks(reference, 20);
+  EXPECT_EQ(hash(), hash_of(reference));
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "it has ended";
+}
+
+// Of the pool a corner is drained at the first tick; the others keep their numbers.
+TEST_F(SessionGrabs, NameAParticleByItsNumber) {
+  Json scene = Json::parse(mixed_scene_text());
+  scene["drains"] = Json::parse(R"([{"name": "hole", "min": [0, 0, 0], "max": [0.5, 0.5, 0.5]}])");
+  client->result("scene.load", {{"scene", scene}});
+  client->result("control.step");
+  const Json state = client->result("state.query", {{"bodies", {"pool"}}}).at("bodies").at(0);
+  const auto numbers = state.at("numbers").get<std::vector<std::uint32_t>>();
+  ASSERT_EQ(numbers.size(), state.at("positions").size());
+  ASSERT_GT(numbers.back(), numbers.size() - 1) << "some are gone";
+  std::uint32_t gone = 0;
+  while (numbers[gone] == gone) ++gone;
+  const Json params = {{"body", state.at("body")}, {"particle", gone}, {"target", kTarget}};
+  EXPECT_EQ(client->error("grab.start", params).at("data").at("path"), "/particle");
+  Json last = params;
+  last["particle"] = numbers.back();
+  client->result("grab.start", last);
+  const double before = state.at("positions").back().at(2);
+  client->result("control.step", {{"ticks", 30}});
+  const Json after = client->result("state.query", {{"bodies", {"pool"}}}).at("bodies").at(0);
+  ASSERT_EQ(after.at("numbers").back(), numbers.back());
+  EXPECT_GT(after.at("positions").back().at(2), before + 0.05) << "it is pulled up";
+}
+
+TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
+  const auto other = join();
+  const std::uint64_t grab = client->grab(kBall);
+  const std::string before = hash();
+  const Json moved = other->error("grab.move", {{"grab", grab}, {"target", {0, 0, 0}}});
+  EXPECT_EQ(moved.at("code"), 1006);
+  EXPECT_EQ(moved.at("data").at("kind"), "not_allowed");
+  EXPECT_EQ(other->error("grab.end", {{"grab", grab}}).at("code"), 1006);
+  EXPECT_EQ(hash(), before);
+  client->result("grab.end", {{"grab", grab}});
+}
+
+TEST_F(SessionGrabs, HaveIdsOfTheirOwn) {
+  const auto other = join();
+  EXPECT_NE(client->grab(kBall), other->grab(2));
+}
+
+TEST_F(SessionGrabs, EndWhenTheirClientLeavesOrJoinsAnotherSession) {
+  const auto other = join();
+  const std::uint64_t first = other->grab(kBall);
+  other->result("session.leave");
+  other->result("session.join");
+  EXPECT_EQ(other->error("grab.end", {{"grab", first}}).at("code"), -32602);
+  const std::uint64_t second = other->grab(kBall);
+  other->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  other->result("session.join", {{"session", "s2"}});
+  EXPECT_EQ(client->error("grab.end", {{"grab", second}}).at("code"), -32602) << "nobody has it";
+  other->result("session.join", {{"session", "s1"}});
+  const std::uint64_t third = other->grab(kBall);
+  other->result("session.join", {{"session", "s1"}});
+  EXPECT_EQ(other->error("grab.end", {{"grab", third}}).at("code"), -32602)
+      << "joining again is a fresh start";
+  client->result("control.step", {{"ticks", 5}});
+  advance_ticks(reference, 5);
+  EXPECT_EQ(hash(), hash_of(reference)) << "the ball is free";
+}
+
+TEST_F(SessionGrabs, EndWithTheirBodyOrScene) {
+  const std::uint64_t cube = client->grab(2);
+  const std::uint64_t ball = client->grab(kBall);
+  client->result("world.remove_body", {{"body", 2}});
+  EXPECT_EQ(client->error("grab.end", {{"grab", cube}}).at("code"), -32602);
+  client->result("grab.move", {{"grab", ball}, {"target", {0.5, 0.5, 0.5}}});
+  client->result("control.reset");
+  EXPECT_EQ(client->error("grab.end", {{"grab", ball}}).at("code"), -32602);
+  const std::uint64_t again = client->grab(kBall);
+  client->result("scene.load", {{"scene", "mixed"}});
+  EXPECT_EQ(client->error("grab.end", {{"grab", again}}).at("code"), -32602);
+  client->result("control.step", {{"ticks", 3}});
+}
+
+TEST_F(SessionGrabs, OfAClientAreAtMostTen) {
+  for (int i = 0; i < 10; ++i) client->grab(kBall);
+  const Json error =
+      client->error("grab.start", {{"body", kBall}, {"particle", 0}, {"target", kTarget}});
+  EXPECT_EQ(error.at("data").at("limit"), "grabs_per_client");
+  EXPECT_EQ(error.at("data").at("maximum"), 10);
+  const auto other = join();
+  other->grab(2);
+}
+
+// A body for each client: one is held by one client at a time.
+TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
+  Json ball = {{"name", ""},
+               {"kind", "rigid"},
+               {"material", "steel"},
+               {"spacing", 0.1},
+               {"shape", {{"type", "sphere"}, {"radius", 0.1}}}};
+  const auto add_ball = [&](double x) {
+    ball["name"] = "ball at " + std::to_string(x);
+    ball["position"] = {x, 5, 5};
+    return client->result("world.add_body", {{"body", ball}}).at("body").get<BodyId>();
+  };
+  client->result("scene.load", {{"scene", "unstable"}});  // without a vat to be outside of
+  std::vector<std::unique_ptr<TestClient>> clients;
+  BodyId body = 0;
+  for (std::size_t i = 0; i < kMaxGrabs; ++i) {
+    if (i % 10 == 0) {
+      clients.push_back(join());
+      body = add_ball(static_cast<double>(i));
+    }
+    clients.back()->grab(body);
+  }
+  const BodyId free = add_ball(-10);
+  const auto params = Json{{"body", free}, {"particle", 0}, {"target", kTarget}};
+  const Json error = client->error("grab.start", params);
+  EXPECT_EQ(error.at("data").at("limit"), "grabs_per_session");
+  EXPECT_EQ(error.at("data").at("maximum"), kMaxGrabs);
+  clients.front()->result("session.leave");
+  client->grab(free);
+}
+
+TEST_F(SessionGrabs, ForcesOfASessionAreBoundedToo) {
+  const Json force = {{"body", kBall}, {"force", {0, 0, 0.01}}, {"duration", 0.01}};
+  for (std::size_t i = 0; i < kMaxAppliedForces; ++i) client->result("world.apply_force", force);
+  const std::string before = hash();
+  const Json error = client->error("world.apply_force", force);
+  EXPECT_EQ(error.at("data").at("limit"), "applied_forces");
+  EXPECT_EQ(error.at("data").at("maximum"), kMaxAppliedForces);
+  EXPECT_EQ(hash(), before);
+  client->result("control.step");  // they end
+  client->result("world.apply_force", force);
+}
+
+}  // namespace
+}  // namespace vat::test::session_grab_test

@@ -1,0 +1,324 @@
+// Limits of what clients may ask for together, and how often, at and beyond.
+
+#include "core/limits.h"
+#include "core/validation/validate.h"
+#include "server/http/downloads.h"
+#include "tests/server/fixture/session_fixture.h"
+
+namespace vat::test::session_limits_test {
+namespace {
+
+Simulation mixed() {
+  return Simulation::create(to_scene(mixed_scene_text())).value();
+}
+
+ServerLimits limits_for(std::size_t mixed_scenes) {
+  ServerLimits limits;
+  limits.max_particles_in_all = mixed_scenes * mixed().greatest_particle_count();
+  limits.max_sessions_per_address = 3;
+  limits.max_queries_per_second = 20;
+  limits.max_controls_per_second = 10;
+  limits.max_pointer_moves_per_second = 15;
+  limits.max_scenes_per_second = 5;
+  limits.burst_seconds = 2;
+  limits.max_refusals_per_second = 50;
+  return limits;
+}
+
+class SessionLimits : public SessionTest {
+ protected:
+  explicit SessionLimits(std::size_t mixed_scenes = 100) : SessionTest(limits_for(mixed_scenes)) {}
+
+  static void expect_limit(const Json& error, const std::string& limit) {
+    EXPECT_EQ(error.at("data").at("kind"), "limit_reached") << error;
+    EXPECT_EQ(error.at("data").at("limit"), limit) << error;
+  }
+  bool metrics_have(const std::string& line) {
+    return server.metrics().find(line + '\n') != std::string::npos;
+  }
+};
+
+// A burst passes, the next is refused and changes nothing, and after the time that the refusal
+// names the next one passes.
+TEST_F(SessionLimits, MessagesOfAClassComeSoOften) {
+  const auto other = join();
+  Json refusal;
+  int passed = 0;
+  for (; passed < 100 && refusal.is_null(); ++passed) {
+    const Json reply = other->call("session.hash");
+    if (reply.contains("error")) refusal = reply.at("error");
+  }
+  EXPECT_EQ(passed, 1 + 40) << "a burst of two seconds, and the refusal";
+  ASSERT_FALSE(refusal.is_null());
+  EXPECT_EQ(refusal.at("code"), 1009);
+  EXPECT_EQ(refusal.at("data").at("kind"), "rate_limited");
+  EXPECT_EQ(refusal.at("data").at("limit"), "queries_per_second");
+  EXPECT_EQ(refusal.at("data").at("maximum"), 20);
+  const double retry_after = refusal.at("data").at("retry_after");
+  EXPECT_GT(retry_after, 0);
+  EXPECT_LE(retry_after, 1.0 / 20);
+  other->result("control.pause");  // of another class
+  client->result("session.hash");  // of another connection
+  const auto seconds = [](double s) {
+    return std::chrono::ceil<SteadyClock::duration>(std::chrono::duration<double>(s));
+  };
+  server.clock().advance(seconds(0.9 * retry_after));
+  EXPECT_TRUE(other->call("session.hash").contains("error"));
+  server.clock().advance(seconds(0.1 * retry_after));
+  other->result("session.hash");
+  EXPECT_TRUE(metrics_have(R"(vat_rate_limited_total{limit="queries_per_second"} 2)"));
+}
+
+TEST_F(SessionLimits, AControlThatIsRefusedChangesNothing) {
+  const auto other = join();
+  std::uint64_t steps = 0;
+  for (int i = 0; i < 60; ++i) steps += other->call("control.step").contains("result") ? 1 : 0;
+  EXPECT_EQ(steps, 20U - 1) << "a burst of two seconds, of which the join was one";
+  EXPECT_EQ(tick(), steps);
+}
+
+TEST_F(SessionLimits, WhoGoesOnRegardlessIsClosed) {
+  const auto other = join();
+  int sent = 0;
+  for (; sent < 10'000 && !other->connection->close_code(); ++sent) other->notify("session.hash");
+  EXPECT_EQ(other->connection->close_code(), 4009);
+  EXPECT_GT(sent, 40 + 100) << "a burst, and a burst of refusals";
+  client->result("session.hash");
+}
+
+TEST_F(SessionLimits, AFloodOfWhatIsNoRequestIsOneToo) {
+  for (const char* text : {"", "{}", "[]", R"({"jsonrpc":"2.0","method":"no.such"})", "\xff"}) {
+    const auto other = connect();
+    for (int i = 0; i < 10'000 && !other->connection->close_code(); ++i)
+      other->send_raw(text, true);
+    EXPECT_EQ(other->connection->close_code(), 4009) << text;
+    EXPECT_LT(other->connection->texts().size(), 300U) << "answers are limited too";
+  }
+  const auto binary = connect();
+  for (int i = 0; i < 10'000 && !binary->connection->close_code(); ++i) {
+    server.binary_received(binary->connection->id(), "x");
+  }
+  EXPECT_EQ(binary->connection->close_code(), 4009);
+}
+
+TEST_F(SessionLimits, SessionsOfAnAddress) {
+  for (int i = 0; i < 3; ++i) {
+    client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  }
+  expect_limit(client->error("session.create", {{"name", "n"}, {"scene", "mixed"}}),
+               "sessions_per_address");
+  EXPECT_TRUE(metrics_have(R"(vat_refused_total{limit="sessions_per_address"} 1)"));
+  const auto elsewhere = connect_from("10.0.0.7");
+  elsewhere->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  client->result("session.close", {{"session", "s2"}});
+  client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+}
+
+TEST_F(SessionLimits, ACreationThatFailsHasTakenNothing) {
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(
+        client->error("session.create", {{"name", "n"}, {"scene", "none"}}).at("data").at("kind"),
+        "no_such_scene");
+  }
+  client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+}
+
+class SharedBudget : public SessionLimits {
+ protected:
+  SharedBudget() : SessionLimits(2) {}
+};
+
+TEST_F(SharedBudget, ParticlesOfAllSessions) {
+  client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  const std::string before = hash();
+  expect_limit(client->error("session.create", {{"name", "n"}, {"scene", "mixed"}}),
+               "particles_in_all");
+  Json body = Json::parse(mixed_scene_text()).at("bodies").at(2);
+  body["name"] = "another";
+  body["position"] = {0.3, 0.7, 0.7};
+  expect_limit(client->error("world.add_body", {{"body", body}}), "particles_in_all");
+  EXPECT_EQ(hash(), before);
+  client->result("scene.load", {{"scene", "mixed"}});  // in place of as many
+  client->result("session.close", {{"session", "s2"}});
+  client->result("world.add_body", {{"body", body}});
+  expect_limit(client->error("session.create", {{"name", "n"}, {"scene", "mixed"}}),
+               "particles_in_all");
+  client->result("control.reset");
+  client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+}
+
+// What a session may go back to stays its own.
+TEST_F(SharedBudget, ARemovedBodyLeavesRoomForAReset) {
+  client->result("world.remove_body", {{"body", 1}});
+  client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  expect_limit(client->error("session.create", {{"name", "n"}, {"scene", "mixed"}}),
+               "particles_in_all");
+  client->result("control.reset");
+}
+
+class FewParticles : public SessionTest {
+ protected:
+  FewParticles()
+      : SessionTest(limits_with(&ServerLimits::max_particles, mixed().greatest_particle_count())) {}
+};
+
+TEST_F(FewParticles, AreThoseOfABodyThatIsAddedToo) {
+  const std::string before = hash();
+  Json body = Json::parse(mixed_scene_text()).at("bodies").at(1);
+  body["name"] = "more";
+  const Json error = client->error("world.add_body", {{"body", body}});
+  EXPECT_EQ(error.at("data").at("limit"), "particles");
+  EXPECT_EQ(error.at("data").at("maximum"), mixed().greatest_particle_count());
+  EXPECT_EQ(hash(), before);
+  EXPECT_EQ(client->result("session.join").at("description").at("epoch"), 2);
+}
+
+// Limits to the unit: what has just the value passes, one more does not.
+
+/// A request as text, with so many bytes.
+std::string request(std::string_view id, std::string_view method, std::size_t bytes,
+                    const Json& params = Json::object()) {
+  const Json message{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}};
+  std::string text = message.dump();
+  text.resize(bytes, ' ');
+  return text;
+}
+
+class MessageLimits : public SessionTest {
+ protected:
+  static ServerLimits limits() {
+    ServerLimits limits = unhurried_limits();
+    limits.max_message_bytes = 2000;
+    limits.max_scene_message_bytes = 3000;
+    limits.max_message_depth = 20;
+    limits.max_message_values = 1000;
+    limits.max_bytes_in_flight = 2500;
+    return limits;
+  }
+  MessageLimits() : SessionTest(limits()) {}
+
+  /// The next reply to this id, or to null.
+  Json answer(const std::string& text, const Json& id) {
+    const std::size_t from = client->connection->texts().size();
+    client->send_raw(text, id.is_null());
+    return client->connection->wait_text(
+        [&](const Json& reply) { return reply.contains("id") && reply.at("id") == id; }, from);
+  }
+  /// What is wrong with a text that is no request.
+  Json fault(const std::string& text) { return answer(text, nullptr).at("error").at("data"); }
+};
+
+TEST_F(MessageLimits, BytesOfAMessage) {
+  EXPECT_TRUE(answer(request("a", "server.info", 2000), "a").contains("result"));
+  const Json longer = answer(request("b", "server.info", 2001), "b").at("error").at("data");
+  EXPECT_EQ(longer.at("limit"), "message_bytes");
+  EXPECT_EQ(longer.at("maximum"), 2000);
+  const Json scene = {{"scene", "mixed"}};
+  EXPECT_TRUE(answer(request("c", "scene.load", 2500, scene), "c").contains("result"));
+  const Json too_long = fault(request("d", "scene.load", 3001, scene));
+  EXPECT_EQ(too_long.at("limit"), "scene_message_bytes");
+  EXPECT_EQ(too_long.at("maximum"), 3000);
+}
+
+// Lists within each other, and a list of ones, are read as batches, which are refused.
+TEST_F(MessageLimits, DepthAndValuesOfAMessage) {
+  EXPECT_EQ(fault(std::string(20, '[') + std::string(20, ']')).at("kind"), "invalid_request");
+  EXPECT_EQ(fault(std::string(21, '[') + std::string(21, ']')).at("reason"), "too_deep");
+  std::string values = "[1";
+  for (int i = 2; i < 1000; ++i) values += ",1";
+  EXPECT_EQ(fault(values + ']').at("kind"), "invalid_request");
+  EXPECT_EQ(fault(values + ",1]").at("reason"), "too_many_values");
+}
+
+TEST_F(MessageLimits, BytesInFlight) {
+  const std::string step = request("step", "control.step", 2000, {{"ticks", 1000}});
+  client->send_raw(step);
+  client->send_raw(request("fits", "session.hash", 500));
+  const Json data = answer(request("more", "session.hash", 80), "more").at("error").at("data");
+  EXPECT_EQ(data.at("limit"), "command_bytes_in_flight");
+  EXPECT_EQ(data.at("maximum"), 2500);
+  join()->result("control.pause");  // ends the step
+  for (const char* id : {"step", "fits"}) {
+    EXPECT_TRUE(client->wait_reply(id).contains("result")) << id;
+  }
+  EXPECT_TRUE(answer(request("then", "session.hash", 2000), "then").contains("result"));
+}
+
+struct SceneLimit {
+  const char* name;
+  std::size_t ServerLimits::*value;
+  std::size_t needed;
+};
+
+// A session of the scene, of which one needs just as much.
+TEST(SceneLimits, HoldAtTheirValueAndNotBeyond) {
+  const Scene scene = to_scene(mixed_scene_text());
+  const Simulation simulation = Simulation::create(scene).value();
+  const std::size_t particles = simulation.greatest_particle_count();
+  const std::size_t springs = simulation.spring_count();
+  const Catalogue catalogue = make_catalogue();
+  for (const auto& [name, value, needed] :
+       {SceneLimit{"particles", &ServerLimits::max_particles, particles},
+        SceneLimit{"springs", &ServerLimits::max_springs, springs},
+        SceneLimit{"particles_in_all", &ServerLimits::max_particles_in_all, particles},
+        SceneLimit{"springs_in_all", &ServerLimits::max_springs_in_all, springs},
+        SceneLimit{"particle_steps_per_tick", &ServerLimits::max_particle_steps_per_tick,
+                   particles * simulation.steps_per_tick()}}) {
+    ServerSettings settings;
+    settings.limits.*value = needed;
+    EXPECT_TRUE(TestServer(catalogue, settings).create_session("n", scene).ok()) << name;
+    settings.limits.*value = needed - 1;
+    const auto refused = TestServer(catalogue, settings).create_session("n", scene);
+    ASSERT_FALSE(refused.ok()) << name;
+    EXPECT_EQ(refused.errors().front().message,
+              "at most " + std::to_string(needed - 1) + ' ' + name);
+  }
+}
+
+Scene scene_of_bodies(std::size_t count) {
+  Scene scene = to_scene(mixed_scene_text());
+  const auto ball = scene.bodies.back();
+  scene.bodies.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    scene.bodies.push_back(ball);
+    scene.bodies.back().name = "ball " + std::to_string(i);
+  }
+  return scene;
+}
+
+TEST(FixedLimits, BodiesOfAScene) {
+  const auto is_refused = [](const Errors& errors) {
+    return std::ranges::any_of(errors, [](const Error& error) {
+      return error.message == "at most " + std::to_string(kMaxBodies) + " bodies";
+    });
+  };
+  EXPECT_FALSE(is_refused(find_errors(scene_of_bodies(kMaxBodies))));
+  EXPECT_TRUE(is_refused(find_errors(scene_of_bodies(kMaxBodies + 1))));
+}
+
+class NameAndTickLimits : public SessionTest {};
+
+TEST_F(NameAndTickLimits, HoldAtTheirValueAndNotBeyond) {
+  const auto path = [](const Json& error) { return error.at("data").at("path"); };
+  const std::string longest(kMaxNameLength, 'n');
+  client->result("session.create", {{"name", longest}, {"scene", "mixed"}});
+  EXPECT_EQ(path(client->error("session.create", {{"name", longest + 'n'}, {"scene", "mixed"}})),
+            "/name");
+  client->result("control.step", {{"ticks", kMaxTicksPerStep}});
+  EXPECT_EQ(path(client->error("control.step", {{"ticks", kMaxTicksPerStep + 1}})), "/ticks");
+}
+
+TEST(Downloads, AreBounded) {
+  Downloads downloads(10);
+  const SteadyClock::time_point now{};
+  const auto first = downloads.add({"a", "123456"}, now);
+  EXPECT_TRUE(first.has_value());
+  EXPECT_FALSE(downloads.add({"b", "12345"}, now).has_value());
+  EXPECT_TRUE(downloads.add({"c", "1234"}, now).has_value());
+  EXPECT_FALSE(downloads.add({"d", "1"}, now).has_value());
+  downloads.take(*first, now);
+  EXPECT_TRUE(downloads.add({"e", "123456"}, now).has_value());
+}
+
+}  // namespace
+}  // namespace vat::test::session_limits_test

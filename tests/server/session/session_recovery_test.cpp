@@ -1,0 +1,379 @@
+// Sessions that come back: a second server on the data folder of a first one that was not asked to
+// end its sessions, as after a crash; what it kept is copied while it runs.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/simulation/simulation.h"
+#include "server/storage/sqlite/database.h"
+#include "tests/server/fixture/session_fixture.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
+
+namespace vat::test::session_recovery_test {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+/// A server on a data folder, with one client in its session s1.
+class Life {
+ public:
+  Life(const Catalogue& catalogue, const std::string& folder, ManualClock& clock,
+       ServerLimits limits = {}, StorageLimits storage = {})
+      : server_(catalogue, with_storage(test_settings(limits, folder), storage), clock),
+        recovered(server_.recover()) {
+    if (recovered == 0 && !server_.create_session("first", to_scene(mixed_scene_text()))) {
+      throw std::runtime_error("the first session was refused");
+    }
+    client.emplace(server_, 1);
+    joined = client->result("session.join", {{"session", "s1"}});
+  }
+
+  std::string hash() { return client->result("session.hash").at("hash"); }
+  std::uint64_t tick() { return client->result("session.hash").at("tick"); }
+  /// What was posted is written then.
+  void flush() { server_.flush(); }
+
+ private:
+  static ServerSettings with_storage(ServerSettings settings, const StorageLimits& storage) {
+    settings.storage = storage;
+    return settings;
+  }
+  TestServer server_;
+
+ public:
+  const std::size_t recovered;
+  std::optional<TestClient> client;
+  Json joined;
+};
+
+/// What is written at this moment, as a crash leaves it.
+void copy_data(const std::string& from, const std::string& to) {
+  fs::create_directories(to);
+  for (const std::string name : {"/checkpoints.db", "/vat.db"}) {  // no checkpoint before its log
+    Database(from + name, Database::Mode::create)
+        .execute(("VACUUM INTO '" + to + name + "'").c_str());
+  }
+}
+
+class SessionRecoveryTest : public testing::Test {
+ protected:
+  SessionRecoveryTest() : catalogue(make_catalogue()) {}
+
+  /// Ends the present life as a crash does, and begins the next.
+  void crash(ServerLimits limits = {}) {
+    const std::string next = folder.file("data" + std::to_string(++lives_));
+    life->flush();
+    copy_data(data, next);
+    life.reset();
+    data = next;
+    life.emplace(catalogue, data, clock, limits, storage);
+  }
+  void begin() { life.emplace(catalogue, data, clock, ServerLimits{}, storage); }
+  TestClient& client() { return *life->client; }
+  void execute(const char* sql, const char* file = "/vat.db") {
+    Database(data + file, Database::Mode::create).execute(sql);
+  }
+
+  const TemporaryFolder folder;
+  const Catalogue catalogue;
+  ManualClock clock;
+  StorageLimits storage;
+  std::string data = folder.file("data0");
+  std::optional<Life> life;
+
+ private:
+  int lives_ = 0;
+};
+
+const Json kBall = {{"name", "second"},
+                    {"kind", "rigid"},
+                    {"material", "wood"},
+                    {"spacing", 0.1},
+                    {"shape", {{"type", "sphere"}, {"radius", 0.12}}},
+                    {"position", {0.3, 0.7, 0.8}}};
+
+TEST_F(SessionRecoveryTest, CommandsAndTicksThatWereAnsweredAreThere) {
+  begin();
+  client().result("control.pause");
+  client().result("control.reset");
+  client().result("control.step", {{"ticks", 7}});
+  client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});
+  client().result("world.add_body", {{"body", kBall}});
+  client().result("control.step", {{"ticks", 5}});
+  client().result("world.set_interface",
+                  {{"interface", {{"materials", {"wood", "wood"}}, {"stiffness", 500}}}});
+  client().result("world.apply_force", {{"body", 3}, {"force", {0, 5, 0}}, {"duration", 1}});
+  client().result("control.step", {{"ticks", 3}});
+  const std::string before = life->hash();
+  const int epoch = life->joined.at("description").at("epoch");
+  crash();
+  EXPECT_EQ(life->recovered, 1U);
+  EXPECT_EQ(life->tick(), 15U);
+  EXPECT_EQ(life->hash(), before);
+  EXPECT_FALSE(life->joined.at("description").at("playing"));
+  EXPECT_EQ(life->joined.at("description").at("name"), "first");
+  EXPECT_GT(life->joined.at("description").at("epoch"), epoch);
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  // And it goes on as it would have.
+  client().result("control.step", {{"ticks", 4}});
+  const std::string later = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), later);
+}
+
+TEST_F(SessionRecoveryTest, AResetGoesToTheSceneAndOnFromThere) {
+  begin();
+  client().result("control.pause");
+  client().result("control.reset");
+  const std::string start = life->hash();
+  client().result("scene.load", {{"scene", "mixed"}});
+  client().result("world.remove_body", {{"body", 2}});
+  client().result("control.step", {{"ticks", 20}});
+  crash();
+  EXPECT_EQ(life->tick(), 20U);
+  client().result("control.reset");
+  EXPECT_EQ(life->hash(), start);
+  client().result("control.step", {{"ticks", 3}});
+  const std::string later = life->hash();
+  crash();
+  EXPECT_EQ(life->tick(), 3U);
+  EXPECT_EQ(life->hash(), later);
+}
+
+TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
+  ServerLimits impatient;
+  impatient.resume_time = 0ms;
+  begin();
+  client().result("control.pause");
+  client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  client().result("grab.move", {{"grab", 1}, {"target", {0.2, 0.5, 0.9}}});
+  client().result("control.step", {{"ticks", 5}});
+  const std::string held = life->hash();
+  crash(impatient);
+  EXPECT_TRUE(client().call("grab.move", {{"grab", 1}, {"target", {0, 0, 0}}}).contains("error"));
+  clock.advance(500ms);  // to the next status
+  EXPECT_NE(life->hash(), held) << "the grab still pulls";
+  const std::string free = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), free);
+}
+
+TEST_F(SessionRecoveryTest, WhatWasAcceptedIsAcceptedAgainAndWhatWasRefusedIsNot) {
+  ServerLimits few;
+  const Simulation alone = Simulation::create(to_scene(mixed_scene_text())).value();
+  few.max_particles = alone.particle_count() + 2;  // too few for a second ball
+  life.emplace(catalogue, data, clock, few);
+  client().result("control.pause");
+  EXPECT_EQ(client().error("world.add_body", {{"body", kBall}}).at("data").at("kind"),
+            "limit_reached");
+  crash();  // without the limit
+  client().result("control.reset");
+  EXPECT_EQ(client().result("state.query").at("bodies").size(), 3U);
+  const int id = client().result("world.add_body", {{"body", kBall}}).at("body");
+  const std::string with = life->hash();
+  crash(few);
+  EXPECT_EQ(life->hash(), with);
+  EXPECT_EQ(client().result("state.query", {{"bodies", {id}}}).at("bodies")[0].at("name"),
+            "second");
+}
+
+TEST_F(SessionRecoveryTest, ACrashBetweenARefusalAndItsMarkIsNoDivergence) {
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 3}});
+  client().error("world.remove_body", {{"body", 99}});
+  const std::string before = life->hash();
+  execute("UPDATE log SET refused = 0");
+  crash();
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  EXPECT_EQ(life->hash(), before);
+  // It is marked now: others may come behind it.
+  client().result("control.step", {{"ticks", 2}});
+  crash();
+  EXPECT_TRUE(client().events("session.diverged").empty());
+}
+
+TEST_F(SessionRecoveryTest, ARefusalWithoutAMarkThatOthersCameBehindIsADivergence) {
+  begin();
+  client().result("control.pause");
+  client().error("world.remove_body", {{"body", 99}});
+  client().result("control.step", {{"ticks", 3}});
+  client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});
+  execute("UPDATE log SET refused = 0");
+  crash();
+  client().wait_event("session.diverged");
+}
+
+TEST_F(SessionRecoveryTest, ASessionThatPlaysIsBackAtMostASecondEarlierAndPlays) {
+  begin();
+  client().result("control.set_speed", {{"speed", 2}});
+  const std::uint64_t seen =
+      client()
+          .wait_event("session.status", [](const Json& s) { return s.at("tick") > 200; })
+          .at("tick");  // two seconds
+  crash();
+  const Json& description = life->joined.at("description");
+  EXPECT_TRUE(description.at("playing"));
+  EXPECT_EQ(description.at("speed"), 2);
+  EXPECT_GE(description.at("tick").get<std::uint64_t>() + 101, seen);  // a beat, and a tick
+}
+
+TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
+  storage.checkpoint_after = 1ms;
+  begin();
+  client().result("control.pause");
+  client().result("control.reset");
+  for (int i = 0; i < 20; ++i) {
+    client().result("control.step", {{"ticks", 10}});
+    client().result("world.set_gravity", {{"gravity", {0, 0.1 * i, -9}}});
+    life->flush();
+  }
+  const std::string before = life->hash();
+  copy_data(data, folder.file("look"));
+  Database look(folder.file("look/checkpoints.db"), Database::Mode::create);
+  ASSERT_GE(look.number("SELECT count(*) FROM checkpoints"), 2);
+  const std::int64_t newest = look.number("SELECT max(sequence) FROM checkpoints");
+  ASSERT_GE(newest, 5);
+  crash();
+  EXPECT_EQ(life->hash(), before);
+  client().result("control.reset");
+  const std::string start = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), start);
+
+  // The way before the newest checkpoint is not gone again: it may be damaged.
+  life.reset();
+  execute("UPDATE log SET params = 'damaged' WHERE sequence BETWEEN 3 AND 5");
+  begin();
+  EXPECT_EQ(life->hash(), start);
+}
+
+TEST_F(SessionRecoveryTest, ADamagedCheckpointIsPassedOver) {
+  storage.checkpoint_after = 1ms;
+  begin();
+  client().result("control.pause");
+  for (int i = 0; i < 5; ++i) client().result("control.step", {{"ticks", 10}});
+  const std::string before = life->hash();
+  life.reset();
+  execute("UPDATE checkpoints SET state = CAST(substr(state, 1, 500) AS BLOB)", "/checkpoints.db");
+  begin();
+  EXPECT_EQ(life->hash(), before);
+}
+
+TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTellsSo) {
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 10}});
+  client().result("control.play");
+  client().wait_event("session.status", [](const Json& s) { return s.at("tick") > 80; });
+  life.reset();
+  execute("DELETE FROM checkpoints", "/checkpoints.db");
+  execute("UPDATE sessions SET hash = hash + 1");
+  begin();
+  const Json told = client().wait_event("session.diverged");
+  EXPECT_NE(told.at("reason").get<std::string>().find("hash"), std::string::npos) << told;
+  EXPECT_FALSE(life->joined.at("description").at("playing"));
+  EXPECT_EQ(client().error("session.save", {{"name", "n"}}).at("data").at("kind"), "not_allowed");
+  life.reset();  // nobody has touched it
+  begin();
+  client().wait_event("session.diverged");
+  client().result("control.reset");
+  client().result("control.step", {{"ticks", 2}});
+  const std::string after = life->hash();
+  crash();  // it goes on from there
+  EXPECT_EQ(life->hash(), after);
+  EXPECT_TRUE(client().events("session.diverged").empty());
+}
+
+TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
+  begin();
+  client().result("control.pause");
+  life.reset();
+  execute("DELETE FROM checkpoints", "/checkpoints.db");
+  execute("DELETE FROM log WHERE sequence = 1");
+  const ServerSettings settings = test_settings({}, data);
+  {
+    TestServer server(catalogue, settings);
+    EXPECT_EQ(server.recover(), 1U);
+    ASSERT_TRUE(wait_until([&] { return server.is_ready(); }));
+    TestClient visitor(server, 1);
+    const Json sessions = visitor.result("session.list").at("sessions");
+    ASSERT_EQ(sessions.size(), 1U);
+    EXPECT_EQ(sessions[0].at("state"), "lost");
+    EXPECT_EQ(sessions[0].at("name"), "first");
+    const Json error = visitor.error("session.join", {{"session", "s1"}});
+    EXPECT_EQ(error.at("code"), 1011);
+    EXPECT_EQ(error.at("data").at("state"), "lost");
+    EXPECT_EQ(visitor.error("replay.open", {{"session", "s1"}}).at("data").at("state"), "lost");
+    const Json ticket = visitor.error("access.ticket", {{"session", "s1"}, {"role", "controller"}});
+    EXPECT_EQ(ticket.at("data").at("state"), "lost");
+    const Json refused = visitor.error("session.close", {{"session", "s1"}});
+    EXPECT_EQ(refused.at("data").at("least_role"), "owner");
+    EXPECT_EQ(visitor.result("session.list").at("sessions").size(), 1U);
+  }
+  TestServer server(catalogue, settings);
+  EXPECT_EQ(server.recover(), 1U);
+}
+
+TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 1000}});
+  life.reset();
+  execute("DELETE FROM checkpoints", "/checkpoints.db");  // all ticks are to be run again
+  TestServer server(catalogue, test_settings({}, data));
+  EXPECT_EQ(server.recover(), 1U);
+  EXPECT_FALSE(server.is_ready());
+  TestClient visitor(server, 1);
+  EXPECT_EQ(visitor.result("session.list").at("sessions")[0].at("state"), "recovering");
+  const Json error = visitor.error("replay.open", {{"session", "s1"}});
+  EXPECT_EQ(error.at("code"), 1011);
+  EXPECT_EQ(error.at("data").at("state"), "recovering");
+  const int joining = visitor.send("session.join", {{"session", "s1"}});
+  EXPECT_TRUE(wait_until([&] { return server.is_ready(); }));
+  EXPECT_TRUE(visitor.wait_reply(joining).contains("result"));
+}
+
+TEST_F(SessionRecoveryTest, AClosedSessionStaysAwayAndANewOneGetsAnotherId) {
+  begin();
+  client().result("session.create", {{"name", "second"}, {"scene", "mixed"}});
+  client().result("session.join", {{"session", "s2"}});  // as its owner
+  client().result("session.close", {{"session", "s2"}});
+  crash();
+  const Json sessions = client().result("session.list").at("sessions");
+  ASSERT_EQ(sessions.size(), 1U);
+  EXPECT_EQ(sessions[0].at("session"), "s1");
+  EXPECT_EQ(client().result("session.create", {{"name", "c"}, {"scene", "mixed"}}).at("session"),
+            "s3");
+}
+
+TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
+  begin();
+  const Json made = client().result("session.create", {{"name", "own"}, {"scene", "mixed"}});
+  const Json before =
+      client().result("session.join", {{"session", made.at("session")}, {"name", "Ada"}});
+  EXPECT_EQ(before.at("role"), "owner");
+  client().result("session.configure", {{"name", "hers"}, {"locked", true}});
+  client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  clock.advance(1s);  // it is then noted who is there
+  crash();
+  const Json after = client().result(
+      "session.join", {{"session", made.at("session")}, {"resume", before.at("resume")}});
+  EXPECT_EQ(after.at("resumed"), true);
+  EXPECT_EQ(after.at("participant"), before.at("participant"));
+  EXPECT_EQ(after.at("name"), "Ada");
+  EXPECT_EQ(after.at("role"), "owner");
+  EXPECT_EQ(after.at("settings").at("locked"), true);
+  EXPECT_EQ(after.at("settings").at("name"), "hers");
+  const int move = client().send("grab.move", {{"grab", 1}, {"target", {0.5, 0.4, 0.9}}});
+  EXPECT_TRUE(client().wait_reply_at_tick(move).contains("result"));
+}
+
+}  // namespace
+}  // namespace vat::test::session_recovery_test

@@ -1,0 +1,102 @@
+// Sessions step on threads of their own first, and help one another with the rest.
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "server/support/task_runner.h"
+#include "tests/server/fixture/session_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::session_threads_test {
+namespace {
+
+constexpr int kTicks = 10;
+
+/// Some thousand particles, so that a pass is worth a helper.
+Scene pool_scene() {
+  return to_scene(R"({
+    "format": "vat.scene/1", "name": "pool", "title": "Pool",
+    "materials": [{"name": "water", "density": 1000,
+                   "liquid": {"stiffness": 50, "viscosity": 1, "support_radius": 0.1}}],
+    "vat": {"min": [0, 0, 0], "max": [1, 1, 1], "lid": true},
+    "numerics": {"integrator": "velocity_verlet", "step": 0.002, "tick": 0.02},
+    "bodies": [{"name": "pool", "kind": "liquid", "material": "water", "spacing": 0.05,
+                "shape": {"type": "box", "center": [0.4, 0.5, 0.3], "size": [0.7, 0.9, 0.5]}}]})");
+}
+
+ServerSettings with_threads(std::size_t threads) {
+  ServerSettings settings;
+  settings.threads = threads;
+  return settings;
+}
+
+/// Processor time of the threads that do nothing but help [ns].
+double helper_time() {
+  double total = 0;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::getline(std::ifstream(task.path() / "comm"), name);
+    double time = 0;
+    if (name == ThreadPoolRunner::kThreadName) std::ifstream(task.path() / "schedstat") >> time;
+    total += time;
+  }
+  return total;
+}
+
+class SessionThreads : public testing::Test {
+ protected:
+  /// Starts a paused session at tick 0, and a client in it.
+  std::unique_ptr<TestClient> start(TestServer& server) {
+    const SessionId id = server.create_session("pool", pool_scene()).value();
+    auto client = std::make_unique<TestClient>(server, ++last_connection_);
+    client->result("session.join", {{"session", id}});
+    client->result("control.pause");
+    client->result("control.reset");
+    return client;
+  }
+  std::string expected_hash() const {
+    Simulation alone = Simulation::create(pool_scene()).value();
+    advance_ticks(alone, kTicks);
+    return hash_of(alone);
+  }
+
+  const Catalogue catalogue = Catalogue::open(TemporaryFolder().path().string()).value();
+
+ private:
+  ConnectionId last_connection_ = 0;
+};
+
+TEST_F(SessionThreads, ALoneSessionIsHelped) {
+  TestServer server(catalogue, with_threads(4));
+  const auto client = start(server);
+  const double before = helper_time();
+  client->result("control.step", {{"ticks", kTicks}});
+  EXPECT_GT(helper_time(), before + 1e6) << "of some hundred milliseconds of work";
+  EXPECT_EQ(client->result("session.hash").at("hash"), expected_hash());
+}
+
+TEST_F(SessionThreads, OnOneThreadNobodyHelps) {
+  TestServer server(catalogue, with_threads(1));
+  const auto client = start(server);
+  client->result("control.step", {{"ticks", 1}});
+  EXPECT_EQ(helper_time(), 0);
+}
+
+TEST_F(SessionThreads, SessionsAtOnceHaveTheBitsOfEachAlone) {
+  TestServer server(catalogue, with_threads(4));
+  std::vector<std::unique_ptr<TestClient>> clients;
+  std::vector<int> steps;
+  for (int i = 0; i < 3; ++i) clients.push_back(start(server));
+  for (const auto& client : clients) {
+    steps.push_back(client->send("control.step", {{"ticks", kTicks}}));
+  }
+  const std::string expected = expected_hash();
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    clients[i]->wait_reply(steps[i]);
+    EXPECT_EQ(clients[i]->result("session.hash").at("hash"), expected);
+  }
+}
+
+}  // namespace
+}  // namespace vat::test::session_threads_test

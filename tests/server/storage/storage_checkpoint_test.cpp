@@ -1,0 +1,431 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/history/session_log.h"
+#include "server/storage/checkpoint_store.h"
+#include "server/storage/sqlite/compression.h"
+#include "server/storage/data_folder.h"
+#include "server/storage/saved_scenes.h"
+#include "server/storage/storage.h"
+#include "tests/server/fixture/session_fixture.h"
+#include "tests/support/manual_clock.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::storage_checkpoint_test {
+namespace {
+
+using Seconds = CheckpointPace::Seconds;
+
+/// Bytes that do not shrink.
+std::vector<std::uint8_t> noise(std::size_t count) {
+  std::vector<std::uint8_t> bytes(count);
+  std::uint32_t x = 1;
+  for (std::uint8_t& b : bytes) {
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^= x << 5;
+    b = static_cast<std::uint8_t>(x >> 24);
+  }
+  return bytes;
+}
+
+Checkpoint checkpoint(std::uint64_t session, std::uint64_t position, std::size_t bytes) {
+  return {session, position, position + 1, R"({"playing":true})", noise(bytes)};
+}
+
+std::vector<std::uint64_t> positions(CheckpointStore& store, std::uint64_t session) {
+  std::vector<std::uint64_t> positions;
+  for (const CheckpointPlace& place : store.places(session)) positions.push_back(place.position);
+  return positions;
+}
+
+class StorageCheckpoints : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+  const std::string path = folder.file("checkpoints.db");
+};
+
+TEST_F(StorageCheckpoints, ComeBackAsTheyWere) {
+  const Checkpoint written = checkpoint(7, 100, 5000);
+  CheckpointStore(path, 1 << 20).write(written);
+  CheckpointStore store(path, 1 << 20);
+  ASSERT_EQ(store.places(7).size(), 1U);
+  EXPECT_EQ(store.places(7)[0].sequence, 101U);
+  const auto read = store.read(store.places(7)[0]);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->session, 7U);
+  EXPECT_EQ(read->position, 100U);
+  EXPECT_EQ(read->fields, written.fields);
+  EXPECT_EQ(read->state, written.state);
+  EXPECT_TRUE(store.places(8).empty());
+}
+
+std::vector<std::uint64_t> hash_positions(CheckpointStore& store, std::uint64_t from = 0) {
+  std::vector<std::uint64_t> positions;
+  for (const TickHash& one : store.hashes(7, from)) {
+    EXPECT_EQ(one.hash, one.position * 3);
+    positions.push_back(one.position);
+  }
+  return positions;
+}
+
+TEST_F(StorageCheckpoints, HaveHashesThatEndWhereTheSessionGoesOn) {
+  {
+    CheckpointStore store(path, 1 << 20);
+    store.write_hashes(7, std::vector<TickHash>{{1, 3}, {2, 6}, {3, 9}});
+    store.write_hashes(8, std::vector<TickHash>{{4, 1}});
+    store.write_hashes(7, std::vector<TickHash>{{4, 12}, {5, 15}});
+    store.write_hashes(7, std::vector<TickHash>{{6, 18}});
+    store.write_hashes(7, {});
+  }
+  CheckpointStore store(path, 1 << 20);
+  EXPECT_EQ(hash_positions(store), (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(hash_positions(store, 4), (std::vector<std::uint64_t>{4, 5, 6}));
+  store.drop_hashes(7, 6);
+  EXPECT_EQ(store.hash_count(7), 6U);
+  store.drop_hashes(7, 4);
+  EXPECT_EQ(hash_positions(store), (std::vector<std::uint64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(store.hash_count(7), 4U);
+  store.write_hashes(7, std::vector<TickHash>{{CheckpointStore::kMaxHashes + 4,
+                                               3 * (CheckpointStore::kMaxHashes + 4)}});
+  EXPECT_EQ(hash_positions(store).front(), 4U);  // the rows before end too far back
+  store.keep_only({8});
+  EXPECT_EQ(store.hash_count(7), 0U);
+  EXPECT_EQ(store.hash_count(8), 1U);
+}
+
+TEST_F(StorageCheckpoints, BeyondTheirBytesTheyAreThinnedEvenly) {
+  CheckpointStore store(path, 10 * 1000 + 500);
+  for (std::uint64_t position = 0; position <= 64; ++position) {
+    store.write(checkpoint(1, position, 1000));
+  }
+  const std::vector<std::uint64_t> kept = positions(store, 1);
+  ASSERT_GE(kept.size(), 9U);  // each takes some bytes more than 1000
+  ASSERT_LE(kept.size(), 10U);
+  EXPECT_EQ(kept.front(), 0U);
+  EXPECT_EQ(kept.back(), 64U);
+  // Of ten with the least gaps merged first none is wider than twice what an even share would be,
+  // doubled: intervals are powers of two.
+  for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_LE(kept[i] - kept[i - 1], 4U * 64 / 9);
+}
+
+TEST_F(StorageCheckpoints, TheNewestStaysHoweverLargeItIs) {
+  CheckpointStore store(path, 100);
+  store.write(checkpoint(1, 5, 1000));
+  store.write(checkpoint(2, 1, 50));
+  store.write(checkpoint(1, 9, 1000));
+  EXPECT_EQ(positions(store, 1), std::vector<std::uint64_t>{9});
+  EXPECT_EQ(positions(store, 2), std::vector<std::uint64_t>{1});
+}
+
+TEST_F(StorageCheckpoints, ThoseOfOtherSessionsCanGo) {
+  CheckpointStore store(path, 1 << 20);
+  for (std::uint64_t session = 1; session <= 3; ++session) store.write(checkpoint(session, 1, 10));
+  store.keep_only({2});
+  EXPECT_TRUE(store.places(1).empty());
+  EXPECT_EQ(store.places(2).size(), 1U);
+  EXPECT_TRUE(store.places(3).empty());
+}
+
+TEST_F(StorageCheckpoints, ADamagedOneIsToldByItsKind) {
+  CheckpointStore store(path, 1 << 20);
+  store.write(checkpoint(1, 1, 1000));
+  Database database(path, Database::Mode::create);
+  database.execute("UPDATE checkpoints SET state = CAST(substr(state, 1, 900) AS BLOB)");
+  try {
+    store.read(store.places(1).at(0));
+    ADD_FAILURE() << "it was read";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(error.kind(), StorageError::Kind::corrupt);
+  }
+}
+
+TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
+  std::vector<std::uint8_t> bytes = noise(3000);
+  bytes.resize(10'000);
+  std::vector<std::uint8_t> frame = compress(bytes);
+  EXPECT_LT(frame.size(), 4000U);
+  EXPECT_EQ(decompress(frame, 10'000), bytes);
+  EXPECT_THROW(decompress(frame, 9'999), StorageError);
+  EXPECT_THROW(decompress(std::span(frame).first(frame.size() - 1), 10'000), StorageError);
+  for (const std::size_t at : {std::size_t{1}, frame.size() / 2, frame.size() - 1}) {
+    frame[at] ^= 1;
+    EXPECT_THROW(decompress(frame, 10'000), StorageError) << at;
+    frame[at] ^= 1;
+  }
+  EXPECT_TRUE(decompress(compress({}), 0).empty());
+}
+
+TEST(StorageStates, GoWithTheSessionsThatAreGone) {
+  SavedStates states(MainDatabase::kInMemory);
+  const SavedStateLimits limits{10, 1000, 1000};
+  for (const char* session : {"s1", "s2"}) {
+    SavedState state;
+    state.entry.name = "n";
+    state.state = {1};
+    EXPECT_FALSE(states.write(session, state, limits));
+  }
+  states.keep_only({"s1", "s3"});
+  EXPECT_EQ(states.list("s1").size(), 1U);
+  EXPECT_TRUE(states.list("s2").empty());
+}
+
+TEST(StorageScenes, WhoseKeyHasAnotherSizeAreDamaged) {
+  const auto main = std::make_shared<MainDatabase>(MainDatabase::kInMemory);
+  SavedScenes scenes(main);
+  SavedScene scene;
+  scene.entry.name = "n";
+  EXPECT_FALSE(scenes.write(scene, {1, 1000, 1, 1000}));
+  EXPECT_TRUE(scenes.find("n"));
+  for (const char* key : {"zeroblob(0)", "zeroblob(31)", "zeroblob(33)"}) {
+    main->database.prepare("UPDATE scenes SET key = " + std::string(key)).run();
+    EXPECT_THROW(scenes.find("n"), StorageError) << key;
+  }
+}
+
+TEST(StorageFolder, IsOneServersAtATime) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("data");
+  {
+    const DataFolder first(path);
+    try {
+      const DataFolder second(path);
+      ADD_FAILURE() << "both have it";
+    } catch (const StorageError& error) {
+      EXPECT_EQ(error.kind(), StorageError::Kind::locked);
+    }
+  }
+  const DataFolder third(path);
+}
+
+TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
+  try {
+    const DataFolder folder("/proc/vat");  // nobody may, root neither
+    ADD_FAILURE() << "it was made";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(error.kind(), StorageError::Kind::read_only);
+  }
+}
+
+TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
+  const test::TemporaryFolder folder;
+  test::ManualClock clock;
+  std::uint64_t kept = 0;
+  {
+    Storage storage(folder.file("data"), {}, clock);
+    const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
+    const StoredSession session{0, "name", "avx2", "{}", 0, {}};
+    const std::uint64_t closed = storage.sessions().create(session, first);
+    kept = storage.sessions().create(session, first);
+    storage.checkpoints().write(checkpoint(closed, 1, 10));
+    storage.checkpoints().write(checkpoint(kept, 1, 10));
+    storage.sessions().close(closed);
+    storage.remove_closed();
+  }
+  Storage storage(folder.file("data"), {}, clock);
+  EXPECT_TRUE(storage.sessions().read(1, 0).empty());
+  EXPECT_TRUE(storage.checkpoints().places(1).empty());
+  EXPECT_EQ(storage.sessions().read(kept, 0).size(), 1U);
+  EXPECT_EQ(storage.checkpoints().places(kept).size(), 1U);
+}
+
+/// Its timers are late: a task that is cancelled is queued already.
+class LateClock final : public Clock {
+ public:
+  SteadyClock::time_point now() const override { return {}; }
+  double wall_time() const override { return 0; }
+  std::unique_ptr<Timer> make_timer(boost::asio::any_io_executor executor) override {
+    class LateTimer final : public Timer {
+     public:
+      LateTimer(std::atomic<int>& starts, boost::asio::any_io_executor executor)
+          : starts_(starts), executor_(std::move(executor)) {}
+      void start(SteadyClock::time_point, std::function<void()> task) override {
+        ++starts_;
+        task_ = std::move(task);
+      }
+      void cancel() override { boost::asio::post(executor_, task_); }
+
+     private:
+      std::atomic<int>& starts_;
+      const boost::asio::any_io_executor executor_;
+      std::function<void()> task_;
+    };
+    return std::make_unique<LateTimer>(starts, std::move(executor));
+  }
+
+  std::atomic<int> starts = 0;
+};
+
+// A timer that is started again would keep the storage's thread running for ever.
+TEST(Storage, StartsNoTimerAtItsEnd) {
+  const test::TemporaryFolder folder;
+  LateClock clock;
+  { const Storage storage(folder.file("data"), {}, clock); }
+  EXPECT_EQ(clock.starts, 1);
+}
+
+TEST(Storage, MovesItsLogsEverySecond) {
+  const test::TemporaryFolder folder;
+  test::ManualClock clock;
+  Storage storage(folder.file("data"), {}, clock);
+  const std::string log = folder.file("data") + "/vat.db-wal";
+  const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
+  const StoredSession session{0, "name", "avx2", "{}", 0, {}};
+  const auto write = [&] {
+    storage.sessions().create(session, first);
+    return std::filesystem::file_size(log);
+  };
+  clock.advance(std::chrono::milliseconds(999));
+  const auto small = write();
+  const auto larger = write();
+  EXPECT_GT(larger, small);
+  clock.advance(std::chrono::milliseconds(1));
+  write();
+  EXPECT_EQ(std::filesystem::file_size(log), larger) << "it is used again from its start";
+}
+
+TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
+  const test::TemporaryFolder folder;
+  test::ManualClock clock;
+  bool ran = false;
+  {
+    Storage storage(folder.file("data"), {}, clock);
+    storage.post([] { throw StorageError(StorageError::Kind::full, "the disk is full"); });
+    storage.post([&] { ran = storage.counts().failures == 1; });
+  }
+  EXPECT_TRUE(ran);
+}
+
+// When checkpoints are written, and what of a log is forgotten.
+
+struct Course {
+  double share = 0;  ///< of checkpoints in all work
+  Seconds longest{0};
+};
+
+/// A session that works in ticks of `tick` for so long, and whose checkpoints cost so much.
+Course follow(CheckpointPace pace, Seconds tick, Seconds cost, Seconds length) {
+  Course course;
+  Seconds since{0};
+  Seconds spent{0};
+  for (Seconds work{0}; work < length; work += tick) {
+    pace.add_work(tick);
+    since += tick;
+    course.longest = std::max(course.longest, since);
+    if (!pace.is_due(cost)) continue;
+    pace.begin();
+    spent += cost;
+    since = Seconds(0);
+  }
+  course.share = spent / length;
+  return course;
+}
+
+TEST(CheckpointPace, CheapOnesComeAsOftenAsIsWanted) {
+  const Course course =
+      follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(0.001), Seconds(100));
+  EXPECT_LE(course.longest.count(), 0.15 + 0.004);
+  EXPECT_LE(course.share, CheckpointPace::kMaxShare);
+}
+
+TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
+  for (const double cost : {0.01, 0.02, 0.05, 0.1}) {
+    const Course course =
+        follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(cost), Seconds(1000));
+    // Sums of a million roundings.
+    EXPECT_LE(course.share, CheckpointPace::kMaxShare * (1 + 1e-9)) << cost;
+    // And no less than one tick in the time between two of them.
+    EXPECT_GE(course.share, CheckpointPace::kMaxShare * 0.97 - cost / 1000) << cost;
+  }
+}
+
+TEST(CheckpointPace, SomeComeWhateverTheyCost) {
+  const Course course =
+      follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(5), Seconds(100));
+  EXPECT_LE(course.longest, CheckpointPace::kMaxWork + Seconds(0.005));
+  EXPECT_GT(course.longest, CheckpointPace::kMaxWork - Seconds(0.005));
+}
+
+class BoundedLog : public testing::Test {
+ protected:
+  BoundedLog() : simulation(Simulation::create(to_scene(mixed_scene_text())).value()) {
+    StoredSession session;
+    session.name = "n";
+    session.instruction_set = to_string(simulation.instruction_set());
+    session.settings = "{}";
+    number = storage.sessions().create(session, {1, 0, 0, 0, "scene.load", "{}", false});
+  }
+  static StorageLimits few_bytes() {
+    StorageLimits limits;
+    limits.log_bytes = 1000;
+    return limits;
+  }
+  /// Commands of 100 bytes each.
+  void append(SessionLog& log, int count) {
+    for (int i = 0; i < count; ++i) {
+      LogEntry entry{0, 5, 5, 1, "world.set_gravity", std::string(100, ' '), false};
+      log.append({&entry, 1});
+    }
+  }
+  void keep(SessionLog& log, std::uint64_t loaded) {
+    log.store({.position = 5,
+               .tick = 5,
+               .sequence = log.last(),
+               .loaded = loaded,
+               .participants = write_participants({}),
+               .snapshot = simulation.snapshot()},
+              clock.now(), true);
+    storage.flush();
+  }
+  std::vector<std::uint64_t> sequences() {
+    std::vector<std::uint64_t> all;
+    for (const LogEntry& entry : storage.sessions().read(number, 0)) all.push_back(entry.sequence);
+    return all;
+  }
+
+  const TemporaryFolder folder;
+  ManualClock clock;
+  Storage storage{folder.file("data"), few_bytes(), clock};
+  const Simulation simulation;
+  std::uint64_t number = 0;
+};
+
+TEST_F(BoundedLog, UpToItsLimitNothingIsForgotten) {
+  SessionLog log(storage, number, {1, 0});
+  append(log, 9);
+  keep(log, 1);
+  EXPECT_EQ(sequences().size(), 10U);
+}
+
+TEST_F(BoundedLog, BeyondItsLimitItBeginsAtTheCheckpointAndKeepsTheScene) {
+  SessionLog log(storage, number, {1, 0});
+  append(log, 12);
+  keep(log, 4);
+  EXPECT_EQ(sequences(), std::vector<std::uint64_t>({4}));
+  append(log, 2);
+  EXPECT_EQ(sequences(), std::vector<std::uint64_t>({4, 14, 15}));
+  ASSERT_FALSE(storage.checkpoints().places(number).empty());
+  EXPECT_EQ(storage.checkpoints().places(number).back().sequence, 13U);
+  keep(log, 4);  // it is small again
+  EXPECT_EQ(sequences().size(), 3U);
+}
+
+TEST_F(BoundedLog, WithoutACheckpointNothingIsForgotten) {
+  SessionLog log(storage, number, {1, 0});
+  append(log, 30);
+  EXPECT_EQ(sequences().size(), 31U);
+}
+
+}  // namespace
+}  // namespace vat::test::storage_checkpoint_test

@@ -1,0 +1,348 @@
+// What a database is opened as, and what is refused; transactions.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "server/storage/sqlite/schema.h"
+#include "server/storage/session_store.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::storage_database_test {
+namespace {
+
+constexpr std::uint32_t kApplication = 77;
+constexpr const char* kOld[] = {"CREATE TABLE things (name TEXT NOT NULL) STRICT"};
+constexpr const char* kNew[] = {"CREATE TABLE things (name TEXT NOT NULL) STRICT",
+                                "ALTER TABLE things ADD COLUMN size INTEGER NOT NULL DEFAULT 5"};
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return std::move(text).str();
+}
+
+/// The kind of the error that opening gives; fails the test where it gives none.
+StorageError::Kind refusal(const std::string& path, const Schema& schema) {
+  try {
+    open_database(path, schema);
+  } catch (const StorageError& error) {
+    EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    return error.kind();
+  }
+  ADD_FAILURE() << path << " was opened";
+  return StorageError::Kind::failed;
+}
+
+class StorageDatabase : public testing::Test {
+ protected:
+  void make_old() {
+    Database database = open_database(path, {kApplication, kOld});
+    database.execute("INSERT INTO things VALUES ('one'), ('two')");
+  }
+  test::TemporaryFolder folder;
+  const std::string path = folder.file("test.db");
+};
+
+TEST_F(StorageDatabase, OlderOnesAreBroughtUpToDateWithWhatTheyHold) {
+  make_old();
+  Database database = open_database(path, {kApplication, kNew});
+  EXPECT_EQ(database.number("PRAGMA user_version"), 2);
+  EXPECT_EQ(database.number("SELECT count(*) FROM things WHERE size = 5"), 2);
+}
+
+TEST_F(StorageDatabase, AMigrationThatFailsLeavesTheOldOne) {
+  make_old();
+  constexpr const char* kBroken[] = {kNew[0], "ALTER TABLE things RENAME TO items",
+                                     "INSERT INTO nothing VALUES (1)"};
+  EXPECT_THROW(open_database(path, {kApplication, kBroken}), StorageError);
+  Database database = open_database(path, {kApplication, kOld});
+  EXPECT_EQ(database.number("PRAGMA user_version"), 1);
+  EXPECT_EQ(database.number("SELECT count(*) FROM things"), 2);
+}
+
+TEST_F(StorageDatabase, ANewerOneIsRefusedAndStaysAsItIs) {
+  open_database(path, {kApplication, kNew});
+  const std::string before = content_of(path);
+  EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::newer);
+  EXPECT_EQ(content_of(path), before);
+}
+
+TEST_F(StorageDatabase, AnotherProgramsIsRefused) {
+  open_database(path, {kApplication + 1, kOld});
+  EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::corrupt);
+}
+
+TEST_F(StorageDatabase, GarbageIsRefusedAndStaysAsItIs) {
+  const std::string garbage(5000, 'x');
+  folder.write("test.db", garbage);
+  EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::corrupt);
+  EXPECT_EQ(content_of(path), garbage);
+}
+
+TEST_F(StorageDatabase, ADamagedPageIsFoundBeforeAnythingIsWritten) {
+  {
+    Database database = open_database(path, {kApplication, kOld});
+    Transaction transaction(database);
+    Statement insert = database.prepare("INSERT INTO things VALUES (?)");
+    for (int i = 0; i < 1000; ++i) insert.bind(0, std::string_view("a name of some length")).run();
+    transaction.commit();
+  }
+  std::string bytes = content_of(path);
+  ASSERT_GT(bytes.size(), 4U * 4096);
+  bytes.replace(3 * 4096, 64, std::string(64, '\xff'));  // the header of a page of the table
+  folder.write("test.db", bytes);
+  EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::corrupt);
+  EXPECT_EQ(content_of(path), bytes);
+}
+
+TEST_F(StorageDatabase, AFileThatEndsEarlyIsFound) {
+  make_old();
+  std::filesystem::resize_file(path, 4096);
+  EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::corrupt);
+}
+
+TEST_F(StorageDatabase, WhatIsNotCommittedLeavesNothing) {
+  Database database = open_database(path, {kApplication, kOld});
+  {
+    Transaction transaction(database);
+    database.execute("INSERT INTO things VALUES ('lost')");
+  }
+  EXPECT_EQ(database.number("SELECT count(*) FROM things"), 0);
+  Transaction transaction(database);
+  database.execute("INSERT INTO things VALUES ('kept')");
+  transaction.commit();
+  EXPECT_EQ(database.number("SELECT count(*) FROM things"), 1);
+}
+
+TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsToldByItsKind) {
+  Database database = open_database(path, {kApplication, kOld});
+  database.number("PRAGMA max_page_count = 8");
+  const std::string long_name(10'000, 'n');
+  auto kind = StorageError::Kind::failed;
+  try {
+    Transaction transaction(database);
+    for (int i = 0; i < 10; ++i) {
+      database.prepare("INSERT INTO things VALUES (?)").bind(0, std::string_view(long_name)).run();
+    }
+    transaction.commit();
+  } catch (const StorageError& error) {
+    kind = error.kind();
+  }
+  EXPECT_EQ(kind, StorageError::Kind::full);
+  EXPECT_EQ(database.number("SELECT count(*) FROM things"), 0);
+  Transaction transaction(database);  // and it goes on
+  database.execute("INSERT INTO things VALUES ('short')");
+  transaction.commit();
+  EXPECT_EQ(database.number("SELECT count(*) FROM things"), 1);
+}
+
+LogEntry entry(std::uint64_t sequence, std::uint64_t position, std::string params = "{}") {
+  return {sequence, position, position, 3, "world.set_gravity", std::move(params), false};
+}
+
+std::vector<std::uint64_t> sequences(SessionStore& store, std::uint64_t session) {
+  std::vector<std::uint64_t> sequences;
+  for (auto entries = store.read(session, 0); !entries.empty();
+       entries = store.read(session, sequences.back())) {
+    for (const LogEntry& e : entries) sequences.push_back(e.sequence);
+  }
+  return sequences;
+}
+
+class StorageSessions : public testing::Test {
+ protected:
+  std::uint64_t create(SessionStore& store) {
+    StoredSession session;
+    session.name = "a name";
+    session.instruction_set = "avx2";
+    session.settings = R"({"locked":true})";
+    return store.create(session, {1, 0, 0, 0, "scene.load", R"({"scene":"pool"})", false});
+  }
+  test::TemporaryFolder folder;
+  const std::string path = folder.file("vat.db");
+};
+
+TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
+  std::uint64_t number = 0;
+  {
+    SessionStore store(path);
+    number = create(store);
+    store.append(number, entry(2, 10, R"({"gravity":[0,0,-1]})"));
+    store.write_progress(number, {12, 11, 2, 0xfedcba9876543210, 4, true, 0.5, "[1]"});
+    store.reach(number, 20);
+    store.reach(number, 15);  // earlier: it was further already
+  }
+  SessionStore store(path);
+  const std::vector<StoredSession> sessions = store.sessions();
+  ASSERT_EQ(sessions.size(), 1U);
+  const StoredSession& session = sessions.front();
+  EXPECT_EQ(session.number, number);
+  EXPECT_EQ(session.name, "a name");
+  EXPECT_EQ(session.instruction_set, "avx2");
+  EXPECT_EQ(session.settings, R"({"locked":true})");
+  EXPECT_EQ(session.reached, 20U);
+  ASSERT_TRUE(session.progress);
+  EXPECT_EQ(session.progress->position, 12U);
+  EXPECT_EQ(session.progress->tick, 11U);
+  EXPECT_EQ(session.progress->sequence, 2U);
+  EXPECT_EQ(session.progress->hash, 0xfedcba9876543210);
+  EXPECT_EQ(session.progress->epoch, 4U);
+  EXPECT_TRUE(session.progress->playing);
+  EXPECT_EQ(session.progress->speed, 0.5);
+  EXPECT_EQ(session.progress->participants, "[1]");
+
+  const std::vector<LogEntry> log = store.read(number, 1);
+  ASSERT_EQ(log.size(), 1U);
+  EXPECT_EQ(log[0].sequence, 2U);
+  EXPECT_EQ(log[0].position, 10U);
+  EXPECT_EQ(log[0].participant, 3U);
+  EXPECT_EQ(log[0].method, "world.set_gravity");
+  EXPECT_EQ(log[0].params, R"({"gravity":[0,0,-1]})");
+}
+
+TEST_F(StorageSessions, ABeatIsAPositionThatWasReached) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  store.write_progress(number, {12, 11, 1, 5, 1, true, 1, "[]"});
+  EXPECT_EQ(store.sessions().at(0).reached, 12U);
+}
+
+TEST_F(StorageSessions, WhatIsClosedStaysAwayAndItsNumberIsNotUsedAgain) {
+  std::uint64_t number = 0;
+  {
+    SessionStore store(path);
+    number = create(store);
+    store.close(number);
+    EXPECT_TRUE(store.sessions().empty());
+  }
+  SessionStore store(path);
+  EXPECT_TRUE(store.sessions().empty());
+  store.remove_closed();
+  EXPECT_TRUE(store.read(number, 0).empty());
+  EXPECT_GT(create(store), number);
+}
+
+TEST_F(StorageSessions, RefusedEntriesAreTold) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  store.append(number, entry(2, 1));
+  store.append(number, entry(3, 1));
+  store.refuse(number, 2);
+  EXPECT_TRUE(store.find(number, 2).value().refused);
+  EXPECT_FALSE(store.find(number, 3).value().refused);
+  EXPECT_FALSE(store.find(number, 4));
+}
+
+TEST_F(StorageSessions, LongLogsAreReadInParts) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  const std::uint64_t other = create(store);
+  std::vector<LogEntry> entries;
+  for (std::uint64_t i = 2; i <= 2000; ++i) entries.push_back(entry(i, i));
+  store.append(number, entries);
+  const std::vector<std::uint64_t> all = sequences(store, number);
+  ASSERT_EQ(all.size(), 2000U);
+  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i + 1);
+  EXPECT_EQ(sequences(store, other).size(), 1U);
+}
+
+TEST_F(StorageSessions, ATrimmedLogKeepsWhatLaterEntriesBuildOn) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  const std::uint64_t other = create(store);
+  for (std::uint64_t i = 2; i <= 9; ++i) store.append(number, entry(i, i, R"({"a":1})"));
+  store.trim(number, 7, 3);
+  EXPECT_EQ(sequences(store, number), (std::vector<std::uint64_t>{3, 8, 9}));
+  EXPECT_EQ(store.log_bytes(number), 3 * std::string(R"({"a":1})").size());
+  EXPECT_EQ(sequences(store, other).size(), 1U);
+}
+
+TEST_F(StorageSessions, EntriesOfOneCallAreWrittenTogetherOrNotAtAll) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  const std::vector<LogEntry> entries = {entry(2, 1), entry(3, 1), entry(2, 1)};  // 2 twice
+  EXPECT_THROW(store.append(number, entries), StorageError);
+  EXPECT_EQ(sequences(store, number).size(), 1U);
+  store.append(number, entry(2, 1));
+  EXPECT_EQ(sequences(store, number).size(), 2U);
+}
+
+TEST_F(StorageSessions, AFullDiskRefusesAndLosesNothing) {
+  SessionStore store(path);
+  const std::uint64_t number = create(store);
+  store.limit_pages(20);
+  std::uint64_t written = 1;
+  auto kind = StorageError::Kind::failed;
+  try {
+    for (;;) {
+      store.append(number, entry(written + 1, 1, "{\"a\":\"" + std::string(3000, 'a') + "\"}"));
+      ++written;
+    }
+  } catch (const StorageError& error) {
+    kind = error.kind();
+  }
+  EXPECT_EQ(kind, StorageError::Kind::full);
+  EXPECT_GT(written, 2U);
+  EXPECT_EQ(sequences(store, number).size(), written);
+  store.limit_pages(1000);
+  store.append(number, entry(written + 1, 1));
+  EXPECT_EQ(sequences(store, number).size(), written + 1);
+}
+
+/// Fails the test where one is missing.
+std::uint64_t last_sequence(SessionStore& store, std::uint64_t session) {
+  const std::vector<std::uint64_t> all = sequences(store, session);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i + 1);
+  return all.size();
+}
+
+/// Appends entries until it is killed, and tells the number of each that is in.
+[[noreturn]] void append_for_ever(const std::string& path, int told) {
+  SessionStore store(path);
+  const std::uint64_t number = store.sessions().at(0).number;
+  for (std::uint64_t sequence = last_sequence(store, number) + 1;; ++sequence) {
+    store.append(number, entry(sequence, sequence));
+    if (write(told, &sequence, sizeof sequence) != sizeof sequence) _exit(1);
+  }
+}
+
+TEST_F(StorageSessions, WhatWasWrittenSurvivesTheEndOfTheProcessAtAnyMoment) {
+  {
+    SessionStore store(path);
+    create(store);
+  }
+  std::uint64_t last = 1;
+  for (int round = 0; round < 5; ++round) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) append_for_ever(path, ends[1]);
+    ASSERT_GT(child, 0);
+    close(ends[1]);
+    for (int i = 0; i < 20 + 7 * round; ++i) {  // so long it lives at least
+      ASSERT_EQ(read(ends[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    while (read(ends[0], &last, sizeof last) == static_cast<ssize_t>(sizeof last)) {
+    }
+    close(ends[0]);
+    SessionStore store(path);
+    const std::uint64_t present = last_sequence(store, 1);
+    EXPECT_GE(present, last);
+    EXPECT_LE(present, last + 1);  // one may be in and not be told
+  }
+}
+
+}  // namespace
+}  // namespace vat::test::storage_database_test

@@ -1,0 +1,89 @@
+// Several endpoints on one port, each with a thread of its own.
+
+#include <set>
+#include <thread>
+
+#include "tests/server/transport/transport_fixture.h"
+
+namespace vat::test::transport_endpoints_test {
+
+namespace {
+
+class TransportEndpointsTest : public TransportTest {
+ protected:
+  TransportEndpointsTest() {
+    settings.endpoints = 3;
+    recorder.echo = true;
+  }
+  /// Opens that many connections, each of which has been answered.
+  void connect(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      clients.push_back(std::make_unique<WsClient>(port));
+      const std::string message = "message " + std::to_string(i);
+      clients.back()->send_text(message);
+      EXPECT_EQ(clients.back()->read_message().payload, message);
+    }
+  }
+
+  std::vector<std::unique_ptr<WsClient>> clients;
+};
+
+// The system chooses the endpoint by a hash: that 60 connections all get the same of three happens
+// once in 3^59.
+TEST_F(TransportEndpointsTest, ShareTheConnections) {
+  start();
+  connect(60);
+  transport->stop();
+  std::set<std::thread::id> threads;
+  for (const auto& [id, thread] : recorder.threads) threads.insert(thread);
+  EXPECT_EQ(recorder.connections.size(), 60u) << "each has an id of its own";
+  EXPECT_GT(threads.size(), 1u);
+}
+
+TEST_F(TransportEndpointsTest, ServeRequestsBesideWebSockets) {
+  start();
+  connect(10);
+  EXPECT_EQ(http(port, "GET", "/page").body, "/page");
+}
+
+TEST_F(TransportEndpointsTest, LimitsHoldForAllTogether) {
+  settings.max_connections = 10;
+  start();
+  connect(10);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(WsClient(port).read_close(), 1013);
+  EXPECT_EQ(recorder.read([this] { return recorder.connections.size(); }), 10u);
+  clients.pop_back();
+  ASSERT_TRUE(recorder.wait_closed(1));
+  connect(1);
+}
+
+// A shared message goes out of several threads at once, and is let go when the last has sent it.
+TEST_F(TransportEndpointsTest, SendOneMessageToAll) {
+  start();
+  connect(30);
+  const auto bytes = std::make_shared<const std::string>(40'000, 'x');
+  for (int round = 0; round < 20; ++round) {
+    for (const auto& [id, connection] : recorder.connections) connection->send_binary(bytes);
+    for (const auto& client : clients) ASSERT_TRUE(client->read_message().payload == *bytes);
+  }
+  transport->stop();
+  EXPECT_EQ(bytes.use_count(), 1);
+}
+
+// Two programs that share a port would get each other's clients.
+TEST_F(TransportEndpointsTest, APortInUseIsAnErrorThatNamesIt) {
+  start();
+  settings.port = port;
+  const auto second = make_websocket_transport(settings, recorder, http_handler);
+  try {
+    second->start();
+    ADD_FAILURE() << "two servers on one port";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(),
+              "cannot listen on 127.0.0.1:" + std::to_string(port) + ": Address already in use");
+  }
+}
+
+}  // namespace
+
+}  // namespace vat::test::transport_endpoints_test

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/transport/transport.h"
+#include "tests/server/transport/transport_client.h"
+
+namespace vat::test {
+
+/// Keeps what the transport tells; a test waits for what it expects.
+class Recorder : public ConnectionHandler {
+ public:
+  struct Received {
+    ConnectionId id;
+    bool text;
+    std::string message;
+  };
+
+  void opened(std::shared_ptr<Connection> connection) override {
+    change([&] {
+      const ConnectionId id = connection->id();
+      threads[id] = std::this_thread::get_id();
+      order_ok &= connections.emplace(id, std::move(connection)).second;
+    });
+  }
+  void text_received(ConnectionId id, std::string_view message) override {
+    if (message == "throw") throw std::runtime_error("the handler failed");
+    receive(id, true, message);
+  }
+  void binary_received(ConnectionId id, std::string_view message) override {
+    receive(id, false, message);
+  }
+  void closed(ConnectionId id) override {
+    change([&] { order_ok &= is_known(id) && ended.insert(id).second; });
+  }
+
+  /// False where `condition` (read under the lock) does not come true in time.
+  bool wait(const std::function<bool()>& condition) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kPatience, condition);
+  }
+  bool wait_opened(std::size_t count) {
+    return wait([&] { return connections.size() >= count; });
+  }
+  bool wait_closed(std::size_t count) {
+    return wait([&] { return ended.size() >= count; });
+  }
+  std::shared_ptr<Connection> connection(ConnectionId id) {
+    std::lock_guard lock(mutex_);
+    return connections.at(id);
+  }
+  template <class Read>
+  auto read(Read&& read) {
+    std::lock_guard lock(mutex_);
+    return read();
+  }
+
+  bool echo = false;
+  std::map<ConnectionId, std::shared_ptr<Connection>> connections;
+  std::map<ConnectionId, std::thread::id> threads;  ///< on which each was opened
+  std::set<ConnectionId> ended;
+  std::vector<Received> received;
+  /// Opened, then messages, then closed: each connection once, and on one thread.
+  bool order_ok = true;
+
+ private:
+  template <class Change>
+  void change(Change&& change) {
+    {
+      std::lock_guard lock(mutex_);
+      change();
+    }
+    changed_.notify_all();
+  }
+  bool is_known(ConnectionId id) const {
+    return connections.contains(id) && threads.at(id) == std::this_thread::get_id();
+  }
+  void receive(ConnectionId id, bool text, std::string_view message) {
+    std::shared_ptr<Connection> sender;
+    change([&] {
+      order_ok &= is_known(id) && !ended.contains(id);
+      received.push_back({id, text, std::string(message)});
+      if (echo && order_ok) sender = connections.at(id);
+    });
+    if (!sender) return;
+    if (text) {
+      sender->send_text(std::string(message));
+    } else {
+      sender->send_binary(std::make_shared<const std::string>(message));
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+};
+
+class TransportTest : public testing::Test {
+ protected:
+  TransportTest() { settings.port = 0; }
+
+  void start() {
+    settings.report = [this](std::string_view fault) {
+      std::lock_guard lock(faults_mutex_);
+      faults_.emplace_back(fault);
+    };
+    transport = make_websocket_transport(settings, recorder,
+                                         [this](std::string_view method, std::string_view target) {
+                                           return http_handler(method, target);
+                                         });
+    port = transport->start();
+  }
+  void TearDown() override {
+    if (transport) transport->stop();
+    EXPECT_TRUE(recorder.order_ok);
+    EXPECT_EQ(recorder.connections.size(), recorder.ended.size()) << "opened without closed";
+    EXPECT_EQ(faults(), expected_faults);
+  }
+  std::vector<std::string> faults() {
+    std::lock_guard lock(faults_mutex_);
+    return faults_;
+  }
+
+  TransportSettings settings;
+  Recorder recorder;
+  std::function<HttpResponse(std::string_view, std::string_view)> http_handler =
+      [](std::string_view, std::string_view target) {
+        return HttpResponse{200, "text/plain", std::string(target), {}};
+      };
+  std::vector<std::string> expected_faults;
+  std::unique_ptr<Transport> transport;
+  std::uint16_t port = 0;
+
+ private:
+  std::mutex faults_mutex_;
+  std::vector<std::string> faults_;
+};
+
+}  // namespace vat::test

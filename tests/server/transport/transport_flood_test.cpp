@@ -1,0 +1,179 @@
+// What attackers send: the memory that it costs, and what another user notices of it. Both are
+// measured; memory is that of this process, attackers included.
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "tests/server/transport/transport_fixture.h"
+#include "tests/support/patience.h"
+#include "tests/support/resident_bytes.h"
+#include "tests/support/wait.h"
+
+namespace vat::test::transport_flood_test {
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+/// Beyond what was used before [bytes]. A sanitizer's shadow of memory is many times the memory.
+constexpr double kMaxMemory = 48e6 * kSlowdown;
+/// Of a message to the server and back. A server that waits for its attackers takes 10 s, the time
+/// limit of a handshake.
+constexpr double kMaxDelay = 8;  // [s]
+
+class TransportFloodTest : public TransportTest {
+ protected:
+  /// Attacks beside another user, who is asked all the time.
+  template <class Attack>
+  void withstand(Attack&& attack) {
+    recorder.echo = true;
+    start();
+    WsClient user(port, "127.0.0.2");
+    const double before = resident_bytes();
+    std::atomic<bool> attacked = false;
+    std::atomic<double> most = before;
+    std::vector<double> delays;
+    std::thread other([&] {
+      while (!attacked || delays.size() < 20) {
+        const auto begin = steady_clock::now();
+        user.send_text("alive?");
+        EXPECT_EQ(user.read_message().payload, "alive?");
+        delays.push_back(Seconds(steady_clock::now() - begin).count());
+        most = std::max<double>(most, resident_bytes());
+        pause(milliseconds(5));
+      }
+    });
+    attack();
+    attacked = true;
+    other.join();
+    EXPECT_LT(most - before, kMaxMemory);
+    EXPECT_LT(std::ranges::max(delays), kMaxDelay);
+  }
+  /// Writes until the peer ends it; what was written.
+  static std::size_t write_until_closed(RawClient& client, const std::string& bytes,
+                                        std::size_t most, milliseconds interval = milliseconds(0)) {
+    std::size_t written = 0;
+    try {
+      for (; written < most; written += bytes.size()) {
+        client.write(bytes);
+        pause(interval);
+      }
+    } catch (const std::runtime_error&) {  // cut off
+    }
+    return written;
+  }
+};
+
+// Slowloris: a byte of a header or of a body now and then, on many connections.
+TEST_F(TransportFloodTest, DripsOfHeadersAndBodies) {
+  settings.handshake_timeout = milliseconds(1000);
+  withstand([&] {
+    std::vector<std::unique_ptr<RawClient>> drips;
+    for (int i = 0; i < 200; ++i) {
+      drips.push_back(std::make_unique<RawClient>(port));
+      drips.back()->write(i % 2 == 0
+                              ? "GET /ws HTTP/1.1\r\nHost: x\r\nX-Header: "
+                              : "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000\r\n\r\n");
+    }
+    const auto are_cut_off = [&] {
+      pause(milliseconds(100));
+      std::erase_if(drips, [](const auto& d) { return write_until_closed(*d, "x", 1) == 0; });
+      return drips.empty();
+    };
+    EXPECT_TRUE(wait_until(are_cut_off))
+        << "cut off once their time was over, however much they still sent";
+  });
+}
+
+// A message of which a byte comes now and then holds its connection only, which must answer pings.
+TEST_F(TransportFloodTest, DripsOfMessages) {
+  settings.ping_interval = milliseconds(300);
+  withstand([&] {
+    WsClient drip(port);
+    const std::string frame = client_frame(1, std::string(100'000, 'x'));
+    drip.raw().write(frame.substr(0, 100));
+    EXPECT_LT(write_until_closed(drip.raw(), "x", 100, milliseconds(50)), 100U);
+  });
+}
+
+TEST_F(TransportFloodTest, HandshakesAsFastAsTheyCome) {
+  withstand([&] {
+    constexpr int kThreads = 4;
+    constexpr int kEach = 500;
+    std::vector<std::thread> attackers;
+    for (int t = 0; t < kThreads; ++t) {
+      attackers.emplace_back([&] {
+        for (int i = 0; i < kEach; ++i) WsClient{port}.raw().reset();
+      });
+    }
+    for (std::thread& attacker : attackers) attacker.join();
+  });
+}
+
+TEST_F(TransportFloodTest, ConnectionsThatSayNothingAsFastAsTheyCome) {
+  settings.max_connections_per_address = 32;
+  withstand([&] {
+    std::vector<std::unique_ptr<RawClient>> open;
+    for (int i = 0; i < 3000; ++i) {
+      open.push_back(std::make_unique<RawClient>(port));
+      if (open.size() > 200) open.erase(open.begin());
+    }
+  });
+}
+
+// A length is not believed before the bytes are there.
+TEST_F(TransportFloodTest, FramesThatSayTheyAreHuge) {
+  withstand([&] {
+    for (int i = 0; i < 200; ++i) {
+      WsClient client(port);
+      std::string header("\x82\xff", 2);
+      header += std::string("\x3f\xff\xff\xff\xff\xff\xff\xff", 8) + "\1\2\3\4";
+      client.raw().write(header);
+      EXPECT_EQ(client.read_close(), 1009);
+    }
+  });
+}
+
+// As much as a message may be on many connections, and never its end: the greatest cost by design,
+// a megabyte each here.
+TEST_F(TransportFloodTest, MessagesThatNeverEnd) {
+  withstand([&] {
+    std::vector<std::unique_ptr<WsClient>> clients;
+    for (int i = 0; i < 20; ++i) {
+      clients.push_back(std::make_unique<WsClient>(port));
+      clients.back()->raw().write(client_frame(1, std::string(1'000'000, 'x'), false));
+    }
+  });
+}
+
+TEST_F(TransportFloodTest, FragmentsWithoutEnd) {
+  withstand([&] {
+    WsClient client(port);
+    client.raw().write(client_frame(1, "", false));
+    std::string empty;
+    for (int i = 0; i < 1000; ++i) empty += client_frame(0, "", false);
+    for (int i = 0; i < 500; ++i) client.raw().write(empty);
+    std::string single;
+    for (int i = 0; i < 1000; ++i) single += client_frame(0, "x", false);
+    write_until_closed(client.raw(), single, 3'000'000 * 7);
+    EXPECT_EQ(client.read_close(), 1009);
+  });
+}
+
+TEST_F(TransportFloodTest, PingsAndPongsWithoutEnd) {
+  withstand([&] {
+    WsClient client(port);
+    std::string batch;
+    for (int i = 0; i < 100; ++i) {
+      batch += client_frame(9, std::string(125, 'p')) + client_frame(10, "nobody asked");
+    }
+    for (int i = 0; i < 1000; ++i) client.raw().write(batch);
+  });
+}
+
+}  // namespace
+
+}  // namespace vat::test::transport_flood_test

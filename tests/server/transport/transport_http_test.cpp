@@ -1,0 +1,183 @@
+#include <atomic>
+#include <thread>
+
+#include "server/transport/ws_upgrade.h"
+#include "tests/server/transport/transport_fixture.h"
+
+namespace vat::test::transport_http_test {
+namespace {
+
+class TransportHttpTest : public TransportTest {};
+
+TEST_F(TransportHttpTest, PassesOnTheHandlersAnswer) {
+  http_handler = [](std::string_view method, std::string_view target) {
+    return HttpResponse{
+        404, "text/plain", std::string(method) + " " + std::string(target), {{"X-Test", "yes"}}};
+  };
+  start();
+  const HttpReply reply = http(port, "GET", "/a/../b%00?q=1");
+  EXPECT_EQ(reply.status, 404);
+  EXPECT_EQ(reply.body, "GET /a/../b%00?q=1");
+  EXPECT_EQ(reply.header("Content-Type"), "text/plain");
+  EXPECT_EQ(reply.header("Content-Length"), std::to_string(reply.body.size()));
+  EXPECT_EQ(reply.header("X-Test"), "yes");
+  EXPECT_EQ(reply.header("Connection"), "close");
+  EXPECT_EQ(http(port, "BREW", "/").body, "BREW /");
+}
+
+TEST_F(TransportHttpTest, HeadHasTheLengthAndNoBody) {
+  start();
+  const HttpReply reply = http(port, "HEAD", "/twelve-bytes");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.header("Content-Length"), "13");
+  EXPECT_EQ(reply.body, "");
+}
+
+TEST_F(TransportHttpTest, AnEmptyBodyHasALength) {
+  http_handler = [](std::string_view, std::string_view) {
+    return HttpResponse{204, "text/plain", "", {}};
+  };
+  start();
+  EXPECT_EQ(http(port, "GET", "/").header("Content-Length"), "0");
+}
+
+TEST_F(TransportHttpTest, SendsALargeBodyWhole) {
+  std::string large(16 * 1024 * 1024, '\0');
+  for (std::size_t i = 0; i < large.size(); ++i) large[i] = static_cast<char>(i * 31 >> 8);
+  http_handler = [&](std::string_view, std::string_view) {
+    return HttpResponse{200, "application/octet-stream", large, {}};
+  };
+  start();
+  const HttpReply reply = http(port, "GET", "/");
+  EXPECT_EQ(reply.header("Content-Length"), std::to_string(large.size()));
+  EXPECT_TRUE(reply.body == large);
+}
+
+TEST_F(TransportHttpTest, AHandlerThatThrowsGives500) {
+  http_handler = [](std::string_view, std::string_view) -> HttpResponse {
+    throw std::runtime_error("broken");
+  };
+  expected_faults = {"http: broken"};
+  start();
+  EXPECT_EQ(http(port, "GET", "/").status, 500);
+}
+
+TEST_F(TransportHttpTest, ABodyThatIsTooLongGets413AlthoughThePeerGoesOnSending) {
+  settings.max_http_request_bytes = 1000;
+  start();
+  EXPECT_EQ(http(port, "POST", "/", "Content-Length: 1000\r\n", std::string(1000, 'x')).status,
+            200);
+  const std::string body(4 * 1024 * 1024, 'x');
+  const HttpReply reply =
+      http(port, "POST", "/", "Content-Length: " + std::to_string(body.size()) + "\r\n", body);
+  EXPECT_EQ(reply.status, 413);
+}
+
+TEST_F(TransportHttpTest, MalformedRequestsGetAnError) {
+  start();
+  const auto status = [&](const std::string& request) {
+    RawClient client(port);
+    client.write(request);
+    return parse_reply(client.read_all()).status;
+  };
+  EXPECT_EQ(status("GET / HTTP/1.1\r\n\r\n"), 400);  // no Host
+  EXPECT_EQ(status("GET /\r\nHost: x\r\n\r\n"), 400);
+  EXPECT_EQ(status("G\x01T / HTTP/1.1\r\nHost: x\r\n\r\n"), 400);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x:99999999\r\n\r\n"), 400);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\nnonsense\r\n\r\n"), 400);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\nX: " + std::string(20000, 'x') + "\r\n\r\n"), 431);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\n\r\n"), 200);
+}
+
+class TransportUpgradeTest : public TransportTest {
+ protected:
+  TransportUpgradeTest() { start(); }
+};
+
+TEST_F(TransportUpgradeTest, GrantsTheSubprotocol) {
+  const HttpReply reply = try_upgrade(port, "/ws?name=x", upgrade_headers("vat.v2, vat.v1"));
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
+  // The answer to this key that RFC 6455, section 1.3 prints.
+  EXPECT_EQ(reply.header("Sec-WebSocket-Accept"), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+  EXPECT_TRUE(recorder.wait_closed(1));
+}
+
+// The library takes these for a draft of 2010 and answers without asking.
+TEST_F(TransportUpgradeTest, RefusesVersionsThatTheLibraryAccepts) {
+  for (const char* version : {"", "0"}) {
+    EXPECT_GE(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
+  }
+}
+
+TEST_F(TransportUpgradeTest, AdmitsPagesOfThisServerOnly) {
+  const std::string host = "127.0.0.1:" + std::to_string(port);
+  for (const auto& [origin, status] :
+       {std::pair("http://" + host, 101), std::pair("https://" + host, 101),
+        std::pair(std::string("http://127.0.0.1"), 403), std::pair("http://" + host + "0", 403)}) {
+    const std::string headers = upgrade_headers() + "Origin: " + origin + "\r\n";
+    EXPECT_EQ(try_upgrade(port, "/ws", headers).status, status) << origin;
+  }
+}
+
+/// The status of a refusal, or 101.
+int status_of(const UpgradeRequest& request) {
+  const std::vector<std::string> allowed{"https://example.org", "http://b.example:8443"};
+  const auto refusal = refuse_upgrade(request, allowed);
+  return refusal ? refusal->status : 101;
+}
+
+const std::vector<std::string> kOffered{"vat.v1"};
+
+TEST(UpgradeRules, RefuseOtherPathsVersionsAndSubprotocols) {
+  for (const char* target : {"/ws", "/ws?name=x"}) {
+    EXPECT_EQ(status_of({target, "host:80", "", "13", kOffered}), 101) << target;
+  }
+  for (const char* target : {"/", "/ws/", "/WS", "/wss", "/x/ws", "//ws", "/%77s", "/?/ws"}) {
+    EXPECT_EQ(status_of({target, "host:80", "", "13", kOffered}), 400) << target;
+  }
+  for (const char* version : {"7", "8", "12", "14", "-1", "thirteen"}) {
+    EXPECT_EQ(status_of({"/ws", "host:80", "", version, kOffered}), 400) << version;
+  }
+  for (const char* other : {"", "vat.v2", "VAT.V1", "vat.v10"}) {
+    const std::vector<std::string> offered{other};
+    EXPECT_EQ(status_of({"/ws", "host:80", "", "13", offered}), 400) << other;
+  }
+  const std::vector<std::string> several{"vat.v2", "vat.v1"};
+  EXPECT_EQ(status_of({"/ws", "host:80", "", "13", several}), 101);
+}
+
+// Origins are compared by their whole names, whatever the case of their letters.
+TEST(UpgradeRules, RefuseOtherOrigins) {
+  for (const char* good : {"https://example.org", "https://EXAMPLE.org", "http://b.example:8443",
+                           "http://host:80", "https://host:80", ""}) {
+    EXPECT_EQ(status_of({"/ws", "host:80", good, "13", kOffered}), 101) << good;
+  }
+  for (const char* foreign :
+       {"http://example.org", "https://example.org:8443", "https://a.example.org",
+        "https://example.org.evil", "https://b.example:8443", "null", "https://", "*",
+        "http://host", "http://host:80.example.org", "http://host:800", "host:80",
+        "http://example.org/http://host:80"}) {
+    EXPECT_EQ(status_of({"/ws", "host:80", foreign, "13", kOffered}), 403) << foreign;
+  }
+}
+
+TEST_F(TransportUpgradeTest, NeverCompresses) {
+  const HttpReply reply = try_upgrade(
+      port, "/ws", upgrade_headers() + "Sec-WebSocket-Extensions: permessage-deflate\r\n");
+  EXPECT_EQ(reply.status, 101);
+  EXPECT_EQ(reply.header("Sec-WebSocket-Extensions"), "");
+}
+
+TEST_F(TransportUpgradeTest, ARefusedClientIsNotAnnounced) {
+  const HttpReply reply = try_upgrade(port, "/ws", upgrade_headers("vat.v2"));
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_NE(reply.body.find("vat.v1"), std::string::npos) << reply.body;
+  EXPECT_EQ(try_upgrade(port, "/", upgrade_headers()).status, 400);
+  WsClient good(port);
+  ASSERT_TRUE(recorder.wait_opened(1));
+  EXPECT_EQ(recorder.connections.size(), 1u);
+}
+
+}  // namespace
+}  // namespace vat::test::transport_http_test

@@ -1,0 +1,165 @@
+// The port with TLS: https and wss, and nothing below TLS 1.2.
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <openssl/ssl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "tests/server/transport/transport_fixture.h"
+#include "tests/support/certificate.h"
+#include "tests/support/temporary_folder.h"
+
+namespace vat::test::transport_tls_test {
+
+namespace {
+
+/// A peer that speaks one version of TLS. Every call ends within kPatience.
+class TlsClient {
+ public:
+  TlsClient(std::uint16_t port, int version)
+      : context_(SSL_CTX_new(TLS_client_method()), SSL_CTX_free),
+        tls_(nullptr, SSL_free),
+        socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    const timeval patience{kPatience.count(), 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+      throw std::runtime_error("no connection");
+    }
+    SSL_CTX_set_min_proto_version(context_.get(), version);
+    SSL_CTX_set_max_proto_version(context_.get(), version);
+    SSL_CTX_set_security_level(context_.get(), 0);  // else it offers nothing old by itself
+    tls_.reset(SSL_new(context_.get()));
+    SSL_set_fd(tls_.get(), socket_);
+    is_open_ = SSL_connect(tls_.get()) == 1;
+  }
+  ~TlsClient() { close(socket_); }
+  TlsClient(const TlsClient&) = delete;
+  TlsClient& operator=(const TlsClient&) = delete;
+
+  bool is_open() const { return is_open_; }
+  void write(std::string_view bytes) {
+    if (SSL_write(tls_.get(), bytes.data(), static_cast<int>(bytes.size())) <= 0) {
+      throw std::runtime_error("the peer has gone");
+    }
+  }
+  /// At least so many bytes, or all until the end.
+  std::string read(std::size_t size) {
+    std::string bytes;
+    std::array<char, 65536> part;
+    while (bytes.size() < size) {
+      const int count = SSL_read(tls_.get(), part.data(), static_cast<int>(part.size()));
+      if (count <= 0) break;
+      bytes.append(part.data(), static_cast<std::size_t>(count));
+    }
+    return bytes;
+  }
+
+ private:
+  Owned<SSL_CTX> context_;
+  Owned<SSL> tls_;
+  int socket_;
+  bool is_open_ = false;
+};
+
+class TransportTlsTest : public TransportTest {
+ protected:
+  TransportTlsTest() {
+    settings.tls_certificate = folder.file("certificate.pem");
+    settings.tls_key = folder.file("key.pem");
+    write_certificate(settings.tls_certificate, settings.tls_key);
+  }
+  /// Why the transport cannot be made.
+  std::string failure() {
+    try {
+      start();
+      return "";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  }
+
+  TemporaryFolder folder;
+};
+
+constexpr std::size_t kToTheEnd = static_cast<std::size_t>(-1);
+
+TEST_F(TransportTlsTest, ServesPages) {
+  http_handler = [](std::string_view, std::string_view) {
+    return HttpResponse{200, "text/plain", std::string(3'000'000, 'x'), {}};
+  };
+  start();
+  for (const int version : {TLS1_2_VERSION, TLS1_3_VERSION}) {
+    TlsClient client(port, version);
+    ASSERT_TRUE(client.is_open());
+    client.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+    const HttpReply reply = parse_reply(client.read(kToTheEnd));
+    EXPECT_EQ(reply.status, 200);
+    EXPECT_EQ(reply.body.size(), 3'000'000U);
+  }
+}
+
+TEST_F(TransportTlsTest, CarriesWebSockets) {
+  recorder.echo = true;
+  start();
+  TlsClient client(port, TLS1_3_VERSION);
+  ASSERT_TRUE(client.is_open());
+  client.write("GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\n" + upgrade_headers() + "\r\n");
+  EXPECT_NE(client.read(1).find(" 101 "), std::string::npos);
+  const std::string message(100'000, 'm');
+  client.write(client_frame(1, message));
+  const std::string echoed = client.read(message.size() + 10);
+  EXPECT_EQ(echoed.substr(10), message);
+  transport->stop();
+  EXPECT_EQ(client.read(4).substr(2, 2), "\x03\xe9") << "1001";
+}
+
+TEST_F(TransportTlsTest, RefusesWhatIsOlderThan12) {
+  start();
+  for (const int version : {TLS1_VERSION, TLS1_1_VERSION}) {
+    EXPECT_FALSE(TlsClient(port, version).is_open()) << version;
+  }
+}
+
+TEST_F(TransportTlsTest, AnswersNothingInPlainText) {
+  start();
+  RawClient client(port);
+  client.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_EQ(client.read_all().find("HTTP/"), std::string::npos);
+  EXPECT_TRUE(TlsClient(port, TLS1_3_VERSION).is_open());
+}
+
+// The library's limit for it is 5 s.
+TEST_F(TransportTlsTest, AHandshakeThatNeverEndsIsCutOff) {
+  start();
+  RawClient silent(port);
+  RawClient half(port);
+  half.write(std::string("\x16\x03\x01\x02", 4));
+  EXPECT_EQ(silent.read_all(), "");
+  EXPECT_EQ(half.read_all(), "");
+}
+
+TEST_F(TransportTlsTest, FilesThatCannotBeUsedAreNamed) {
+  const TransportSettings good = settings;
+  settings.tls_certificate = folder.file("none.pem");
+  EXPECT_EQ(failure().find(settings.tls_certificate + ": cannot be read as a certificate"), 0U)
+      << failure();
+  settings = good;
+  write_certificate(folder.file("other.pem"), folder.file("other-key.pem"));
+  settings.tls_key = folder.file("other-key.pem");
+  EXPECT_EQ(failure().find(settings.tls_key + ": cannot be read as the key"), 0U) << failure();
+  settings = good;
+  folder.write("key.pem", "not a key");
+  EXPECT_EQ(failure().find(settings.tls_key + ": cannot be read as the key"), 0U) << failure();
+}
+
+}  // namespace
+
+}  // namespace vat::test::transport_tls_test

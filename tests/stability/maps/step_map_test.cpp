@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/limits.h"
+#include "tests/stability/maps/step_map.h"
+#include "tests/support/scenes.h"
+
+namespace vat::stability::step_map_test {
+namespace {
+
+// The start need not have the fastest mode in it alone, so that more than the limit may pass a
+// short run; less may not.
+TEST(StepMap, ReachesTheoryOnLinearCases) {
+  for (const LinearCase& linear : linear_cases(true)) {
+    for (const IntegratorId integrator : test::kIntegrators) {
+      if (std::isinf(theoretical_step(linear, integrator))) continue;
+      const StepMapPoint point = map_point(linear, integrator);
+      SCOPED_TRACE(linear.body + ", " + to_string(integrator) + ", damping ratio " +
+                   std::to_string(linear.damping_ratio) + ", mass ratio " +
+                   std::to_string(linear.mass_ratio));
+      EXPECT_GE(point.measured, 0.95 * point.theory);
+      // Of liquids theory is a bound.
+      EXPECT_LE(point.measured, (linear.scene.periodic ? 1.5 : 1.1) * point.theory);
+    }
+  }
+}
+
+TEST(StepMap, HasNoLimitForImplicitSprings) {
+  for (const LinearCase& linear : implicit_cases(true)) {
+    const StepMapPoint point = map_point_without_limit(linear, IntegratorId::velocity_verlet);
+    EXPECT_GT(point.frequency * kMaxStep, 999);
+    EXPECT_EQ(point.measured, kMaxStep) << linear.body << ", damping ratio " << linear.damping_ratio
+                                        << ", frequency " << point.frequency;
+  }
+}
+
+}  // namespace
+}  // namespace vat::stability::step_map_test

@@ -1,0 +1,82 @@
+import { Ray, Vector3 } from 'three';
+import type { BufferAttribute, Mesh } from 'three';
+import { describe, expect, it } from 'vitest';
+import { BodyKind } from '../../../web/client/index';
+import type { FrameHeader, GridBlock } from '../../../web/client/index';
+import { BodyView } from '../../../web/viewer/view/bodies/body_view';
+import { Workshop } from '../../../web/viewer/view/surface/workshop';
+import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
+
+const header = { origin: [0, 0, 0], quantum: 1 } as unknown as FrameHeader;
+
+/** Particles along x, ten apart. */
+function block(count: number): GridBlock {
+  const positions = new Uint16Array(3 * count);
+  for (let i = 0; i < count; ++i) positions[3 * i] = 10 * i;
+  return { kind: BodyKind.liquid, body: 1, positions, numbers: undefined, attributes: [] };
+}
+
+function liquid(particles: number): BodyView {
+  const description = {
+    body: 1,
+    name: 'pool',
+    kind: 'liquid' as const,
+    material: 'water',
+    particles,
+    radius: 1,
+  };
+  return new BodyView(description, 0, sharedUniforms(), new Workshop(), () => undefined);
+}
+
+/** The particle at 10 i, seen from above. */
+function pickAt(view: BodyView, i: number): number | undefined {
+  return view.pick(new Ray(new Vector3(10 * i, 0, 50), new Vector3(0, 0, -1)))?.particle;
+}
+
+/** What the graphics know particles by. */
+function numbersOf(view: BodyView): { shown: number[]; version: number } {
+  const { geometry } = view.group.children[0] as Mesh;
+  const column = geometry.getAttribute('number') as BufferAttribute;
+  return { shown: [...column.array].slice(0, view.count), version: column.version };
+}
+
+describe('BodyView', () => {
+  it('shows as many particles as a frame has, whatever was described', () => {
+    const view = liquid(4);
+    for (const count of [4, 9, 3, 9, 40, 0, 1]) {
+      view.showGrid(block(count), header);
+      expect(view.count).toBe(count);
+      if (count > 0) {
+        expect(pickAt(view, count - 1)).toBe(count - 1);
+        expect(view.positionOf(count - 1)?.x).toBe(10 * (count - 1));
+      }
+      expect(pickAt(view, count)).toBeUndefined();
+    }
+  });
+
+  it('names particles by their numbers, where some are missing', () => {
+    const view = liquid(4);
+    view.showGrid({ ...block(3), numbers: Uint32Array.of(1, 4, 9) }, header);
+    expect(pickAt(view, 2)).toBe(9);
+    expect(view.positionOf(4)?.x).toBe(10);
+    expect(view.positionOf(2)).toBeUndefined();
+    expect(view.positionOf(10)).toBeUndefined();
+  });
+
+  it('tints particles by their numbers, which it sends only when they change', () => {
+    const view = liquid(4);
+    view.showGrid(block(4), header);
+    expect(numbersOf(view)).toEqual({ shown: [0, 1, 2, 3], version: 0 });
+    const numbers = Uint32Array.of(1, 4, 9);
+    view.showGrid({ ...block(3), numbers }, header);
+    const { shown, version } = numbersOf(view);
+    expect(shown).toEqual([1, 4, 9]);
+    expect(version).toBeGreaterThan(0);
+    view.showGrid({ ...block(3), numbers: numbers.slice() }, header);
+    expect(numbersOf(view).version).toBe(version);
+    view.showGrid({ ...block(5), numbers: Uint32Array.of(1, 4, 9, 10, 12) }, header);
+    expect(numbersOf(view).shown).toEqual([1, 4, 9, 10, 12]);
+    view.showGrid(block(2), header);
+    expect(numbersOf(view).shown).toEqual([0, 1]);
+  });
+});

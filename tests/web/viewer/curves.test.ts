@@ -1,0 +1,94 @@
+import { describe, expect, it } from 'vitest';
+import type { SessionStats } from '../../../web/client/index';
+import { History } from '../../../web/viewer/curves/history';
+import { profileBetween, profileInWords } from '../../../web/viewer/curves/stage_words';
+
+function stats(ticks: number, seconds: number, stages: Record<string, number>): SessionStats {
+  return {
+    tick: ticks,
+    instruction_set: 'avx2',
+    threads: 1,
+    time: 0,
+    real_time_factor: 1,
+    particles: 1,
+    sleeping_bodies: 0,
+    ticks,
+    substeps: ticks,
+    undone_substeps: 0,
+    seconds,
+    longest_tick: 0,
+    stages: Object.entries(stages).map(([stage, spent]) => ({ stage, calls: 1, seconds: spent })),
+  };
+}
+
+describe('what ticks are spent on', () => {
+  const before = stats(10, 1, { find_pairs: 0.5, kick: 0.5 });
+
+  it('is what was added since the last look, per tick, the most first', () => {
+    const now = stats(20, 1.4, {
+      find_pairs: 0.6,
+      sort_liquid: 0.1,
+      kick: 0.5,
+      liquid_forces: 0.2,
+    });
+    const { seconds, parts } = profileBetween(before, now)!;
+    expect(seconds).toBeCloseTo(0.04);
+    expect(parts.slice(0, 2).map(({ words }) => words)).toEqual(
+      expect.arrayContaining(['finding neighbours', 'forces in liquids']),
+    );
+    expect(parts.map(({ share }) => share)).toEqual([
+      expect.closeTo(0.5),
+      expect.closeTo(0.5),
+      expect.closeTo(0),
+    ]);
+  });
+
+  it('is all of it once a scene was loaded, which counts from 0 again', () => {
+    const { seconds } = profileBetween(before, stats(5, 0.5, { kick: 0.5 }))!;
+    expect(seconds).toBeCloseTo(0.1);
+  });
+
+  it('is nothing where no tick was run', () => {
+    expect(profileBetween(before, before)).toBeUndefined();
+  });
+
+  it('counts a stage that this page does not know as other work', () => {
+    const { parts } = profileBetween(undefined, stats(1, 1, { of_tomorrow: 1 }))!;
+    expect(parts[0]!.words).toBe('other work');
+  });
+
+  it('is said in words, and whether it is enough', () => {
+    const profile = profileBetween(undefined, stats(10, 0.1, { find_pairs: 0.09, kick: 0.01 }))!;
+    expect(profileInWords(profile, 0.02, 1)).toBe(
+      'A tick takes 10 ms of the 20 ms that it may take, so the speed is reached. The largest part is finding neighbours: 90 %.',
+    );
+    expect(profileInWords(profile, 0.02, 4)).toContain('runs 2.0 times slower than set');
+  });
+});
+
+describe('History', () => {
+  it('adds to the same time, leaves gaps, and begins anew where time goes back', () => {
+    const history = new History(['a', 'b']);
+    history.add(1, { a: 1 });
+    history.add(1, { b: 2 });
+    history.add(2, { a: 3 });
+    expect(history.columns(['a', 'b'])).toEqual([
+      [1, 2],
+      [1, 3],
+      [2, null],
+    ]);
+    expect(history.newest('b')).toBe(2);
+    history.add(0.5, { a: 4 });
+    expect(history.columns(['a', 'b'])).toEqual([[0.5], [4], [null]]);
+  });
+
+  it('keeps the beginning and the newest however long it goes', () => {
+    const history = new History(['a']);
+    for (let n = 0; n < 5000; ++n) history.add(n, { a: n });
+    const [times, values] = history.columns(['a']);
+    expect(times.length).toBeLessThanOrEqual(600);
+    expect(times[0]).toBe(0);
+    expect(times.slice(-100)).toEqual(Array.from({ length: 100 }, (_, n) => 4900 + n));
+    expect(values).toEqual(times);
+  });
+});

@@ -1,0 +1,41 @@
+import { describe, expect, it } from 'vitest';
+import { nearestEye } from '../../../web/viewer/view/base/fit';
+import type { Seen } from '../../../web/viewer/view/base/fit';
+
+const kSide = 0.5;
+const kRise = 0.3;
+
+/** Of the half picture, how far out the outermost point lies to each side. */
+function margins(points: Seen[], eye: Seen): Record<'right' | 'left' | 'up' | 'down', number> {
+  const most = (value: (point: Seen, distance: number) => number): number =>
+    Math.max(...points.map((point) => value(point, eye.back - point.back)));
+  return {
+    right: most((point, distance) => (point.right - eye.right) / (kSide * distance)),
+    left: most((point, distance) => (eye.right - point.right) / (kSide * distance)),
+    up: most((point, distance) => (point.up - eye.up) / (kRise * distance)),
+    down: most((point, distance) => (eye.up - point.up) / (kRise * distance)),
+  };
+}
+
+describe('nearestEye', () => {
+  it('sees one square across the tighter axis', () => {
+    const square = [-1, 1].flatMap((right) => [-1, 1].map((up) => ({ right, up, back: 0 })));
+    const eye = nearestEye(square, kSide, kRise);
+    expect(eye.right).toBeCloseTo(0, 12);
+    expect(eye.up).toBeCloseTo(0, 12);
+    expect(eye.back).toBeCloseTo(1 / kRise, 12);
+  });
+
+  it('touches both sides of the tighter axis and stays inside the other', () => {
+    const points = [
+      { right: 4, up: 0.2, back: 1 },
+      { right: -3, up: 0.5, back: -2 },
+      { right: 0, up: -0.4, back: 2 },
+    ];
+    const seen = margins(points, nearestEye(points, kSide, kRise));
+    expect(seen.right).toBeCloseTo(1, 12);
+    expect(seen.left).toBeCloseTo(1, 12);
+    expect(seen.up).toBeLessThan(1);
+    expect(seen.down).toBeLessThan(1);
+  });
+});

@@ -1,0 +1,98 @@
+import { describe, expect, it } from 'vitest';
+import { fieldAround } from '../../../web/viewer/view/surface/field';
+import { marchingCubes } from '../../../web/viewer/view/surface/marching_cubes';
+import type { Surface } from '../../../web/viewer/view/surface/marching_cubes';
+
+/** Whether each edge of each triangle is that of one other, the other way round. */
+function isClosed({ indices }: Surface): boolean {
+  const edges = new Map<string, number>();
+  for (let t = 0; t < indices.length; t += 3) {
+    for (let i = 0; i < 3; ++i) {
+      const [a, b] = [indices[t + i]!, indices[t + ((i + 1) % 3)]!];
+      edges.set(`${a} ${b}`, (edges.get(`${a} ${b}`) ?? 0) + 1);
+    }
+  }
+  return [...edges].every(([edge, count]) => {
+    const [a, b] = edge.split(' ');
+    return count === edges.get(`${b} ${a}`);
+  });
+}
+
+/** By the divergence theorem; above 0 where triangles turn left as seen from outside. */
+function volumeOf({ positions: p, indices }: Surface): number {
+  let six = 0;
+  for (let t = 0; t < indices.length; t += 3) {
+    const [a, b, c] = [3 * indices[t]!, 3 * indices[t + 1]!, 3 * indices[t + 2]!];
+    six += p[a]! * (p[b + 1]! * p[c + 2]! - p[b + 2]! * p[c + 1]!);
+    six += p[a + 1]! * (p[b + 2]! * p[c]! - p[b]! * p[c + 2]!);
+    six += p[a + 2]! * (p[b]! * p[c + 1]! - p[b + 1]! * p[c]!);
+  }
+  return six / 6;
+}
+
+/** The same numbers from 0 to 1 in every run. */
+function numbers(seed: number): () => number {
+  let state = seed;
+  return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+}
+
+describe('marchingCubes', () => {
+  it('is closed and turned outward whatever the field', () => {
+    const next = numbers(7);
+    for (let run = 0; run < 20; ++run) {
+      const distances = new Float32Array(9 * 8 * 7).map((_, n) => {
+        const [x, y, z] = [n % 9, Math.floor(n / 9) % 8, Math.floor(n / 72)];
+        const isEdge = x === 0 || y === 0 || z === 0 || x === 8 || y === 7 || z === 6;
+        return isEdge ? 1 : next() - 0.5;
+      });
+      const surface = marchingCubes({
+        size: [9, 8, 7],
+        origin: [0, 0, 0],
+        step: 1,
+        distances,
+        values: undefined,
+      });
+      expect(surface.indices.length).toBeGreaterThan(300);
+      expect(isClosed(surface)).toBe(true);
+      expect(volumeOf(surface)).toBeGreaterThan(0);
+    }
+  });
+});
+
+describe('fieldAround', () => {
+  it('gives one particle a sphere of its radius', () => {
+    const surface = marchingCubes(fieldAround([100, 200, 300], 5));
+    expect(isClosed(surface)).toBe(true);
+    const distances = surface.positions.reduce<number[]>((all, _, i, p) => {
+      if (i % 3 === 0) all.push(Math.hypot(p[i]! - 100, p[i + 1]! - 200, p[i + 2]! - 300));
+      return all;
+    }, []);
+    // Between two nodes a radius apart, a distance is straight within 1/8 of that squared over it.
+    for (const distance of distances) expect(Math.abs(distance - 5)).toBeLessThan(5 / 8);
+  });
+
+  it('gives a block of particles its volume, flat sides and the mean of values', () => {
+    const radius = 0.5; // particles a metre apart
+    const places = Array.from({ length: 512 }, (_, i) => [i & 7, (i >> 3) & 7, i >> 6]).flat();
+    const values = Array.from({ length: 512 }, (_, i) => ((i & 7) < 4 ? 1 : 3));
+    const surface = marchingCubes(fieldAround(places, radius, values));
+    expect(isClosed(surface)).toBe(true);
+    const volume = volumeOf(surface);
+    // Corners and edges are rounded, and sides sink in by the mean of inner neighbours.
+    expect(volume).toBeGreaterThan(0.6 * 512);
+    expect(volume).toBeLessThan(512);
+    const { positions, normals } = surface;
+    let [top, count] = [0, 0];
+    for (let i = 0; i < positions.length; i += 3) {
+      const isOnTop =
+        positions[i + 2]! > 6.5 && [0, 1].every((q) => Math.abs(positions[i + q]! - 3.5) < 2);
+      if (!isOnTop) continue;
+      top += normals[i + 2]!;
+      ++count;
+    }
+    expect(count).toBeGreaterThan(20);
+    expect(top / count).toBeGreaterThan(0.98); // out, and nearly flat
+    expect(Math.min(...surface.values!)).toBeGreaterThanOrEqual(1);
+    expect(Math.max(...surface.values!)).toBeLessThanOrEqual(3.001);
+  });
+});

@@ -1,0 +1,28 @@
+import { expect, it, vi } from 'vitest';
+import type { FrameHeader } from '../../../web/client/index';
+import { WholePicture } from '../../../web/viewer/panel/status/whole_picture';
+
+const header = (change: Partial<FrameHeader>): FrameHeader =>
+  ({ tick: 7, stride: 1, detail: 3, ...change }) as FrameHeader;
+
+it.each([
+  ['of all particles', {}, false, 0],
+  ['of fewer particles', { detail: 0 }, false, 1],
+  ['that comes rarely', { stride: 4 }, false, 1],
+  ['while it plays', { detail: 0 }, true, 0],
+  ['of another tick', { detail: 0, tick: 6 }, false, 0],
+])('asks for the whole picture once where it stands still: one %s', (_, change, playing, count) => {
+  const ask = vi.fn();
+  const whole = new WholePicture(ask);
+  whole.showFrame(header(change));
+  for (let n = 0; n < 3; ++n) whole.showStatus({ playing, tick: 7 });
+  expect(ask).toHaveBeenCalledTimes(count);
+});
+
+it('asks anew at each standstill', () => {
+  const ask = vi.fn();
+  const whole = new WholePicture(ask);
+  whole.showFrame(header({ detail: 1 }));
+  for (const playing of [false, true, false]) whole.showStatus({ playing, tick: 7 });
+  expect(ask).toHaveBeenCalledTimes(2);
+});

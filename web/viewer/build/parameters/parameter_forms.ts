@@ -1,0 +1,67 @@
+import type { MethodName, Params, Scene } from '../../../client/index';
+import { element } from '../../panel/elements';
+import { attempt } from '../../panel/desk';
+import type { Desk } from '../../panel/desk';
+import { InterfaceForm } from './interface_form';
+import { MaterialForm } from './material_form';
+import { NumericsForm } from './numerics_form';
+import type { ParameterForm } from './parameter_form';
+import type { SceneDocument } from '../scene_document';
+
+/** The forms for materials, interfaces and steps, with units, ranges and reset. */
+export class ParameterForms {
+  private readonly section = element('parameters-details', HTMLDetailsElement);
+  private readonly forms: readonly ParameterForm[];
+  private initial: Scene | undefined;
+  private isEnabled = false;
+
+  constructor(
+    private readonly desk: Desk,
+    private readonly document: SceneDocument,
+  ) {
+    this.forms = [
+      new MaterialForm((params) => this.change('world.set_material', params)),
+      new InterfaceForm((params) => this.change('world.set_interface', params)),
+      new NumericsForm((params) => this.change('world.set_numerics', params)),
+    ];
+    element('forms-place', HTMLElement).append(...this.forms.map((form) => form.element));
+    this.section.addEventListener('toggle', () => void this.look());
+  }
+
+  enable(enabled: boolean): void {
+    this.isEnabled = enabled;
+    for (const form of this.forms) form.enable(enabled);
+  }
+
+  /** `isNew`: another scene or session, or an earlier time of the same. */
+  describe(isNew: boolean): void {
+    if (isNew) this.initial = undefined;
+    void this.look();
+  }
+
+  /** Requests the scene if the section is open. */
+  private async look(): Promise<void> {
+    if (!this.section.open || !this.isEnabled) return;
+    const scene = await this.document.get();
+    if (!scene) return;
+    this.initial ??= await this.asLoaded(scene);
+    for (const form of this.forms) form.show(scene, this.initial);
+  }
+
+  private async asLoaded(present: Scene): Promise<Scene> {
+    return this.desk.request('scene.get', {}).then(
+      ({ scene }) => scene,
+      () => present, // a scene that exceeds a message has no reset
+    );
+  }
+
+  private async change<M extends MethodName>(
+    method: M,
+    params: Params<M>,
+  ): Promise<string | undefined> {
+    const fault = await attempt(this.desk, method, params);
+    this.document.forget();
+    await this.look();
+    return fault;
+  }
+}
