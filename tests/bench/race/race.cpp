@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/support/check.h"
-#include "server/cli/command.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/options.h"
 #include "tests/bench/race/peer_run.h"
 #include "tests/bench/report/table.h"
