@@ -85,6 +85,10 @@ class Results {
         R"([{"problem": "dam", "solver": "tait", "layers": 20, "error of": "front", "error": 0.125,
                "mean density error": 0.5, "greatest density error": 0.75, "steps": 7,
                "seconds": 1.5, "hash": "0"}])");
+    write("accuracy/tolerances.json",
+          R"([{"scene": "dam", "tolerance": 0.01, "failed": 0, "density error": 0.005, "steps": 7,
+               "iterations for velocities": 1.5, "iterations for positions": 0.25,
+               "seconds": 2}])");
     write(
         "accuracy/laws.json",
         R"([{"problem": "P", "law": "penalties", "error at most": 0.01, "least time": "heun, fixed",
@@ -117,6 +121,7 @@ class Results {
   static constexpr const char* kEmptyPage =
       "<!-- begin cases -->\n<!-- end cases -->\n<!-- begin limits -->\n<!-- end limits -->\n"
       "<!-- begin solvers -->\n<!-- end solvers -->\n"
+      "<!-- begin tolerances -->\n<!-- end tolerances -->\n"
       "<!-- begin methods -->\n<!-- end methods -->\n<!-- begin steps -->\n<!-- end steps -->\n"
       "<!-- begin laws -->\n<!-- end laws -->\n"
       "<!-- begin counts -->\n<!-- end counts -->\n![P](figures/P-time.svg)\n";
@@ -150,6 +155,12 @@ TEST(BenchDocument, WritesTablesAndCopiesPictures) {
                 "|---|---|---|---|---|---|---|---|\n"
                 "| dam | tait | 20 | front | 0.125 | 0.5 | 0.75 | 7 |\n"
                 "<!-- end solvers -->\n"
+                "<!-- begin tolerances -->\n"
+                "| scene | tolerance | density error | steps | iterations for velocities "
+                "| iterations for positions |\n"
+                "|---|---|---|---|---|---|\n"
+                "| dam | 0.01 | 0.005 | 7 | 1.5 | 0.25 |\n"
+                "<!-- end tolerances -->\n"
                 "<!-- begin methods -->\n"
                 "| problem | error 0.01 | error 1e-06 |\n"
                 "|---|---|---|\n"
@@ -221,6 +232,7 @@ TEST(BenchDocument, PageHasEveryMarkerFigureAndCase) {
                                                          {"limits", ""},
                                                          {"methods", ""},
                                                          {"solvers", ""},
+                                                         {"tolerances", ""},
                                                          {"steps", ""},
                                                          {"laws", ""},
                                                          {"counts", ""}});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -17,6 +18,8 @@ struct SolveLimits {
   Real greatest = 0;
   int most_iterations = 0;
   Real row = 0;  ///< upper bound of the row sums of |A| / diagonal
+  /// Mean residual above which a solve makes at least one iteration.
+  Real start = std::numeric_limits<Real>::infinity();
 };
 
 /// Finds x >= 0 with the excess e(x) = e(0) - A x <= 0, and e = 0 where x > 0, for a symmetric,
@@ -54,8 +57,10 @@ class Complementarity {
       return !std::isnan(report.mean) &&
              (report.mean > limits.mean || report.greatest > limits.greatest);
     };
+    const bool must_begin = report.mean > limits.start;
     // The last iteration closes the solve.
-    while (is_open() && report.iterations + 2 <= limits.most_iterations) {
+    while ((is_open() || (must_begin && report.iterations == 0)) &&
+           report.iterations + 2 <= limits.most_iterations) {
       const Real slope = choose_direction(is_new, runner);
       system.act(direction_);
       system.find_product(product_);

@@ -17,8 +17,15 @@ namespace vat {
 namespace {
 
 constexpr Real kGreatestOverMean = 36;  // ratio of maximum and mean, for densities
-constexpr Real kGreatestDivergence =
-    200;  // ratio for changes of density, which the correction of positions removes
+// Ratio of maximum and mean for changes of density, which the correction of positions removes.
+constexpr Real kGreatestDivergence = 200;
+// Bounds of loose tolerances. They keep the kinetic energy small that a step adds by removing
+// excess density, and start each solve from pressures that are close to its own.
+constexpr Real kMaxGreatestDivergence = 0.2;  // residual of one particle
+constexpr Real kMaxMeanDivergence = 0.01;     // mean residual
+constexpr Real kStartDivergence = 0.001;      // mean residual above which pressures are updated
+constexpr Real kDivergenceOfDensity = 0.25;   // mean divergence / density tolerance
+constexpr Real kMaxRemoval = 0.0015;          // relative excess density that one step removes
 constexpr Real kLeftAlone = 0.2;      // share of the density tolerance that the velocities leave
 constexpr Real kClosing = 0.5;        // share of a gap that is closed in one step
 constexpr int kMaxCorrections = 12;   // rounds of Newton's method
@@ -32,6 +39,14 @@ Vec3 wall_velocity(const Model& model, Real time, Real dt) {
   if (!model.scene.vat) return Vec3::Zero();
   const Vat& vat = *model.scene.vat;
   return (vat_motion(vat, time + dt).offset - vat_motion(vat, time).offset) / dt;
+}
+
+/// The mean residual at which the solve of the velocities ends. A divergence far above the density
+/// tolerance would cost more iterations for positions than it saves for velocities.
+Real mean_divergence(const IncompressibleSolve& wanted) {
+  const Real bound = std::clamp(kDivergenceOfDensity * wanted.density_tolerance, kStartDivergence,
+                                kMaxMeanDivergence);
+  return std::min(wanted.divergence_tolerance, bound);
 }
 
 /// Solves over the slots of the liquid, for pressures times dt^2.
@@ -70,7 +85,7 @@ class VolumeSolve {
   }
   void set_up();
   /// The total accelerations of the response are then those of the change of x.
-  SolveReport solve(Real mean, Real greatest);
+  SolveReport solve(SolveLimits limits);
 
   const ForceModel& f_;
   Configuration& now_;
@@ -102,18 +117,22 @@ SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   response_.see_velocities(wall_velocity);
   VAT_CHECK(now_.pressure.size() == order_.size());
   response_.compress(problem_.excess);
+  const Real removal = std::min(wanted.density_tolerance, kMaxRemoval);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
     const Real excess = density - 1 - kLeftAlone * wanted.density_tolerance;
-    const Real room = density < 1 ? kClosing * (1 - density)
-                                  : -std::clamp(excess, Real{0}, wanted.density_tolerance);
+    const Real room =
+        density < 1 ? kClosing * (1 - density) : -std::clamp(excess, Real{0}, removal);
     problem_.excess[s] = problem_.scale[s] * (dt_ * problem_.excess[s] - room);
     const bool is_alone = problem_.diagonal[s] == kAlone;
     problem_.x[s] = is_alone ? 0 : now_.pressure[order_[s]] / (density * density);
     if (is_alone) problem_.excess[s] = std::min(problem_.excess[s], Real{0});
   });
-  const Real tolerance = wanted.divergence_tolerance;
-  const SolveReport report = solve(tolerance, kGreatestDivergence * tolerance);
+  const Real tolerance = mean_divergence(wanted);
+  const SolveReport report =
+      solve({.mean = tolerance,
+             .greatest = std::min(kGreatestDivergence * tolerance, kMaxGreatestDivergence),
+             .start = std::min(tolerance, kStartDivergence)});
   if (report.iterations == 0) return report;
   each_slot([&](std::size_t s) {
     now_.pressure[order_[s]] = problem_.x[s] * s_.relative_density[s] * s_.relative_density[s];
@@ -129,13 +148,14 @@ int VolumeSolve::shift_places() {
   });
   const IncompressibleSolve& wanted = f_.model.scene.incompressible;
   const Real tolerance = kLinearShare * wanted.density_tolerance;
-  const SolveReport report = solve(tolerance, kGreatestOverMean * tolerance);
+  const SolveReport report = solve({.mean = tolerance, .greatest = kGreatestOverMean * tolerance});
   if (report.iterations > 0) response_.shift(dt_ * dt_);
   return report.iterations;
 }
 
-SolveReport VolumeSolve::solve(Real mean, Real greatest) {
-  const SolveLimits limits{mean, greatest, f_.model.scene.incompressible.most_iterations, kRow};
+SolveReport VolumeSolve::solve(SolveLimits limits) {
+  limits.most_iterations = f_.model.scene.incompressible.most_iterations;
+  limits.row = kRow;
   return problem_.solve(limits, f_.runner, *this);
 }
 

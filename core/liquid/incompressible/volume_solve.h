@@ -28,10 +28,11 @@ void recall_pressure(StepContext& context);
 /// With s = rho / rho_0 and the rate D of PressureResponse, impulses dt F(p), p >= 0, change the
 /// velocities of liquid and solids until dt D_i(v) <= r_i. For s_i < 1, r_i = (1 - s_i) / 2, which
 /// closes half of a gap. If s_i exceeds 1 by more than a fifth of the density tolerance, r_i is
-/// minus the excess beyond it, at most the tolerance. This removes the excess density of steps
-/// before positions must be corrected, with a speed that the tolerance limits. Liquid at rest
+/// minus the excess beyond it, at most the tolerance and 0.0015. This removes the excess density of
+/// steps before positions must be corrected, with a speed that the tolerance limits. Liquid at rest
 /// fluctuates closer to 1; removing that would cause noise in its pressure. The forces already
-/// include the impulses of the last step, so that only the difference is solved.
+/// include the impulses of the last step, so that only the difference is solved. A divergence
+/// tolerance above 0.001 is limited to a quarter of the density tolerance, and to 0.01.
 void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
 /// Moves liquid with excess density at the end of a step, at `time`, until s <= 1 within the

@@ -12,13 +12,13 @@
 #include "tests/bench/accuracy/control_report.h"
 #include "tests/bench/accuracy/law_report.h"
 #include "tests/bench/accuracy/solver_report.h"
+#include "tests/bench/accuracy/tolerance_report.h"
 #include "tests/bench/options.h"
 
 namespace vat::bench {
 
 namespace {
 
-constexpr const char* kSolversName = "solvers";
 constexpr SweepSettings kQuick{.repetitions = 1, .stride = 3, .longest_run = 0.2};
 
 ProblemResult solve_with_all(const ProblemEntry& entry, const SweepSettings& settings,
@@ -41,18 +41,33 @@ ProblemResult solve_with_all(const ProblemEntry& entry, const SweepSettings& set
 }
 
 Status solvers(const Options& options, TaskRunner* runner) {
-  std::cout << kSolversName << ": pressure solvers, error against time" << std::endl;
+  std::cout << "solvers: pressure solvers, error against time" << std::endl;
   const auto results =
       options.quick ? compare_solvers(1, 20, runner) : compare_solvers(5, 40, runner);
   std::cout << to_markdown(solvers_table(results)) << std::endl;
   return write_solvers(results, options.output);
 }
 
+Status tolerances(const Options& options, TaskRunner* /*runner*/) {
+  std::cout << "tolerances: time against the tolerances of incompressible liquids" << std::endl;
+  const auto points = options.quick ? sweep_tolerances(0.1, 1) : sweep_tolerances(1, 5);
+  std::cout << to_markdown(tolerances_table(points)) << std::endl;
+  return write_tolerances(points, options.output);
+}
+
+/// A comparison that is not a sweep of integrators and steps.
+struct Comparison {
+  const char* name;
+  Status (*run)(const Options& options, TaskRunner* runner);
+};
+
+constexpr Comparison kComparisons[] = {{"solvers", &solvers}, {"tolerances", &tolerances}};
+
 int accuracy(const Options& options) {
   const std::vector<ProblemEntry>& problems = all_problems();
   std::vector<std::string> names;
   for (const ProblemEntry& entry : problems) names.push_back(entry.name);
-  names.push_back(kSolversName);
+  for (const Comparison& comparison : kComparisons) names.emplace_back(comparison.name);
   if (options.list) {
     print_names(names);
     return kExitOk;
@@ -63,8 +78,9 @@ int accuracy(const Options& options) {
   ThreadPoolRunner runner(options.threads);
   std::vector<ProblemResult> results;
   for (const std::size_t index : chosen.value()) {
-    if (index == problems.size()) {
-      if (const Status done = solvers(options, &runner); !done) {
+    if (index >= problems.size()) {
+      const Comparison& comparison = kComparisons[index - problems.size()];
+      if (const Status done = comparison.run(options, &runner); !done) {
         return fail(options.output, done.errors());
       }
       continue;

@@ -62,6 +62,7 @@ constexpr Content kContents[] = {
     {"limits", "validate", "validation", limits_table},
     {"methods", "accuracy", "cheapest", methods_table},
     {"solvers", "accuracy", "solvers", solvers_table},
+    {"tolerances", "accuracy", "tolerances", tolerances_table},
     {"laws", "accuracy", "laws", laws_table},
     {"steps", "accuracy", "control", steps_table},
     {"counts", "stability", "stability", counts_table},

@@ -154,6 +154,19 @@ Table solvers_table(const Json& solvers) {
   return table;
 }
 
+Table tolerances_table(const Json& tolerances) {
+  Table table{{"scene", "tolerance", "density error", "steps", "iterations for velocities",
+               "iterations for positions"},
+              {}};
+  for (const Json& row : tolerances) {
+    table.rows.push_back({cell_text(row, "scene"), row.at("tolerance").get<Real>(),
+                          row.at("density error").get<Real>(), row.at("steps").get<std::uint64_t>(),
+                          row.at("iterations for velocities").get<Real>(),
+                          row.at("iterations for positions").get<Real>()});
+  }
+  return table;
+}
+
 Table counts_table(const Json& stability) {
   Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
                "wall stops", "stopped", "refused", "faults"},

@@ -28,6 +28,8 @@ Table laws_table(const Json& laws);
 
 /// Everything but the seconds and hashes.
 Table solvers_table(const Json& solvers);
+/// Density error and iterations by tolerance. Times are in the plot only.
+Table tolerances_table(const Json& tolerances);
 
 /// Everything but the seconds.
 Table counts_table(const Json& stability);

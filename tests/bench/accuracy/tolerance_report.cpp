@@ -1,0 +1,73 @@
+#include "tests/bench/accuracy/tolerance_report.h"
+
+#include <algorithm>
+
+#include "core/support/check.h"
+
+namespace vat::bench {
+
+namespace {
+
+using stability::TolerancePoint;
+
+TolerancePoint measure_median(const char* scene, Real tolerance, Real seconds, int repetitions) {
+  VAT_CHECK(repetitions > 0);
+  std::vector<double> times;
+  TolerancePoint point;
+  for (int n = 0; n < repetitions; ++n) {
+    point = stability::measure_tolerance(scene, tolerance, seconds);
+    times.push_back(point.seconds);
+  }
+  const auto middle = times.begin() + repetitions / 2;
+  std::ranges::nth_element(times, middle);
+  point.seconds = *middle;
+  return point;
+}
+
+}  // namespace
+
+std::vector<TolerancePoint> sweep_tolerances(Real seconds, int repetitions) {
+  std::vector<TolerancePoint> points;
+  for (const char* scene : stability::kToleranceScenes) {
+    for (const Real tolerance : stability::all_tolerances()) {
+      points.push_back(measure_median(scene, tolerance, seconds, repetitions));
+    }
+  }
+  return points;
+}
+
+Table tolerances_table(const std::vector<TolerancePoint>& points) {
+  Table table{{"scene", "tolerance", "failed", "density error", "steps",
+               "iterations for velocities", "iterations for positions", "seconds"},
+              {}};
+  for (const TolerancePoint& point : points) {
+    table.rows.push_back({point.scene, point.tolerance, std::uint64_t{point.failed},
+                          point.density_error, point.steps, point.velocity_iterations,
+                          point.position_iterations, point.seconds});
+  }
+  return table;
+}
+
+LogPlot tolerances_plot(const std::vector<TolerancePoint>& points) {
+  LogPlot plot{.title = "Tolerances of incompressible liquids",
+               .x_label = "both tolerances",
+               .y_label = "wall time per simulated second [s], median of the runs",
+               .series = {}};
+  for (const char* scene : stability::kToleranceScenes) {
+    Series series{.label = scene, .points = {}, .colour = plot.series.size()};
+    for (const TolerancePoint& point : points) {
+      if (point.scene == scene) series.points.push_back({point.tolerance, point.seconds});
+    }
+    plot.series.push_back(series);
+  }
+  return plot;
+}
+
+Status write_tolerances(const std::vector<TolerancePoint>& points,
+                        const std::filesystem::path& folder) {
+  const Status done = write_table(tolerances_table(points), folder, "tolerances",
+                                  "# Tolerances of incompressible liquids");
+  return done ? write_plot(tolerances_plot(points), folder, "tolerances") : done;
+}
+
+}  // namespace vat::bench
