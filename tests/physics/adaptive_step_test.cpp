@@ -182,6 +182,36 @@ TEST(AdaptiveStep, LetsNoProjectilePassAThinWall) {
   }
 }
 
+// The guard allows a turn of one radian.
+TEST(AdaptiveStep, TurnsARigidBodyByAtMostHalfARadian) {
+  constexpr Real kRate = 100;  // [rad/s]
+  Scene scene = make_adaptive(make_scene(IntegratorId::velocity_verlet, 0.02), 1e-3);
+  scene.materials = {make_material("wood")};
+  scene.bodies = {make_body("cube", BodyKind::rigid, "wood",
+                            make_particles(make_lattice(2, 2, 2, 0.1), 1), 0.05)};
+  scene.bodies[0].angular_velocity = {0, 0, kRate};
+  const AdvanceReport report = make_simulation(scene).advance(10);
+  EXPECT_EQ(report.undone_steps, 0U);
+  EXPECT_NEAR(report.greatest_step, 0.5 / kRate, 1e-9);
+}
+
+// Particles of a liquid travel at most a quarter of the support radius in a step, relative to the
+// mean of the liquid.
+TEST(AdaptiveStep, LimitsTheTravelOfALiquid) {
+  constexpr Real kSpeed = 100;  // [m/s]
+  constexpr Real kSupport = 0.2;
+  Scene scene = make_adaptive(make_scene(IntegratorId::velocity_verlet, 0.01), 1);
+  scene.materials = {make_liquid("water", 1000, {100, 0, kSupport})};
+  for (const Real side : {-1, 1}) {
+    scene.bodies.push_back(make_body(side < 0 ? "left" : "right", BodyKind::liquid, "water",
+                                     make_particles({{50 * side, 0, 0}}, 1), 0.05));
+    scene.bodies.back().velocity = {kSpeed * side, 0, 0};
+  }
+  const AdvanceReport report = make_simulation(scene).advance(1);
+  EXPECT_LE(report.greatest_step, 0.25 * kSupport / kSpeed * (1 + 1e-9));
+  EXPECT_GT(report.greatest_step, 0.2 * kSupport / kSpeed);
+}
+
 // The stiff spring of this body needs resolving only where it swings.
 TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);

@@ -51,6 +51,8 @@ TEST(Guard, FindsNothingInASoundState) {
 TEST(Guard, NamesTheParticleThatIsNotFinite) {
   using enum GuardEvent::Cause;
   expect_fault(fault_after([](Configuration& at) { at.position[3].y() = kNan; }), non_finite, 0, 3);
+  expect_fault(fault_after([](Configuration& at) { at.velocity[10].z() = kNan; }), non_finite, 1,
+               2);
   expect_fault(fault_after([](Configuration& at) {
                  at.velocity[9].x() = -std::numeric_limits<Real>::infinity();
                }),

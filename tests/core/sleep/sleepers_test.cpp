@@ -4,6 +4,7 @@
 
 #include "core/laws/vat_motion.h"
 #include "core/model/compile.h"
+#include "core/sleep/resting_bodies.h"
 #include "core/state/body_state.h"
 #include "core/stepping/step_plan.h"
 #include "tests/support/resting_scenes.h"
@@ -65,6 +66,27 @@ ContactImpulse make_contact(Index particle, std::uint64_t other, Real force) {
   contact.other = other;
   contact.drift.x() = force;
   return contact;
+}
+
+TEST(RestingBodies, AreNearIfAParticleIsCloserThanTheDistance) {
+  constexpr Real kDistance = 0.1;
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("crate", {0, 0, 1})};
+  const auto model = compile_scene(scene);
+  const std::vector<Vec3> positions = initial_state(*model).now.position;
+  RestingBodies resting;
+  resting.build(*model, positions, {0}, kDistance);
+  Vec3 corner = positions.front();
+  for (const Vec3& p : positions) corner = corner.cwiseMax(p);
+  // The second point is in the enlarged box of the body.
+  for (const auto& [offset, is_near] : {std::pair(0.05, true), std::pair(0.09, false)}) {
+    const std::vector<Vec3> points = {corner + Vec3(offset, offset, 0)};
+    std::vector<Index> candidates;
+    resting.find_candidates(points, kDistance, candidates);
+    ASSERT_EQ(candidates.size(), 1U) << offset;
+    resting.keep_near(points, kDistance, candidates);
+    EXPECT_EQ(candidates.size(), is_near ? 1U : 0U) << offset;
+  }
 }
 
 TEST(Sleepers, PartAndRestMakeTheWhole) {

@@ -294,6 +294,9 @@ TEST(FixedLimits, BodiesOfAScene) {
   };
   EXPECT_FALSE(is_refused(find_errors(scene_of_bodies(kMaxBodies))));
   EXPECT_TRUE(is_refused(find_errors(scene_of_bodies(kMaxBodies + 1))));
+  const BodyDescription another = scene_of_bodies(1).bodies[0];
+  EXPECT_FALSE(is_refused(find_body_errors(scene_of_bodies(kMaxBodies - 1), another, "/body")));
+  EXPECT_TRUE(is_refused(find_body_errors(scene_of_bodies(kMaxBodies), another, "/body")));
 }
 
 class NameAndTickLimits : public SessionTest {};
