@@ -1,20 +1,16 @@
 #include "server/transport/ws_endpoint.h"
 
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/socket_base.hpp>
-#include <cerrno>
 #include <chrono>
 #include <exception>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "server/transport/ws_connection.h"
+#include "server/transport/ws_listen.h"
 #include "server/transport/ws_upgrade.h"
 
 namespace vat {
@@ -36,36 +32,10 @@ constexpr std::uint16_t kNotUtf8 = 1007;
 constexpr std::uint16_t kInternalError = 1011;
 constexpr std::uint16_t kTryAgainLater = 1013;
 
-websocketpp::lib::error_code share_port(tcp::acceptor& acceptor) {
-  const int on = 1;
-  if (setsockopt(acceptor.native_handle(), SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0)
-    return {};
-  return {errno, std::system_category()};
-}
-
-[[noreturn]] void fail_to_listen(const std::string& host, std::uint16_t port,
-                                 const std::string& reason) {
-  const bool is_v6 = host.find(':') != std::string::npos;
-  throw std::runtime_error("cannot listen on " + (is_v6 ? "[" + host + "]" : host) + ":" +
-                           std::to_string(port) + ": " + reason);
-}
-
 /// The library finds out the byte order at its first conversion, and keeps it unguarded. What
 /// endpoints on other threads do comes after this one.
 void find_byte_order() {
   [[maybe_unused]] static const std::uint64_t kFound = websocketpp::lib::net::_htonll(0);
-}
-
-/// Listens briefly, alone on the port, and returns the error if that fails.
-boost::system::error_code try_to_listen(boost::asio::io_context& io,
-                                        const tcp::endpoint& endpoint) {
-  boost::system::error_code error;
-  tcp::acceptor acceptor(io);
-  acceptor.open(endpoint.protocol(), error);
-  if (!error) acceptor.set_option(boost::asio::socket_base::reuse_address(true), error);
-  if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
-  return error;
 }
 
 bool ends_within_character(const std::string& text) {
@@ -91,12 +61,6 @@ std::string address_of(const tcp::socket& socket) {
   }
   std::fill(bytes.begin() + bytes.size() / 2, bytes.end(), std::uint8_t{0});
   return boost::asio::ip::make_address_v6(bytes).to_string() + "/64";
-}
-
-/// The library keeps the reason to itself, so the same is tried without it.
-std::string why_not_listen(boost::asio::io_context& io, const tcp::endpoint& endpoint) {
-  const auto error = try_to_listen(io, endpoint);
-  return error ? error.message() : "the port was in use a moment ago";
 }
 
 }  // namespace
@@ -156,28 +120,21 @@ void WsEndpoint::set_handlers() {
       [this](const Handle& handle) { guarded("http", [&] { answer_http(stream_of(handle)); }); });
 }
 
-tcp::endpoint WsEndpoint::address(std::uint16_t port) const {
-  const std::string& host = shared_.settings.host;
-  boost::system::error_code error;
-  const auto address = boost::asio::ip::make_address(host, error);
-  if (error) fail_to_listen(host, port, "the host must be a numeric address");
-  return {address, port};
-}
-
 void WsEndpoint::check_free(std::uint16_t port) {
-  const auto error = try_to_listen(io_, address(port));
-  if (error) fail_to_listen(shared_.settings.host, port, error.message());
+  const std::string& host = shared_.settings.host;
+  const auto error = try_to_listen(io_, listen_address(host, port));
+  if (error) fail_to_listen(host, port, error.message());
 }
 
 std::uint16_t WsEndpoint::listen(std::uint16_t port, bool shares_port) {
   const std::string& host = shared_.settings.host;
-  const tcp::endpoint endpoint = address(port);
+  const tcp::endpoint endpoint = listen_address(host, port);
   if (shares_port) {
     server_.set_tcp_pre_bind_handler([](const auto& acceptor) { return share_port(*acceptor); });
   }
   websocketpp::lib::error_code error;
   server_.listen(endpoint, error);
-  if (error) fail_to_listen(host, port, why_not_listen(io_, endpoint));
+  if (error) fail_to_listen(host, port, listen_failure(io_, endpoint));
   server_.start_accept(error);
   if (error) fail_to_listen(host, port, error.message());
   boost::system::error_code port_error;

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstddef>
@@ -65,7 +64,6 @@ class WsEndpoint {
   using Handle = websocketpp::connection_hdl;
   using StreamPtr = std::shared_ptr<WsStream>;
 
-  boost::asio::ip::tcp::endpoint address(std::uint16_t port) const;
   void configure();
   void set_handlers();
   void run();

@@ -1,140 +1,17 @@
-// Sessions that show what another one did.
+// Sessions that replay another session.
 
 #include <gmock/gmock.h>
-#include <openssl/evp.h>
 
-#include <algorithm>
-#include <map>
-#include <optional>
+#include <string>
 #include <utility>
-#include <vector>
 
-#include "server/history/recording.h"
-#include "server/http/downloads.h"
-#include "server/session/core/scene_loading.h"
 #include "tests/server/fixture/session_fixture.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/replay/replay_session_fixture.h"
 
 namespace vat::test::replay_session_test {
 namespace {
 
 using testing::HasSubstr;
-
-std::string to_base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                     reinterpret_cast<const unsigned char*>(bytes.data()),
-                                     static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
-constexpr std::size_t kMaxParticlesOfSession = 5000;
-
-/// A kept session `s1` that somebody called Ann has done something in, and a client that watches.
-class ReplaySession : public testing::Test {
- protected:
-  ReplaySession() : catalogue_(make_catalogue()), server_(catalogue_, settings()) {
-    EXPECT_TRUE(server_.create_session("first", to_scene(mixed_scene_text())).ok());
-    ann_.emplace(server_, 1);
-    ann_->result("session.join", {{"name", "Ann"}});
-    ann_->result("control.pause");
-    ann_->result("control.reset");
-    position_ = ann_->result("session.hash").at("position");
-    first_ = position_;
-  }
-  void TearDown() override { ann_->disconnect(); }
-
-  /// Notes the state of every position. The session ends at tick 11 of its second run.
-  void live() {
-    note();
-    step(3);
-    const Json grab =
-        ann_->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.8}}});
-    note();
-    step(4);
-    ann_->result("grab.end", {{"grab", grab.at("grab")}});
-    ann_->result("world.set_gravity", {{"gravity", {1, 0, -5}}});
-    note();
-    step(5);
-    ann_->result("control.reset");
-    note();
-    step(11);
-  }
-  void step(int ticks) {
-    for (int i = 0; i < ticks; ++i) {
-      ann_->result("control.step");
-      ++position_;
-      note();
-    }
-  }
-  void note() { hashes_[position_] = ann_->result("session.hash").at("hash"); }
-
-  /// Opens the replay and has `bob_` join it; what was opened.
-  Json open(const Json& params = {{"session", "s1"}}) {
-    bob_.emplace(server_, 2);
-    // Who opens a session's past has to be a controller in it.
-    if (params.contains("session")) bob_->result("session.join");
-    const Json opened = bob_->result("replay.open", params);
-    joined_ = bob_->result("session.join", {{"session", opened.at("session")}, {"name", "Bob"}});
-    return opened;
-  }
-  Json seek(std::uint64_t position) {
-    return bob_->result("replay.seek", {{"position", position}});
-  }
-  std::string hash() { return bob_->result("session.hash").at("hash"); }
-
-  std::string exported() {
-    const std::string path = ann_->result("recording.export").at("path");
-    return server_.downloads().take(path, server_.clock().now())->content;
-  }
-  static Recording read(const std::string& bytes) {
-    return read_recording({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()})
-        .value();
-  }
-  /// Brings it in parts of so many bytes; the answer to the last.
-  Json import(TestClient& client, const std::string& file, std::size_t part = 3'000'000) {
-    Json last;
-    for (std::size_t at = 0; at < file.size(); at += part) {
-      Json params{
-          {"size", file.size()}, {"offset", at}, {"data", to_base64(file.substr(at, part))}};
-      if (at > 0) params["recording"] = last.at("recording");
-      last = client.call("recording.import", params);
-      if (!last.contains("result")) return last;
-      last = last.at("result");
-    }
-    return last;
-  }
-  Json import(TestClient& client, const Recording& recording) {
-    const std::vector<std::uint8_t> bytes = write_recording(recording);
-    return import(client, std::string(bytes.begin(), bytes.end()));
-  }
-  /// Every state that was noted is shown again.
-  void expect_states() {
-    for (const auto& [position, expected] : hashes_) {
-      seek(position);
-      ASSERT_EQ(hash(), expected) << position;
-    }
-  }
-
- private:
-  ServerSettings settings() const {
-    ServerLimits limits = unhurried_limits();
-    limits.max_particles = kMaxParticlesOfSession;
-    return test_settings(limits, folder_.file("data"));
-  }
-
- protected:
-  const TemporaryFolder folder_;
-  const Catalogue catalogue_;
-  TestServer server_;
-  std::optional<TestClient> ann_;
-  std::optional<TestClient> bob_;
-  Json joined_;
-  std::uint64_t first_ = 0;
-  std::uint64_t position_ = 0;
-  std::map<std::uint64_t, std::string> hashes_;
-};
 
 TEST_F(ReplaySession, ShowsEveryStateThatThereWas) {
   live();
@@ -308,119 +185,6 @@ TEST_F(ReplaySession, GoesOnFromAStateThatWasLoaded) {
   EXPECT_EQ(bob_->error("replay.seek", {{"tick", 7}}).at("data").at("path"), "/tick");
 }
 
-TEST_F(ReplaySession, ComesBackFromItsFile) {
-  live();
-  const std::string file = exported();
-  TestClient carl(server_, 3);
-  const Json whole = import(carl, file, 1000);
-  EXPECT_EQ(whole.at("whole"), true);
-  EXPECT_EQ(whole.at("received"), file.size());
-  EXPECT_GE(whole.at("ticks"), position_ - first_);
-  open({{"recording", whole.at("recording")}, {"name", "again"}});
-  EXPECT_EQ(joined_.at("description").at("name"), "again");
-  expect_states();
-}
-
-TEST_F(ReplaySession, RefusesFilesThatAreNoRecordings) {
-  live();
-  std::string file = exported();
-  TestClient carl(server_, 3);
-  const auto code = [&](const Json& reply) {
-    return reply.at("error").at("data").at("errors")[0].at("code").get<std::string>();
-  };
-  std::string damaged = file;
-  damaged[file.size() / 2] ^= 1;
-  EXPECT_EQ(code(import(carl, damaged)), "damaged");
-  EXPECT_EQ(code(import(carl, file.substr(0, file.size() - 1))), "wrong_length");
-  EXPECT_EQ(code(import(carl, std::string("no recording at all"))), "other_format");
-  EXPECT_EQ(carl.error("recording.import", {{"size", 9}, {"offset", 0}, {"data", "a"}})
-                .at("data")
-                .at("path"),
-            "/data");
-  EXPECT_EQ(carl.error("recording.import", {{"size", 9}, {"offset", 3}, {"data", "AAAA"}})
-                .at("data")
-                .at("path"),
-            "/offset");
-  const Json begun =
-      carl.result("recording.import", {{"size", 9}, {"offset", 0}, {"data", "AAAA"}});
-  Json next{{"recording", begun.at("recording")}, {"size", 9}, {"offset", 3}, {"data", "AAAA"}};
-  TestClient other(server_, 4);
-  EXPECT_EQ(other.error("recording.import", next).at("data").at("path"), "/recording");
-  next["size"] = 10;
-  EXPECT_EQ(carl.error("recording.import", next).at("data").at("path"), "/size");
-  EXPECT_EQ(carl.error("replay.open", {{"recording", begun.at("recording")}}).at("data").at("path"),
-            "/recording");
-}
-
-/// What no server has written: names that are no text, and commands that belong in no log.
-TEST_F(ReplaySession, IsNotHarmedByWhatAnybodyMayHaveWritten) {
-  live();
-  Recording recording = read(exported());
-  recording.name = "\xff\xfe";
-  recording.moments.clear();
-  const auto gravity = std::ranges::find(recording.log, "world.set_gravity", &LogEntry::method);
-  TestClient carl(server_, 3);
-  bob_.emplace(server_, 2);
-  for (const char* method : {"frames.subscribe", "participant.kick", "replay.seek", "\xff"}) {
-    gravity->method = method;
-    gravity->params = "{}";
-    const Json whole = import(carl, recording);
-    EXPECT_EQ(whole.at("name"), "??");
-    const Json opened = bob_->result("replay.open", {{"recording", whole.at("recording")}});
-    bob_->result("session.join", {{"session", opened.at("session")}});
-    bob_->mark();
-    EXPECT_EQ(seek(position_).at("position"), gravity->position);
-    EXPECT_EQ(bob_->wait_event("replay.diverged").at("tick"), 7);
-    bob_->result("session.close", {{"session", opened.at("session")}});
-  }
-}
-
-/// States that are larger than a session's limits allow are not unpacked.
-TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
-  live();
-  ServerLimits limits;
-  limits.max_particles = kMaxParticlesOfSession;
-  const std::size_t most = max_state_bytes(limits);
-  ASSERT_LT(most, std::size_t{1} << 30);
-  const auto reason = [&](const Recording& recording) -> std::string {
-    const Json whole = import(*ann_, recording);
-    bob_->result("session.join", {{"session", "s1"}});
-    const Json opened = bob_->result("replay.open", {{"recording", whole.at("recording")}});
-    bob_->result("session.join", {{"session", opened.at("session")}});
-    bob_->mark();
-    seek(position_);
-    bob_->result("session.close", {{"session", opened.at("session")}});
-    return bob_->wait_event("replay.diverged").at("reason");
-  };
-  bob_.emplace(server_, 2);
-  for (const std::uint32_t more : {0, 1}) {
-    Recording recording = read(exported());
-    recording.moments.back().state = bytes_that_say(static_cast<std::uint32_t>(most) + more);
-    const std::string told = reason(recording);
-    EXPECT_EQ(told.find("too large") != std::string::npos, more == 1) << told;
-  }
-}
-
-TEST_F(ReplaySession, ShowsNamesAsTextWhateverTheyAre) {
-  live();
-  Recording recording = read(exported());
-  recording.name = std::string(200, 'n');
-  for (RecordedMoment& moment : recording.moments) {
-    Json fields = Json::parse(moment.fields);
-    for (Json& person : fields.at("participants").at("list")) person["name"] = "A\xe2\x80\xaenn";
-    moment.fields = fields.dump();
-  }
-  bob_.emplace(server_, 2);
-  const Json whole = import(*bob_, recording);
-  EXPECT_EQ(whole.at("name"), std::string(64, 'n'));
-  const Json opened = bob_->result("replay.open", {{"recording", whole.at("recording")}});
-  bob_->result("session.join", {{"session", opened.at("session")}});
-  seek(first_ + 5);
-  const Json people = bob_->result("replay.info").at("people");
-  ASSERT_EQ(people.size(), 1U);
-  EXPECT_EQ(people[0].at("name").get<std::string>().find("\xe2\x80\xae"), std::string::npos);
-}
-
 TEST_F(ReplaySession, ThereAreSoManyAtMost) {
   live();
   bob_.emplace(server_, 2);
@@ -434,34 +198,6 @@ TEST_F(ReplaySession, ThereAreSoManyAtMost) {
   EXPECT_TRUE(closed.contains("result")) << closed;
   bob_->result("session.join", {{"session", "s1"}});
   EXPECT_EQ(bob_->result("replay.open", {{"session", "s1"}}).at("session"), "r5");
-}
-
-TEST_F(ReplaySession, RefusesRecordingsThatAreTooLong) {
-  live();
-  Recording recording = read(exported());
-  recording.moments.clear();
-  TestClient carl(server_, 3);
-  const auto limit_of = [&](const Recording& one) {
-    const Json reply = import(carl, one);
-    return reply.contains("error") ? reply.at("error").at("data").at("limit").get<std::string>()
-                                   : "";
-  };
-  recording.end = recording.begin + kMaxRecordedTicks;
-  EXPECT_EQ(limit_of(recording), "");
-  ++recording.end;
-  EXPECT_EQ(limit_of(recording), "recording_ticks");
-  --recording.end;
-  LogEntry last = recording.log.back();
-  last.method = "leave";
-  last.params = "{}";
-  while (recording.log.size() < kMaxRecordedEntries) {
-    ++last.sequence;
-    recording.log.push_back(last);
-  }
-  EXPECT_EQ(limit_of(recording), "");
-  ++last.sequence;
-  recording.log.push_back(last);
-  EXPECT_EQ(limit_of(recording), "recording_entries");
 }
 
 }  // namespace

@@ -1,22 +1,16 @@
+// Checkpoints: storage, compression, frequency, and the log that they shorten.
+
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <boost/asio/post.hpp>
-#include <chrono>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "server/history/session_log.h"
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/sqlite/compression.h"
-#include "server/storage/data_folder.h"
-#include "server/storage/saved_scenes.h"
 #include "server/storage/storage.h"
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/support/manual_clock.h"
@@ -166,148 +160,6 @@ TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
   }
   EXPECT_TRUE(decompress(compress({}), 0).empty());
 }
-
-TEST(StorageStates, GoWithTheSessionsThatAreGone) {
-  SavedStates states(MainDatabase::kInMemory);
-  const SavedStateLimits limits{10, 1000, 1000};
-  for (const char* session : {"s1", "s2"}) {
-    SavedState state;
-    state.entry.name = "n";
-    state.state = {1};
-    EXPECT_FALSE(states.write(session, state, limits));
-  }
-  states.keep_only({"s1", "s3"});
-  EXPECT_EQ(states.list("s1").size(), 1U);
-  EXPECT_TRUE(states.list("s2").empty());
-}
-
-TEST(StorageScenes, WhoseKeyHasAnotherSizeAreDamaged) {
-  const auto main = std::make_shared<MainDatabase>(MainDatabase::kInMemory);
-  SavedScenes scenes(main);
-  SavedScene scene;
-  scene.entry.name = "n";
-  EXPECT_FALSE(scenes.write(scene, {1, 1000, 1, 1000}));
-  EXPECT_TRUE(scenes.find("n"));
-  for (const char* key : {"zeroblob(0)", "zeroblob(31)", "zeroblob(33)"}) {
-    main->database.prepare("UPDATE scenes SET key = " + std::string(key)).run();
-    EXPECT_THROW(scenes.find("n"), StorageError) << key;
-  }
-}
-
-TEST(StorageFolder, IsOneServersAtATime) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("data");
-  {
-    const DataFolder first(path);
-    try {
-      const DataFolder second(path);
-      ADD_FAILURE() << "both have it";
-    } catch (const StorageError& error) {
-      EXPECT_EQ(error.kind(), StorageError::Kind::locked);
-    }
-  }
-  const DataFolder third(path);
-}
-
-TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
-  try {
-    const DataFolder folder("/proc/vat");  // nobody may, root neither
-    ADD_FAILURE() << "it was made";
-  } catch (const StorageError& error) {
-    EXPECT_EQ(error.kind(), StorageError::Kind::read_only);
-  }
-}
-
-TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
-  const test::TemporaryFolder folder;
-  test::ManualClock clock;
-  std::uint64_t kept = 0;
-  {
-    Storage storage(folder.file("data"), {}, clock);
-    const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
-    const StoredSession session{0, "name", "avx2", "{}", 0, {}};
-    const std::uint64_t closed = storage.sessions().create(session, first);
-    kept = storage.sessions().create(session, first);
-    storage.checkpoints().write(checkpoint(closed, 1, 10));
-    storage.checkpoints().write(checkpoint(kept, 1, 10));
-    storage.sessions().close(closed);
-    storage.remove_closed();
-  }
-  Storage storage(folder.file("data"), {}, clock);
-  EXPECT_TRUE(storage.sessions().read(1, 0).empty());
-  EXPECT_TRUE(storage.checkpoints().places(1).empty());
-  EXPECT_EQ(storage.sessions().read(kept, 0).size(), 1U);
-  EXPECT_EQ(storage.checkpoints().places(kept).size(), 1U);
-}
-
-/// Its timers are late: a task that is cancelled is queued already.
-class LateClock final : public Clock {
- public:
-  SteadyClock::time_point now() const override { return {}; }
-  double wall_time() const override { return 0; }
-  std::unique_ptr<Timer> make_timer(boost::asio::any_io_executor executor) override {
-    class LateTimer final : public Timer {
-     public:
-      LateTimer(std::atomic<int>& starts, boost::asio::any_io_executor executor)
-          : starts_(starts), executor_(std::move(executor)) {}
-      void start(SteadyClock::time_point, std::function<void()> task) override {
-        ++starts_;
-        task_ = std::move(task);
-      }
-      void cancel() override { boost::asio::post(executor_, task_); }
-
-     private:
-      std::atomic<int>& starts_;
-      const boost::asio::any_io_executor executor_;
-      std::function<void()> task_;
-    };
-    return std::make_unique<LateTimer>(starts, std::move(executor));
-  }
-
-  std::atomic<int> starts = 0;
-};
-
-// A timer that is started again would keep the storage's thread running for ever.
-TEST(Storage, StartsNoTimerAtItsEnd) {
-  const test::TemporaryFolder folder;
-  LateClock clock;
-  { const Storage storage(folder.file("data"), {}, clock); }
-  EXPECT_EQ(clock.starts, 1);
-}
-
-TEST(Storage, MovesItsLogsEverySecond) {
-  const test::TemporaryFolder folder;
-  test::ManualClock clock;
-  Storage storage(folder.file("data"), {}, clock);
-  const std::string log = folder.file("data") + "/vat.db-wal";
-  const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
-  const StoredSession session{0, "name", "avx2", "{}", 0, {}};
-  const auto write = [&] {
-    storage.sessions().create(session, first);
-    return std::filesystem::file_size(log);
-  };
-  clock.advance(std::chrono::milliseconds(999));
-  const auto small = write();
-  const auto larger = write();
-  EXPECT_GT(larger, small);
-  clock.advance(std::chrono::milliseconds(1));
-  write();
-  EXPECT_EQ(std::filesystem::file_size(log), larger) << "it is used again from its start";
-}
-
-TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
-  const test::TemporaryFolder folder;
-  test::ManualClock clock;
-  bool ran = false;
-  {
-    Storage storage(folder.file("data"), {}, clock);
-    storage.post([] { throw StorageError(StorageError::Kind::full, "the disk is full"); });
-    storage.post([&] { ran = storage.counts().failures == 1; });
-  }
-  EXPECT_TRUE(ran);
-}
-
-// When checkpoints are written, and what of a log is forgotten.
 
 struct Course {
   double share = 0;  ///< of checkpoints in all work
