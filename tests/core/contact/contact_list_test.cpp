@@ -31,7 +31,7 @@ Scene make_crowd() {
   return scene;
 }
 
-/// A list over particles that are moved by hand, each on its own.
+/// A contact list over particles that the test moves individually.
 struct Moved {
   explicit Moved(const Scene& scene) : probe(scene) {}
 
@@ -80,7 +80,7 @@ Found by_brute_force(const Moved& moved, Index i, Real slack) {
   return found;
 }
 
-/// Returns their number.
+/// Returns the number of contacts.
 std::size_t expect_all_contacts(const Moved& moved, Real slack) {
   std::size_t count = 0;
   for (Index i = 0; i < moved.probe.model().particle_count; ++i) {
@@ -97,7 +97,7 @@ std::size_t expect_all_contacts(const Moved& moved, Real slack) {
   return count;
 }
 
-/// The block that the list goes through by particles has all that have contacts.
+/// Expects that the list's particles of each block include all particles with contacts.
 void expect_all_particles(const Moved& moved, Real slack) {
   const Model& model = moved.probe.model();
   for (Index i = 0; i < model.particle_count; ++i) {
@@ -106,7 +106,8 @@ void expect_all_particles(const Moved& moved, Real slack) {
   }
 }
 
-/// Every particle goes a random way of its own, some of the times none at all.
+/// Moves every particle by a random distance before each update. The list is reused in some
+/// updates.
 void expect_all_contacts_of_moving(const Scene& scene) {
   Moved moved(scene);
   std::mt19937_64 random(1);
@@ -153,7 +154,8 @@ TEST(ContactList, IsOutOfDateWhenOneParticleHasMovedHalfASkin) {
   EXPECT_FALSE(moved.is_current(0));
 }
 
-/// A sheet that is rolled into a tube, from a fifth of it being open to none.
+/// A sheet that is rolled into a tube. `closed` is 0 if a fifth of the tube is open, and 1 if it is
+/// closed.
 std::vector<Vec3> roll(Real closed) {
   constexpr int kRound = 12;
   std::vector<Vec3> positions;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr Real kStep = 0.01;
 
-/// A block of n^3 particles whose springs are damped far beyond what explicit steps of kStep bear,
-/// set in motion so that they move against one another.
+/// A block of n^3 particles that move against one another. The damping of its springs exceeds the
+/// stability limit of explicit steps of kStep.
 Scene make_damped_block(int n = 3) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
   scene.materials = {test::make_material("gum")};
@@ -29,7 +29,7 @@ Scene make_damped_block(int n = 3) {
   return scene;
 }
 
-/// The same for a liquid, nu dt / h^2 = 1.
+/// A viscous drop with nu dt / h^2 = 1.
 Scene make_viscous_drop() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
   scene.materials = {test::make_liquid("tar", 1000, {1, 4000, 0.2})};
@@ -39,7 +39,7 @@ Scene make_viscous_drop() {
   return scene;
 }
 
-/// A channel of thick liquid between a floor and a lid that drag it along, without ends.
+/// A viscous liquid in an endless channel. Floor and lid move and drag the liquid along.
 Scene make_viscous_channel() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
   scene.materials = {test::make_liquid("tar", 1000, {1, 4000, 0.2})};
@@ -58,7 +58,7 @@ Scene make_viscous_channel() {
   return scene;
 }
 
-/// Two rigid bars and a ball of the block's kind that press one another through strong dampers.
+/// Two rigid bars and a ball of the block's body kind, pressed together through strong dampers.
 Scene make_damped_contacts() {
   Scene scene = make_damped_block();
   scene.materials.push_back(test::make_material("steel"));
@@ -74,8 +74,8 @@ Scene make_damped_contacts() {
   return scene;
 }
 
-/// Takes one step of velocity Verlet and returns how far the forces that it ended with are from
-/// those at the velocities at its end.
+/// Takes one step of velocity Verlet. Returns the relative difference between the forces that the
+/// step stored at its end and the forces of the velocities at its end.
 Real force_error(const Scene& scene) {
   test::ForceProbe probe(scene);
   const Model& model = probe.model();
@@ -102,11 +102,11 @@ Real force_error(const Scene& scene) {
   return std::sqrt(wrong / whole);
 }
 
-// Velocities are solved for to 1 %, and the damping of what is left out is at most half of rate *
-// dt = 16 of that.
+// The solver finds velocities to 1 %. The damping of the remainder is at most half of rate * dt =
+// 16 of that.
 TEST(DampingSolve, VelocitiesAreThoseThatTheirOwnDampingLeadsTo) {
   EXPECT_LT(force_error(make_damped_block()), 0.08);
-  EXPECT_LT(force_error(make_damped_block(8)), 0.08);  // of more than one block of particles
+  EXPECT_LT(force_error(make_damped_block(8)), 0.08);  // more than one block of particles
   EXPECT_LT(force_error(make_viscous_drop()), 0.08);
   EXPECT_LT(force_error(make_viscous_channel()), 0.08);
 }
@@ -121,14 +121,15 @@ TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
       ASSERT_TRUE(simulation.advance(1).events.empty());
       const Diagnostics now = simulation.diagnostics();
       const Real left = now.kinetic_energy + now.elastic_energy + now.contact_energy;
-      // Compression of a liquid is an energy that diagnostics do not count.
+      // Diagnostics do not include the energy of a compressed liquid.
       if (scene.bodies[0].kind != BodyKind::liquid) {
         EXPECT_LT(left, energy * (1 + 1e-9)) << n;
       }
       energy = left;
       const test::Totals after = test::totals_of(now);
       EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12);
-      // Viscosity acts along velocities, not along the line between particles.
+      // Viscosity acts along velocities, not along the line between particles, so it does not
+      // conserve angular momentum.
       if (scene.bodies[0].kind != BodyKind::liquid) {
         EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-12);
       }

@@ -16,8 +16,8 @@ using namespace test;
 constexpr Real kStep = 1e-3;
 const Vec3 kForce(3, -20, 7);
 
-// Momenta are near 4 kg m/s, and each is the sum of at most 54 particles after at most 40 steps:
-// a hundred roundings of half an epsilon, and as many of the forces that cancel.
+// Momenta are about 4 kg m/s. Each is the sum of at most 54 particles after at most 40 steps: a
+// hundred roundings of half an epsilon, and as many of the forces that cancel.
 constexpr Real kRoundOff = 4 * 200 * std::numeric_limits<Real>::epsilon();
 
 Vec3 total_momentum(const Simulation& simulation) {
@@ -36,7 +36,7 @@ struct Duration {
 };
 constexpr Duration kDurations[] = {{0.3, 1}, {1, 1}, {10, 10}, {10.5, 11}};
 
-/// After every step the gain of momentum is that step's share of the impulse, in equal parts.
+/// Expects that every step adds the same fraction of the impulse to the momentum.
 void expect_equal_shares(const Scene& scene, const Duration& duration,
                          std::uint32_t earlier_steps) {
   Simulation simulation = make_simulation(scene);
@@ -53,8 +53,8 @@ void expect_equal_shares(const Scene& scene, const Duration& duration,
   }
 }
 
-// Velocity Verlet keeps the forces of a step's end for the next: both edges must be sharp there
-// too.
+// Velocity Verlet reuses the forces of a step's end in the next step. Both edges of the force must
+// be sharp there too.
 TEST(AppliedForce, GivesEachStepAnEqualShareOfItsImpulse) {
   for (const IntegratorId integrator : kIntegrators) {
     for (const BodyKind kind : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
@@ -105,7 +105,7 @@ TEST(AppliedForce, EndsAlikeHoweverTheStepsAreAskedFor) {
   }
 }
 
-// The guard takes a step in parts: each must have its share of the force.
+// The guard divides a step into parts. Each part must receive its share of the force.
 TEST(AppliedForce, GivesItsImpulseInStepsThatAreTakenInParts) {
   for (const IntegratorId integrator : kIntegrators) {
     Scene scene = make_two_material_scene(integrator, kStep);

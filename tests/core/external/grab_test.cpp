@@ -15,8 +15,8 @@ using namespace test;
 
 constexpr Real kStep = 1e-3;
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real kFrequency = 4 * std::numbers::pi;  // [rad/s] of the spring that holds
-constexpr Real kMaxAcceleration = 200;             // [m/s^2] of what it may give
+constexpr Real kFrequency = 4 * std::numbers::pi;  // [rad/s] of the grab's spring
+constexpr Real kMaxAcceleration = 200;             // [m/s^2] limit of the grab
 constexpr std::uint64_t kHand = 17;
 
 Simulation make_block_of(BodyKind kind, int n = 3) {
@@ -41,7 +41,7 @@ TEST(Grab, PullsAsACriticallyDampedSpring) {
   }
 }
 
-// The target 0.9 m ahead in a box of 1 m is 0.1 m behind.
+// In a periodic box of 1 m, a target 0.9 m ahead is 0.1 m behind.
 TEST(Grab, PullsToTheNearestImageOfItsTarget) {
   Scene scene = make_two_material_scene(IntegratorId::runge_kutta_4, kStep);
   scene.periodic = Periodicity{{-0.5, -1, -1}, {0.5, 1, 1}, {true, false, false}};
@@ -60,7 +60,7 @@ TEST(Grab, PullsNoHarderThanItsLimit) {
   EXPECT_NEAR(velocity_of(simulation, 0).x(), kMaxAcceleration * 10 * kStep, 1e-12);
 }
 
-// From one corner, so that the body also turns until that corner is where the hand is.
+// The grab acts on a corner, so the body also turns until that corner is at the target.
 TEST(Grab, BringsEveryKindToTheTarget) {
   for (const BodyKind kind : {BodyKind::deformable, BodyKind::rigid}) {
     Simulation simulation = make_block_of(kind);

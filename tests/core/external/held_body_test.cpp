@@ -2,7 +2,7 @@
 
 #include "tests/support/scenes.h"
 
-/// Rigid bodies that are held, for ever or up to a time.
+/// Rigid bodies that are fixed permanently or until a given time.
 namespace vat::held_body_test {
 namespace {
 
@@ -49,8 +49,8 @@ TEST_P(HeldBody, AtRestStaysToTheBitAndStopsWhatFallsOnIt) {
     lowest = std::min(lowest, simulation.bodies()[1].pose->center_of_mass.z());
     ASSERT_TRUE(same_pose(simulation.bodies()[0], first.bodies()[0])) << step;
   }
-  EXPECT_GT(lowest, 0);     // it did not fall through,
-  EXPECT_LT(lowest, 0.15);  // and did touch
+  EXPECT_GT(lowest, 0);     // it did not fall through
+  EXPECT_LT(lowest, 0.15);  // it touched the obstacle
 }
 
 TEST_P(HeldBody, MovesOnAsIfNoForceActed) {
@@ -105,7 +105,7 @@ TEST_P(HeldBody, StiffDampingAgainstOneDoesNotMoveIt) {
   BodyDescription table = plate("table", {0, 0, 0});
   table.fixed = true;
   Scene scene = scene_of(GetParam(), {table, plate("ball", {0, 0, 0.09})});
-  // Velocity Verlet solves for this damping: of a part of the ball 1000 / 0.1 kg.
+  // Velocity Verlet solves this damping implicitly: c / m = 1000 / 0.1 for a part of the ball.
   scene.default_interface = {500, 1000};
   scene.numerics.step = scene.numerics.tick = 1e-5;
   if (GetParam() == IntegratorId::velocity_verlet) {

@@ -2,7 +2,7 @@
 
 #include "tests/support/scenes.h"
 
-/// What walls and other bodies do to a body, as the diagnostics tell it.
+/// Forces of walls and other bodies on a body, as reported by the diagnostics.
 namespace vat::outer_force_test {
 namespace {
 
@@ -25,7 +25,7 @@ Scene scene_of(std::vector<BodyDescription> bodies) {
 
 TEST(OuterForce, OnABlockThatRestsOnTheFloorIsItsWeight) {
   constexpr Real kWeight = 8 * 5 * 9.81;
-  // Four springs of the floor carry it, each pressed by a quarter.
+  // Four floor springs carry the body, each a quarter of its weight.
   const Real sag = kWeight / 4 / 1e4;
   Scene scene = scene_of({block("block", BodyKind::rigid, {0, 0, 0.1 - sag})});
   scene.gravity = {0, 0, -9.81};
@@ -41,13 +41,13 @@ TEST(OuterForce, OnABlockThatRestsOnTheFloorIsItsWeight) {
 TEST(OuterForce, TurnsABlockThatStandsOnOneEdge) {
   Scene scene = scene_of({block("block", BodyKind::rigid, {0.01, 0, 0.5})});
   scene.vat = Vat{{-0.08, -1, 0}, {1, 1, 1}, false, {}};
-  // Its four particles at x = -0.04 are 0.01 within the reach of the wall at -0.08.
+  // The four particles at x = -0.04 overlap the reach of the wall at -0.08 by 0.01.
   const BodyDiagnostics body = test::make_simulation(scene).diagnostics().bodies[0];
   EXPECT_LT((body.outer_force - Vec3(4 * 100, 0, 0)).norm(), 1e-9);
-  EXPECT_LT(body.outer_torque.norm(), 1e-9);  // evenly spread
+  EXPECT_LT(body.outer_torque.norm(), 1e-9);  // evenly distributed
   scene.bodies[0].orientation = Quat(Eigen::AngleAxis<Real>(0.1, Vec3::UnitY()));
   const BodyDiagnostics turned = test::make_simulation(scene).diagnostics().bodies[0];
-  // The lower particles are at -(cos + sin) / 20 or -(cos - sin) / 20 from the centre along x.
+  // Along x, the lower particles are at -(cos + sin) / 20 or -(cos - sin) / 20 from the centre.
   const Real near = 0.05 - (0.09 - 0.05 * (std::cos(0.1) + std::sin(0.1)));
   const Real far = 0.05 - (0.09 - 0.05 * (std::cos(0.1) - std::sin(0.1)));
   EXPECT_NEAR(turned.outer_force.x(), 2e4 * (near + far), 1e-9);
@@ -61,7 +61,7 @@ TEST(OuterForce, OfTwoBodiesInContactIsOpposite) {
   BodyDescription bouncer = block("bouncer", BodyKind::deformable, {0.02, 0.01, 0.19});
   bouncer.springs =
       test::join_near(std::get<ParticleShape>(bouncer.shape).positions, 0.15, {1000, 1});
-  bouncer.springs[0].rest_length = 0.2;  // forces within a body are no outer forces
+  bouncer.springs[0].rest_length = 0.2;  // internal forces are not outer forces
   Scene scene = scene_of({block("block", BodyKind::rigid, {0, 0, 0}), bouncer});
   scene.gravity = {0, 0, -9.81};
   const Diagnostics diagnostics = test::make_simulation(scene).diagnostics();
@@ -69,7 +69,7 @@ TEST(OuterForce, OfTwoBodiesInContactIsOpposite) {
   const BodyDiagnostics& b = diagnostics.bodies[1];
   EXPECT_GT(b.outer_force.z(), 1);
   EXPECT_LT((a.outer_force + b.outer_force).norm(), 1e-10 * a.outer_force.norm());
-  // Torques about one point are opposite too.
+  // Torques about a common point are opposite too.
   const Vec3 of_a = a.outer_torque + a.center_of_mass.cross(a.outer_force);
   const Vec3 of_b = b.outer_torque + b.center_of_mass.cross(b.outer_force);
   EXPECT_LT((of_a + of_b).norm(), 1e-10 * a.outer_force.norm());
@@ -80,7 +80,7 @@ TEST(OuterForce, OnAHeldBodyIsWhatHoldsItsLoad) {
   table.fixed = true;
   Scene scene = scene_of({table, block("load", BodyKind::rigid, {0, 0, 0.19})});
   const Diagnostics diagnostics = test::make_simulation(scene).diagnostics();
-  // Four pairs, each pressed by 0.01 m.
+  // Four pairs overlap by 0.01 m each.
   EXPECT_NEAR(diagnostics.bodies[0].outer_force.z(), -4 * 100, 1e-8);
   EXPECT_NEAR(diagnostics.bodies[1].outer_force.z(), 4 * 100, 1e-8);
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr Real kStep = 1e-3;
 constexpr Real kRadius = 0.05;
 
-/// A vat about the origin, in places that are no binary fractions, whose springs do nothing.
+/// A vat around the origin without wall springs. Its coordinates are not exact in binary.
 Scene make_soft_vat(IntegratorId integrator = IntegratorId::velocity_verlet) {
   Scene scene = test::make_scene(integrator, kStep);
   scene.materials = {test::make_material("m")};
@@ -35,7 +35,7 @@ BodyDescription make_grain(const Vec3& position, const Vec3& velocity) {
   return body;
 }
 
-/// No two of its moments are equal.
+/// A brick with three different moments of inertia.
 BodyDescription make_brick(const Vec3& position, const Vec3& velocity, const Vec3& spin) {
   BodyDescription body =
       test::make_body("brick", BodyKind::rigid, "m",
@@ -46,7 +46,7 @@ BodyDescription make_brick(const Vec3& position, const Vec3& velocity, const Vec
   return body;
 }
 
-/// A compiled scene, to be put into any configuration.
+/// A compiled scene that the tests put into any configuration.
 struct Trial {
   explicit Trial(const Scene& scene)
       : model(compile(scene, ids_of(scene),
@@ -95,11 +95,11 @@ TEST_P(HoldInside, AGrainStopsAtThePlaneAndKeepsWhatIsAlongIt) {
   }
 }
 
-// Of a particle at 20 m/s the plane is passed by half a step and more; a spring would then push
-// with its whole depth.
+// In half a step, a particle at 20 m/s moves far beyond the plane. A spring would then push with
+// the full depth.
 TEST_P(HoldInside, TheNextStepHasTheForcesAtThePlane) {
   constexpr Real kStiffness = 100;
-  constexpr Real kInset = 1e-12;  // no scene starts on the plane itself
+  constexpr Real kInset = 1e-12;  // no scene starts exactly on the plane
   Scene scene = make_soft_vat(GetParam());
   scene.interfaces[0].constants.stiffness = kStiffness;
   scene.bodies = {make_grain({0, 0, -0.7 + 0.007}, {0, 0, -20})};
@@ -158,7 +158,7 @@ TEST(HoldInsideGrain, TakesTheSpeedOfAWallThatMoves) {
     EXPECT_GE(wall_distance(*scene.vat, motion, 0, trial.now.position[0]), 0) << time;
     EXPECT_LT(wall_distance(*scene.vat, motion, 0, trial.now.position[0]), 1e-15) << time;
     EXPECT_EQ(trial.now.velocity[0], Vec3(motion.velocity.x(), 1, 2)) << time;
-    trial.now.position[0].x() -= 0.01;  // and one that comes back by itself keeps its own
+    trial.now.position[0].x() -= 0.01;  // a particle that returns by itself keeps its velocity
     trial.now.velocity[0].x() = motion.velocity.x() + 1;
     EXPECT_EQ(trial.hold(time), 1U);
     EXPECT_EQ(trial.now.velocity[0].x(), motion.velocity.x() + 1) << time;
@@ -184,7 +184,7 @@ TEST(HoldInsideGrain, NothingHoldsWhereTheWallsAreOff) {
   EXPECT_LT(test::position_of(simulation, 0).z(), -1);
 }
 
-/// Poses and motions in all directions, about every wall and corner of a vat that moves.
+/// Poses and motions in all directions, near every wall and corner of a moving vat.
 TEST(HoldInsideBody, AnImpulseAlongTheNormalsPutsItBackAndAddsNoEnergy) {
   Scene scene = make_soft_vat();
   scene.vat->motion = SlideMotion{{1, 2, -1}, 0.4, 1};
@@ -218,7 +218,7 @@ TEST(HoldInsideBody, AnImpulseAlongTheNormalsPutsItBackAndAddsNoEnergy) {
       }
     }
     EXPECT_LE(rigid_energy(trial, motion.velocity), energy * (1 + 1e-14)) << n;
-    // One impulse along a normal has no torque about it.
+    // A single impulse along a normal has no torque about that normal.
     if (touched == 1) {
       const Vec3 normal = (state.momentum - free.momentum).normalized();
       EXPECT_NEAR((state.angular_momentum - free.angular_momentum).dot(normal), 0, 1e-13) << n;

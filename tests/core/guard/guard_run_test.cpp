@@ -4,7 +4,7 @@
 
 #include "tests/support/mixed_scenes.h"
 
-// What the guard does to a run: which bits come out, and what the report says.
+// Effects of the guard on a run: the resulting bits, and the contents of the report.
 
 namespace vat::guard_run_test {
 namespace {
@@ -13,10 +13,12 @@ using namespace test;
 using enum GuardEvent::Cause;
 
 constexpr Real kStep = 1e-3;
-// A particle at 50 m/s passes in a step the 0.05 m at which another would notice it: it needs two
-// parts from there on, four from 100 m/s, eight from 200 m/s, and from 400 m/s no number helps.
+// In one step, a particle at 50 m/s travels 0.05 m, the distance at which another particle detects
+// it. It needs two parts above 50 m/s, four above 100 m/s and eight above 200 m/s. Above 400 m/s
+// the guard reports a failure.
 
-/// A particle in flight, and another body far away that it could meet. It gains 1 m/s in a step.
+/// A particle in flight, and a distant body that it could meet. The speed increases by 1 m/s per
+/// step.
 Scene make_flight(Real speed, IntegratorId integrator = IntegratorId::explicit_euler) {
   Scene scene = make_two_material_scene(integrator, kStep);
   scene.gravity = {1000, 0, 0};
@@ -25,8 +27,8 @@ Scene make_flight(Real speed, IntegratorId integrator = IntegratorId::explicit_e
   return scene;
 }
 
-/// The guard acts in some steps, not in all: the corners of the crate turn at 1.6 m/s, so that the
-/// 9th step is the first in two parts, and the 59th in four.
+/// A scene in which the guard divides some steps only. The crate's corners turn at 1.6 m/s, so the
+/// 9th step is the first with two parts, and the 59th the first with four.
 Scene make_flight_and_crowd(IntegratorId integrator) {
   Scene scene = make_flight(39.5, integrator);
   scene.bodies[1].position = {0, 9, 9};
@@ -55,9 +57,9 @@ TEST(GuardRun, GivesTheSameBitsHoweverTheStepsAreAskedFor) {
   }
 }
 
-// The forces at the end of an undone step are those of a stretched spring: none may be left in the
-// step that replaces it. Without damping they do not depend on the velocity, so that the run is the
-// same as with half the step.
+// The forces at the end of an undone step belong to a stretched spring. The replacing step must not
+// use them. Without damping the forces do not depend on the velocity, so the result equals a run
+// with half the step.
 TEST(GuardRun, NothingIsLeftOfAnUndoneStep) {
   Scene scene = make_flight(60, IntegratorId::velocity_verlet);
   BodyDescription pair = make_body("pair", BodyKind::deformable, "b",
@@ -75,7 +77,7 @@ TEST(GuardRun, NothingIsLeftOfAnUndoneStep) {
   EXPECT_EQ(velocity_of(simulation, 2, 1), velocity_of(fine, 2, 1));
 }
 
-// A part of length h fails where its end is above 0.05 m / h; every part adds 1000 m/s^2 h.
+// A part of length h fails if its final speed exceeds 0.05 m / h. Every part adds 1000 m/s^2 h.
 TEST(GuardRun, AnEventIsAtTheEndOfTheFailedPart) {
   Simulation simulation = make_simulation(make_flight(196.375));
   simulation.advance(3);
@@ -83,7 +85,7 @@ TEST(GuardRun, AnEventIsAtTheEndOfTheFailedPart) {
   EXPECT_FALSE(report.failed);
   ASSERT_EQ(report.events.size(), 3U);
   const Real start = 3 * kStep;
-  // The first half fails, and of the quarters the third: it ends at 200.125 m/s.
+  // The first half fails. Of the quarters, the third fails: it ends at 200.125 m/s.
   const Real ends[] = {start + kStep, start + kStep / 2, start + 3 * kStep / 4};
   Real length = kStep;
   for (std::size_t e = 0; e < 3; ++e) {
@@ -108,7 +110,7 @@ TEST(GuardRun, CountsAllEventsAndKeepsTheFirstAndTheLast) {
   EXPECT_EQ(report.steps, 20 * (1U + 1U + 4U));
   ASSERT_EQ(report.events.size(), kMax);
   for (std::size_t e = 0; e + 1 < kMax; ++e) {
-    const std::size_t step = e / 2;  // two events each
+    const std::size_t step = e / 2;  // two events per step
     EXPECT_DOUBLE_EQ(report.events[e].time,
                      (static_cast<Real>(step) + (e % 2 == 0 ? 1 : 0.5)) * kStep);
     EXPECT_EQ(report.events[e].step, e % 2 == 0 ? kStep : kStep / 2);
@@ -143,14 +145,15 @@ Scene make_ball_and_grains(Real radius) {
   return scene;
 }
 
-// A step of 1 mm is ten radii of a grain, but a hundredth of where the ball notices one.
+// A step moves the ball by 1 mm, which is ten radii of a grain, but a hundredth of the ball's
+// contact distance.
 TEST(GuardRun, AGrainAtRestDoesNotLimitABall) {
   Simulation simulation = make_simulation(make_ball_and_grains(1e-4));
   EXPECT_EQ(simulation.advance(1000).undone_steps, 0U);
   EXPECT_NEAR(position_of(simulation, 0).x(), 1, 1e-12);
 }
 
-// Grains notice one another at 0.2 mm.
+// Two grains detect each other at 0.2 mm.
 TEST(GuardRun, AGrainIsLimitedByAnotherGrain) {
   Scene scene = make_ball_and_grains(1e-4);
   scene.bodies[1].velocity = {0.3, 0, 0};

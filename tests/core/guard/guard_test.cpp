@@ -27,7 +27,7 @@ Scene make_three_kinds() {
   return scene;
 }
 
-/// The fault of the scene's first state after `spoil` has changed it.
+/// Returns the fault in the scene's initial state after `spoil` has changed it.
 template <class Spoil>
 std::optional<Fault> fault_after(const Spoil& spoil) {
   const Scene scene = make_three_kinds();
@@ -78,7 +78,7 @@ TEST(Guard, FindsWhatLeavesTheDomain) {
                outside_domain, 2, 0);
 }
 
-// The runner comes to the last blocks first.
+// The runner starts with the last blocks.
 TEST(Guard, FindsTheFirstOfManyForAnyThreads) {
   using enum GuardEvent::Cause;
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
@@ -113,7 +113,7 @@ TEST(Guard, TheDomainOfAVatIsTwiceItsLongestSideAroundIt) {
   EXPECT_EQ(guard_bounds(open.model()).max, Vec3(11.5, 9.5, 401));
 }
 
-// Touching particles notice one another at 0.05 m, walls at 0.025 m.
+// Particles detect each other at 0.05 m, walls at 0.025 m.
 TEST(Guard, NothingMayPassInOneStepWhatItWouldNotNotice) {
   using enum GuardEvent::Cause;
   Scene scene = make_three_kinds();
@@ -133,7 +133,7 @@ TEST(Guard, NothingMayPassInOneStepWhatItWouldNotNotice) {
                too_fast, 2, 0);
 }
 
-/// The travel of each body of two particles of radius 0.025 m, of the given kinds and materials.
+/// Returns the travel limit of each body. A body has two particles of radius 0.025 m.
 std::vector<Real> travel_of(const std::vector<std::pair<BodyKind, std::string>>& bodies,
                             bool self_contact = true) {
   Scene scene = make_three_kinds();
@@ -150,7 +150,8 @@ std::vector<Real> travel_of(const std::vector<std::pair<BodyKind, std::string>>&
   return guard_bounds(probe.model()).travel;
 }
 
-// Liquids of one material meet by their densities, whatever the contact laws say.
+// Liquids of one material interact through their densities, so contact laws do not limit their
+// travel.
 TEST(Guard, OnlyLiquidsOfOneMaterialDoNotNoticeOneAnother) {
   using enum BodyKind;
   const std::vector<Real> free{kMaxLength, kMaxLength};
@@ -169,13 +170,13 @@ TEST(Guard, ADeformableBodyNoticesItselfWhereItHasSelfContact) {
   EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}, false), std::vector<Real>{kMaxLength});
 }
 
-/// The fault of a cube that moves at `speed` and turns at `rate` about the same axis. Its corners
-/// are 0.0433 m from its middle, and a step may take them 0.05 m.
+/// Returns the fault of a cube that moves at `speed` and turns at `rate` about the same axis. Its
+/// corners are 0.0433 m from its centre, and may travel 0.05 m per step.
 std::optional<Fault> fault_of_turning_cube(Real speed, Real rate) {
   const ForceProbe probe(make_three_kinds());
   const Mat3 inertia = probe.model().rigid_bodies[0].inertia;
   return fault_after([&](Configuration& at) {
-    at.rigid[0].momentum = {0, 0, speed};  // of 1 kg
+    at.rigid[0].momentum = {0, 0, speed};  // mass 1 kg
     at.rigid[0].angular_momentum = inertia * Vec3(0, 0, rate);
   });
 }
@@ -194,7 +195,7 @@ TEST(Guard, ARigidBodyMayTurnByARadianInAStep) {
   expect_fault(fault_of_turning_cube(0, 1.001 / kStep), GuardEvent::Cause::too_fast, 2, 0);
 }
 
-/// A mass on a spring of frequency `omega_dt` / step: velocity Verlet is stable below 2.
+/// A mass on a spring with frequency `omega_dt` / step. Velocity Verlet is stable below 2.
 Scene make_oscillator(Real omega_dt, Real step = kStep, Real stretch = 0.1) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
   scene.materials = {make_material("m")};
@@ -219,7 +220,8 @@ TEST(Guard, NoticesAnUnstableOscillator) {
   EXPECT_LE(velocity_of(simulation, 0, 1).norm(), kMaxSpeed);
 }
 
-/// A particle at 50 m/s passes in a step the 0.05 m at which another would notice it.
+/// A particle in flight. At 50 m/s it travels 0.05 m per step, the distance at which another
+/// particle detects it.
 Scene make_flight(Real speed, Real step = kStep) {
   Scene scene = make_two_material_scene(IntegratorId::explicit_euler, step);
   scene.gravity = {0, 0, -9.81};
@@ -262,7 +264,7 @@ TEST(Guard, KeepsTheLastGoodStateWhereHalvingIsNoHelp) {
   for (const GuardEvent& event : report.events) EXPECT_FALSE(event.recovered);
   EXPECT_EQ(simulation.state_hash(), good);
   EXPECT_EQ(simulation.time(), 0);
-  // The way out is open: what made the state bad can be taken away.
+  // A command can remove the cause of the fault.
   ASSERT_TRUE(simulation.remove_body(simulation.bodies()[0].id).ok());
   EXPECT_TRUE(simulation.advance(40).events.empty());
 }

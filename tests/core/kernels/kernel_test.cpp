@@ -19,7 +19,7 @@ namespace {
 struct Kernel {
   const char* name;
   std::function<Real(Real)> value;
-  std::function<Real(Real)> slope;  ///< dW/dr; empty if it is not used
+  std::function<Real(Real)> slope;  ///< dW/dr; empty if unused
 };
 
 std::vector<Kernel> kernels(Real h, int dimensions) {
@@ -71,7 +71,7 @@ TEST(Kernel, FallsToZeroAtItsSupportWithItsSlope) {
       const Real r = h * n / 100;
       EXPECT_GT(kernel.value(r), kernel.value(r + 0.005 * h));
       if (!kernel.slope) continue;
-      // The central difference of a polynomial errs by step^2 W'''/6.
+      // The error of the central difference of a polynomial is step^2 W'''/6.
       const Real step = 1e-5 * h;
       const Real difference = (kernel.value(r + step) - kernel.value(r - step)) / (2 * step);
       EXPECT_NEAR(kernel.slope(r), difference, 2e-8 * scale / h) << r / h;
@@ -91,8 +91,8 @@ TEST(Kernel, LaplacianIsThatOfTheViscosityKernelAndNeverNegative) {
       const Real step = 1e-3 * h;
       for (int n = 10; n < 100; ++n) {
         const Real r = h * n / 100;
-        // (r^k W')' / r^k by differences of differences: they err by step^2 times derivatives of
-        // W, of which the logarithm's, or those of 1/r, are greatest.
+        // (r^k W')' / r^k by differences of differences. Their error is step^2 times derivatives of
+        // W. The derivatives of the logarithm or of 1/r are the largest.
         const auto flux = [&](Real s) {
           return std::pow(s, dimensions - 1) *
                  (kernel.value(s + step / 2) - kernel.value(s - step / 2)) / step;
@@ -108,7 +108,8 @@ TEST(Kernel, LaplacianIsThatOfTheViscosityKernelAndNeverNegative) {
   }
 }
 
-// LIQ-1, by an independent computation to six digits: a lattice is how a liquid starts.
+// LIQ-1 of the validation, by an independent computation to six digits. A liquid starts as a
+// lattice.
 TEST(Kernel, SumsOverALattice) {
   struct Row {
     Real ratio;
@@ -133,7 +134,8 @@ TEST(Kernel, SumsOverALattice) {
   }
 }
 
-// By parts the slope's sum is the kernel's integral, up to the lattice's error.
+// By integration by parts, the sum of slopes equals the integral of the kernel, except for the
+// lattice's error.
 TEST(Kernel, LatticeSlopesTendToOne) {
   for (const KernelId id : {KernelId::wendland_c2, KernelId::cubic_spline}) {
     for (const int dimensions : {2, 3}) {

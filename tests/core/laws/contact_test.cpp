@@ -18,7 +18,8 @@ constexpr Real kStiffness = 500;  // [N/m]
 constexpr Real kDamping = 3;      // [N s/m]
 constexpr Real kRadius = 0.1;     // [m]
 
-/// Two single particles on the x axis, `distance` apart, closing at `closing` metres a second.
+/// Two single particles on the x axis. `distance` [m] separates them, and `closing` [m/s] is their
+/// approach speed.
 Scene make_pair_scene(Real distance, Real closing, BodyKind first = BodyKind::deformable,
                       BodyKind second = BodyKind::deformable) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
@@ -52,7 +53,7 @@ TEST(Contact, IsADampedSpringOfTheOverlapThatNeverPulls) {
   }
   EXPECT_GT(push_on_right(make_pair_scene(2 * kRadius - 1e-9, 0)), 0);
   Scene scene = make_pair_scene(0.15, 0);
-  scene.bodies[0].velocity = {0, 5, -7};  // sliding does not count
+  scene.bodies[0].velocity = {0, 5, -7};  // tangential motion has no effect
   EXPECT_NEAR(push_on_right(scene), kStiffness * 0.05, 1e-12);
 }
 
@@ -87,7 +88,7 @@ TEST(Contact, JoinsEveryPairOfKinds) {
 
 TEST(Contact, IsNotBetweenBodiesOfOneLiquid) {
   Scene scene = make_pair_scene(0.15, 0, BodyKind::liquid, BodyKind::liquid);
-  scene.bodies[1].material = "a";  // no pressure either: the stiffness of the gas is 0
+  scene.bodies[1].material = "a";  // no pressure either: the gas has stiffness 0
   EXPECT_EQ(push_on_right(scene), 0);
 }
 
@@ -109,8 +110,8 @@ TEST(Contact, DirectionInOnePlaceIsAUnitVectorOfThePair) {
   EXPECT_NE(coincident_direction(0, 1), coincident_direction(0, 2));
 }
 
-/// Particles of one body: 0 and 1 joined by a spring of no stiffness, 2 and 3 overlapping at the
-/// start, 4 free.
+/// One body: a spring of stiffness 0 joins particles 0 and 1, particles 2 and 3 overlap at the
+/// start, and particle 4 is free.
 Scene make_self_scene() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {test::make_material("rubber")};
@@ -146,7 +147,7 @@ TEST(Contact, WithinABodyNeedsTheMaterialToHaveIt) {
   EXPECT_EQ(probe.force(0, 4), Vec3::Zero());
 }
 
-// The cell search must miss no pair: against all pairs, with different radii in every body.
+// Compares the cell search with a search over all pairs. Every body has another radius.
 TEST(Contact, EqualsBruteForce) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<Real> unit(0, 1);

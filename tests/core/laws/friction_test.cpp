@@ -20,11 +20,11 @@ using test::make_scene;
 constexpr Real kStiffness = 500;           // [N/m]
 constexpr Real kRadius = 0.1;              // [m]
 constexpr Real kFriction = 0.4;            // coefficient
-constexpr Real kPush = kStiffness * 0.05;  // [N] of the overlap of a pair, or with the floor
+constexpr Real kPush = kStiffness * 0.05;  // [N] overlap force of a pair or at the floor
 
 constexpr BodyKind kKinds[] = {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid};
 
-/// Particles of 1 kg and 2 kg, 0.15 m apart along (3, 0, 4) / 5; the first moves.
+/// Particles of 1 kg and 2 kg, 0.15 m apart along (3, 0, 4) / 5. The first moves.
 Scene make_pair_scene(const Vec3& velocity, BodyKind first = BodyKind::deformable,
                       BodyKind second = BodyKind::deformable) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
@@ -40,7 +40,7 @@ Scene make_pair_scene(const Vec3& velocity, BodyKind first = BodyKind::deformabl
 const Vec3 kNormal(-0.6, 0, -0.8);  // from the resting particle to the moving one
 const Vec3 kAcross(0.8, 0, -0.6);
 
-/// A particle of 1 kg whose overlap with the floor is that of a pair's.
+/// A particle of 1 kg that overlaps the floor as much as the particles of the pair overlap.
 Scene make_floor_scene(const Vec3& velocity, BodyKind kind = BodyKind::rigid) {
   Scene scene = make_pair_scene(velocity, kind);
   scene.bodies.resize(1);
@@ -95,7 +95,8 @@ TEST(Friction, IsNotWithinABody) {
   scene.materials[0].self_contact = SpringConstants{kStiffness, 0};
   scene.bodies = {make_body("body", BodyKind::deformable, "a", two, kRadius)};
   ForceProbe probe(scene);
-  probe.state().now.position[1].x() = 0.15;  // not excluded, since they start apart
+  probe.state().now.position[1].x() =
+      0.15;  // not excluded, since the particles are apart at the start
   probe.evaluate();
   EXPECT_NEAR(probe.force(0).x(), -kPush, 1e-12);
   EXPECT_EQ(probe.force(0).y(), 0);
@@ -140,7 +141,7 @@ TEST(Friction, LoadsParticlesWithItsGreatestRate) {
   Scene scene = make_floor_scene({1, 0, 0});
   EXPECT_NEAR(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping,
               std::sqrt(kStiffness), 1e-12);
-  scene.default_interface.damping = 30;  // above the friction's, across it
+  scene.default_interface.damping = 30;  // exceeds the friction force, but acts across it
   EXPECT_EQ(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping, 30);
   scene.default_interface = {kStiffness, 2, 0};
   EXPECT_EQ(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping, 2);
@@ -182,17 +183,18 @@ TEST(Friction, TurnsRigidBodiesAndIsTurnedByThem) {
   Scene scene = make_pair_scene(Vec3::Zero(), BodyKind::rigid, BodyKind::rigid);
   scene.bodies[0].angular_velocity = {0, 40, 0};
   ForceProbe probe(scene);
-  // At the contact, half of 0.15 m away, it moves at 3 m/s along omega x arm.
+  // The contact point, at half of 0.15 m, moves at 3 m/s along omega x arm.
   const Vec3 slip = Vec3(0, 40, 0).cross(Vec3(-0.075 * kNormal));
   EXPECT_LT((probe.force(0) - kPush * (kNormal - kFriction * slip / 3)).norm(), 1e-12);
   const Vec3 torque = -0.075 * kNormal.cross(-kFriction * kPush * slip / 3);
   for (const Vec3& each : probe.state().forces.rigid_torque) {
-    EXPECT_LT((each - torque).norm(), 1e-12);  // the same on both: their couple is the forces'
+    EXPECT_LT((each - torque).norm(),
+              1e-12);  // equal torques: their sum balances the couple of the forces
   }
 }
 
-/// The slip of a particle that starts to stick on the floor, after 100 steps with omega dt = 1.95,
-/// over that at the start.
+/// Returns the slip of a particle that starts to stick to the floor after 100 steps with omega dt =
+/// 1.95, relative to the initial slip.
 Real slip_left(Real damping) {
   Scene scene = make_floor_scene({1e-3, 0, 0}, BodyKind::deformable);
   const Real omega = std::sqrt(kStiffness);
@@ -204,7 +206,7 @@ Real slip_left(Real damping) {
   return test::velocity_of(simulation, 0).x() / 1e-3;
 }
 
-// Where forces at predicted velocities would be unstable, rate dt > 1, the solve takes friction in.
+// Explicit forces would be unstable at rate dt > 1. The solver then includes friction.
 TEST(Friction, IsStableWhereItMustBeSolvedFor) {
   for (const Real damping : {0.0, 1.0, 100.0}) {
     EXPECT_LT(std::abs(slip_left(damping)), 1e-6) << damping;

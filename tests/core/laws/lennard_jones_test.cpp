@@ -34,7 +34,7 @@ TEST(LennardJones, EndsWithoutAJump) {
   EXPECT_EQ(layer_energy(kStiffness, kWidth, kEnd, kEnd), 0);
 }
 
-// The force of the source, F(0) (h - r)^2 ((h - r)^2 - (h - l)^2) / (h^2 l (2 h - l)).
+// The force of the reference, F(0) (h - r)^2 ((h - r)^2 - (h - l)^2) / (h^2 l (2 h - l)).
 TEST(LennardJones, IsTheForceOfItsSource) {
   const Real h = kEnd;
   const Real at_zero = push(0);
@@ -95,7 +95,7 @@ TEST(LennardJones, LoadsParticlesWithTheSlopeThatTheyAreAt) {
     return ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].stiffness;
   };
   EXPECT_NEAR(load(0.1), 2 * layer_slope(kStiffness, kWidth, kEnd, 0.1), 1e-9);
-  EXPECT_NEAR(load(0.3), 2 * kStiffness, 1e-9);  // a pull's slope is less than that at rest
+  EXPECT_NEAR(load(0.3), 2 * kStiffness, 1e-9);  // the slope is smaller under tension than at rest
 }
 
 TEST(LennardJones, HoldsParticlesToWalls) {
@@ -108,15 +108,17 @@ TEST(LennardJones, HoldsParticlesToWalls) {
   EXPECT_LT((ForceProbe(scene).force(0) - push(0.1) * Vec3::UnitZ()).norm(), 1e-12);
 }
 
-/// Kinetic and contact energy.
+/// Returns the sum of kinetic and contact energy.
 Real energy_of(const Simulation& simulation) {
   const Diagnostics now = simulation.diagnostics();
   return now.kinetic_energy + now.contact_energy;
 }
 
 TEST(LennardJones, KeepsEnergyAndMomentumInAllControls) {
-  // Verlet's energy is off by dt^2 (v U'' v / 12 - |U'|^2 / 24 m): here U'' / m is 1.5 times the
-  // slope at 0.15 m at most, and m v^2 twice the depth of the well.
+  // Verlet's energy error is dt^2 (v U'' v / 12 -
+  // U'
+  // ^2 / 24 m). Here U'' / m is at most 1.5 times the slope at 0.15 m, and m v^2 is twice the depth
+  // of the well.
   const Real steepest = 1.5 * layer_slope(kStiffness, kWidth, kEnd, 0.15);
   const Real sway = 1e-6 * steepest / 6 * kStiffness * kWidth * kWidth / 15;
   for (const StepControl control :
@@ -132,7 +134,7 @@ TEST(LennardJones, KeepsEnergyAndMomentumInAllControls) {
       nearest = std::min(nearest, (position_of(simulation, 0) - position_of(simulation, 1)).norm());
       EXPECT_NEAR(energy_of(simulation), before, sway) << to_string(control);
     }
-    EXPECT_LT(nearest, 0.95 * kRest);  // it swings through the rest
+    EXPECT_LT(nearest, 0.95 * kRest);  // it oscillates through the rest distance
     const Vec3 momentum = velocity_of(simulation, 0) + 2 * velocity_of(simulation, 1);
     EXPECT_LT(momentum.norm(), 1e-13);
   }

@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-// Of the validation dossier's RIG-4, from the closed form.
+// Closed-form values of RIG-4 of the validation.
 TEST(Restitution, OfDampingRatiosIsThatOfTheUnilateralSpring) {
   EXPECT_EQ(restitution_of(0), 1);
   EXPECT_NEAR(restitution_of(0.05), 0.858758102, 1e-9);
@@ -22,7 +22,8 @@ TEST(Restitution, OfDampingRatiosIsThatOfTheUnilateralSpring) {
   EXPECT_NEAR(restitution_of(1), std::exp(-2), 1e-12);
 }
 
-/// The speed at which x'' = -2 zeta x' - x, thrown in at 1, has its force at zero.
+/// Returns the speed at which the force of x'' = -2 zeta x' - x becomes zero. The initial speed is
+/// 1.
 Real parting_speed(Real zeta) {
   constexpr Real kStep = 1e-4;
   Real x = 0;
@@ -58,8 +59,9 @@ struct Impact {
 constexpr Impact kImpacts[] = {{1e3, 1, 1}, {1e5, 1, 1}, {1e4, 1, 100}, {1e4, 20, 0.5}};
 constexpr Real kRestitutions[] = {1, 0.8, 0.5, 0.2, 0.05};
 
-/// Of two bodies whose nearest particles are about to touch, with a step of 1/200 of the contact's
-/// angular period; the first moves at 1 m/s along x, `reduced_mass` is that of the impact.
+/// Returns the separation speed of two bodies whose nearest particles are about to touch. The first
+/// body moves at 1 m/s along x. The step is 1/200 of the contact's angular period. `reduced_mass`
+/// is that of the impact.
 Real speed_of_parting(Scene scene, Real stiffness, Real reduced_mass, Real restitution) {
   const Real rate = std::sqrt(stiffness / reduced_mass);
   scene.numerics.step = scene.numerics.tick = 5e-3 / rate;
@@ -73,7 +75,7 @@ Real speed_of_parting(Scene scene, Real stiffness, Real reduced_mass, Real resti
   return contact_speed(1, 0) - contact_speed(0, 0);
 }
 
-// A damping force that starts with a jump somewhere within a step is wrong by half of it at most.
+// If a damping force starts within a step, its error is at most half of the step.
 constexpr Real kHalfStep = 5e-3;
 
 TEST(Restitution, IsThatOfFreeAndRigidParticlesOfAnyMass) {
@@ -106,14 +108,15 @@ Scene make_blocks() {
   return scene;
 }
 
-// Nine springs act at once.
+// Nine springs act simultaneously.
 TEST(Restitution, IsThatOfFacesThatMeetFlat) {
   for (const Real e : kRestitutions) {
     EXPECT_NEAR(speed_of_parting(make_blocks(), 1e4, 13.5 / 9, e), e, 2 * kHalfStep) << e;
   }
 }
 
-// A rod that is hit at its end yields four times as easily there as at its middle.
+// The end of a rod is more mobile than its middle: its rotation contributes a term with the square
+// of half the length.
 TEST(Restitution, IsThatOfThePointThatIsHit) {
   for (const Real e : kRestitutions) {
     Scene scene = make_blocks();
@@ -123,10 +126,11 @@ TEST(Restitution, IsThatOfThePointThatIsHit) {
         make_body("ball", BodyKind::rigid, "steel", make_particles({{0, 0, 0}}, 5), 0.05),
         make_body("rod", BodyKind::rigid, "steel", make_particles(rod, 1), 0.05)};
     scene.bodies[0].position.x() = -0.1001;
-    // 11 kg about its middle: 1.1 m^2 of the places, and a ball's own.
+    // Moment of inertia of 11 kg about the centre: 1.1 kg m^2 of the positions, and the moment of
+    // each sphere.
     const Real inertia = 1.1 + 11 * 0.4 * 0.05 * 0.05;
     const Real mobility = 1.0 / 5 + 1.0 / 11 + 0.25 / inertia;
-    // Stiff, so that nothing turns while they touch.
+    // The contact is stiff, so the rod does not turn during the impact.
     EXPECT_NEAR(speed_of_parting(scene, 1e8, 1 / mobility, e), e, 2 * kHalfStep) << e;
   }
 }

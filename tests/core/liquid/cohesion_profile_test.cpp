@@ -10,18 +10,18 @@
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/liquid/surface/cohesion.h"
 
-// Where the constants of cohesion come from: layers of liquid as a continuum, a support radius of 1
-// and A = 2, come to rest below a free surface or a wall.
+// The source of the constants of cohesion: layers of a continuous liquid relax below a free surface
+// or at a wall. The support radius is 1, and A = 2.
 
 namespace vat::cohesion_profile_test {
 namespace {
 
 constexpr int kPerSupport = 10;  // layers
 constexpr Real kLayer = 1.0 / kPerSupport;
-constexpr Real kSound2 = 25;  // rho c^2 of the far part's own pull, 1
+constexpr Real kSound2 = 25;  // rho c^2, relative to the attraction of the far part
 constexpr Real kReach = CohesionKernel::kReach;
 
-/// The integral of the density's kernel over a plane.
+/// The integral of the density kernel over a plane.
 class PlaneKernel {
  public:
   PlaneKernel() {
@@ -49,10 +49,10 @@ class PlaneKernel {
   std::vector<Real> values_;
 };
 
-/// Layers at depths z < 0; the lower half stays where it is.
+/// Layers at z < 0. The lower half is fixed.
 class Surface {
  public:
-  /// `share`: of the wall at z = 0; none: a free surface.
+  /// `share` is that of the wall at z = 0. Without it, the surface is free.
   explicit Surface(std::optional<Real> share) : share_(share) {
     for (int n = 0; n < kCount; ++n) z_.push_back(-(n + 0.5) * kLayer);
     for (int n = -kPerSupport; n <= kPerSupport; ++n) lattice_ += kLayer * plane_.value(n * kLayer);
@@ -61,7 +61,7 @@ class Surface {
     relax();
   }
 
-  /// The surface's energy, over that of the uniform liquid's free surface.
+  /// Returns the energy of the surface, relative to that of a free surface of the uniform liquid.
   Real tension() const {
     Real sum = 0;
     for (int i = 0; i < kFree; ++i) {
@@ -88,7 +88,7 @@ class Surface {
     }
     return sum;
   }
-  /// With the images of a wall.
+  /// Returns the density of layer i, including the images behind the wall.
   Real density(int i) const {
     Real sum = 0;
     for (int j = 0; j < kCount; ++j) {
@@ -97,7 +97,7 @@ class Surface {
     }
     return i < kCount - 2 * kPerSupport ? sum * kLayer / lattice_ : 1;
   }
-  /// p / s^2.
+  /// Returns p / s^2.
   static Real pressure_over_s2(Real s) {
     return std::max(-kTensileShare, kSound2 * tait_pressure(s) / (s * s));
   }
@@ -115,7 +115,7 @@ class Surface {
     }
     return share_ ? sum + 2 * attraction(z_[i], *share_) : sum;
   }
-  /// Damped motion until next to nothing moves.
+  /// Moves the layers with damping for a time in which they come to rest.
   void relax() {
     std::vector<Real> speed(kFree, 0);
     const Real step = 0.2 * kLayer / std::sqrt(kSound2);

@@ -30,7 +30,7 @@ TEST(CohesionKernel, NeitherPullsNorPressesOnALattice) {
       });
     };
     EXPECT_NEAR(slope(1), 0, 1e-12) << dimensions;
-    EXPECT_NEAR(slope(1) - slope(0), -1, 2e-3) << dimensions;  // the far part alone
+    EXPECT_NEAR(slope(1) - slope(0), -1, 2e-3) << dimensions;  // far part only
   }
 }
 
@@ -49,7 +49,7 @@ TEST(CohesionKernel, MakesTheSurfaceTensionOfKirkwoodAndBuff) {
   }
 }
 
-// The pull of a half space, against that of its parts.
+// Compares the attraction of a half space with the sum of its parts.
 TEST(CohesionKernel, OverAPlaneIsWhatAHalfSpacePullsWith) {
   for (const int dimensions : {2, 3}) {
     const CohesionKernel kernel(kSupport, kSpacing, dimensions);
@@ -87,7 +87,7 @@ BodyDescription make_water(std::vector<Vec3> points, int dimensions) {
                    kSpacing / 2);
 }
 
-// Beyond the support radius there is no pressure between them.
+// Beyond the support radius, two particles exert no pressure.
 TEST(Cohesion, OfTwoParticlesIsTheKernels) {
   for (const int dimensions : {2, 3}) {
     Scene scene = make_wet_scene(dimensions);
@@ -103,7 +103,7 @@ TEST(Cohesion, OfTwoParticlesIsTheKernels) {
   }
 }
 
-// A liquid and a solid of the same volume and A, but for the share of the far part.
+// A liquid and a solid with the same volume and A differ only in the share of the far part.
 TEST(Cohesion, PullsASolidAsItIsPulled) {
   for (const Real angle : {40.0, 90.0, 130.0}) {
     Scene scene = make_wet_scene(3);
@@ -122,8 +122,8 @@ TEST(Cohesion, PullsASolidAsItIsPulled) {
   }
 }
 
-// With an energy, what moving one particle does to another's force is what moving the other does to
-// its own: liquid at a wall, with its pressure, at rest and under tension.
+// If the forces derive from an energy, the stiffness matrix is symmetric. The liquid is at a wall,
+// with pressure, at rest and under tension.
 TEST(Cohesion, DerivesFromAnEnergy) {
   Scene scene = make_wet_scene(2);
   scene.vat = Vat{{-1, -1, 0}, {1, 1, 1}, false, {}};
@@ -161,7 +161,7 @@ TEST(Cohesion, DerivesFromAnEnergy) {
   EXPECT_GT(greatest, 1);
 }
 
-// The stage costs the rest nothing, and what attracts has no curvature.
+// Cohesion adds a stage only to scenes that use it, and replaces the stages of curvature.
 TEST(Cohesion, ReplacesTheStagesOfCurvature) {
   Scene scene = make_wet_scene(3);
   scene.bodies = {make_water({{0, 0, 0}}, 3)};

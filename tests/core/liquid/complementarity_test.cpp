@@ -10,7 +10,7 @@
 namespace vat::complementarity_test {
 namespace {
 
-/// A = B^T B with few entries in each row of B, as of particles that touch a few others.
+/// A = B^T B with few entries per row of B, similar to particles with few neighbours.
 class Problem {
  public:
   Problem(std::size_t count, unsigned seed) : count_(count), matrix_(count * count, 0) {
@@ -56,9 +56,9 @@ class Problem {
     whole_ = system.whole;
     return report;
   }
-  /// What all that acted did together.
+  /// Returns the sum of all steps that the solver applied.
   const std::vector<Real>& whole() const { return whole_; }
-  /// From the start, not as the solver keeps it.
+  /// Computes the excess anew, not incrementally as the solver does.
   std::vector<Real> excess_at(const std::vector<Real>& x) const {
     std::vector<Real> excess = excess_;
     std::vector<Real> product(count_);
@@ -87,7 +87,7 @@ class Problem {
   mutable std::vector<Real> whole_;
 };
 
-/// Of the problem's matrices: 11 entries or more in a row, the diagonal among the greatest.
+/// The row parameter of the problem's matrices: at least 11 entries per row, with a large diagonal.
 constexpr Real kRow = 60;
 constexpr SolveLimits kClose{1e-10, 1e-9, 10000, kRow};
 
@@ -114,8 +114,8 @@ TEST(Complementarity, IsSolvedFromAnyStart) {
   }
 }
 
-// Where the end is checked, x below 0 has become 0 before the last acted; where it is not, since
-// rows are said to be empty, only after.
+// If the solver checks the end, it sets x < 0 to 0 before the last step. If rows count as empty, it
+// skips the check and does so after the last step.
 TEST(Complementarity, HasDoneTheWayFromTheStart) {
   for (const Real row : {1e9, 0.0}) {
     bool differs = false;

@@ -46,7 +46,7 @@ TEST(GasPressure, DoesNotPullBelowRestDensity) {
   EXPECT_EQ(probe.work().of<LiquidScratch>().pressure[0], 0);
 }
 
-// m1 m2 (p1 + p2)/(rho1 rho2) 45/(pi h^6)(h - r)^2, and half of it as it is printed.
+// m1 m2 (p1 + p2)/(rho1 rho2) 45/(pi h^6)(h - r)^2, and half of that as printed in the reference.
 TEST(GasPressure, OfAPairIsTheFormula) {
   constexpr Real kDistance = 0.6;
   constexpr Real kSupport = 1.3;

@@ -16,8 +16,8 @@ using namespace test;
 constexpr Real kSpacing = 0.1;
 constexpr Real kStep = 1e-3;
 
-/// A jelly of 4 x 4 x 4 particles, one of them fixed, that deforms as it turns, above a rigid
-/// plate.
+/// A jelly of 4 x 4 x 4 particles above a rigid plate. One particle is fixed. The jelly turns and
+/// deforms.
 Scene make_melting_scene(PressureSolver solver) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, kStep);
   scene.pressure_solver = solver;
@@ -66,7 +66,8 @@ TEST_P(Melts, KeepingPlacesVelocitiesAndMassesToTheBit) {
     EXPECT_EQ(liquid.bodies[b].angular_momentum, solid.bodies[b].angular_momentum);
   }
   simulation.advance(1);
-  EXPECT_NE(simulation.find_body(id)->positions[5], positions[5]);  // nothing holds it any more
+  EXPECT_NE(simulation.find_body(id)->positions[5],
+            positions[5]);  // the particle is no longer fixed
 }
 
 TEST_P(Melts, AtATimeAsByCommandThen) {
@@ -115,18 +116,18 @@ TEST_P(Melts, UnderUsersHandsWhichLetGo) {
 INSTANTIATE_TEST_SUITE_P(Solvers, Melts, testing::Values(PressureSolver::gas, PressureSolver::tait),
                          [](const auto& solver) { return to_string(solver.param); });
 
-// A call that the guard ends goes back to before what happened in it.
+// If the guard ends a call, the state returns to that before the call's events.
 TEST(Melting, InACallThatFailsIsUndone) {
   Scene scene = make_melting_scene(PressureSolver::tait);
   scene.bodies[1].melting = Melting{"water", 5 * kStep};
   Simulation simulation = make_simulation(scene);
   simulation.advance(3);
-  // Too fast for the guard after some 40 steps.
+  // After about 40 steps the plate is too fast for the guard.
   ASSERT_TRUE(simulation.apply_force(*simulation.find_body("plate"), {0, 0, -3e5}, 1).ok());
   const std::uint64_t hash = simulation.state_hash();
   const AdvanceReport report = simulation.advance(100);
   ASSERT_TRUE(report.failed);
-  ASSERT_GT(report.steps - report.undone_steps, 10U);  // it was liquid
+  ASSERT_GT(report.steps - report.undone_steps, 10U);  // the body had melted
   EXPECT_FALSE(report.bodies_changed);
   EXPECT_EQ(simulation.bodies()[1].kind, BodyKind::deformable);
   EXPECT_EQ(simulation.state_hash(), hash);

@@ -13,7 +13,7 @@ using namespace test;
 
 constexpr Real kSpacing = 0.05;
 
-/// A box full of liquid at rest density.
+/// A box filled with liquid at rest density.
 Scene make_full_box(int dimensions, Real ratio) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.dimensions = dimensions;
@@ -42,7 +42,7 @@ TEST(Mirrors, CompleteALatticeAtFacesEdgesAndCorners) {
   }
 }
 
-// Every way in which walls and a world that repeats itself show a particle.
+// Covers every combination of walls and periodic axes that mirrors a particle.
 TEST(Mirrors, AreTheSameImagesOncePacked) {
   Scene scene = make_full_box(3, 2);
   scene.periodic = Periodicity{{-0.15, 0, 0}, {0.15, 0, 0}, {true, false, false}};
@@ -61,7 +61,7 @@ TEST(Mirrors, AreTheSameImagesOncePacked) {
       ++count;
     });
   });
-  EXPECT_EQ(count, 3 * (2 + 2 + 4));  // places of the box, faces and edges
+  EXPECT_EQ(count, 3 * (2 + 2 + 4));  // images in the box, at faces and at edges
 }
 
 TEST(Mirrors, ReflectPlacesAtMovingWalls) {
@@ -78,7 +78,7 @@ TEST(Mirrors, ReflectPlacesAtMovingWalls) {
                     EXPECT_NEAR(place.x() - (0.1 - half), mirror.axes[0] ? -0.01 : 0.01, 1e-15);
                     EXPECT_NEAR(place.z() + half, mirror.axes[2] ? -0.02 : 0.02, 1e-15);
                   });
-  EXPECT_EQ(count, 3);  // two faces and their edge
+  EXPECT_EQ(count, 3);  // two faces and their common edge
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What no-slip walls add to a liquid: closed forms against quadrature, and the force itself.
+// Forces of no-slip walls on a liquid: closed forms compared with quadrature, and the force itself.
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ namespace {
 
 using namespace test;
 
-/// Integral of w(r) over the part of a sphere of radius r, or a circle, that is beyond a distance d
-/// along the normal.
+/// Returns the integral of w(r) over the part of a sphere of radius r (a circle in two dimensions)
+/// beyond a distance d along the normal.
 Real beyond(int dimensions, Real d, Real h, const std::function<Real(Real)>& w) {
   return integrate(d, h, [&](Real r) {
     const Real measure =
@@ -28,7 +28,7 @@ Real beyond(int dimensions, Real d, Real h, const std::function<Real(Real)>& w) 
   });
 }
 
-/// The same of s w(r), s the distance along the normal.
+/// Returns the same integral of s w(r). s is the distance along the normal.
 Real moment_beyond(int dimensions, Real d, Real h, const std::function<Real(Real)>& w) {
   return integrate(d, h, [&](Real r) {
     const Real measure =
@@ -72,7 +72,7 @@ TEST(HalfSpace, DragIsTheMomentOfTheLaplacian) {
   }
 }
 
-// The integral goes on to the wall, 9/(4h) and 20/(3 pi h) there; only 1/d stops.
+// The integral is finite at the wall: 9/(4h) and 20/(3 pi h). Only the factor 1/d is limited.
 TEST(HalfSpace, DragIsBoundedAtTheWall) {
   const Real least = HalfSpace::kMinDistance;
   EXPECT_NEAR(HalfSpace(2, 3).drag(0), 9.0 / 4 / 4 / least, 1e-12);
@@ -92,7 +92,7 @@ constexpr Real kSupport = 0.1;
 constexpr Real kViscosity = 3;
 constexpr Real kMass = 0.2;
 
-/// One particle of liquid at `position` in a vat of 1 m whose wall `wall` is a no-slip one.
+/// One liquid particle at `position` in a vat of 1 m. The wall `wall` is no-slip.
 Scene make_wall_scene(int wall, const Vec3& position, const Vec3& velocity) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4);
   scene.materials = {make_liquid("water", 1000, {0, kViscosity, kSupport})};

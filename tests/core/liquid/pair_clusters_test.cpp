@@ -9,14 +9,14 @@
 
 #include "tests/support/thread_runner.h"
 
-// Clusters of targets and their candidates against all pairs, tried one by one.
+// Clusters of targets and their candidates, compared with a search over all pairs.
 
 namespace vat::pair_clusters_test {
 namespace {
 
 using Points = std::vector<Vec3>;
 
-/// Two groups of sources, of which the first are the targets.
+/// Two groups of sources. The targets are those of the first group.
 class Cloud {
  public:
   Cloud(Points first, Points second, Real cell_size) {
@@ -46,7 +46,7 @@ class Cloud {
     return how;
   }
 
-  Points places;  ///< by source
+  Points places;  ///< indexed by source
   SearchCoordinates search;
   std::array<SourceGroup, 2> groups;
 
@@ -62,7 +62,8 @@ Points random_points(std::size_t count, Real size, unsigned seed) {
   return points;
 }
 
-/// Where searches may go wrong: even, clumped, in one place, on a line, two groups far apart.
+/// Distributions that are difficult for a search: uniform, clumped, coincident, on a line, and two
+/// distant groups.
 std::vector<Points> difficult_points() {
   std::vector<Points> all = {random_points(700, 1, 1), random_points(60, 0.01, 2), {}, {{1, 2, 3}}};
   all.push_back(Points(40, Vec3(0.5, 0.5, 0.5)));
@@ -120,7 +121,7 @@ TEST(PairClusters, HaveEveryPairOnce) {
   }
 }
 
-// What is far from any target is left out: few of the candidates are of no use.
+// The search omits distant sources, so only few candidates are superfluous.
 TEST(PairClusters, LeaveOutWhatIsFar) {
   const Cloud cloud(random_points(8000, 1, 5), {}, 0.1);
   const Real reach = 0.1;
@@ -142,8 +143,8 @@ TEST(PairClusters, LeaveOutWhatIsFar) {
         }
       }
     });
-    // A ball of that radius has a share of a cube of the same width, rounded by the radius, of
-    // (4/3 pi) / (1 + 6 + 3 pi + 4/3 pi), and some padding.
+    // A sphere of that radius fills a fraction (4/3 pi) / (1 + 6 + 3 pi + 4/3 pi) of a cube of the
+    // same width with rounded edges. Padding reduces the fraction.
     EXPECT_GT(static_cast<Real>(pairs), 0.17 * static_cast<Real>(tried)) << to_string(set);
   }
 }
@@ -165,7 +166,7 @@ TEST(PairClusters, StopWhereThereIsTooMuchWork) {
   EXPECT_TRUE(clusters.build(how, cloud.groups[0], cloud.search, cloud.groups, nullptr));
 }
 
-/// Of each target its number, and its own viscosity.
+/// Writes the index and the viscosity of each target.
 void tell_targets(const PairInputs& in, std::span<const TargetCluster> clusters, Real* sums) {
   for (const TargetCluster& cluster : clusters) {
     for (Index i = cluster.begin; i < cluster.end; ++i) {
@@ -176,12 +177,12 @@ void tell_targets(const PairInputs& in, std::span<const TargetCluster> clusters,
   }
 }
 
-// However many there are in a cell.
+// Some cells contain many targets.
 TEST(PairClusters, GiveEachTargetItsOwnSums) {
   test::ThreadRunner runner(4);
   Points points = random_points(2000, 1, 4);
   points.insert(points.end(), 1000, Vec3::Zero());
-  // Targets behind other sources, as solids are.
+  // The targets follow other sources, as solids do.
   const Cloud cloud(random_points(30, 1, 5), points, 0.1);
   PairClusters clusters;
   const PairSearch how = cloud.how(0.1, best_instruction_set());

@@ -7,14 +7,14 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
-// What single precision is worth, and where double takes its place.
+// The accuracy of single precision, and the cases that need double precision.
 
 namespace vat::pair_precision_test {
 namespace {
 
 using namespace test;
 
-/// A mixture, and one of its liquid blocks once more, `distance` away.
+/// A mixture, and a copy of one of its liquid blocks at `distance`.
 Scene make_spread_mixture(PairPrecision precision, Real distance) {
   Scene scene = make_wet_mixture(IntegratorId::velocity_verlet, PressureSolver::tait);
   scene.pair_precision = precision;
@@ -33,7 +33,8 @@ Real greatest_support(const ForceProbe& probe) {
   return support;
 }
 
-/// The greatest difference of forces by precision, over the greatest force.
+/// Returns the largest difference between forces in single and double precision, relative to the
+/// largest force.
 Real relative_difference(Real distance) {
   const ForceProbe a(make_spread_mixture(PairPrecision::single_precision, distance));
   const ForceProbe b(make_spread_mixture(PairPrecision::double_precision, distance));
@@ -49,8 +50,8 @@ Real relative_difference(Real distance) {
 
 TEST(PairPrecision, IsSingleOverAThousandSupports) {
   const Real support = greatest_support(ForceProbe(make_spread_mixture({}, 1)));
-  // Rounded places change densities by some 1e-7 or 1e-6, and the forces are those of compressions
-  // by a thousandth or more.
+  // Rounded positions change densities by 1e-7 to 1e-6. The forces result from compressions of at
+  // least a thousandth.
   EXPECT_GT(relative_difference(1), 0);
   EXPECT_LT(relative_difference(1), 1e-4);
   EXPECT_GT(relative_difference(900 * support), 0);

@@ -6,7 +6,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
-// Pairs and densities of places that have not changed are not found again.
+// Pairs and densities are reused if no position has changed.
 
 namespace vat::pair_reuse_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/kernels/smoothing_kernel.h"
 
-// Every sum with every instruction set against plain sums in double precision.
+// Compares every sum, with every instruction set, with plain sums in double precision.
 
 namespace vat::pair_sums_test {
 namespace {
@@ -19,7 +19,7 @@ constexpr Index kTargets = 11;
 constexpr Index kSources = 700;  // more than a tile
 constexpr Index kMirrored = 500;
 
-/// One cluster of targets, the first sources, among sources within and beyond its reach.
+/// One cluster of targets (the first sources), among sources within and beyond its reach.
 struct Pairs {
   std::vector<PairPlace> places;
   std::vector<PairMotion> motions;
@@ -41,7 +41,7 @@ struct Pairs {
       viscosities.push_back({number() + 0.6, n % 2 == 0 ? 1.0 : 0.0, 0.7 + number()});
       candidates.push_back(n);
     }
-    places[kTargets] = places[0];  // two in one place
+    places[kTargets] = places[0];  // two coincident particles
     for (Index i = 0; i < kTargets; ++i) target_viscosities.push_back(0.6 + number());
     places.push_back({1e6, 1e6, 1e6, 0});
     motions.push_back({});
@@ -86,24 +86,24 @@ struct Pairs {
   }
 };
 
-/// What a term of a sum is made of, in double precision.
+/// The quantities of a pair that the terms of a sum use, in double precision.
 struct Pair {
   Index i;
   Index j;
-  Vec3 x;  ///< over the support
+  Vec3 x;  ///< divided by the support radius
   Real q;
   Real w;
   Real g;
   Vec3 v;
 };
 
-/// Sums and, for tolerances, sums of magnitudes.
+/// Sums, and sums of absolute values for tolerances.
 struct Expected {
   std::vector<Real> sums;
   std::vector<Real> sizes;
 };
 
-/// term(pair, add(entry, value)) over all pairs within the support.
+/// Sums term(pair, add(entry, value)) over all pairs within the support radius.
 template <class Term>
 Expected add_up(const Pairs& pairs, KernelId id, std::size_t entries, Term&& term) {
   const SmoothingKernel kernel(id, 1, 3);
@@ -133,7 +133,7 @@ Expected add_up(const Pairs& pairs, KernelId id, std::size_t entries, Term&& ter
   return expected;
 }
 
-/// Calls f(table, precision's epsilon, its name) for all that there are.
+/// Calls f(table, epsilon of the precision, name) for all tables.
 template <class F>
 void for_each_table(KernelId kernel, F&& f) {
   for (const auto& [precision, epsilon] :
@@ -148,8 +148,8 @@ void for_each_table(KernelId kernel, F&& f) {
   }
 }
 
-/// A term is rounded some twenty times, its cancelling parts before it is one included, and the sum
-/// once for each vector of sources.
+/// A term has about twenty roundings, including its cancelling parts. The sum has one for each
+/// vector of sources.
 void expect_sums(const Pairs& pairs, PairSums::Function function, bool mixed,
                  const Expected& expected, Real epsilon) {
   std::vector<Real> sums(expected.sums.size(), -1);
@@ -166,7 +166,7 @@ Real softened(const Pair& pair) {
 
 class PairSumsOf : public testing::TestWithParam<KernelId> {
  protected:
-  /// Expects of a sum in every table the terms of all pairs.
+  /// Compares the sum of every table with the terms of all pairs.
   template <class Term>
   static void expect(PairSums::Function PairSums::*function, const Pairs& pairs, bool mixed,
                      std::size_t entries, Term&& term) {

@@ -12,14 +12,14 @@
 #include "core/stepping/step_plan.h"
 #include "tests/support/mixed_scenes.h"
 
-// What pressures and motions do in one place of a liquid with solids and walls.
+// Effects of pressures and motions in one state of a liquid with solids and walls.
 
 namespace vat::pressure_response_test {
 namespace {
 
 using namespace test;
 
-/// A liquid against two walls and a floor that meets a deformable and a rigid body, all moving.
+/// A liquid that touches two walls, a floor, a deformable body and a rigid body. All bodies move.
 Scene make_pool() {
   Scene scene = make_two_material_scene(IntegratorId::symplectic_euler, 1e-3);
   scene.pressure_solver = PressureSolver::incompressible;
@@ -42,7 +42,7 @@ Scene make_pool() {
   return scene;
 }
 
-/// Solids with a share of their volumes.
+/// Compiles the scene, with the volumes of solids multiplied by `share_of_solids`.
 std::shared_ptr<const Model> compile_with(const Scene& scene, Real share_of_solids) {
   Model model = *compile(scene, std::vector<BodyId>(scene.bodies.size(), 1),
                          std::vector<std::shared_ptr<const SampledBody>>(scene.bodies.size()));
@@ -52,7 +52,7 @@ std::shared_ptr<const Model> compile_with(const Scene& scene, Real share_of_soli
   return std::make_shared<const Model>(std::move(model));
 }
 
-/// One place, evaluated, with the response to it.
+/// One evaluated configuration, and its pressure response.
 class Place {
  public:
   explicit Place(const Scene& scene, bool solids_move = true, Real share_of_solids = 1)
@@ -70,7 +70,7 @@ class Place {
       volumes.push_back(model->rest_volume[i]);
     return volumes;
   }
-  /// -V D M^-1 F(pressure)
+  /// Returns -V D M^-1 F(pressure).
   std::vector<Real> react(const std::vector<Real>& pressure) {
     std::vector<Real> rate(count());
     response->accelerate(pressure);
@@ -133,17 +133,17 @@ TEST(PressureResponse, BoundsItsDiagonal) {
     const Real exact = place.react(one)[s];
     one[s] = 0;
     EXPECT_GT(exact, 0);
-    // A particle and its own images count twice, and two images once each.
+    // A particle and its images count twice, and pairs of images once.
     EXPECT_GT(diagonal[s], 0.6 * exact) << s;
     EXPECT_LT(diagonal[s], 2 * exact) << s;
   }
 }
 
-// ds/dt of the density that forces see, by differences of places.
+// ds/dt of the density that the forces use, by finite differences of positions.
 TEST(PressureResponse, SeesHowMotionsCompress) {
   constexpr Real kWay = 1e-6;
   const Scene scene = make_pool();
-  Place place(scene, true, 0.5);  // they count twice in the rate
+  Place place(scene, true, 0.5);  // solids count twice in the rate
   std::vector<Real> rate(place.count());
   place.response->see_velocities(Vec3::Zero());
   place.response->compress(rate);

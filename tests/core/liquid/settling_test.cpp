@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// One liquid particle without neighbours, at 2 m/s along y.
+/// One liquid particle without neighbours that moves at 2 m/s along y.
 Scene make_lone_drop(Real step, const Settling& settling) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
   scene.pressure_solver = PressureSolver::tait;
@@ -26,7 +26,7 @@ TEST(Settling, IsADragUntilItsTime) {
   Simulation simulation = make_simulation(make_lone_drop(1e-3, {kDrag, 0.5}));
   advance_to(simulation, 0.5);
   const Real expected = 2 * std::exp(-kDrag * 0.5);
-  // The last half kick of the 500 is without the drag.
+  // The last half kick of the 500 steps has no drag.
   EXPECT_NEAR(simulation.bodies()[0].velocities[0].y(), expected, expected * kDrag * 1e-3);
   const Vec3 kept = simulation.bodies()[0].velocities[0];
   advance_to(simulation, 1);
@@ -36,7 +36,7 @@ TEST(Settling, IsADragUntilItsTime) {
 TEST(Settling, IsStableHoweverStrong) {
   Simulation simulation = make_simulation(make_lone_drop(1e-3, {1e6, 0.5}));
   EXPECT_TRUE(simulation.advance(10).events.empty());
-  // Velocity Verlet with damping solved at the end of the step is the trapezoidal rule.
+  // Velocity Verlet with implicit damping at the end of the step is the trapezoidal rule.
   const Real expected = 2 * std::pow((1 - 500.0) / (1 + 500.0), 10);
   EXPECT_NEAR(simulation.bodies()[0].velocities[0].y(), expected, 0.01 * expected);
 }
@@ -46,7 +46,7 @@ TEST(Settling, IsTowardsTheVelocityOfTheVat) {
   scene.vat = Vat{{-1, -1, -1}, {1, 1, 1}, false, SlideMotion{{1, 0, 0}, 0.1, 1}};
   Simulation simulation = make_simulation(scene);
   advance_to(simulation, 0.25);
-  const Real expected = 0.1 / 2 * 2 * M_PI;  // 1/4 of the period: the greatest
+  const Real expected = 0.1 / 2 * 2 * M_PI;  // the maximum, after a quarter of the period
   EXPECT_NEAR(simulation.bodies()[0].velocities[0].x(), expected, 0.01 * expected);
   EXPECT_NEAR(simulation.bodies()[0].velocities[0].y(), 0, 1e-6);
 }

@@ -36,8 +36,8 @@ BodyDescription make_water(std::vector<Vec3> points, int dimensions) {
                    kSpacing / 2);
 }
 
-/// Points of a lattice of an even number of sites that lie in a ball, those below z = 0 only if
-/// asked for.
+/// Lattice points within a ball, with an even number of sites per edge. Without `whole`, only those
+/// above z = 0.
 std::vector<Vec3> ball(Real radius, int dimensions, bool whole) {
   const int n = 2 * static_cast<int>(radius / kSpacing) + 2;
   std::vector<Vec3> points;
@@ -61,14 +61,16 @@ TEST(SurfaceTension, NormalsOfABallPointToItsCentre) {
         EXPECT_TRUE(normal.isZero(0)) << x.transpose();
         EXPECT_LT(probe.work().of<SurfaceScratch>().surface[slot].kernel_deficiency, 1e-12);
       } else if (x.norm() > radius - kSpacing) {
-        EXPECT_LT(normal.dot(x.normalized()), -0.97) << x.transpose();  // a step of the lattice
+        EXPECT_LT(normal.dot(x.normalized()), -0.97) << x.transpose();  // one lattice step
         EXPECT_GT(probe.work().of<SurfaceScratch>().surface[slot].kernel_deficiency, 0.05);
       }
     }
   }
 }
 
-// The integral of 2 |g| over the liquid is the surface's area.
+// The integral of 2
+// g
+// over the liquid is the area of the surface.
 TEST(SurfaceTension, GradientsOfABallAddUpToItsSurface) {
   for (const int dimensions : {2, 3}) {
     const Real radius = 12 * kSpacing;
@@ -81,12 +83,12 @@ TEST(SurfaceTension, GradientsOfABallAddUpToItsSurface) {
     }
     const Real exact =
         dimensions == 3 ? 4 * std::numbers::pi * radius * radius : 2 * std::numbers::pi * radius;
-    const Real inside = 3 * kSpacing / radius;  // as far as the gradients reach
+    const Real inside = 3 * kSpacing / radius;  // width of the zone with gradients
     EXPECT_NEAR(area, exact, exact * inside) << dimensions;
   }
 }
 
-// Half a drop at a wall feels what half of a whole drop does.
+// The forces in half a drop at a wall equal those in the same half of a whole drop.
 TEST(SurfaceTension, WallsAreMirrors) {
   for (const int dimensions : {2, 3}) {
     Scene whole = make_wet_scene(dimensions);
@@ -111,7 +113,7 @@ TEST(SurfaceTension, WallsAreMirrors) {
   }
 }
 
-/// A layer of liquid in the plane that ends at x = 0, on a floor.
+/// A two-dimensional layer of liquid on a floor that ends at x = 0.
 Scene make_layer(Real contact_angle) {
   Scene scene = make_wet_scene(2);
   scene.vat = Vat{{-2, -1, 0}, {2, 1, 2}, false, {}};
@@ -122,7 +124,8 @@ Scene make_layer(Real contact_angle) {
   return scene;
 }
 
-// The normal of contact in the share 1 - d/h, with the support radius h of three spacings.
+// At a distance d, the normal contains the contact normal with the weight 1 - d/h. The support
+// radius h is three spacings.
 TEST(SurfaceTension, NormalsTurnAtWallsToTheContactAngle) {
   for (const Real angle : {75.0, 90.0, 120.0, 150.0}) {
     const ForceProbe probe(make_layer(angle));
@@ -143,7 +146,7 @@ TEST(SurfaceTension, NormalsTurnAtWallsToTheContactAngle) {
   }
 }
 
-/// The force [N/m] along x on the layer's end.
+/// Returns the force [N/m] along x on the end of the layer.
 Real pull_on_layer(Real contact_angle) {
   const ForceProbe probe(make_layer(contact_angle));
   const std::vector<Vec3>& at = probe.model().bodies[0].sample->positions;
@@ -154,8 +157,8 @@ Real pull_on_layer(Real contact_angle) {
   return sum;
 }
 
-// Young's law is sigma cos(theta) by length of the line. At an end that stands upright a part of it
-// acts, the greater the nearer the angle is to that.
+// By Young's law, the force per length is sigma cos(theta). At a vertical end only a part of it
+// acts. The part grows as the contact angle approaches 90 degrees.
 TEST(SurfaceTension, WallsPullTowardsTheContactAngle) {
   const Real neutral = pull_on_layer(90);
   for (const Real angle : {75.0, 120.0, 150.0}) {
@@ -187,7 +190,7 @@ TEST(SurfaceTension, SolidsContinueTheLiquid) {
   EXPECT_EQ(count, 12u * 4u);
 }
 
-// Cohesion is a sum of pairs along the lines between them.
+// Cohesion is a sum of pair forces along the connecting lines.
 TEST(SurfaceTension, CohesionBalances) {
   Scene scene = make_wet_scene(3);
   scene.forces.viscosity = false;
@@ -199,7 +202,7 @@ TEST(SurfaceTension, CohesionBalances) {
   EXPECT_LT(pull.cross(Vec3(0.07, 0.01, 0)).norm(), 1e-15 * pull.norm());
 }
 
-// Brackbill's limit for waves two spacings long, and the sound of liquid and cohesion.
+// Brackbill's limit for waves of two spacings, and the sound speed of liquid and cohesion.
 TEST(SurfaceTension, LimitsSteps) {
   Scene scene = make_wet_scene(3);
   scene.materials[0].liquid->stiffness = 1e-9;

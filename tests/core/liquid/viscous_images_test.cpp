@@ -1,5 +1,5 @@
-// What walls do to a viscous liquid that they take part in: the force between two particles and
-// their images.
+// Effects of walls on a viscous liquid if walls take part in it: the force between two particles
+// and their images.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ constexpr Real kViscosity = 3;
 constexpr Real kDistance = 0.02;
 const Vec3 kVelocity(1, -2, 3);
 
-/// A place at kDistance from a wall, and another kSpacing from there along `along`.
+/// One particle at kDistance from a wall, and another at kSpacing from the first in the direction
+/// `along`.
 Scene make_wall_scene(int wall, int along) {
   const int axis = wall / 2;
   Vec3 place = Vec3::Constant(0.5);
@@ -42,8 +43,8 @@ Scene make_wall_scene(int wall, int along) {
   return scene;
 }
 
-/// Of the viscous force 2 (d + 2) mu V^2 W'/r x x^T / (x^2 + 0.01 (h/2)^2) at the distance r, over
-/// x x^T [N s/m^3].
+/// Returns the viscous force 2 (d + 2) mu V^2 W'/r x x^T / (x^2 + 0.01 (h/2)^2) at distance r,
+/// divided by x x^T [N s/m^3].
 Real strength(const ForceProbe& probe, Real r) {
   const LiquidModel& liquid = *probe.model().liquids[0];
   const Real volume = std::pow(kSpacing, 3);
@@ -51,8 +52,9 @@ Real strength(const ForceProbe& probe, Real r) {
          liquid.kernel.slope_over_r(r) / (r * r + 0.0025 * kSupport * kSupport);
 }
 
-// Across the wall the image comes towards the particle, along it the image goes the other way: both
-// differ from the particle by twice its velocity. The force has what is along x, axis by axis.
+// Normal to the wall, the image approaches the particle. Parallel to the wall, the image moves the
+// opposite way. Both velocities differ from the particle's by twice its velocity. The force acts
+// along x, component by component.
 TEST(ViscousImages, HaveTheVelocityTurnedRound) {
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
@@ -69,7 +71,7 @@ TEST(ViscousImages, HaveTheVelocityTurnedRound) {
   }
 }
 
-// Only what goes across a slip wall meets its image.
+// A slip wall mirrors only the normal velocity.
 TEST(ViscousImages, OfSlipWallsResistWhatComesTowardsThem) {
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
@@ -94,7 +96,7 @@ TEST(ViscousImages, MoveWithTheWallAndTheVat) {
   ForceProbe probe(scene);
   const Real others = strength(probe, std::hypot(2 * kDistance, kSpacing)) * kSpacing * kSpacing;
   EXPECT_NEAR(probe.force(0).x(), others * 2 * 0.5, 1e-12 * others);
-  EXPECT_EQ(probe.force(0).y(), 0);  // both particles lie along x
+  EXPECT_EQ(probe.force(0).y(), 0);  // the particles lie on the x axis
   probe.evaluate(1);                 // the vat moves at 0.1 pi/2
   EXPECT_NEAR(probe.force(0).x(), others * 2 * (0.5 + 0.05 * std::numbers::pi), 1e-12 * others);
 }
@@ -114,7 +116,7 @@ TEST(ViscousImages, CostNothingWhereTheyDoNothing) {
   scene.materials[0].liquid->viscosity = kViscosity;
   scene.vat->walls[4].no_slip = false;
   EXPECT_TRUE(has_stage(scene));
-  // 1 * rho c h / 2 = 50 Pa s of artificial viscosity, beside 2 (3 + 2) mu = 30 Pa s.
+  // 1 * rho c h / 2 = 50 Pa s of artificial viscosity, plus 2 (3 + 2) mu = 30 Pa s.
   scene.materials[0].liquid->stiffness = 1;
   scene.materials[0].liquid->artificial_viscosity = 1;
   EXPECT_FALSE(has_stage(scene));

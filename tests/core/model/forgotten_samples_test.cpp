@@ -4,7 +4,7 @@
 #include "core/stepping/step_plan.h"
 #include "tests/support/scenes.h"
 
-// Samples of liquids are let go, and made again where they are asked for.
+// Samples of liquids are released, and computed again on demand.
 
 namespace vat::forgotten_samples_test {
 namespace {
@@ -43,7 +43,7 @@ TEST(ForgottenSamples, AreMadeAgainTheSame) {
   EXPECT_EQ(sample_of(*model, 1), model->bodies[1].sample);
 }
 
-// Nobody could make it again.
+// Given samples cannot be computed again.
 TEST(ForgottenSamples, AreNotThoseThatWereGiven) {
   const auto given = std::make_shared<const SampledBody>(
       *sample_of(*compile(make_mixture(), {1, 2}, {nullptr, nullptr}), 0));

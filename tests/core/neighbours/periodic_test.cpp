@@ -71,7 +71,7 @@ TEST(PeriodicBox, OfNothingDoesNothing) {
   EXPECT_EQ(images, 1);
 }
 
-/// A liquid lattice of spacing 1 that fills a periodic cube of `sites` along each edge.
+/// A periodic cube filled with a liquid lattice of spacing 1, with `sites` particles per edge.
 Scene make_full_box(int sites, Real support, Real viscosity = 0) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {make_liquid("water", 500, {10, viscosity, support})};
@@ -82,8 +82,8 @@ Scene make_full_box(int sites, Real support, Real viscosity = 0) {
   return scene;
 }
 
-/// Liquid, and solids that touch it, one another and themselves, at random in a box that repeats
-/// along some axes. Everything is within [0, 1]^3 and moved by `shift`.
+/// Random liquid and solids that touch one another and themselves, in a box that is periodic along
+/// `axes`. All positions are in [0, 1]^3, moved by `shift`.
 Scene make_random_scene(std::array<bool, 3> axes, const Vec3& shift) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4);
   scene.materials = {make_liquid("water", 1000, {10, 5, 0.2}), make_material("solid")};
@@ -113,7 +113,7 @@ constexpr std::array<std::array<bool, 3>, 5> kAxes = {{{true, false, false},
                                                        {true, false, true},
                                                        {true, true, true}}};
 
-/// Calls f(x_i - x_j) for the images of j that are nearer to i than `reach`, without any search.
+/// Calls f(x_i - x_j) for all images of j within `reach` of i, by brute force.
 template <class F>
 void for_each_near_image(const Periodicity& periodic, const Vec3& x_ij, Real reach, F&& f) {
   for (int x = -1; x <= 1; ++x) {
@@ -149,7 +149,7 @@ TEST(Periodic, DensitiesEqualBruteForceOverImages) {
 TEST(Periodic, ContactsEqualBruteForceOverImages) {
   for (const std::array<bool, 3>& axes : kAxes) {
     Scene scene = make_random_scene(axes, Vec3::Zero());
-    scene.bodies.erase(scene.bodies.begin());  // contacts alone act on what is left
+    scene.bodies.erase(scene.bodies.begin());  // only contacts act on the remaining bodies
     scene.default_interface.damping = 0;
     scene.materials[1].self_contact.reset();
     const ForceProbe probe(scene);
@@ -211,12 +211,12 @@ TEST(Periodic, MomentumIsConservedAcrossTheSeams) {
   Simulation simulation = make_simulation(scene);
   const Vec3 before = totals_of(simulation.diagnostics()).momentum;
   simulation.advance(500);
-  // 600 particles of 2 kg at up to 1 m/s.
+  // 600 particles of 2 kg, at up to 1 m/s.
   const Vec3 after = totals_of(simulation.diagnostics()).momentum;
   EXPECT_LT((after - before).norm(), 1e-12 * 1200);
 }
 
-/// Two bodies that run into each other along x, the first at `first`.
+/// Two bodies that collide along x. The first starts at `first`.
 Scene make_collision(BodyKind kind, Real first, bool periodic) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {make_material("solid")};
@@ -237,7 +237,7 @@ Scene make_collision(BodyKind kind, Real first, bool periodic) {
   return scene;
 }
 
-// The second body once more a whole box further: it is met through its image.
+// Moves the second body by one more box length. The bodies then meet through an image.
 TEST(Periodic, SolidsThatCrossTheSeamCollideAsInTheOpen) {
   for (const BodyKind kind : {BodyKind::rigid, BodyKind::deformable}) {
     for (const Real further : {0, 6}) {
@@ -265,7 +265,7 @@ TEST(Periodic, LiquidComesInThroughTheOtherSide) {
   for (std::size_t i = 0; i < 64; ++i) {
     const Vec3 p = position_of(simulation, 0, i);
     EXPECT_TRUE((p.array() >= -2).all() && (p.array() < 2).all());
-    // 30 m and -7 m are two sites on and one site on, in a box of four sites.
+    // In a box of four sites, 30 m is two sites, and -7 m is one site further.
     const Vec3 start = make_lattice(4, 4, 4, 1)[i];
     const PeriodicBox box(*scene.periodic);
     EXPECT_LT(box.nearest(box.wrap(p) - box.wrap(start + Vec3(2, 0, 1))).norm(), 1e-9);

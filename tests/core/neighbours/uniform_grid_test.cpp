@@ -40,7 +40,7 @@ std::vector<Index> find_by_brute_force(const std::vector<Vec3>& points, const Ve
   return found;
 }
 
-/// Every point, and some places without one, at the cell size and at other radii.
+/// Searches at every point and at some empty positions, with the cell size and other radii.
 void expect_equals_brute_force(const std::vector<Vec3>& points, Real cell_size,
                                std::size_t stride = 1) {
   UniformGrid grid;
@@ -73,7 +73,7 @@ TEST(UniformGrid, EqualsBruteForceOnCellFaces) {
   expect_equals_brute_force(points, 0.1);
   expect_equals_brute_force(points, 0.1 * (1 + 1e-15));
   expect_equals_brute_force(points, 0.1 * (1 - 1e-15));
-  for (Vec3& p : points) p += Vec3::Constant(-1e5);  // where a coordinate has few digits left
+  for (Vec3& p : points) p += Vec3::Constant(-1e5);  // coordinates with few significant digits left
   expect_equals_brute_force(points, 0.1);
 }
 
@@ -109,7 +109,7 @@ TEST(UniformGrid, SurvivesWhateverPositionsComeIn) {
   }
 }
 
-// A search touches the cells within the radius and no others, or it is brute force in disguise.
+// A search visits only cells within the radius.
 TEST(UniformGrid, LooksAtFewPointsBeyondTheRadius) {
   const std::vector<Vec3> points = make_random_points(8000, 0, 2, 12);  // 1 per cell of 0.1
   UniformGrid grid;
@@ -122,7 +122,7 @@ TEST(UniformGrid, LooksAtFewPointsBeyondTheRadius) {
 }
 
 TEST(UniformGrid, OrderIsStable) {
-  // Four cells along x, points given in turns: within a cell the order of the input stays.
+  // Four cells along x. Within a cell, points keep the order of the input.
   std::vector<Vec3> points;
   for (int n = 0; n < 100; ++n) points.push_back({0.5 + (n * 7) % 4, 0.5, 0.5});
   UniformGrid grid;
@@ -149,12 +149,12 @@ TEST(UniformGrid, CanBeBuiltAgainWithOtherPoints) {
   grid.for_each_run(Vec3::Zero(), 1, [](Index, Index) { FAIL() << "a run of an empty grid"; });
 }
 
-// Memory follows the number of points, not the space between them.
+// Memory depends on the number of points, not on the space between them.
 TEST(UniformGrid, GrowsItsCellsWherePointsAreSparse) {
   UniformGrid grid;
   const std::vector<Vec3> points = {Vec3::Constant(-1e6), Vec3::Constant(1e6)};
   grid.build(points, 1e-6);
-  Index tried = 0;  // a point that is 400 m away: one cell of 4096 along an axis is 488 m
+  Index tried = 0;  // a point at 400 m: with 4096 cells per axis, one cell is 488 m wide
   grid.for_each_run(points[1] - Vec3::Constant(400), 1e-6,
                     [&](Index begin, Index end) { tried += end - begin; });
   EXPECT_EQ(tried, 1u);

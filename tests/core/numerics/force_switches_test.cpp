@@ -5,11 +5,12 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-/// Forces that a scene turns off, and the central field.
+/// Switches of forces, and the central field.
 namespace vat::force_switches_test {
 namespace {
 
-/// A dense liquid in shear, a stretched pair of springs and a ball that touches both and the floor.
+/// A dense liquid in shear, a stretched pair of springs, and a ball that touches both and the
+/// floor.
 Scene busy_scene() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-5);
   scene.gravity = {0, 0, -9.81};
@@ -46,7 +47,7 @@ TEST(ForceSwitches, LeaveStagesOut) {
   expect_no_stage("walls", {.walls = false});
 }
 
-/// All forces of the scene's particles, body after body.
+/// Returns the forces of all particles, body by body.
 std::vector<Vec3> forces_of(const Scene& scene) {
   test::ForceProbe probe(scene);
   return probe.state().forces.particle;
@@ -59,7 +60,8 @@ Scene with_only(bool ForceSwitches::*kept) {
   return scene;
 }
 
-// Each force adds its part, whichever others act, and none is empty here.
+// Each switched force contributes the same part, independently of the others. In this scene no part
+// is zero.
 TEST(ForceSwitches, PartsAddUpToTheWhole) {
   const std::vector<Vec3> whole = forces_of(busy_scene());
   std::vector<Vec3> sum(whole.size(), Vec3::Zero());
@@ -121,7 +123,7 @@ TEST(CentralField, PullsInProportionToTheDistance) {
   scene.gravity = {1, 2, 3};
   scene.central_field = CentralField{{0.5, -1, 2}, 3};
   const test::ForceProbe probe(scene);
-  const Vec3 place(0.2, 0.05, 0.04);  // of the ball
+  const Vec3 place(0.2, 0.05, 0.04);  // position of the ball
   const Vec3 expected = Vec3(1, 2, 3) - 9 * (place - Vec3(0.5, -1, 2));
   EXPECT_LT((probe.force(2) - expected).norm(), 1e-13);
   scene.forces.gravity = false;
@@ -140,7 +142,8 @@ TEST(CentralField, KeepsAnOrbitAndItsEnergy) {
   const Diagnostics before = simulation.diagnostics();
   EXPECT_DOUBLE_EQ(before.gravitational_energy, 0.5 * 2 * 16);
   test::advance_to(simulation, 1);
-  // The ellipse cos(4 t), sin(4 t) / 2. The error of RK4 is (Omega dt)^5 / 120 a step.
+  // The orbit is the ellipse cos(4 t), sin(4 t) / 2. The error of RK4 is (Omega dt)^5 / 120 per
+  // step.
   const Vec3 expected(1 + std::cos(4.0), 2 + std::sin(4.0) / 2, 3);
   EXPECT_LT((test::position_of(simulation, 0) - expected).norm(),
             2 * std::pow(4e-3, 5) / 120 * 1e3);

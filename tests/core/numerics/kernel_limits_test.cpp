@@ -15,17 +15,18 @@
 namespace vat::kernel_limits_test {
 namespace {
 
-// The stable steps of liquids with a smoothing kernel are those of the shortest waves on a cubic
-// lattice, here summed from the kernel.
+// The stable step of a liquid follows from the shortest waves on a cubic lattice. The tests sum
+// these from the kernel.
 
 constexpr Real kSupport = 1;
 
 struct Rates {
-  Real omega2 = 0;  ///< of sound with a speed of 1 m/s
-  Real decay = 0;   ///< of viscosity of 1 m^2/s
+  Real omega2 = 0;  ///< sound with a speed of 1 m/s
+  Real decay = 0;   ///< viscosity of 1 m^2/s
 };
 
-/// Of a wave on the lattice: the displacements' density, and the friction between the particles.
+/// Returns the rates of a wave on the lattice: density of the displacements, and friction between
+/// the particles.
 Rates rates_of(const SmoothingKernel& kernel, Real spacing, const Vec3& wave) {
   const int reach = static_cast<int>(kSupport / spacing);
   const Real volume = spacing * spacing * spacing / lattice_sum(kernel, kSupport, spacing, 3);
@@ -51,7 +52,7 @@ Rates rates_of(const SmoothingKernel& kernel, Real spacing, const Vec3& wave) {
   return {slope.squaredNorm() / steepness, solver.eigenvalues().maxCoeff()};
 }
 
-/// Over waves along the lattice's directions.
+/// Returns the largest rates of waves along the lattice directions.
 Rates greatest_rates(KernelId id, Real spacing) {
   const SmoothingKernel kernel(id, kSupport, 3);
   Rates greatest;
@@ -67,7 +68,7 @@ Rates greatest_rates(KernelId id, Real spacing) {
   return greatest;
 }
 
-/// The stable step of a liquid with a speed of sound or a kinematic viscosity.
+/// Returns the stable step of a liquid with a given speed of sound or kinematic viscosity.
 Real step_limit(KernelId id, Real speed, Real viscosity) {
   Scene scene = test::make_scene(IntegratorId::symplectic_euler, 1e-3);
   scene.pressure_solver = PressureSolver::tait;

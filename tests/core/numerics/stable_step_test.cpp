@@ -1,4 +1,5 @@
-// The limits against closed forms and published values; stability/StepMap has simulations.
+// Step limits, compared with closed forms and published values. stability/StepMap compares them
+// with simulations.
 
 #include "core/numerics/stable_step.h"
 
@@ -13,7 +14,7 @@ namespace vat::stable_step_test {
 
 namespace {
 
-/// Greatest omega dt at a damping ratio of rate = 2 ratio omega.
+/// Returns the largest stable omega dt at a damping rate of 2 ratio omega.
 Real limit(IntegratorId integrator, Real ratio) {
   constexpr Real kOmega = 7;
   return kOmega * stable_step(integrator, {kOmega * kOmega, 2 * ratio * kOmega});

@@ -34,7 +34,7 @@ TEST(MassProperties, OfADumbbell) {
   const MassProperties p = mass_properties(make_sample({{-1, 0, 0}, {3, 0, 0}}, {3, 1}, 0.5));
   EXPECT_EQ(p.mass, 4);
   EXPECT_EQ(p.center_of_mass, Vec3::Zero());
-  // 3 * 1^2 + 1 * 3^2 across the axis, and 2/5 m r^2 of each sphere about every axis.
+  // 3 * 1^2 + 1 * 3^2 about the transverse axes, and 2/5 m r^2 of each sphere about every axis.
   EXPECT_LT((p.inertia - diagonal(0.4, 12.4, 12.4)).norm(), 1e-14);
 }
 
@@ -56,7 +56,8 @@ TEST(MassProperties, DoNotDependOnWhereTheBodyIs) {
   EXPECT_LT((here.inertia - there.inertia).norm(), 1e-13 * here.inertia.norm());
 }
 
-/// Lattice of n points a unit length within [-1, 1]^3, of unit total mass, where `inside`.
+/// Samples a body of mass 1 with a lattice of n points per unit length in [-1, 1]^3. `inside`
+/// selects the points.
 MassProperties sample_solid(int n, const std::function<bool(const Vec3&)>& inside) {
   const Real spacing = 1.0 / n;
   std::vector<Vec3> points;
@@ -67,8 +68,8 @@ MassProperties sample_solid(int n, const std::function<bool(const Vec3&)>& insid
   return mass_properties(make_sample(points, masses, spacing / 2));
 }
 
-// A cube of side a about its centre has I = m a^2 / 6; a lattice of n^3 points has m (a^2 - s^2)/6
-// with s = a/n, and the spheres of radius s/2 add m s^2/10: an exact sum, so an exact test.
+// A cube of side a has I = m a^2 / 6 about its centre. A lattice of n^3 points has m (a^2 - s^2)/6
+// with s = a/n. The spheres of radius s/2 add m s^2/10. The sum is exact.
 TEST(MassProperties, OfALatticeBoxAreExact) {
   for (const int n : {1, 2, 5, 12}) {
     const Real s = 1.0 / n;
@@ -78,7 +79,8 @@ TEST(MassProperties, OfALatticeBoxAreExact) {
   }
 }
 
-/// Errors fall at least linearly with the spacing: the staircase of the surface is one cell thick.
+/// Expects an error of at most first order in the spacing, since the stepped surface is one cell
+/// thick.
 void expect_converges(const std::function<bool(const Vec3&)>& inside, const Mat3& exact) {
   for (const int n : {8, 16, 32}) {
     const Real error = (sample_solid(n, inside).inertia - exact).norm() / exact.norm();

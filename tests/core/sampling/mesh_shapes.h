@@ -4,7 +4,7 @@
 
 namespace vat {
 
-/// A box as twelve triangles, counter-clockwise from outside.
+/// A box of twelve triangles, counter-clockwise if seen from outside.
 inline MeshShape box_mesh(const Vec3& min, const Vec3& max) {
   MeshShape mesh;
   for (int corner = 0; corner < 8; ++corner) {
@@ -17,7 +17,7 @@ inline MeshShape box_mesh(const Vec3& min, const Vec3& max) {
   return mesh;
 }
 
-/// The two meshes as one.
+/// Returns one mesh that contains both meshes.
 inline MeshShape joined(MeshShape a, const MeshShape& b) {
   const auto first = static_cast<Index>(a.vertices.size());
   a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
@@ -27,7 +27,7 @@ inline MeshShape joined(MeshShape a, const MeshShape& b) {
   return a;
 }
 
-/// The same surface seen from the other side.
+/// Returns the same surface with inverted orientation.
 inline MeshShape inside_out(MeshShape mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;

@@ -12,7 +12,13 @@
 namespace vat::mesh_test {
 namespace {
 
-/// An octahedron: its faces are the planes |x| + |y| + |z| = 1.
+/// An octahedron with the faces
+/// x
+/// +
+/// y
+/// +
+/// z
+/// = 1.
 MeshShape octahedron() {
   MeshShape mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -57,7 +63,7 @@ TEST(Mesh, IsClosedWithRepeatedVertices) {
   EXPECT_TRUE(is_closed(loose));
 }
 
-/// The points of a lattice in `mesh`, which must have a bounding box of n cells a side.
+/// Returns the lattice points in `mesh`. Its bounding box must be a whole number of cells per side.
 std::vector<LatticePoint> fill(const MeshShape& mesh, Real spacing) {
   const Lattice lattice = make_lattice(mesh, spacing);
   EXPECT_EQ(Allowance().take_lattice(mesh, lattice), nullptr);
@@ -71,7 +77,7 @@ TEST(Mesh, IsFilledLikeTheSolidThatItBounds) {
     for (int j = 0; j < 100; ++j) {
       for (int k = 0; k < 100; ++k) {
         const Vec3 p = Vec3(i, j, k) * 0.02 + Vec3::Constant(0.01 - 1);
-        if (p.cwiseAbs().sum() < 1 - 1e-9) ++expected;  // none is on a face: the sum is odd
+        if (p.cwiseAbs().sum() < 1 - 1e-9) ++expected;  // no point is on a face: the sum is odd
       }
     }
   }
@@ -79,13 +85,13 @@ TEST(Mesh, IsFilledLikeTheSolidThatItBounds) {
   for (const LatticePoint& point : points) EXPECT_LT(point.position.cwiseAbs().sum(), 1);
 }
 
-// The lattice's lines go exactly through the edges, diagonals and corners of these boxes.
+// The lattice lines pass exactly through edges, diagonals and corners of these boxes.
 TEST(Mesh, IsFilledWhereLinesMeetEdgesAndCorners) {
   const MeshShape mesh =
       joined(box_mesh({0, 0, 0}, {3, 3, 1}), box_mesh({0.5, 0.5, 1}, {1.5, 1.5, 3}));
   const std::vector<LatticePoint> points = fill(mesh, 1);
-  // A 3 x 3 slab, and a 1 x 1 tower with one line: at (0.5, 0.5), its lower corner, or none of its
-  // four edges, but never more than one.
+  // A 3 x 3 slab, and a 1 x 1 tower with one line through (0.5, 0.5): on its lower corner, or on
+  // none of its four edges, but never on two.
   EXPECT_EQ(points.size(), 9u + 2u);
 }
 
@@ -128,7 +134,7 @@ TEST(Mesh, TooMuchWorkIsRefusedBeforeItIsDone) {
   const Lattice fine = make_lattice(mesh, 0.001);
   EXPECT_NE(Allowance().take_lattice(mesh, fine), nullptr);
   EXPECT_EQ(Allowance().take_lattice(mesh, make_lattice(mesh, 0.01)), nullptr);
-  // A seventh of it is not too much, but twice that is.
+  // A seventh of the limit passes, and twice that fails.
   MeshShape part = mesh;
   part.triangles.resize(mesh.triangles.size() / 7);
   Allowance allowance;

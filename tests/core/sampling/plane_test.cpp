@@ -9,8 +9,8 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-/// Scenes of two dimensions: their densities and discs, and that they stay in their plane. Periodic
-/// scenes refuse bodies that are too large for the period.
+/// Two-dimensional scenes: densities, discs, and motion in the plane. Periodic scenes reject bodies
+/// that are too large for the period.
 namespace vat::plane_test {
 namespace {
 
@@ -21,7 +21,7 @@ BodyDescription sampled(const char* name, BodyKind kind, const char* material, S
   return body;
 }
 
-/// One body of each kind, all moving and about to touch, in a vat that slides.
+/// A sliding vat with one body of each kind. All bodies move and are about to touch.
 Scene plane_scene(IntegratorId integrator) {
   Scene scene = test::make_scene(integrator, 5e-4);
   scene.dimensions = 2;
@@ -110,7 +110,7 @@ TEST_P(Plane, IsNeverLeft) {
   scene.bodies.push_back(test::make_body("twins", BodyKind::liquid, "water",
                                          test::make_particles({Vec3::Zero(), Vec3::Zero()}, 1),
                                          0.025));
-  scene.bodies.back().position = {0.2, 0, 0.8};  // two particles in one place
+  scene.bodies.back().position = {0.2, 0, 0.8};  // two coincident particles
   EXPECT_EQ(test::ForceProbe(scene).model().walls, (std::vector<int>{0, 1, 4, 5}));
   Simulation simulation = test::make_simulation(scene);
   ASSERT_TRUE(simulation.grab_start(1, simulation.bodies()[1].id, 0, {0.5, 0.3, 0.5}));
@@ -148,7 +148,7 @@ TEST(PlaneCommands, ThatWouldLeaveItAreRefused) {
   EXPECT_EQ(test::errors_of(simulation.set_gravity({1, 0, 0})), "");
 }
 
-/// A period of 0.5 m along x, and a ball of radius 0.1 m in particles of 0.025 m.
+/// A period of 0.5 m along x, and a ball of radius 0.1 m with particles of 0.025 m.
 Scene narrow_scene() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {test::make_material("wood"), test::make_liquid("oil", 900, {10, 1, 0.3})};

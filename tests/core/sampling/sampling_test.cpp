@@ -35,7 +35,7 @@ Real total_mass(const SampledBody& body) {
 TEST(Sampling, FillsABoxWithWholeCells) {
   const SampledBody body = sample_body(rigid(BoxShape{{1, 2, 3}, {0.3, 0.2, 0.1}}, 0.05), steel());
   ASSERT_EQ(body.positions.size(), 6u * 4u * 2u);
-  // x fastest, half a spacing from the faces.
+  // x varies fastest. The first particle is half a spacing from the faces.
   EXPECT_TRUE(body.positions.front().isApprox(Vec3(0.875, 1.925, 2.975), 1e-14));
   EXPECT_TRUE(body.positions[1].isApprox(Vec3(0.925, 1.925, 2.975), 1e-14));
   EXPECT_TRUE(body.positions.back().isApprox(Vec3(1.125, 2.075, 3.025), 1e-14));
@@ -51,7 +51,8 @@ TEST(Sampling, PutsOneLayerIntoAThinShape) {
 TEST(Sampling, KeepsThePointsInsideASphere) {
   const SampledBody body = sample_body(rigid(SphereShape{{0, 0, 0}, 1}, 0.05), steel());
   for (const Vec3& position : body.positions) EXPECT_LE(position.norm(), 1 + 1e-9);
-  // Gauss: the lattice points in a sphere are its volume up to the order of its surface.
+  // Gauss circle problem: the number of lattice points in a sphere is its volume, with an error of
+  // the order of its surface.
   const Real cells = 4 * std::numbers::pi / 3 / std::pow(0.05, 3);
   const Real surface_cells = 4 * std::numbers::pi / std::pow(0.05, 2);
   EXPECT_NEAR(static_cast<Real>(body.positions.size()), cells, 0.1 * surface_cells);
@@ -112,7 +113,7 @@ TEST(Sampling, PlacesTurnsAndMovesABody) {
   ASSERT_EQ(sample.positions.size(), 2u);
   EXPECT_TRUE(sample.positions[0].isApprox(Vec3(10, 20.9, 30), 1e-14));
   EXPECT_TRUE(sample.positions[1].isApprox(Vec3(10, 21.1, 30), 1e-14));
-  // About the centre of mass (10, 21, 30).
+  // Velocities are about the centre of mass (10, 21, 30).
   EXPECT_TRUE(sample.velocities[0].isApprox(Vec3(1.2, 0, 0), 1e-14));
   EXPECT_TRUE(sample.velocities[1].isApprox(Vec3(0.8, 0, 0), 1e-14));
 }
@@ -126,7 +127,7 @@ std::size_t springs_of(const LatticeSprings& springs, Shape shape) {
   std::set<std::pair<Index, Index>> pairs;
   for (const SampledSpring& spring : sample.springs) {
     EXPECT_NE(spring.a, spring.b);
-    EXPECT_TRUE(pairs.insert(std::minmax(spring.a, spring.b)).second) << "joined twice";
+    EXPECT_TRUE(pairs.insert(std::minmax(spring.a, spring.b)).second) << "duplicate spring";
     const Real distance = (sample.positions[spring.a] - sample.positions[spring.b]).norm();
     EXPECT_NEAR(spring.rest_length, distance, 1e-14);
   }
@@ -138,7 +139,7 @@ TEST(Sampling, JoinsLatticeNeighbours) {
   const BoxShape box{{0, 0, 0}, {0.4, 0.3, 0.2}};  // 4 x 3 x 2
   EXPECT_EQ(springs_of({}, box), 0u);
   EXPECT_EQ(springs_of({constants, {}, {}}, box), 3u * 3 * 2 + 4u * 2 * 2 + 4u * 3 * 1);
-  // Two diagonals in each face of a cell: xy 3*2*2, xz 3*1*3, yz 2*1*4.
+  // Two diagonals per face of a cell: xy 3*2*2, xz 3*1*3, yz 2*1*4.
   EXPECT_EQ(springs_of({{}, constants, {}}, box), 2u * (12 + 9 + 8));
   EXPECT_EQ(springs_of({{}, {}, constants}, box), 2u * 3 * 2 + 4u * 1 * 2 + 0u);
 }

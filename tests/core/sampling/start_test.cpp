@@ -8,7 +8,7 @@
 #include "core/sampling/sampling.h"
 #include "tests/support/scenes.h"
 
-/// How fields, jitter and the number of dimensions change what a body starts with.
+/// Effects of fields, jitter and dimensions on the initial state of a body.
 namespace vat::start_test {
 namespace {
 
@@ -36,7 +36,7 @@ VectorField wavy_field() {
   return field;
 }
 
-/// The field written out by components.
+/// Evaluates the field component by component.
 Vec3 wavy_value(const Vec3& p) {
   const Real x = p.x() - 0.5;
   const Real y = p.y() - 0.25;
@@ -117,8 +117,8 @@ TEST(Start, JitterShiftsWithinItsBoundAndSpringsRestThere) {
     sum += shift / 1000;
     squares += shift.cwiseAbs2() / 1000;
   }
-  // An even distribution over [-1, 1] has the mean 0 and the variance 1/3; of 1000 draws their
-  // standard errors are 0.018 and 0.0094 (the fourth moment is 1/5).
+  // A uniform distribution over [-1, 1] has mean 0 and variance 1/3. For 1000 samples, the standard
+  // errors are 0.018 and 0.0094 (the fourth moment is 1/5).
   EXPECT_LT(sum.cwiseAbs().maxCoeff(), 4 * 0.0183);
   EXPECT_LT((squares.array() - 1.0 / 3).abs().maxCoeff(), 4 * 0.0094);
   for (const SampledSpring& spring : after.springs) {
@@ -158,7 +158,8 @@ TEST(Start, OfTwoDimensionsASphereIsADisc) {
     EXPECT_EQ(p.y(), 0);
     EXPECT_LE(p.norm(), 1 + 1e-9);
   }
-  // Gauss: the lattice points in a disc are its area up to the order of its rim.
+  // Gauss circle problem: the number of lattice points in a disc is its area, with an error of the
+  // order of its rim.
   const auto count = static_cast<Real>(sample.positions.size());
   EXPECT_NEAR(count, std::numbers::pi / (0.05 * 0.05), 0.2 * 2 * std::numbers::pi / 0.05);
   const Real mass = std::accumulate(sample.masses.begin(), sample.masses.end(), Real{0});
@@ -171,7 +172,8 @@ TEST(Start, OfTwoDimensionsALatticeHasSpringsInThePlane) {
   const BodyDescription body = block(BodyKind::deformable, BoxShape{{0, 0, 0}, {0.4, 0.4, 0.4}});
   const SampledBody sample = sample_body(body, gum, 2);
   ASSERT_EQ(sample.positions.size(), 16U);
-  // 4 x 4: rows of 3 springs each way, two diagonals a cell, second neighbours.
+  // 4 x 4 particles: rows of 3 springs in both directions, two diagonals per cell, and second
+  // neighbours.
   EXPECT_EQ(sample.springs.size(), 24U + 18U + 16U);
   EXPECT_DOUBLE_EQ(sample.masses[0], 1000 * 0.16 / 16);
 }

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// A closed vat of 0.4 m by 0.4 m by 0.4 m, full of water but for what `ball` is of.
+/// A closed cubic vat of 0.4 m, filled with water.
 Scene make_full_vat() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.pressure_solver = PressureSolver::tait;
@@ -85,8 +85,8 @@ TEST(Volumes, PerfectLatticesThatFillTheirWorldAreWarnedOf) {
   EXPECT_THAT(paths_of(find_warnings(scene)), Not(Contains("perfect_lattice /bodies/0/jitter")));
 }
 
-// A quarter of the liquid's mass on the same volume: the same forces at twice the frequency. A
-// rigid body may be half as heavy.
+// A solid with a quarter of the liquid's mass and the same volume has twice the frequency at the
+// same forces. A rigid body may be half as heavy.
 TEST(StepLimits, OfALightSolidInALiquidAreThoseOfTheLiquidByTheRatioOfDensities) {
   Scene scene = make_full_vat();
   scene.materials[0].liquid->viscosity = 0;
@@ -106,7 +106,7 @@ TEST(StepLimits, OfALightSolidInALiquidAreThoseOfTheLiquidByTheRatioOfDensities)
   EXPECT_EQ(find_step_limits(scene, sample_bodies(scene)).size(), 1U);
 }
 
-// Liquids that solids and walls take part in touch nothing.
+// Solids and walls that take part in a liquid have no contacts with it.
 TEST(StepLimits, OfCoupledLiquidsHaveNoContacts) {
   Scene scene = make_full_vat();
   scene.default_interface = {1e9, 0};

@@ -7,7 +7,8 @@
 #include "tests/support/resting_scenes.h"
 #include "tests/support/shaken_vat.h"
 
-// The reader of saved simulations: whatever is not what a snapshot gave is refused, and named.
+// The reader of saved simulations rejects every input that is not a saved snapshot, and names the
+// error.
 
 namespace vat::saved_bytes_test {
 namespace {
@@ -78,8 +79,8 @@ TEST(SavedBytes, DamagedAnywhereAreRefused) {
   EXPECT_EQ(code_of(bytes), "");
 }
 
-/// What becomes of bytes that were changed by somebody who knows of the checksum. What is taken can
-/// be gone on with.
+/// Returns the error code of modified bytes with a corrected checksum. If the reader accepts them,
+/// the simulation must be able to continue.
 std::string code_of_forged(std::vector<std::uint8_t> bytes) {
   close_seal(bytes);
   Result<Simulation> loaded = Simulation::load(bytes);
@@ -88,7 +89,7 @@ std::string code_of_forged(std::vector<std::uint8_t> bytes) {
   return "";
 }
 
-// Of some the state's hash says nothing: texts, reports, the scene's numbers.
+// The state hash does not cover texts, reports and the scene's numbers.
 TEST(SavedBytes, ForgedAnywhereAreRefusedOrGoneOnWith) {
   const std::vector<std::uint8_t> bytes = make_bytes();
   for (std::size_t at = kSealSize; at < bytes.size(); at += 1 + at / 200) {

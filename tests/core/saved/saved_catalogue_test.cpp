@@ -7,7 +7,8 @@
 #include "protocol/scene/scene_json.h"
 #include "tests/support/saved_bits.h"
 
-// Each scene of the catalogue goes on from bytes as if nothing had been, from its start and later.
+// Each catalogue scene, saved at its start and later, continues with the same bits after it is
+// read.
 
 namespace vat::saved_catalogue_test {
 namespace {

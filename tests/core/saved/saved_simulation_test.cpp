@@ -5,8 +5,7 @@
 #include "tests/support/saved_bits.h"
 #include "tests/support/shaken_vat.h"
 
-// Snapshots that outlive their process, at moments at which there is more than places and
-// velocities to go on from.
+// Snapshots that are saved while the state contains more than positions and velocities.
 
 namespace vat::saved_simulation_test {
 namespace {
@@ -43,7 +42,7 @@ TEST(SavedSimulation, HoldsWhatUsersDo) {
   ASSERT_TRUE(simulation.grab_start(1ULL << 40, bodies[0].id, 0, {0, 0.1, 0.1}).ok());
   ASSERT_TRUE(simulation.apply_force(bodies[2].id, {5, 0, -3}, 0.02).ok());
   ASSERT_TRUE(simulation.set_gravity({3, 1, -5}).ok());
-  expect_goes_on(simulation, 5);  // the force is still there
+  expect_goes_on(simulation, 5);  // the force is still active
   expect_goes_on(simulation, 40, [n = 0](Simulation& each) mutable {
     ASSERT_TRUE(each.grab_move(7, {0.1, 0, 0.3 + 0.001 * (n++ / 2)}).ok());
   });
@@ -62,7 +61,7 @@ TEST(SavedSimulation, HoldsBodiesThatCameAndWent) {
   ASSERT_TRUE(simulation.set_interface({{"a", "b"}, {900, 0.2}, 0.07}).ok());
   simulation.advance(20);
   expect_goes_on(simulation, 20);
-  // The last id is not given again, though its body is gone.
+  // The removed body's id is not reused.
   ASSERT_TRUE(simulation.remove_body(second).ok());
   auto loaded = Simulation::load(simulation.snapshot().to_bytes());
   ASSERT_TRUE(loaded.ok());
@@ -85,7 +84,7 @@ TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
 
 TEST(SavedSimulation, HoldsWhatSleeps) {
   Simulation simulation = make_simulation(make_struck_stack());
-  simulation.advance(60);  // contacts, and looks at what may come to rest
+  simulation.advance(60);  // contacts, and checks of bodies that may fall asleep
   expect_goes_on(simulation, 10);
   simulation.advance(100);
   ASSERT_EQ(simulation.sleeping_body_count(), 3U);
@@ -108,7 +107,7 @@ TEST(SavedSimulation, HoldsLiquidThatSleeps) {
   }
 }
 
-// Of an incompressible liquid, how its weight damps it is that of the gravity at its compilation.
+// The damping of an incompressible liquid uses the gravity at its compilation.
 TEST(SavedSimulation, KeepsTheDampingOfAnEarlierGravity) {
   Scene scene = make_resting_pool(PressureSolver::incompressible);
   scene.sleeping.reset();
@@ -144,7 +143,7 @@ TEST(SavedSimulation, HoldsAMomentOfAFlowAndOfMelting) {
   scene.drains = {{"hole", {0.1, 0.4, 0}, {0.3, 0.6, 0.06}}};
   Simulation simulation = make_simulation(scene);
   for (int n = 0; n < 6; ++n) {
-    simulation.advance(37);  // in the midst of ticks and layers
+    simulation.advance(37);  // within a tick and between layers
     expect_goes_on(simulation, 4);
   }
   EXPECT_GT(simulation.diagnostics().drained_particles, 0U);
@@ -164,7 +163,7 @@ TEST(SavedSimulation, HoldsTheHashOfItsMoment) {
   EXPECT_EQ(Simulation::load(snapshot.to_bytes()).value().state_hash(), hash);
 }
 
-// What a session does that goes back to its scene after its process has.
+// A session that returns to its scene after a restart does the same.
 TEST(SavedSimulation, GoesBackToAStartMadeAnew) {
   const Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
   Simulation simulation = make_simulation(scene);

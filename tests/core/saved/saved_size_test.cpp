@@ -8,7 +8,7 @@
 #include "core/simulation/simulation.h"
 #include "protocol/scene/scene_json.h"
 
-// What a saved simulation takes, and the bound that is told before it is read.
+// The size of a saved simulation, and its bound that is known before reading.
 
 namespace vat::saved_size_test {
 namespace {
@@ -20,7 +20,7 @@ struct Size {
   std::size_t greatest() const { return greatest_saved_size(particles, springs); }
 };
 
-/// The same body in a finer lattice, after some ticks.
+/// Returns the size of a body with a refined lattice after some ticks.
 Size size_of(Scene scene, double refinement) {
   for (BodyDescription& body : scene.bodies) body.spacing /= refinement;
   Simulation simulation = Simulation::create(scene).value();
@@ -51,7 +51,7 @@ Result<Scene> scene_of(const std::string& kind, const std::string& solver) {
 
 class SavedSize : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-/// What is added for each particle and spring is more than they take, and no multiple of it.
+/// The bound per particle and spring exceeds the actual size, but not by a multiple.
 TEST_P(SavedSize, GrowsByNoMoreThanIsTold) {
   const Result<Scene> scene = scene_of(GetParam().first, GetParam().second);
   ASSERT_TRUE(scene.ok()) << scene.errors().front().path << scene.errors().front().message;

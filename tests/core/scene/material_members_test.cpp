@@ -29,7 +29,7 @@ std::string superscript(int exponent) {
   return text;
 }
 
-/// A number as SCENE.md writes it: powers of ten beyond 1000 and below 1/1000 with an exponent.
+/// Formats a number as SCENE.md does: powers of ten above 1000 and below 1/1000 have an exponent.
 std::string to_text(Real number) {
   const auto exponent = static_cast<int>(std::lround(std::log10(number)));
   if (number > 0 && std::abs(exponent) > 3) return "10" + superscript(exponent);
@@ -38,7 +38,7 @@ std::string to_text(Real number) {
   return text;
 }
 
-/// The row of a member in SCENE.md.
+/// Returns the row of a member in SCENE.md.
 template <class Part>
 std::string row_of(const Member<Part>& member) {
   const Part part;
@@ -64,7 +64,7 @@ void expect_rows() {
   }
 }
 
-/// Expects the member's range, default and presence in its part of the schema of scenes.
+/// Expects range, default and presence of the member in its part of the scene schema.
 template <class Part>
 void expect_schema(const Json& definitions, const Json& schema) {
   const Part part;

@@ -5,8 +5,9 @@
 #include <new>
 #include <utility>
 
-// Replaces the program's allocation; the other forms of operator new and delete call these. In a
-// file of its own, where no compiler sees that memory of operator new goes to free.
+// Replaces the program's allocation functions. The other forms of operator new and delete call
+// these. They are in a separate file because a compiler would warn about passing memory of operator
+// new to free.
 
 namespace {
 
@@ -33,7 +34,8 @@ void* operator new(std::size_t size) {
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return allocate(size, static_cast<std::size_t>(alignment));
 }
-// The library's calls the first, but a sanitizer's own does not, and its memory may not be freed.
+// The library's version calls the function above, but that of a sanitizer does not. Its memory must
+// not be passed to free.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   const std::size_t allowed = std::exchange(allowed_count, kUnlimited);
   void* memory = nullptr;

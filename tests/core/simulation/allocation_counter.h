@@ -4,11 +4,11 @@
 
 namespace vat::test {
 
-/// Calls of operator new by this thread since it began.
+/// Returns the number of calls of operator new by this thread since its start.
 std::size_t allocation_count();
 
-/// While it lives, this thread's calls of operator new that may throw do, after the first
-/// `allowed`.
+/// Makes throwing calls of operator new fail on this thread after the first `allowed` calls, during
+/// its lifetime.
 class AllocationLimit {
  public:
   explicit AllocationLimit(std::size_t allowed);

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <thread>
 
-#include "tests/support/shaken_vat.h"
 #include "tests/core/simulation/allocation_counter.h"
+#include "tests/support/shaken_vat.h"
 
 namespace vat::allocation_test {
 namespace {
@@ -19,7 +19,7 @@ TEST(Allocation, IsCounted) {
   EXPECT_EQ(numbers.back(), 0);
 }
 
-/// Helpers that are there from the start and wait without a pause. It allocates nothing itself.
+/// A task runner whose threads exist from the start and spin while they wait. It does not allocate.
 class WaitingRunner : public TaskRunner {
  public:
   WaitingRunner() {
@@ -65,7 +65,7 @@ class WaitingRunner : public TaskRunner {
   std::array<std::thread, 3> helpers_;
 };
 
-/// A cube of thick liquid on the floor of a vat, with a speed of sound of 10 m/s.
+/// A cube of viscous liquid on the floor of a vat. Its speed of sound is 10 m/s.
 Scene make_wet_vat(PressureSolver solver, int width = 5) {
   constexpr Real kSpacing = 0.1;
   const bool is_tait = solver == PressureSolver::tait;
@@ -80,9 +80,9 @@ Scene make_wet_vat(PressureSolver solver, int width = 5) {
   return scene;
 }
 
-/// Runs until every buffer has the size that the scene needs, and expects no allocation after that.
+/// Runs until every buffer has its final size, then expects no allocation.
 void expect_no_allocations(Simulation& simulation, std::uint32_t steps) {
-  for (int n = 0; n < 2; ++n) {  // the second call copies what the first has added to the state
+  for (int n = 0; n < 2; ++n) {  // the second call copies the additions of the first call
     ASSERT_TRUE(simulation.advance(steps).events.empty());
   }
   const std::size_t before = allocation_count();

@@ -7,7 +7,7 @@
 #include "tests/support/errors.h"
 #include "tests/support/shaken_vat.h"
 
-// Commands take effect at the time they are given, and one that fails changes nothing.
+// Commands take effect at the current time. A failed command changes nothing.
 
 namespace vat::commands_test {
 namespace {
@@ -34,7 +34,7 @@ TEST(SetGravity, ActsFromThePresentTime) {
     ASSERT_TRUE(simulation.set_gravity(Vec3::Zero()).ok());
     advance_to(simulation, 0.4);
     const Vec3 end = simulation.diagnostics().bodies[0].center_of_mass;
-    // 0.2 s under gravity, then 0.1 s at the speed gained.
+    // 0.2 s under gravity, then 0.1 s at the reached speed.
     const Vec3 expected = start + 0.4 * Vec3(1, 0, 0) + (0.02 + 0.2 * 0.1) * Vec3(0, 2, -10);
     EXPECT_LT((end - expected).norm(), 1e-12) << to_string(kind);
   }
@@ -79,7 +79,7 @@ TEST(ApplyForce, RefusesBadValues) {
     ASSERT_TRUE(simulation.apply_force(id, force, kStep).ok());
   }
   EXPECT_EQ(errors_of(simulation.apply_force(id, force, kStep)), "limit_reached ");
-  simulation.advance(1);  // those that have ended make room
+  simulation.advance(1);  // expired forces free their slots
   EXPECT_TRUE(simulation.apply_force(id, force, kStep).ok());
 }
 
@@ -108,7 +108,7 @@ TEST(AddBody, AppearsWithItsStateAndMovesNothingElse) {
   }
 }
 
-// A body put in at time 0 by command and one that the scene has are the same to the bit.
+// A body that a command adds at time 0 gives the same bits as a body of the scene.
 TEST(AddBody, IsAsIfTheSceneHadIt) {
   const Scene whole = make_shaken_vat(IntegratorId::velocity_verlet);
   Scene empty = whole;
@@ -162,7 +162,7 @@ TEST(RemoveBody, LeavesTheOthersWhereTheyAre) {
 
 TEST(RemoveBody, EndsWhatActedOnItAndNeverUsesItsIdAgain) {
   Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
-  const BodyId id = simulation.find_body("crate").value();  // the greatest so far
+  const BodyId id = simulation.find_body("crate").value();  // the largest id so far
   ASSERT_TRUE(simulation.grab_start(1, id, 0, Vec3::Zero()).ok());
   ASSERT_TRUE(simulation.apply_force(id, {1, 0, 0}, 1).ok());
   ASSERT_TRUE(simulation.remove_body(id).ok());
@@ -187,7 +187,7 @@ TEST(RemoveBody, KeepsForcesOnTheOthers) {
   EXPECT_LT((after.linear_momentum - before.linear_momentum - Vec3(0, 0.4, 0)).norm(), 1e-12);
 }
 
-/// Two particles at rest that overlap by half their threshold of 0.05 m.
+/// Two particles at rest whose overlap is half of their threshold of 0.05 m.
 Scene make_pair() {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, kStep);
   scene.default_interface = {0, 0};
@@ -197,7 +197,7 @@ Scene make_pair() {
   return scene;
 }
 
-/// Speed of the second particle after a step's worth of one contact.
+/// Returns the speed of the second particle after one step of contact.
 Real speed_of_two(const Simulation& simulation) {
   return velocity_of(simulation, 1).x();
 }
@@ -210,7 +210,8 @@ TEST(SetInterface, AddsOneAndReplacesItInEitherOrder) {
   const Snapshot touching = simulation.snapshot();
   simulation.advance(1);
   const Real speed = speed_of_two(simulation);
-  EXPECT_NEAR(speed, 800 * 0.025 / 0.125 * kStep, 0.01 * speed);  // less as the overlap shrinks
+  EXPECT_NEAR(speed, 800 * 0.025 / 0.125 * kStep,
+              0.01 * speed);  // slightly less, since the overlap decreases
   simulation.restore(touching);
   ASSERT_TRUE(simulation.set_interface({{"b", "a"}, {1600, 0}, {}}).ok());
   EXPECT_EQ(simulation.scene().interfaces.size(), 1U);

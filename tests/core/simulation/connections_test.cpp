@@ -1,4 +1,4 @@
-// Springs and contacts as they are told.
+// Springs and contacts as reported by connections().
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ TEST(Connections, LeaveOutTornSprings) {
   EXPECT_EQ(springs.sample[0].b.particle, 2U);
 }
 
-// Spring and dashpot of two balls that overlap by 0.02 m and approach at 3 m/s.
+// Spring and damping force of two balls that overlap by 0.02 m and approach at 3 m/s.
 TEST(Connections, HaveTheForceOfEachContact) {
   Scene scene = pair_scene({1000, 2});
   scene.bodies = {particle("a", BodyKind::rigid, {0, 0, 0}),
@@ -81,7 +81,7 @@ TEST(Connections, HaveTheForceOfEachContact) {
   EXPECT_EQ(simulation.connections({simulation.bodies()[2].id, 9}).value().contacts.total, 0U);
 }
 
-// A column of cubes at rest: what is between two of them carries what is above.
+// A column of cubes at rest. Each contact carries the weight above it.
 TEST(Connections, OfAStackCarryWhatIsAbove) {
   for (const InterfaceLaw law : {InterfaceLaw::penalty, InterfaceLaw::projection}) {
     SCOPED_TRACE(to_string(law));
@@ -98,7 +98,7 @@ TEST(Connections, OfAStackCarryWhatIsAbove) {
       scene.bodies.push_back(cube);
     }
     Simulation simulation = make_simulation(scene);
-    // Springs come to rest; without friction the column falls after a second or two.
+    // Penalty springs come to rest. Without friction, the column falls after one or two seconds.
     simulation.advance(law == InterfaceLaw::penalty ? 1000 : 200);
     const std::uint64_t hash = simulation.state_hash();
     Real lower = 0;
@@ -111,7 +111,7 @@ TEST(Connections, OfAStackCarryWhatIsAbove) {
     }
     EXPECT_NEAR(upper, 4 * 9.81, 0.01 * 4 * 9.81);
     EXPECT_NEAR(lower, 8 * 9.81, 0.01 * 8 * 9.81);
-    EXPECT_EQ(simulation.state_hash(), hash) << "who asks changes nothing";
+    EXPECT_EQ(simulation.state_hash(), hash) << "queries do not change the state";
   }
 }
 

@@ -1,4 +1,4 @@
-// Bodies that are put elsewhere and materials that change while a simulation runs.
+// Commands that move bodies and change materials of a running simulation.
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TEST_F(MoveBody, TurnsRigidBodiesWhichGoOnTurningAsTheyDid) {
   EXPECT_LT(simulation.bodies()[2].pose->orientation.angularDistance(turned), 1e-7);
 }
 
-// What is moved at the start is as if it had been described there.
+// Moving a body at the start is equivalent to describing it there.
 TEST_F(MoveBody, MovesWhereItsDescriptionBegins) {
   const Quat turned(Eigen::AngleAxis<Real>(-0.5, Vec3::UnitZ()));
   ASSERT_TRUE(simulation.move_body(id(2), {{0.31, 0.35, 0.8}, turned, {}}).ok());
@@ -164,7 +164,8 @@ TEST_F(SetMaterial, ADensityChangesMassesAndNotVelocities) {
   const RigidPose now = *simulation.bodies()[2].pose;
   EXPECT_LT((now.velocity - pose.velocity).norm(), 1e-14);
   EXPECT_LT((now.angular_velocity - pose.angular_velocity).norm(), 1e-12);
-  EXPECT_NEAR(after.mean_density_error, before.mean_density_error, 1e-12) << "rest density too";
+  EXPECT_NEAR(after.mean_density_error, before.mean_density_error, 1e-12)
+      << "the rest density changes too";
 }
 
 TEST_F(SetMaterial, SpringsGetTheirConstants) {
@@ -192,7 +193,7 @@ TEST_F(SetMaterial, WhatSpringsHaveFlownStays) {
   for (std::size_t i = 0; i < after.sample.size(); ++i) {
     EXPECT_EQ(after.sample[i].value, before.sample[i].value);
   }
-  plastic.springs->structural.reset();  // other springs: those that there are begin anew
+  plastic.springs->structural.reset();  // other springs: existing springs restart
   ASSERT_TRUE(simulation.set_material(plastic).ok());
   EXPECT_LT(simulation.spring_count(), before.total);
   simulation.advance(10);
@@ -249,7 +250,7 @@ TEST_F(SetMaterial, RefusesWhatIsWrongByItsPlace) {
   EXPECT_EQ(error(changed), "not_liquid /material");
   changed = material("water");
   changed.liquid->support_radius = 1;
-  EXPECT_EQ(error(changed), "out_of_range /material") << "of the spacing of its bodies";
+  EXPECT_EQ(error(changed), "out_of_range /material") << "limited by the spacing of its bodies";
   changed = material("jelly");
   changed.springs->shear->stiffness = std::nan("");
   EXPECT_EQ(error(changed), "out_of_range /material/springs/shear/stiffness");
@@ -272,7 +273,7 @@ TEST(SetMaterialOfAnEmitter, KeepsItsSupportRadius) {
   EXPECT_EQ(
       simulation.move_body(simulation.bodies()[0].id, {{0.5, 0.5, 0.5}, {}, {}}).errors()[0].path,
       "/body")
-      << "some of it is in the nozzle";
+      << "some particles are in the nozzle";
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr Real kSpeed = 0.75;
 constexpr Real kStep = 0.002;
 constexpr std::size_t kStart = 4 * 4;  // particles of the pool
 
-/// A puddle, and above it a square nozzle of 3 x 3 particles that points along x.
+/// A puddle, and above it a horizontal square nozzle of 3 x 3 particles that points along x.
 Scene make_flow_scene(IntegratorId integrator = IntegratorId::velocity_verlet) {
   Scene scene = make_scene(integrator, kStep);
   scene.numerics.tick = 10 * kStep;
@@ -55,7 +55,7 @@ std::size_t pool_size(const Simulation& simulation) {
   return simulation.bodies()[0].positions.size();
 }
 
-/// Particles of the pool that go as the nozzle does, to the bit.
+/// Returns the number of pool particles that have exactly the nozzle's velocity.
 std::size_t count_steady(const Simulation& simulation) {
   return static_cast<std::size_t>(
       std::ranges::count(simulation.bodies()[0].velocities, Vec3(kSpeed, 0, 0)));
@@ -63,13 +63,13 @@ std::size_t count_steady(const Simulation& simulation) {
 
 class Flows : public testing::TestWithParam<IntegratorId> {};
 
-// The flow through the opening is speed times area, and the tube in front of it is full.
+// The flow rate is speed times area, and the tube in front of the opening is full.
 TEST_P(Flows, WithSpeedTimesAreaToTheParticle) {
   Simulation simulation = make_simulation(make_flow_scene(GetParam()));
   constexpr std::size_t kTube = 3;  // layers: 0.125 / 0.05, rounded up
   for (int tick = 1; tick <= 20; ++tick) {
     ASSERT_TRUE(simulation.advance(10).events.empty());
-    // The last step that began did so a step ago.
+    // The last step started one step ago.
     const Real time = simulation.time() - kStep;
     const auto layers = static_cast<std::size_t>(kSpeed * time / kSpacing + 1e-6) + 1 + kTube;
     ASSERT_EQ(simulation.diagnostics().emitted_particles, 9 * layers) << tick;
@@ -83,7 +83,7 @@ TEST_P(Flows, InLayersASpacingApart) {
   scene.gravity = Vec3::Zero();
   Simulation simulation = make_simulation(scene);
   simulation.advance(73);
-  // Nothing pushes it, in the tube or behind the opening: each layer is where its time puts it.
+  // No force acts on the particles. Each layer is at the position that follows from its start time.
   const BodyView pool = simulation.bodies()[0];
   std::vector<Real> places;
   for (std::size_t i = kStart; i < pool.positions.size(); i += 9) {
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Flows, testing::ValuesIn(kIntegrators),
 
 TEST(Flow, InTheTubeIsSteadyWhateverPushes) {
   Scene scene = make_flow_scene();
-  // A wall of liquid before the opening.
+  // A block of liquid in front of the opening.
   scene.bodies[0].shape = BoxShape{{0.4, 0.5, 0.5}, {0.3, 0.5, 0.5}};
   Simulation simulation = make_simulation(scene);
   simulation.advance(100);
@@ -116,7 +116,7 @@ TEST(Flow, BeginsAndEndsOnTime) {
   scene.emitters[0].until = 0.4;  // three intervals
   Simulation simulation = make_simulation(scene);
   simulation.advance(1);
-  EXPECT_EQ(pool_size(simulation), kStart + 9);  // the first three layers come in up to 0.2 s
+  EXPECT_EQ(pool_size(simulation), kStart + 9);  // the first three layers enter until 0.2 s
   simulation.advance(299);
   EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);
   EXPECT_EQ(count_steady(simulation), 0U);
@@ -134,7 +134,7 @@ TEST(Flow, StopsAndGoesOnByCommand) {
   ASSERT_TRUE(simulation.set_emitter("tap", true).ok());
   EXPECT_NE(simulation.state_hash(), closed);
   simulation.advance(100);
-  EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);  // a layer every 33 steps
+  EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);  // one layer per 33 steps
   ASSERT_TRUE(simulation.set_emitter("tap", false).ok());
   simulation.advance(150);
   EXPECT_EQ(pool_size(simulation), kStart + 3 * 9);
@@ -157,7 +157,7 @@ TEST(Flow, StopsWhereTheBodyIsFullAndGoesOnWhenThereIsRoom) {
   EXPECT_GT(drained.diagnostics().emitted_particles, 200U);
 }
 
-// What has come and not gone keeps its number, and what comes gets the next.
+// Remaining particles keep their numbers, and new particles get the next numbers.
 TEST(Flow, KeepsTheBooksAndNumbersParticles) {
   Scene scene = make_flow_scene();
   scene.drains = {make_floor_drain()};
@@ -211,7 +211,7 @@ TEST(Flow, LeavesAStableOrderOfWhatStays) {
   Scene scene = make_flow_scene();
   scene.emitters.clear();
   scene.bodies.resize(1);
-  // The layer at the bottom goes.
+  // The lowest layer is drained.
   scene.bodies[0].shape = BoxShape{{0.5, 0.5, 0.2}, {0.2, 0.2, 0.2}};
   scene.drains = {{"slit", {0, 0, 0}, {1, 1, 0.15}}};
   Simulation simulation = make_simulation(scene);
@@ -237,7 +237,8 @@ TEST(Flow, EndsGrabsOfWhatIsDrainedAlone) {
   ASSERT_TRUE(simulation.grab_start(3, simulation.bodies()[1].id, 0, {0.9, 0.5, 0.2}).ok());
   EXPECT_EQ(simulation.advance(1).ended_grabs, std::vector<std::uint64_t>{1});
   EXPECT_FALSE(simulation.grab_end(1).ok());
-  const Vec3 before = simulation.bodies()[0].positions.back();  // of those before it some are gone
+  const Vec3 before =
+      simulation.bodies()[0].positions.back();  // some of the earlier particles are gone
   simulation.advance(100);
   EXPECT_GT(simulation.bodies()[0].positions.back().z(), before.z() + 0.05);
   EXPECT_TRUE(simulation.grab_end(2).ok());
@@ -268,12 +269,12 @@ TEST(Flow, InACallThatFailsIsUndone) {
   Simulation simulation = make_simulation(make_flow_scene());
   simulation.advance(3);
   const BodyId ball = simulation.bodies()[1].id;
-  // Too fast for the guard after some 100 steps.
+  // After about 100 steps the ball is too fast for the guard.
   ASSERT_TRUE(simulation.apply_force(ball, {0, 0, 1500}, 10).ok());
   const std::uint64_t hash = simulation.state_hash();
   const AdvanceReport report = simulation.advance(1000);
   ASSERT_TRUE(report.failed);
-  ASSERT_GT(report.steps - report.undone_steps, 40U);  // a layer came
+  ASSERT_GT(report.steps - report.undone_steps, 40U);  // at least one layer was emitted
   EXPECT_EQ(simulation.state_hash(), hash);
   EXPECT_EQ(simulation.diagnostics().emitted_particles, 9U * 4);
   EXPECT_EQ(pool_size(simulation), kStart + 9 * 4);
@@ -303,7 +304,7 @@ TEST(Flow, OfOtherBodiesGoesOnWhenOneIsRemoved) {
   for (int call = 0; call < 3; ++call) {
     ASSERT_TRUE(simulation.advance(100).events.empty());
     const std::span<const Vec3> velocities = simulation.bodies()[1].velocities;
-    // Three layers are in the tube, and a fourth has been let go in the step at most.
+    // Three layers are in the tube. At most one more was released in the last step.
     EXPECT_LE(std::ranges::count(velocities, Vec3(kSpeed, 0, 0)), 9 * 4);
     EXPECT_GE(std::ranges::count(velocities, Vec3(kSpeed, 0, 0)), 9 * 2);
   }
@@ -356,7 +357,7 @@ TEST(Nozzle, HasALatticeAcrossTheStream) {
   for (const Vec3& place : line) EXPECT_EQ(place.y(), emitter.position.y());
 }
 
-// Dashpots whose steps are long for them go on being solved for.
+// Dampers that need implicit steps are still solved implicitly.
 TEST(Flow, TheLastLiquidMayLeaveAnIncompressibleScene) {
   Scene scene = make_flow_scene(IntegratorId::symplectic_euler);
   scene.pressure_solver = PressureSolver::incompressible;

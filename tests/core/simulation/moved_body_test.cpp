@@ -1,4 +1,4 @@
-// A body that is put elsewhere is compiled alone. The result is that of compiling all bodies anew.
+// Moving a body compiles only that body. The result equals a compilation of all bodies.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace {
 
 using namespace test;
 
-/// Moves a body in two simulations of one state, and compiles one of them anew by setting a
-/// material that the body does not have. Expects the same bits from both.
+/// Moves a body in two simulations with the same state, and recompiles one of them by setting a
+/// material that the body does not use. Expects the same bits from both.
 void expect_same_as_compiling_all(const Simulation& simulation, std::size_t body,
                                   const Vec3& shift) {
   Simulation moved = make_simulation(simulation.scene());
@@ -60,8 +60,8 @@ TEST(MovedBody, IsCompiledWithEveryPressureSolver) {
   }
 }
 
-// The damping that limits the steps of an incompressible liquid is that under the gravity of the
-// last change.
+// The damping that limits the steps of an incompressible liquid uses the gravity of the last
+// change.
 TEST(MovedBody, LeavesLiquidsUnderThePresentGravity) {
   Scene scene = sampled_scene();
   scene.pressure_solver = PressureSolver::incompressible;
@@ -73,9 +73,9 @@ TEST(MovedBody, LeavesLiquidsUnderThePresentGravity) {
   expect_same_as_compiling_all(simulation);
 }
 
-/// With everything that a deformable body may have, twice. Radii reach to about the diagonals of
-/// the lattice, which no springs join, and a field stretches it: which particles are close depends
-/// on the position.
+/// Two deformable bodies with all optional features. Particle radii reach the lattice diagonals,
+/// which have no springs, and a field stretches the lattice. The set of close particles therefore
+/// depends on the position.
 Scene scene_of_cubes(StepControl control) {
   Scene scene = sampled_scene();
   scene.pressure_solver = PressureSolver::gas;
@@ -124,7 +124,7 @@ TEST(MovedBody, KeepsAndForgetsTheStateThatCompilingAllKeepsAndForgets) {
     scene.default_interface.law = InterfaceLaw::projection;
     scene.sleeping = Sleeping{};
     Simulation simulation = make_simulation(scene);
-    simulation.advance(250);  // all have fallen
+    simulation.advance(250);  // all bodies have fallen
     expect_same_as_compiling_all(simulation, {0, 0, 0.1});
   }
 }

@@ -1,4 +1,4 @@
-// The integrator and the length of steps, changed while a simulation runs.
+// Changes of the integrator and the step while a simulation runs.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// With ticks of 20 steps.
+/// A scene with 20 steps per tick.
 Scene ticked_scene() {
   Scene scene = sampled_scene();
   scene.numerics.tick = 0.02;
@@ -63,7 +63,7 @@ TEST(SetNumerics, LeaveTimeAndStateAsTheyAre) {
   expect_goes_on(simulation, 5);
 }
 
-/// One ball that nothing touches.
+/// A ball in free fall.
 Scene ball_scene(Real step) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
   scene.numerics.tick = 0.02;
@@ -77,7 +77,7 @@ TEST(SetNumerics, KeepTheImpulseOfAForceThatActs) {
   const BodyId id = simulation.bodies()[0].id;
   ASSERT_TRUE(simulation.apply_force(id, {3, 0, 0}, 0.027).ok());
   run_ticks(simulation, 1);
-  // 7 ms are left: two steps of 4 ms.
+  // 7 ms remain: two steps of 4 ms.
   ASSERT_TRUE(simulation.set_numerics(IntegratorId::velocity_verlet, 4e-3).ok());
   simulation.advance(1);
   const Real still = 3 * (0.020 + 0.0035) / 2;
@@ -94,7 +94,7 @@ TEST(SetNumerics, LetGoOfABodyWhenItsTimeComes) {
   run_ticks(simulation, 2);
   ASSERT_TRUE(simulation.set_numerics(IntegratorId::velocity_verlet, 2.5e-4).ok());
   run_ticks(simulation, 8);
-  // Velocity Verlet is exact in free fall, for 0.1 s of it.
+  // Velocity Verlet is exact in free fall for 0.1 s.
   EXPECT_NEAR(simulation.bodies()[0].pose->velocity.z(), -1, 1e-12);
   EXPECT_NEAR(simulation.bodies()[0].pose->center_of_mass.z(), -0.05, 1e-12);
 }
@@ -141,7 +141,7 @@ TEST(SetNumerics, AreRefusedByTheirPlaceAndChangeNothing) {
   EXPECT_EQ(simulation.state_hash(), hash);
   simulation.advance(1);
   EXPECT_EQ(errors_of(simulation.set_numerics(verlet, step / 2)), "not_allowed /step");
-  EXPECT_TRUE(simulation.set_numerics(IntegratorId::heun, step).ok()) << "at any time";
+  EXPECT_TRUE(simulation.set_numerics(IntegratorId::heun, step).ok()) << "allowed at any time";
 }
 
 TEST(SetNumerics, AreThoseThatTheSceneCanHave) {

@@ -3,11 +3,11 @@
 #include <functional>
 #include <new>
 
+#include "tests/core/simulation/allocation_counter.h"
 #include "tests/support/commands.h"
 #include "tests/support/shaken_vat.h"
-#include "tests/core/simulation/allocation_counter.h"
 
-// A command that runs out of memory changes nothing, wherever it does.
+// A command that runs out of memory at any allocation changes nothing.
 
 namespace vat::out_of_memory_test {
 namespace {
@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr std::uint64_t kHand = 7;
 
-/// After some steps, with a grab and a force at work.
+/// A simulation after some steps, with an active grab and force.
 Simulation make_busy(IntegratorId integrator) {
   Simulation simulation = make_simulation(make_shaken_vat(integrator));
   EXPECT_TRUE(simulation.advance(25).events.empty());
@@ -26,7 +26,7 @@ Simulation make_busy(IntegratorId integrator) {
   return simulation;
 }
 
-/// False: there was no memory.
+/// Returns false if the command ran out of memory.
 bool succeeds_within(std::size_t allocations, Simulation& simulation, const Command& command) {
   const AllocationLimit limit(allocations);
   try {
@@ -37,8 +37,8 @@ bool succeeds_within(std::size_t allocations, Simulation& simulation, const Comm
   return true;
 }
 
-/// Lets the command fail at its first allocation, its second and so on, until it succeeds. In
-/// between the simulation goes on beside one that nothing disturbs.
+/// Lets the command fail at its first allocation, its second and so on, until it succeeds. Between
+/// the attempts, compares the simulation with an undisturbed one.
 void expect_all_or_nothing(Simulation& simulation, Simulation& undisturbed,
                            const Command& command) {
   constexpr std::size_t kTooMany = 100'000;
@@ -75,7 +75,7 @@ TEST(OutOfMemory, EveryCommandDoesAllOrNothing) {
       {"remove rigid", remove_body("crate")},
       {"force", apply_force("pool", {1, 0, 0}, 3600)},
       {"grab", grab(kHand + 1, "crate", 0, {0, 0, 0.5})},
-      // The grab that it replaces goes only when the new one stands.
+      // The new grab replaces the old one only if it succeeds.
       {"grab again", grab(kHand, "crate", 0, {0, 0, 0.5})}};
   for (const auto& [name, command] : commands) {
     SCOPED_TRACE(name);
@@ -89,7 +89,8 @@ TEST(OutOfMemory, EveryCommandDoesAllOrNothing) {
 }
 
 TEST(OutOfMemory, RestoreDoesAllOrNothing) {
-  // A snapshot belongs to its simulation: each has one of equal content.
+  // A snapshot can be restored only in its simulation, so each simulation has one with the same
+  // content.
   std::vector<Simulation> simulations;
   std::vector<Snapshot> snapshots;
   for (int n = 0; n < 2; ++n) {
@@ -105,8 +106,8 @@ TEST(OutOfMemory, RestoreDoesAllOrNothing) {
   });
 }
 
-/// The first call of advance() makes all the buffers. It fails at each allocation in turn, and then
-/// goes on as if nothing had been.
+/// The first call of advance() allocates all buffers. It fails at each allocation in turn, then
+/// continues without a difference.
 void expect_first_advance_to_survive(const Scene& scene, std::uint32_t steps) {
   Simulation undisturbed = make_simulation(scene);
   const std::uint64_t start = undisturbed.state_hash();
@@ -138,7 +139,7 @@ TEST(OutOfMemory, AdvanceDoesAllOrNothing) {
   }
 }
 
-// The report of the guard takes memory too.
+// The guard's report allocates too.
 TEST(OutOfMemory, AdvanceThatTheGuardWatchesDoesAllOrNothing) {
   Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
   scene.bodies[2].velocity = {0, 0, 40};

@@ -1,4 +1,4 @@
-// A body that was removed comes back as it was.
+// Restoring a removed body with its motion.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ BodyMotion motion_of(const BodyView& body) {
 class RestoredBody : public testing::Test {
  protected:
   BodyView body(std::size_t index) const { return simulation.bodies()[index]; }
-  /// Its description, and how it moves.
+  /// Removes a body. Returns its description and motion.
   std::pair<BodyDescription, BodyMotion> take(std::size_t index) {
     std::pair<BodyDescription, BodyMotion> taken{simulation.scene().bodies[index],
                                                  motion_of(body(index))};
@@ -56,7 +56,7 @@ TEST_F(RestoredBody, IsBentAndMovesAsItDid) {
   expect_goes_on(simulation, 5);
 }
 
-// As if nothing had been: the last body takes its own place again.
+// The last body returns to its index, so the run is unchanged.
 TEST_F(RestoredBody, GoesOnAsItWouldHave) {
   simulation.advance(150);
   const Snapshot before = simulation.snapshot();
@@ -67,7 +67,7 @@ TEST_F(RestoredBody, GoesOnAsItWouldHave) {
   const auto [description, motion] = take(2);
   ASSERT_TRUE(simulation.add_body(description, motion).ok());
   simulation.advance(100);
-  // Rounding of the momenta by their velocities, and what collisions make of it.
+  // Rounding of momenta by velocities, amplified by collisions.
   EXPECT_LT((body(2).pose->center_of_mass - expected.center_of_mass).norm(), 1e-10);
   EXPECT_LT((body(2).pose->velocity - expected.velocity).norm(), 1e-8);
   const auto now = copy_of(body(1).positions);

@@ -11,7 +11,7 @@ using namespace test;
 
 constexpr std::uint32_t kSteps = 25;
 
-/// A grab and a timed force, so that what users do is part of what a snapshot holds.
+/// A simulation with a grab and a timed force, so that the snapshot contains user actions.
 Simulation make_busy(IntegratorId integrator = IntegratorId::velocity_verlet) {
   Simulation simulation = make_simulation(make_shaken_vat(integrator));
   const std::vector<BodyView> bodies = simulation.bodies();
@@ -68,7 +68,7 @@ TEST(Snapshot, ForgetsABodyAddedSince) {
   EXPECT_EQ(hash_after(simulation, kSteps), with_newcomer);
 }
 
-// Users may still hold the first newcomer's id.
+// Users may still use the id of the first added body.
 TEST(Snapshot, RestoredGivesNoIdTwice) {
   Simulation simulation = make_busy();
   const Snapshot snapshot = simulation.snapshot();

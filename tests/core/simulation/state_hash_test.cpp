@@ -6,7 +6,7 @@
 #include "tests/support/commands.h"
 #include "tests/support/shaken_vat.h"
 
-// The hash covers all that the next steps start from: equal hashes have equal futures.
+// The hash covers the complete start state of the next steps: equal hashes imply equal futures.
 
 namespace vat::state_hash_test {
 namespace {
@@ -22,7 +22,7 @@ Simulation make_run(IntegratorId integrator) {
   return simulation;
 }
 
-/// Each does something that shows later.
+/// Commands with a later effect.
 const std::map<std::string, Command> kChanges = {
     {"gravity", set_gravity({0, 0, -9.8})},
     {"grab of a deformable body", grab(kHand, "jelly", 5, {0, 0, 0.5})},
@@ -77,7 +77,7 @@ TEST(StateHash, IsThatOfTheSnapshotThatIsRestored) {
   }
 }
 
-/// Each leaves everything as it was, but for what is kept from the last step.
+/// Commands that leave everything unchanged except values that are kept from the last step.
 const std::map<std::string, Command> kNoChanges = {
     {"nothing", [](Simulation&) { return Status(); }},
     {"the same gravity", [](Simulation& s) { return s.set_gravity(s.scene().gravity); }},
@@ -92,8 +92,8 @@ const std::map<std::string, Command> kNoChanges = {
      add_body(make_block("newcomer", BodyKind::rigid, "a", 2, {0, 0, 0.8}, Vec3::Zero())) +
          remove_body("newcomer")}};
 
-// Velocity Verlet opens a step with the forces that closed the last one. A command drops them, and
-// where that changes the bits to come, the hash must say so.
+// Velocity Verlet starts a step with the forces at the end of the last step. A command discards
+// them. If this changes later bits, the hash must change too.
 TEST(StateHash, EqualHashesHaveEqualFutures) {
   for (const IntegratorId integrator : kIntegrators) {
     std::map<std::uint64_t, std::uint64_t> later;
@@ -105,7 +105,7 @@ TEST(StateHash, EqualHashesHaveEqualFutures) {
       const auto [known, is_new] = later.emplace(now, simulation.state_hash());
       EXPECT_EQ(known->second, simulation.state_hash()) << to_string(integrator) << ": " << name;
     }
-    // With the other methods no command leaves a trace.
+    // With the other integrators, these commands have no effect.
     EXPECT_EQ(later.size(), integrator == IntegratorId::velocity_verlet ? 2U : 1U);
   }
 }

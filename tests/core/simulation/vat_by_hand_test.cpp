@@ -1,4 +1,4 @@
-// A vat that users move: the motion itself, and what it does to what is in the vat.
+// A vat that users move: its motion, and the effect on its contents.
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace {
 constexpr Real kV = kMaxHandSpeed;
 constexpr Real kA = kMaxHandAcceleration;
 
-/// Along x.
+/// A motion along x.
 HandMotion to(Real target, Real offset = 0, Real velocity = 0, Real start = 0) {
   return {start, {offset, 0, 0}, {velocity, 0, 0}, {target, 0, 0}};
 }
 
-/// The first time at which it is at rest, by halving; it is so from then on.
+/// Returns the first time at rest, by bisection. The vat stays at rest afterwards.
 Real end_of(const HandMotion& hand) {
   Real moving = hand.start;
   Real resting = hand.start + 1000;
@@ -31,11 +31,12 @@ Real end_of(const HandMotion& hand) {
 }
 
 TEST(HandMotion, TakesTheLeastTimeFromRestToRest) {
-  EXPECT_NEAR(end_of(to(0.1)), 2 * std::sqrt(0.1 / kA), 1e-8);  // never at full speed
-  EXPECT_NEAR(end_of(to(3)), 3 / kV + kV / kA, 1e-8);           // at full speed for a while
+  EXPECT_NEAR(end_of(to(0.1)), 2 * std::sqrt(0.1 / kA), 1e-8);  // full speed is not reached
+  EXPECT_NEAR(end_of(to(3)), 3 / kV + kV / kA, 1e-8);           // full speed for part of the time
   EXPECT_NEAR(end_of(to(-3)), 3 / kV + kV / kA, 1e-8);
-  EXPECT_NEAR(end_of(to(0.1, 0, 1)), 1 / kA, 1e-8);                 // what slowing down takes
-  EXPECT_NEAR(end_of(to(0, 0, 1)), (1 + std::sqrt(2)) / kA, 1e-8);  // out and back, from 1 m/s
+  EXPECT_NEAR(end_of(to(0.1, 0, 1)), 1 / kA, 1e-8);  // braking only
+  EXPECT_NEAR(end_of(to(0, 0, 1)), (1 + std::sqrt(2)) / kA,
+              1e-8);  // out and back, starting at 1 m/s
   EXPECT_FALSE(is_moving(to(0.3, 0.3), 0));
 }
 
@@ -53,7 +54,7 @@ TEST(HandMotion, IsSmoothWithinItsBoundsAndEndsAtTheTarget) {
           const VatMotion now = hand_motion(hand, time);
           EXPECT_LE(std::abs(now.velocity.x()), kV + 1e-12);
           EXPECT_LE(std::abs(now.acceleration.x()), kA);
-          // The trapezium's rule, which a change of acceleration within the step leaves so wrong.
+          // The error of the trapezoidal rule if the acceleration changes within the step.
           ASSERT_NEAR(now.offset.x() - before.offset.x(),
                       kStep / 2 * (now.velocity.x() + before.velocity.x()), kA * kStep * kStep);
           ASSERT_LE(std::abs(now.velocity.x() - before.velocity.x()), kA * kStep * (1 + 1e-6));
@@ -74,10 +75,10 @@ TEST(HandMotion, GoesOnSmoothlyWhereTheTargetChanges) {
   const HandMotion second = to(-1, then.offset.x(), then.velocity.x(), 0.3);
   EXPECT_EQ(hand_motion(second, 0.3).offset, then.offset);
   EXPECT_EQ(hand_motion(second, 0.3).velocity, then.velocity);
-  EXPECT_EQ(hand_motion(second, 0.29).offset, then.offset) << "not before its start";
+  EXPECT_EQ(hand_motion(second, 0.29).offset, then.offset) << "a motion starts at its start time";
 }
 
-/// A ball of one particle that hits the wall at x_max of a vat, with friction on the floor.
+/// A ball of one particle that hits the wall x_max of a vat with floor friction.
 Scene ball_in_vat(IntegratorId integrator, StepControl control) {
   Scene scene = test::make_scene(integrator, 1e-4);
   scene.numerics.control = control;
@@ -104,7 +105,7 @@ class VatByHand : public testing::TestWithParam<HandCase> {
   Scene scene() const { return ball_in_vat(GetParam().integrator, GetParam().control); }
 };
 
-// What happens in a vat at a constant speed is what happens in one at rest.
+// A vat at constant speed and a vat at rest give the same motion of their contents.
 TEST_P(VatByHand, AtFullSpeedIsAsOneAtRest) {
   Simulation resting = test::make_simulation(scene());
   const BodyId ball = resting.bodies()[0].id;
@@ -125,7 +126,7 @@ TEST_P(VatByHand, AtFullSpeedIsAsOneAtRest) {
   const RigidPose at_rest = *resting.find_body(ball)->pose;
   const RigidPose seen = *moving.find_body(ball)->pose;
   ASSERT_LT(at_rest.velocity.x(), -0.5) << "the ball has bounced";
-  // Rounding; where steps vary they are chosen to be right to a hundredth.
+  // Tolerance for rounding. Variable steps have a relative error of one hundredth.
   const Real tolerance = GetParam().control == StepControl::fixed ? 1e-9 : 0.01;
   EXPECT_LT((seen.center_of_mass - moving.vat_offset() - at_rest.center_of_mass).norm(), tolerance);
   EXPECT_LT((seen.velocity - speed - at_rest.velocity).norm(), 10 * tolerance);
@@ -180,12 +181,12 @@ TEST(MovedVat, HasAStateOfItsOwn) {
   const Snapshot start = simulation.snapshot();
   const std::uint64_t hash = simulation.state_hash();
   ASSERT_TRUE(simulation.move_vat(Vec3::Zero()).ok());
-  EXPECT_EQ(simulation.state_hash(), hash) << "it is there";
+  EXPECT_EQ(simulation.state_hash(), hash) << "the vat is already at its target";
   ASSERT_TRUE(simulation.move_vat({0.1, 0, 0}).ok());
   const std::uint64_t moved = simulation.state_hash();
   EXPECT_NE(moved, hash);
   ASSERT_TRUE(simulation.move_vat({0.1, 0, 0}).ok());
-  EXPECT_EQ(simulation.state_hash(), moved) << "it is on its way there";
+  EXPECT_EQ(simulation.state_hash(), moved) << "the vat already moves to its target";
   ASSERT_TRUE(simulation.move_vat({0.2, 0, 0}).ok());
   EXPECT_NE(simulation.state_hash(), moved);
   simulation.restore(start);
@@ -210,8 +211,8 @@ TEST(MovedVat, WakesWhatSleeps) {
   ASSERT_EQ(simulation.sleeping_body_count(), 1U);
   ASSERT_TRUE(simulation.move_vat({0.5, 0, 0}).ok());
   EXPECT_EQ(simulation.sleeping_body_count(), 0U);
-  simulation.advance(6000);  // of 7000
-  EXPECT_EQ(simulation.sleeping_body_count(), 0U) << "not while it moves";
+  simulation.advance(6000);  // of 7000 steps
+  EXPECT_EQ(simulation.sleeping_body_count(), 0U) << "no body sleeps while the vat moves";
   simulation.advance(30000);
   EXPECT_EQ(simulation.sleeping_body_count(), 1U);
 }

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "tests/core/simulation/allocation_counter.h"
 #include "tests/support/resting_scenes.h"
 #include "tests/support/same_bits.h"
-#include "tests/core/simulation/allocation_counter.h"
 
 // Sleep as part of the state.
 
@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-constexpr std::uint32_t kAsleep = 200;  ///< steps after which all but the marble sleep
-constexpr std::uint32_t kStruck = 80;   ///< more of them, after which the stack is awake again
+constexpr std::uint32_t kAsleep = 200;  ///< steps until all bodies except the marble sleep
+constexpr std::uint32_t kStruck = 80;   ///< further steps until the stack is awake again
 
 TEST(SleepState, HasTheSameBitsForAnyThreadsAndFromASnapshot) {
   Simulation simulation = make_simulation(make_struck_stack());
@@ -39,7 +39,7 @@ TEST(SleepState, OfLiquidsHasTheSameBitsToo) {
   }
 }
 
-/// Bodies whose springs flow, and steps of their own for all particles.
+/// Bodies with plastic springs, and local steps of all particles.
 TEST(SleepState, OfDeformableBodiesHasTheSameBitsToo) {
   for (const StepControl control :
        {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
@@ -68,7 +68,7 @@ TEST(SleepState, OfDeformableBodiesHasTheSameBitsToo) {
 }
 
 TEST(SleepState, IsInTheHash) {
-  // The same places and velocities: one has slept, the other is about to.
+  // Equal positions and velocities, but only one of the simulations has slept.
   Scene scene = make_resting_scene();
   scene.gravity.setZero();
   scene.bodies = {make_crate("crate", {0, 0, 3})};
@@ -110,8 +110,8 @@ TEST(SleepState, AFailedCallLeavesTheSleepersAsTheyWere) {
   Scene scene = make_struck_stack();
   scene.bodies.push_back(make_marble("rocket", {10, 0, 1}));
   Simulation simulation = make_simulation(scene);
-  // Up with 80 m/s^2: after 1.2 s it is too fast for the guard in eighths of a step too, when the
-  // stack has been struck.
+  // The rocket accelerates at 80 m/s^2. After 1.2 s it is too fast for the guard even in eighths of
+  // a step. By then the stack has been hit.
   const BodyId rocket = simulation.find_body("rocket").value();
   ASSERT_TRUE(simulation.apply_force(rocket, {0, 0, 0.5 * 89.81}, 10).ok());
   ASSERT_FALSE(simulation.advance(kAsleep).failed);
@@ -145,7 +145,7 @@ TEST(SleepState, ViewsAndDiagnosticsAreOfAllBodies) {
   const Diagnostics of_a = a.diagnostics();
   const Diagnostics of_b = b.diagnostics();
   const Real time = a.time();
-  const Real bound = scene.sleeping->speed * time;  // of places
+  const Real bound = scene.sleeping->speed * time;  // bound of positions
   Real weight = 0;
   for (std::size_t body = 0; body < 4; ++body) {
     EXPECT_EQ(of_a.bodies[body].mass, of_b.bodies[body].mass);
@@ -158,11 +158,11 @@ TEST(SleepState, ViewsAndDiagnosticsAreOfAllBodies) {
 TEST(SleepState, NoAllocationInAStepBesideSleepersOrWhereAllSleep) {
   for (const bool has_marble : {true, false}) {
     Scene scene = make_resting_scene();
-    scene.default_interface.restitution = 1;  // the marble jumps for ever
+    scene.default_interface.restitution = 1;  // the marble bounces forever
     scene.bodies = {make_crate("crate", 0.0)};
     if (has_marble) scene.bodies.push_back(make_marble("marble", {3, 0, 0.5}));
     Simulation simulation = make_simulation(scene);
-    simulation.advance(481);  // what was woken from is kept for a failure
+    simulation.advance(481);  // the state before waking is stored for a failure
     ASSERT_TRUE(is_asleep(simulation, "crate"));
     ASSERT_EQ(simulation.sleeping_body_count(), 1U);
     const std::size_t before = allocation_count();

@@ -2,14 +2,14 @@
 
 #include "tests/support/resting_scenes.h"
 
-// What falls asleep, and what must not.
+// Conditions for sleep.
 
 namespace vat::sleep_test {
 namespace {
 
 using namespace test;
 
-/// Islands are sought in every eighth look, which there is one of in a tick.
+/// Islands are searched in every eighth check. A tick has one check.
 constexpr int kTicksToSleep = 9;
 
 TEST(Sleep, NothingSleepsWhereTheSceneDoesNotSaySo) {
@@ -80,7 +80,7 @@ TEST(Sleep, NotWhatIsFasterOrTurnsFaster) {
   scene.gravity.setZero();
   scene.bodies = {make_crate("moves", {0, 0, 3}), make_crate("turns", {5, 0, 3})};
   scene.bodies[0].velocity = {0, 1.1e-3, 0};
-  // Its corners are 0.17 m from its axis.
+  // The corners are 0.14 m from the axis.
   scene.bodies[1].angular_velocity = {0, 0, 1.1e-3 / 0.1414};
   Simulation simulation = make_simulation(scene);
   simulation.advance(960);
@@ -88,7 +88,7 @@ TEST(Sleep, NotWhatIsFasterOrTurnsFaster) {
   EXPECT_FALSE(is_asleep(simulation, "turns"));
 }
 
-// On the way up and down again it is slow for a moment.
+// A body that turns back at the top of its flight is slow for a moment.
 TEST(Sleep, NotWhatTurnsBackAtTheTop) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", {0, 0, 3})};
@@ -97,7 +97,7 @@ TEST(Sleep, NotWhatTurnsBackAtTheTop) {
   EXPECT_LT(velocity_of(simulation, 0).z(), -9.81 * 0.4);
 }
 
-// Nor what is slow in every fourth look: where it turns back.
+// A body that oscillates is slow in every fourth check, at its turning points.
 TEST(Sleep, NotWhatSwings) {
   Scene scene = make_resting_scene();
   scene.gravity.setZero();
@@ -129,7 +129,7 @@ TEST(Sleep, AStackSleepsAsOne) {
   EXPECT_TRUE(is_asleep(simulation, "low"));
 }
 
-/// What rests beside what is pulled to and fro by a user.
+/// A body at rest that touches a body which a user moves back and forth.
 TEST(Sleep, NotWhatTouchesWhatMoves) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("still", 0.0), make_marble("moving", {0, 0, 0.35}),
@@ -152,7 +152,7 @@ TEST(Sleep, NotWhatAUserHoldsOrPushes) {
   Simulation simulation = make_simulation(scene);
   const BodyId held = simulation.find_body("held").value();
   ASSERT_TRUE(simulation.grab_start(1, held, 13, {0, 0, kCrateRest}).ok());
-  // Friction holds it: 0.5 m g is 13 N.
+  // Friction holds the body: 0.5 m g is 13 N.
   ASSERT_TRUE(simulation.apply_force(simulation.find_body("pushed").value(), {1, 0, 0}, 2).ok());
   simulation.advance(470);
   EXPECT_FALSE(is_asleep(simulation, "held"));
@@ -163,7 +163,7 @@ TEST(Sleep, NotWhatAUserHoldsOrPushes) {
   EXPECT_TRUE(is_asleep(simulation, "pushed"));
 }
 
-/// Bodies on an obstacle that is held for ever are no island by it.
+/// A permanently fixed obstacle does not join the bodies on it into an island.
 TEST(Sleep, AnObstacleJoinsNothing) {
   Scene scene = make_resting_scene();
   BodyDescription ledge = make_body("ledge", BodyKind::rigid, "wood",
@@ -175,7 +175,7 @@ TEST(Sleep, AnObstacleJoinsNothing) {
   scene.materials.push_back(make_material("rubber"));
   scene.bodies[2].material = "rubber";
   scene.interfaces = {{{"wood", "rubber"}, scene.default_interface, {}}};
-  scene.interfaces[0].constants.restitution = 1;  // it jumps for ever
+  scene.interfaces[0].constants.restitution = 1;  // it bounces forever
   Simulation simulation = make_simulation(scene);
   simulation.advance(480);
   EXPECT_TRUE(is_asleep(simulation, "left"));
@@ -194,7 +194,7 @@ TEST(Sleep, NotWhatWaitsForItsRelease) {
     ASSERT_FALSE(is_asleep(simulation, "held"));
   }
   simulation.advance(48);
-  // 0.2 s of fall: half a step's way of each step is what integration may differ by.
+  // 0.2 s of free fall. The integration may differ by half the distance of each step.
   const Real fall = 9.81 * 0.2 * 0.2 / 2;
   EXPECT_NEAR(position_of(simulation, 0, 13).z(), 2 - fall, 9.81 * 0.2 * scene.numerics.step);
 }
@@ -275,13 +275,13 @@ TEST(Sleep, ALookChangesNothing) {
 
 TEST(Sleep, WhatIsFarFromTheSleepersDoesNotNoticeThem) {
   Scene scene = make_resting_scene();
-  scene.default_interface = {5000, 3, 0.3};  // forces that are kept from step to step
+  scene.default_interface = {5000, 3, 0.3};  // forces that are kept between steps
   scene.numerics.step = 1e-3;
   scene.numerics.tick = 0.01;
   scene.bodies = {make_crate("first", -5.0), make_marble("ball", {0.3, 0, 2}),
                   make_crate("last", 5.0)};
   scene.bodies[1].velocity = {0.5, 0.25, 0};
-  scene.sleeping->speed = 0.01;  // the crates sink a little at first
+  scene.sleeping->speed = 0.01;  // the crates first sink slightly
   Scene alone = scene;
   alone.bodies = {scene.bodies[1]};
   alone.sleeping.reset();

@@ -9,7 +9,7 @@
 #include "core/stepping/step_plan.h"
 #include "tests/support/resting_scenes.h"
 
-// The columns of some of a model's bodies.
+// The columns of a subset of a model's bodies.
 
 namespace vat::sleepers_test {
 namespace {
@@ -29,7 +29,7 @@ BodyDescription make_cubes(const char* name, BodyKind kind, const char* material
   return body;
 }
 
-/// One body of each kind twice, in an order that is not that of the columns.
+/// Two bodies of each kind, in an order that differs from that of the columns.
 Scene make_all_kinds() {
   Scene scene = make_resting_scene();
   scene.pressure_solver = PressureSolver::incompressible;
@@ -48,7 +48,7 @@ Scene make_all_kinds() {
   return scene;
 }
 
-/// Different everywhere.
+/// Returns a configuration whose values are all different.
 Configuration number_all(const Model& model) {
   Configuration at = initial_state(model).now;
   Real n = 0;
@@ -106,7 +106,7 @@ TEST(Sleepers, PartAndRestMakeTheWhole) {
 
   Configuration back = sleepers.configuration;
   EXPECT_EQ(back.contacts.size(), 2U);
-  for (Index b = 1; b < 6; b += 2) {  // as if they had not been there
+  for (Index b = 1; b < 6; b += 2) {  // as if these bodies did not exist
     const IndexRange& range = whole->bodies[b].particles;
     for (Index i = range.begin; i < range.end; ++i) back.position[i].setZero();
     for (Index i = range.begin; i < range.end; ++i) back.velocity[i].setZero();
@@ -132,7 +132,7 @@ TEST(Sleepers, PartAndRestMakeTheWhole) {
 
 TEST(Islands, AreBodiesNearEachOtherAndWhatIsAwakeKeepsThemAwake) {
   Scene scene = make_resting_scene();
-  // Particles notice each other at 0.1 m: islands are 0.25 m apart and more.
+  // Particles detect each other at 0.1 m. Islands are at least 0.25 m apart.
   scene.bodies = {make_crate("a", 0.0), make_crate("b", 0.2 + 0.249), make_crate("c", 5.0),
                   make_crate("d", 5.2 + 0.251), make_marble("e", {0, 9, 0.1})};
   const auto model = compile_scene(scene);
@@ -140,7 +140,7 @@ TEST(Islands, AreBodiesNearEachOtherAndWhatIsAwakeKeepsThemAwake) {
   EXPECT_EQ(find_resting_islands(*model, at, {1, 1, 1, 1, 1}), (std::vector<Index>{0, 0, 2, 3, 4}));
   EXPECT_EQ(find_resting_islands(*model, at, {0, 1, 1, 0, 1}),
             (std::vector<Index>{kAwake, kAwake, 2, kAwake, 4}));
-  // In a step of 1/240 s it may come 0.3 m nearer, and is to keep 0.15 m away.
+  // In a step of 1/240 s it may approach by 0.3 m, and must stay 0.15 m away.
   at.rigid[3].momentum.x() = -36 * 2.7;
   EXPECT_EQ(find_resting_islands(*model, at, {0, 1, 1, 0, 1}),
             (std::vector<Index>{kAwake, kAwake, kAwake, kAwake, 4}));
@@ -173,7 +173,7 @@ TEST(Sleepers, ForcesGoOnToo) {
   EXPECT_EQ(part.rigid_torque[0], forces.rigid_torque[0]);
 }
 
-// Liquids have kernels that are scaled to the first one's lattice.
+// The kernels of liquids are scaled to the lattice of the first liquid.
 TEST(Sleepers, LiquidsKeepTheirConstants) {
   Scene scene = make_resting_scene();
   scene.materials.push_back(make_liquid("water", 1000, {100, 1, 0.2}));

@@ -5,14 +5,15 @@
 #include "tests/support/commands.h"
 #include "tests/support/resting_scenes.h"
 
-// What wakes bodies that sleep.
+// Events that wake sleeping bodies.
 
 namespace vat::wake_test {
 namespace {
 
 using namespace test;
 
-/// Asleep, but for a marble that falls on the first of them if there is one.
+/// Returns a simulation with sleeping bodies. A marble, if there is one, falls on the first of
+/// them.
 Simulation make_sleeping(const Scene& scene, const std::string& name) {
   Simulation simulation = make_simulation(scene);
   advance_to_sleep(simulation, name, 2);
@@ -51,8 +52,8 @@ TEST(Wake, NothingTouchesWhatSleeps) {
   }
 }
 
-/// Sleeping takes no more than its speed from what moved, so that places differ by that speed times
-/// the time since, and velocities by it: the impact is central, and makes no difference grow.
+/// Sleep removes at most its threshold speed. Positions therefore differ by that speed times the
+/// elapsed time, and velocities by the speed. The impact is central, so differences do not grow.
 TEST(Wake, AnImpactIsThatWithoutSleep) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", 0.0), make_marble("marble", {0, 0, 4})};
@@ -72,7 +73,7 @@ TEST(Wake, AnImpactIsThatWithoutSleep) {
     }
   }
   EXPECT_GT(slept_at, 0);
-  EXPECT_LT(position_of(b, 1).z(), 0.5);  // it met the crate
+  EXPECT_LT(position_of(b, 1).z(), 0.5);  // it hit the crate
 }
 
 TEST(Wake, OneIslandAndNotTheNext) {
@@ -125,20 +126,20 @@ TEST(Wake, ByWhatFallsIntoALiquid) {
   }
 }
 
-/// What is awake does not go further in a step than at which sleepers would notice it.
+/// The guard limits the step of an awake body to the distance at which it detects sleeping bodies.
 TEST(Wake, TheGuardMindsSleepers) {
   Scene scene = make_resting_scene();
   scene.gravity.setZero();
   scene.vat.reset();
   scene.bodies = {make_crate("crate", {0, 0, 0}), make_marble("marble", {100, 0, 0})};
-  scene.bodies[1].velocity = {-30, 0, 0};  // 0.125 m in a step, and the reach is 0.1 m
+  scene.bodies[1].velocity = {-30, 0, 0};  // 0.125 m per step; the reach is 0.1 m
   Simulation simulation = make_simulation(scene);
   EXPECT_FALSE(simulation.advance(120).events.empty());
   ASSERT_TRUE(is_asleep(simulation, "crate"));
   EXPECT_FALSE(simulation.advance(1).events.empty());
   while (simulation.time() < 3.4) simulation.advance(1);
   EXPECT_FALSE(is_asleep(simulation, "crate"));
-  // Momentum 15 kg m/s, all of it shared: nothing springs back.
+  // The bodies share the momentum of 15 kg m/s, without rebound.
   EXPECT_NEAR(velocity_of(simulation, 0, 13).x(), -15 / 3.2, 1e-9);
 }
 
@@ -181,7 +182,7 @@ TEST(Wake, ByEveryCommandThatMayMoveSomething) {
     EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 0U) << name;
     EXPECT_FALSE(is_asleep(simulation, "one")) << name;
     EXPECT_GT(simulation.advance(4).steps, 0U) << name;
-    // Not at the next look, whatever had been slow before.
+    // It does not sleep at the next check, although it was slow before.
     simulation.advance(4);
     EXPECT_FALSE(is_asleep(simulation, "one")) << name;
   }
@@ -206,7 +207,7 @@ TEST(Wake, ByAGrabItFollowsIt) {
   const BodyId two = simulation.find_body("two").value();
   ASSERT_TRUE(simulation.grab_start(1, two, 13, {5, 0, 1}).ok());
   simulation.advance(480);
-  EXPECT_NEAR(position_of(simulation, 1, 13).z(), 1, 0.1);  // it hangs a little below
+  EXPECT_NEAR(position_of(simulation, 1, 13).z(), 1, 0.1);  // it hangs slightly lower
   EXPECT_TRUE(is_asleep(simulation, "one"));
 }
 

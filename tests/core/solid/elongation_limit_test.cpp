@@ -16,7 +16,7 @@ namespace {
 
 constexpr Real kLimit = 0.1;
 
-/// A square of soft cloth, held by two corners.
+/// A square of soft cloth that is fixed at two corners.
 Scene make_cloth(Real step) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, step);
   scene.gravity = {0, 0, -9.81};
@@ -29,7 +29,7 @@ Scene make_cloth(Real step) {
   return scene;
 }
 
-/// The greatest strain of the cloth's springs.
+/// Returns the largest strain of the cloth's springs.
 Real greatest_strain(const Scene& scene, const Simulation& simulation) {
   const auto& start = std::get<ParticleShape>(scene.bodies[0].shape).positions;
   const auto now = simulation.bodies()[0].positions;
@@ -41,7 +41,7 @@ Real greatest_strain(const Scene& scene, const Simulation& simulation) {
   return greatest;
 }
 
-/// The greatest strain in the second and a half in which the cloth falls and swings up.
+/// Returns the largest strain in the first 1.5 s, in which the cloth falls and swings up.
 Real greatest_strain(const Scene& scene) {
   Simulation simulation = test::make_simulation(scene);
   Real greatest = 0;
@@ -52,7 +52,7 @@ Real greatest_strain(const Scene& scene) {
   return greatest;
 }
 
-// Beyond the limit is only what springs turn in a step, (w dt)^2 / 2.
+// The strain exceeds the limit only by the rotation of springs in a step, (w dt)^2 / 2.
 TEST(ElongationLimit, HoldsACloth) {
   for (const IntegratorId integrator :
        {IntegratorId::velocity_verlet, IntegratorId::symplectic_euler}) {
@@ -95,7 +95,7 @@ TEST(ElongationLimit, ColoursSpringsThatShareNoParticle) {
   const Model& model = probe.model();
   EXPECT_EQ(model.limited_springs.size(), model.spring_ends.size() / 2);
   EXPECT_EQ(model.limited_begin.back(), model.limited_springs.size());
-  EXPECT_LE(model.limited_begin.size(), 16U);  // eight neighbours: at most 15 colours
+  EXPECT_LE(model.limited_begin.size(), 16U);  // eight neighbours need at most 15 colours
   for (std::size_t c = 0; c + 1 < model.limited_begin.size(); ++c) {
     std::set<Index> seen;
     for (Index s = model.limited_begin[c]; s < model.limited_begin[c + 1]; ++s) {

@@ -22,7 +22,8 @@ Scene make_implicit_scene(Real step) {
   return scene;
 }
 
-/// A block of 4 x 3 x 3 particles that turns, flies, and whose particles move against one another.
+/// A block of 4 x 3 x 3 particles that rotates and translates. Its particles also move against one
+/// another.
 Scene make_block(const SpringConstants& constants, Real step) {
   Scene scene = make_implicit_scene(step);
   ParticleShape shape = test::make_particles(test::make_lattice(4, 3, 3, kSpacing), kMass);
@@ -37,7 +38,7 @@ Scene make_block(const SpringConstants& constants, Real step) {
   return scene;
 }
 
-/// A mass on a spring of length 1 along x, a fixed distance away from rest.
+/// A mass on a spring of length 1 along x, displaced by `stretch`.
 Scene make_oscillator(const SpringConstants& constants, Real step, Real stretch) {
   Scene scene = make_implicit_scene(step);
   ParticleShape shape = test::make_particles({{0, 0, 0}, {1 + stretch, 0, 0}}, 1);
@@ -60,7 +61,7 @@ Motion motion_of(const Simulation& simulation) {
 }
 
 TEST(ImplicitSprings, LoseEnergyByDashpotsUntilTheBodyTurnsAsOne) {
-  for (const Real damping : {1e-5, 1e-3, 1.0}) {  // over stiffness [s]
+  for (const Real damping : {1e-5, 1e-3, 1.0}) {  // relative to the stiffness [s]
     for (const Real step : {1e-3, 2e-2}) {
       Simulation simulation = test::make_simulation(make_block({1e6, 1e6 * damping}, step));
       const Motion start = motion_of(simulation);
@@ -71,7 +72,7 @@ TEST(ImplicitSprings, LoseEnergyByDashpotsUntilTheBodyTurnsAsOne) {
         ASSERT_LE(energy, last * (1 + 8 * kSpringTolerance)) << damping << ' ' << step << ' ' << n;
         last = energy;
       }
-      // As stiff as this it is a rigid body: E = P^2 / 2 M + L I^-1 L / 2 about its centre.
+      // At this stiffness the body is rigid: E = P^2 / 2 M + L I^-1 L / 2 about its centre.
       const BodyView body = simulation.bodies()[0];
       Mat3 inertia = Mat3::Zero();
       const Vec3 center = simulation.diagnostics().bodies[0].center_of_mass;
@@ -89,7 +90,8 @@ TEST(ImplicitSprings, LoseEnergyByDashpotsUntilTheBodyTurnsAsOne) {
 
 TEST(ImplicitSprings, CalmAtOnceWhatIsNotResolved) {
   Simulation simulation = test::make_simulation(make_oscillator({1e8, 100}, 0.01, 0.01));
-  simulation.advance(20);  // omega dt = 100, rate dt = 1: undamped by rounding it would ring
+  simulation.advance(
+      20);  // omega dt = 100, rate dt = 1: an undamped rounding error would oscillate
   EXPECT_LT(std::abs(test::position_of(simulation, 0, 1).x() - 1), 1e-4);
   EXPECT_LT(test::velocity_of(simulation, 0, 1).norm(), 0.1);
 }
@@ -175,7 +177,7 @@ TEST(ImplicitSprings, NeedVelocityVerlet) {
   Errors errors = find_errors(scene);
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_EQ(errors[0].path, "/numerics/integrator");
-  scene.numerics.accuracy = 1e-6;  // chooses the integrator
+  scene.numerics.accuracy = 1e-6;  // selects the integrator
   EXPECT_TRUE(find_errors(scene).empty());
   EXPECT_EQ(test::make_simulation(scene).scene().numerics.integrator,
             IntegratorId::velocity_verlet);

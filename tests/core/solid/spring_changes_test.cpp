@@ -12,7 +12,7 @@
 namespace vat::spring_changes_test {
 namespace {
 
-constexpr Real kLength = 2;  // [m] at the start
+constexpr Real kLength = 2;  // [m] initial length
 
 TEST(Plasticity, IsElasticUpToTheYieldStrain) {
   const Plasticity plasticity{0.1, 0.5, 0, 0.5};
@@ -39,7 +39,8 @@ TEST(Plasticity, RelaxesExponentially) {
   const Plasticity plasticity{0.1, 0, 2, 0.5};
   Real rest = kLength;
   for (int n = 0; n < 100; ++n) rest = flown_length(plasticity, kLength, rest, 2.6, 0.01);
-  // 0.3 of strain, 0.2 of it beyond yield, of which exp(-1 / 2) is left after 1 s of 2 s.
+  // The strain is 0.3, of which 0.2 exceed the yield strain. After 1 s, exp(-1 / 2) of that remains
+  // (relaxation time 2 s).
   EXPECT_NEAR(rest / kLength - 1, 0.2 * (1 - std::exp(-0.5)), 1e-13);
 }
 
@@ -50,7 +51,7 @@ TEST(Plasticity, EndsAtTheGreatestStrain) {
   EXPECT_EQ(flown_length(plasticity, 0, 0, 5, 1e-3), 0);  // no length, no strain
 }
 
-// The area of the loop of stress and strain: flow of 4 (A - Y) / (1 + H) against Y, in k l0^2.
+// The area of the stress-strain loop: flow of 4 (A - Y) / (1 + H) against Y, in units of k l0^2.
 TEST(Plasticity, TakesTheEnergyOfItsLoopInACycle) {
   constexpr Real kYield = 0.05;
   constexpr Real kAmplitude = 0.2;
@@ -73,7 +74,7 @@ TEST(Plasticity, TakesTheEnergyOfItsLoopInACycle) {
   }
 }
 
-/// A mass on a spring along x, the other end fixed.
+/// A mass on a spring along x. The other end is fixed.
 Scene make_oscillator(IntegratorId integrator, Real step) {
   Scene scene = test::make_scene(integrator, step);
   scene.materials = {test::make_material("clay")};
@@ -85,8 +86,8 @@ Scene make_oscillator(IntegratorId integrator, Real step) {
   return scene;
 }
 
-// The spring takes k Y^2 / 2 elastically and the rest of m v^2 / 2 at the constant force k Y; then
-// the mass swings by Y about the new length at rest.
+// The spring stores k Y^2 / 2 elastically. The rest of m v^2 / 2 becomes plastic at the constant
+// force k Y. Then the mass oscillates with amplitude Y about the new rest length.
 TEST(Plasticity, LeavesASetThatEnergyTells) {
   constexpr Real kYield = 0.1;
   const Real set = (4.5 - 100 * kYield * kYield / 2) / (100 * kYield);
@@ -111,8 +112,8 @@ TEST(Plasticity, LeavesASetThatEnergyTells) {
           if (simulation.time() > 0.5) least = std::min(least, x);
         }
         const std::string name = std::string(to_string(integrator)) + ", " + to_string(control);
-        // First order in the step where it yields: k Y v dt of energy, 3e-4 m; explicit Euler adds
-        // k dt / m of its energy a second.
+        // The step that starts to yield has a first-order error: k Y v dt of energy, 3e-4 m.
+        // Explicit Euler adds k dt / m of its energy per second.
         const Real tolerance = integrator == IntegratorId::explicit_euler ? 5e-3 : 5e-4;
         EXPECT_NEAR(greatest, kYield + set, tolerance) << name;
         EXPECT_NEAR(least, set - kYield, tolerance) << name;
@@ -125,7 +126,7 @@ TEST(Plasticity, LeavesASetThatEnergyTells) {
 TEST(Tearing, IsForGood) {
   for (const bool implicit : {false, true}) {
     Scene scene = make_oscillator(IntegratorId::velocity_verlet, 1e-3);
-    scene.materials[0].tearing_strain = 0.2;  // the swing would be 0.3
+    scene.materials[0].tearing_strain = 0.2;  // the oscillation would reach 0.3
     scene.materials[0].implicit_springs = implicit;
     Simulation simulation = test::make_simulation(scene);
     EXPECT_EQ(simulation.diagnostics().torn_springs, 0U);
@@ -133,7 +134,7 @@ TEST(Tearing, IsForGood) {
     EXPECT_EQ(simulation.diagnostics().torn_springs, 1U);
     EXPECT_EQ(simulation.diagnostics().elastic_energy, 0);
     const Vec3 velocity = test::velocity_of(simulation, 0, 1);
-    EXPECT_NEAR(velocity.x(), std::sqrt(9 - 100 * 0.04), 0.03);  // what a step of 1 ms moves
+    EXPECT_NEAR(velocity.x(), std::sqrt(9 - 100 * 0.04), 0.03);  // change within a step of 1 ms
     simulation.advance(100);
     EXPECT_EQ(test::velocity_of(simulation, 0, 1), velocity);
   }
@@ -142,7 +143,7 @@ TEST(Tearing, IsForGood) {
 TEST(Tearing, EndsTheDashpotToo) {
   Scene scene = make_oscillator(IntegratorId::velocity_verlet, 0.01);
   std::get<ParticleShape>(scene.bodies[0].shape).velocities.clear();
-  scene.bodies[0].springs[0] = {0, 1, {100, 1e4}, 0.9};  // the dashpot must be solved for
+  scene.bodies[0].springs[0] = {0, 1, {100, 1e4}, 0.9};  // the damper needs an implicit solve
   scene.materials[0].tearing_strain = 0.05;
   scene.gravity = {10, 0, 0};
   Simulation simulation = test::make_simulation(scene);
@@ -153,7 +154,7 @@ TEST(Tearing, EndsTheDashpotToo) {
   EXPECT_NEAR(test::velocity_of(simulation, 0, 1).x() - velocity.x(), 1, 1e-12);
 }
 
-/// A block that is torn in two and dented: its right half flies away.
+/// A block that is torn in two and dented. Its right half separates.
 Scene make_torn_block(StepControl control) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.numerics.control = control;
@@ -194,7 +195,7 @@ TEST(SpringChanges, ArePartOfTheHash) {
   scene.materials[0].plasticity->yield_strain = 0.02;
   Simulation other = test::make_simulation(scene);
   EXPECT_EQ(one.state_hash(), other.state_hash());
-  one.advance(4);  // to a strain of 0.012, at which the forces were elastic
+  one.advance(4);  // up to a strain of 0.012; forces were elastic until then
   other.advance(4);
   EXPECT_EQ(test::position_of(one, 0, 1), test::position_of(other, 0, 1));
   EXPECT_NE(one.state_hash(), other.state_hash());
@@ -218,7 +219,7 @@ TEST(SpringChanges, StayWhereBodiesComeAndGo) {
 
 TEST(SpringChanges, AreUndoneWithTheStep) {
   Scene scene = make_torn_block(StepControl::fixed);
-  scene.numerics.step = scene.numerics.tick = 0.02;  // far too long
+  scene.numerics.step = scene.numerics.tick = 0.02;  // much too long
   scene.materials[0].plasticity->relaxation_time = 0;
   scene.bodies[0].springs =
       test::join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.075, {1e9, 0});

@@ -36,7 +36,7 @@ TEST(Springs, AreDampedAlongTheirLineOnly) {
   Scene scene = make_spring_scene({{0, 0, 0}, {1, 0, 0}}, {{0, 1, {40, 3}, 1.0}});
   std::get<ParticleShape>(scene.bodies[0].shape).velocities = {{0.5, 2, 0}, {-1.5, 7, 1}};
   const ForceProbe probe(scene);
-  EXPECT_NEAR(probe.force(0, 0).x(), -3 * 2, 1e-12);  // closing at 2 m/s: pushed apart
+  EXPECT_NEAR(probe.force(0, 0).x(), -3 * 2, 1e-12);  // approach at 2 m/s: repulsion
   EXPECT_EQ(probe.force(0, 0).y(), 0);
   EXPECT_EQ(probe.force(0, 0), Vec3(-probe.force(0, 1)));
 }
@@ -50,7 +50,7 @@ TEST(Springs, OfNoLengthStillPushOppositeWays) {
 TEST(Springs, SumAsBruteForceDoesAndCancel) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<Real> unit(-1, 1);
-  std::vector<Vec3> positions(3 * kBlockSize - 100);  // springs cross blocks, both ways
+  std::vector<Vec3> positions(3 * kBlockSize - 100);  // springs cross blocks in both directions
   for (Vec3& p : positions) p = {unit(random), unit(random), unit(random)};
   std::vector<SpringDescription> springs;
   for (Index s = 0; s < 3000; ++s) {
@@ -78,7 +78,7 @@ TEST(Springs, DoNotMoveFixedParticles) {
   Scene scene = make_spring_scene({{0, 0, 0}, {2, 0, 0}}, {{0, 1, {40, 0}, 1.0}});
   auto& shape = std::get<ParticleShape>(scene.bodies[0].shape);
   shape.fixed = {0};
-  shape.velocities = {{3, 0, 0}, {0, 0, 0}};  // a fixed particle has no velocity either
+  shape.velocities = {{3, 0, 0}, {0, 0, 0}};  // velocity of a fixed particle is zero too
   scene.gravity = {0, 0, -9.81};
   for (const IntegratorId integrator : test::kIntegrators) {
     scene.numerics.integrator = integrator;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<Index, 8> kCorners{0, 1, 2, 3, 4, 5, 6, 7};
 
-/// The corners of a brick of 1 x 2 x 3 that `place` moves.
+/// The corners of a brick of 1 x 2 x 3, mapped by `place`.
 template <class F>
 std::vector<Vec3> make_cell(F&& place) {
   std::vector<Vec3> at;
@@ -70,10 +70,10 @@ TEST(CellVolume, HasTheSlopeOfItsDifferences) {
 
 TEST(CellVolume, IsTheAreaInThePlane) {
   const std::vector<Vec3> at{{0, 0, 0}, {2, 0, 0}, {0, 0, 1}, {3, 0, 2}};
-  EXPECT_NEAR(cell_volume(at, kCorners, 2), 3.5, 1e-15);  // by triangles 2 + 1.5
+  EXPECT_NEAR(cell_volume(at, kCorners, 2), 3.5, 1e-15);  // sum of triangles: 2 + 1.5
 }
 
-/// A sampled block without springs, stretched by a linear map.
+/// A sampled block without springs, deformed by a linear map.
 Scene make_block(const Mat3& stretch, int dimensions = 3) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.dimensions = dimensions;
@@ -101,7 +101,7 @@ TEST(Volume, HasNoForceWhereItIsKept) {
   const test::ForceProbe probe(make_block(shear));
   for (Index i = 0; i < 60; ++i) EXPECT_LT(probe.force(0, i).norm(), 1e-12);
   const test::ForceProbe pressed(make_block(0.9 * Mat3::Identity()));
-  // The first corner has a third of three faces' quarter, each of (0.09 m)^2.
+  // The first corner carries one third of a quarter of three faces, each of (0.09 m)^2.
   const Real pressure = 1000 * (1 - 0.729);
   EXPECT_LT((pressed.force(0, 0) + pressure * 0.0081 / 4 * Vec3::Ones()).norm(), 1e-12);
 }
@@ -121,7 +121,7 @@ TEST(Volume, KeepsMomentumAndEnergy) {
     const Diagnostics end = simulation.diagnostics();
     EXPECT_LT((end.bodies[0].linear_momentum - start.bodies[0].linear_momentum).norm(), 1e-12);
     EXPECT_LT((end.bodies[0].angular_momentum - start.bodies[0].angular_momentum).norm(), 1e-12);
-    // Velocity Verlet: (omega dt)^2 / 4 at most, with omega dt = 0.2 of the cells' sound.
+    // Velocity Verlet: at most (omega dt)^2 / 4, with omega dt = 0.2 of the cells' sound.
     EXPECT_NEAR(
         (end.kinetic_energy + end.elastic_energy) / (start.kinetic_energy + start.elastic_energy),
         1, 0.01);

@@ -12,7 +12,7 @@ namespace {
 
 using test::ForceProbe;
 
-/// An L of three particles of different mass, turned and moved.
+/// An L of three particles with different masses, rotated and moved.
 Scene make_rigid_scene() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {test::make_material("wood")};
@@ -29,7 +29,7 @@ Scene make_rigid_scene() {
 TEST(Rigid, StartsWhereItIsPut) {
   const Simulation simulation = test::make_simulation(make_rigid_scene());
   const BodyView body = simulation.bodies()[0];
-  // A quarter turn about z takes (x, y) to (-y, x).
+  // A quarter turn about z maps (x, y) to (-y, x).
   EXPECT_LT((body.positions[0] - Vec3(5, 6, 7)).norm(), 1e-14);
   EXPECT_LT((body.positions[1] - Vec3(5, 7, 7)).norm(), 1e-14);
   EXPECT_LT((body.positions[2] - Vec3(3, 6, 7)).norm(), 1e-14);
@@ -94,7 +94,7 @@ TEST(Rigid, GathersForceAndTorque) {
 }
 
 TEST(Rigid, OrientationRateIsHalfOmegaTimesQ) {
-  // Turning about z at rate w: q = (cos wt/2, 0, 0, sin wt/2).
+  // Rotation about z at rate w: q = (cos wt/2, 0, 0, sin wt/2).
   const Real w = 3;
   const Real t = 0.4;
   const Quat q(std::cos(w * t / 2), 0, 0, std::sin(w * t / 2));
@@ -111,11 +111,11 @@ TEST(Rigid, AngularVelocityUsesTheInertiaInWorldAxes) {
   rigid.inverse_inertia = rigid.inertia.inverse();
   EXPECT_LT((angular_velocity(rigid, Quat::Identity(), {2, 3, 4}) - Vec3(1, 1, 1)).norm(), 1e-15);
   const Quat quarter(Eigen::AngleAxis<Real>(std::numbers::pi / 2, Vec3::UnitZ()));
-  // Body x lies along world y: I_world = diag(3, 2, 4).
+  // The body's x axis is along the world's y axis: I_world = diag(3, 2, 4).
   EXPECT_LT((angular_velocity(rigid, quarter, {3, 2, 4}) - Vec3(1, 1, 1)).norm(), 1e-15);
 }
 
-/// Moments 2, 3 and 4 about x, y and z.
+/// A body with the moments 2, 3 and 4 about x, y and z.
 RigidModel make_unequal_body() {
   RigidModel rigid;
   rigid.inertia = Vec3(2, 3, 4).asDiagonal();
@@ -134,7 +134,7 @@ Quat rotate_for_a_second(const Vec3& angular_momentum, int steps) {
   return q;
 }
 
-// Back through the same turns in the opposite order.
+// The reverse rotations in the opposite order restore the start.
 TEST(Rigid, FreeRotationIsReversible) {
   const RigidModel rigid = make_unequal_body();
   const Vec3 angular_momentum(6, 5, 4);
@@ -147,7 +147,7 @@ TEST(Rigid, FreeRotationIsReversible) {
 TEST(Rigid, FreeRotationIsOfOrderFour) {
   const Vec3 angular_momentum(6, 5, 4);
   const Quat exact =
-      rotate_for_a_second(angular_momentum, 1024);  // its error is 2^-24 of 16 steps'
+      rotate_for_a_second(angular_momentum, 1024);  // the error is 2^-24 of that with 16 steps
   const auto error_of = [&](int steps) {
     return rotate_for_a_second(angular_momentum, steps).angularDistance(exact);
   };

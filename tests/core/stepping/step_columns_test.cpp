@@ -1,5 +1,6 @@
-// What the step plan declares against what its stages do: every column that a stage does not
-// declare is spoilt before it runs, and the stage must not be seen to notice, nor to touch it.
+// Compares the columns that each stage declares with those that it uses. Every undeclared column is
+// filled with NaN before the stage runs. The stage must give the same result and must not write the
+// column.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ namespace {
 
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
 
-/// Everything that stages hand to one another.
+/// All data that stages pass to one another.
 struct Columns {
   State state;
   Workspace work;
@@ -32,7 +33,7 @@ bool has(const std::vector<Column>& columns, Column column) {
   return std::ranges::find(columns, column) != columns.end();
 }
 
-/// What is done with a column's memory: spoilt, or copied.
+/// An action on the memory of a column: overwrite it or copy it.
 class Visit {
  public:
   explicit Visit(bool spoils) : spoils_(spoils) {}
@@ -46,7 +47,7 @@ class Visit {
     if (spoils_) std::fill_n(reals, count, kNan);
     copy(values);
   }
-  /// Sets `value` back to its start. `copy`: what it holds, as a vector.
+  /// Resets `value` to its initial content. `copy` returns its content as a vector.
   template <class T, class Copy>
   void structure(T& value, Copy&& copy_of) {
     if (spoils_) value = {};
@@ -167,7 +168,7 @@ void spoil(Column column, Columns& columns) {
   visit(column, columns, spoiling);
 }
 
-/// The column's bits.
+/// Returns the bits of the column.
 std::vector<char> content(Column column, Columns& columns) {
   Visit copying(false);
   visit(column, columns, copying);
@@ -187,7 +188,7 @@ void run(const Stage& stage, const Model& model, Columns& columns) {
   stage.run(context);
 }
 
-/// Runs the plan, and each of its stages a second time on spoilt columns.
+/// Runs the plan, and each of its stages a second time with overwritten columns.
 void expect_declared(const Scene& scene) {
   const std::vector<BodyId> ids(scene.bodies.size(), 1);
   const auto model =
@@ -211,7 +212,7 @@ void expect_declared(const Scene& scene) {
   }
 }
 
-/// Bodies of each kind that touch one another and the walls, so that every stage has work.
+/// Bodies of each kind that touch one another and the walls, so every stage has work.
 Scene crowded_scene() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.gravity = {0, 0, -9.81};

@@ -21,7 +21,7 @@ TEST(StepLevel, IsTheLeastThatIsShortEnough) {
   EXPECT_EQ(level_of(0.5, 1), 1U);
   EXPECT_EQ(level_of(0.3, 1), 2U);
   EXPECT_EQ(level_of(0, 1), static_cast<std::uint32_t>(kMaxStepLevel));
-  EXPECT_EQ(level_of(std::nan(""), 1), 0U);  // the guard deals with such states
+  EXPECT_EQ(level_of(std::nan(""), 1), 0U);  // the guard handles such states
 }
 
 TEST(StepCount, IsTheLeastThatIsShortEnough) {
@@ -37,7 +37,7 @@ TEST(StepCount, IsTheLeastThatIsShortEnough) {
   EXPECT_EQ(count(0.3, 0.5), 2U);
   EXPECT_EQ(count(0, 1), 1U << kMaxStepLevel);
   EXPECT_EQ(count(0, 0.25), 1U << (kMaxStepLevel - 2));
-  EXPECT_EQ(count(std::nan(""), 1), 1U);  // the guard deals with such states
+  EXPECT_EQ(count(std::nan(""), 1), 1U);  // the guard handles such states
 }
 
 TEST(StepCount, StepsShortenAtOnceAndLengthenSlowly) {
@@ -57,7 +57,7 @@ TEST(StepCount, StepsShortenAtOnceAndLengthenSlowly) {
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_NEAR(steps[i], expected[i], 1e-12) << i;
 }
 
-// Each integrator, on x'' = -x with steps of the phase that the model gives for an error.
+// Each integrator solves x'' = -x. The error model gives the phase of a step for a given error.
 TEST(ErrorModel, StepsOfItsPhaseMakeItsError) {
   for (const IntegratorId integrator : kIntegrators) {
     for (const Real error : {1e-2, 1e-3, 1e-4}) {
@@ -77,7 +77,7 @@ TEST(ErrorModel, StepsOfItsPhaseMakeItsError) {
       const Real x = (position_of(simulation, 0, 1).x() - 1) / 0.1;
       const Real v = velocity_of(simulation, 0, 1).x() / (0.1 * omega);
       const Real found = std::hypot(x - std::cos(angle), v + std::sin(angle)) / angle;
-      // Velocity Verlet's ellipse, z^2/8, comes on top; and so does the next order in z.
+      // Velocity Verlet's ellipse adds z^2/8, and the next order in z adds more.
       const Real ellipse = integrator == IntegratorId::velocity_verlet ? 3 / angle : 0;
       EXPECT_LT(found, (1.3 + ellipse) * error) << to_string(integrator) << ' ' << error;
       EXPECT_GT(found, 0.2 * error) << to_string(integrator) << ' ' << error;

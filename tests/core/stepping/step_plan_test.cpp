@@ -30,7 +30,7 @@ BodyDescription body_of(const char* name, BodyKind kind, const char* material) {
                    0.05);
 }
 
-/// The names of the plan's stages, one after the other.
+/// Returns the names of the plan's stages in order.
 std::string stages_of(const Scene& scene) {
   const test::ForceProbe probe(scene);
   std::string names;
@@ -66,7 +66,7 @@ TEST(StepPlan, HasTheStagesThatTheBodiesNeed) {
   EXPECT_EQ(stages_of(scene_of({make_spring_body()})), "external_forces springs");
   EXPECT_EQ(stages_of(scene_of({kBall})), "pose_rigid_bodies external_forces gather_rigid_forces");
   Scene scene = scene_of({kPool});
-  scene.materials[1].liquid->viscosity = 1;  // of a material that no body has
+  scene.materials[1].liquid->viscosity = 1;  // a material that no body uses
   EXPECT_EQ(stages_of(scene), liquid);
   scene = scene_of({make_spring_body()});
   scene.materials[2].self_contact = SpringConstants{100, 0};

@@ -16,7 +16,7 @@ TEST(Hash, StartsFromThePublishedOffset) {
   EXPECT_EQ(StateHash().value(), 14695981039346656037ULL);
 }
 
-// Published 64-bit FNV-1a hashes of one byte, which differ from ours by the last shift alone.
+// Published 64-bit FNV-1a hashes of one byte. They differ from this hash only in the final shift.
 TEST(Hash, MatchesPublishedValuesOfOneByte) {
   const auto shifted = [](std::uint64_t published) { return published ^ (published >> 32); };
   EXPECT_EQ(hash_of(std::uint64_t{'a'}), shifted(0xaf63dc4c8601ec8cULL));
@@ -40,7 +40,7 @@ TEST(Hash, OfVectorsAndQuaternionsIsThatOfTheirComponents) {
   EXPECT_EQ(hash_of(Quat(1, 2, 3, 4)), hash_of(1.0, 2.0, 3.0, 4.0));
 }
 
-// Without the final shift a change of a high bit would leave all low bits as they are.
+// Without the final shift, a change of a high bit would not change the low bits.
 TEST(Hash, AChangeOfTheHighestBitReachesTheLowHalf) {
   const std::uint64_t a = hash_of(1.0);
   const std::uint64_t b = hash_of(-1.0);

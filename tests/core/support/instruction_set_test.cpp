@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr auto kAll = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 
-/// While it lives, the machine seems to lack the sets above one.
+/// Hides the instruction sets above a given one during its lifetime.
 class Limited {
  public:
   explicit Limited(InstructionSet greatest) { limit_instruction_sets(greatest); }
@@ -72,7 +72,7 @@ TEST(InstructionSet, ASimulationGoesOnWithItsOwn) {
     const Snapshot start = simulation.snapshot();
     simulation.advance(2);
     EXPECT_TRUE(simulation.remove_body(simulation.bodies().back().id));
-    EXPECT_EQ(simulation.instruction_set(), set) << "bodies changed";
+    EXPECT_EQ(simulation.instruction_set(), set) << "after a change of bodies";
     simulation.restore(start);
     EXPECT_EQ(simulation.instruction_set(), set) << "restored";
   }

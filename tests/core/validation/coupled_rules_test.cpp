@@ -5,7 +5,7 @@
 #include "tests/support/errors.h"
 #include "tests/support/scenes.h"
 
-// What liquids that walls and solids take part in cannot do yet.
+// Unsupported features of liquids in which walls and solids take part.
 
 namespace vat::coupled_rules_test {
 namespace {
@@ -26,7 +26,7 @@ Scene make_coupled() {
 TEST(CoupledLiquids, HaveNoLocalSteps) {
   Scene scene = make_coupled();
   scene.numerics.control = StepControl::local;
-  EXPECT_EQ(errors_of(find_errors(scene)), "") << "there is no liquid body";
+  EXPECT_EQ(errors_of(find_errors(scene)), "") << "the scene has no liquid body";
   EXPECT_EQ(errors_of(find_body_errors(scene, make_drop(), "/body")), "not_allowed /body/kind");
   scene.bodies = {make_drop()};
   EXPECT_EQ(errors_of(find_errors(scene)), "not_allowed /numerics/control");
@@ -68,7 +68,7 @@ TEST(CoupledLiquids, MeetWallsAndBodiesAtAnglesThatTheirModelHas) {
   }
 }
 
-// Attraction reaches twice as far as the support radius, and wants three spacings in the plane.
+// Cohesion reaches twice as far as the support radius, and needs three spacings in two dimensions.
 TEST(CoupledLiquids, ThatAttractThemselvesNeedRoomAndNeighbours) {
   Scene scene = make_coupled();
   scene.surface_model = SurfaceModel::cohesion;

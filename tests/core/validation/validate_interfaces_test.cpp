@@ -7,14 +7,14 @@
 #include "tests/support/errors.h"
 #include "tests/support/scenes.h"
 
-// What each law of an interface needs.
+// Required members of each interface law.
 
 namespace vat::validate_interfaces_test {
 namespace {
 
 using namespace test;
 
-/// A body of each kind, apart.
+/// A scene with separate bodies of each kind.
 Scene valid_scene() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {make_liquid("water", 1000, {100, 0, 0.1}), make_material("rubber"),

@@ -29,7 +29,7 @@ TEST(Validate, LimitsTheTotals) {
   EXPECT_EQ(codes(), "too_many /bodies");  // 12 x 80^3 springs
 }
 
-/// More particles in one place than may all be neighbours of one another.
+/// A dense body: more particles within 0.15 m than may be mutual neighbours.
 ParticleShape crowd() {
   constexpr Real kDistance = 0.01;
   ParticleShape shape;
@@ -62,7 +62,7 @@ TEST(Validate, LimitsTheNeighboursOfALiquid) {
 
 TEST(Validate, LimitsTheNeighboursWithinABody) {
   Scene scene = crowded_scene(BodyKind::deformable, 100);
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");  // they do not collide
+  EXPECT_EQ(test::errors_of(find_errors(scene)), "");  // the particles do not collide
   scene.materials[0].self_contact = SpringConstants{1, 0};
   EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies");
   scene.bodies[0].radius = 0.005;
@@ -85,7 +85,7 @@ TEST(Validate, LimitsTheNeighboursOfOtherBodies) {
 }
 
 TEST(Validate, LetsALargeParticleLieInALiquid) {
-  Scene scene = crowded_scene(BodyKind::liquid, 0.005);  // each of 3375 has it in reach
+  Scene scene = crowded_scene(BodyKind::liquid, 0.005);  // each of 3375 particles reaches the ball
   scene.bodies.push_back(
       {"ball", BodyKind::rigid, "m", ParticleShape{{{0, 0, 1}}, {}, {1}, {1}, {}}});
   EXPECT_EQ(test::errors_of(find_errors(scene)), "");
@@ -95,7 +95,7 @@ TEST(Validate, LimitsTheLatticesTogetherAndStopsAtTheFirstExcess) {
   Scene scene;
   scene.materials.emplace_back();
   scene.materials[0].name = "m";
-  // Few particles in a large box: 1.7 m along a diagonal, 170^3 lattice points.
+  // A large box with few particles: 1.7 m along a diagonal, 170^3 lattice points.
   const CylinderShape rod{{0, 0, 0}, {1, 1, 1}, 0.01, 1.7 * std::sqrt(3.0)};
   for (int i = 0; i < 100; ++i) {
     scene.bodies.push_back({"rod " + std::to_string(i), BodyKind::rigid, "m", rod, 0.01});

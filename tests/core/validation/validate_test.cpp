@@ -19,7 +19,7 @@ namespace {
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
-/// One body of each kind, every list with an element.
+/// A valid scene with a body of each kind and an element in every list.
 Scene valid_scene() {
   Scene scene;
   scene.name = "valid";
@@ -203,7 +203,7 @@ const Mistake kMistakes[] = {
      }},
     {"no_particles /bodies/2/spacing",
      [](Scene& s) {
-       // Two boxes with the centre of both, the only lattice point, between them.
+       // Two boxes. The only lattice point is at their common centre, between them.
        s.bodies[2].spacing = 0.3;
        s.bodies[2].shape = joined(box_mesh({0.4, 0.4, 0.7}, {0.45, 0.6, 0.9}),
                                   box_mesh({0.55, 0.4, 0.7}, {0.6, 0.6, 0.9}));
@@ -270,7 +270,7 @@ TEST(Validate, NamesTheIntegratorAndTheSolverThatItCannotDrive) {
   EXPECT_THAT(find_errors(scene), testing::IsEmpty());
   scene.numerics.control = StepControl::local;
   EXPECT_FALSE(find_errors(scene).empty());
-  scene.bodies.resize(1);  // springs would need steps too short for a method of order 1
+  scene.bodies.resize(1);  // springs would need too short steps for a method of order 1
   scene.numerics = {};
   scene.numerics.accuracy = 0.01;
   EXPECT_THAT(find_errors(scene), testing::IsEmpty());
@@ -308,7 +308,7 @@ TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
   const std::vector<Real> radius = {0.01};
   CurrentScene present;
   present.bodies.assign(scene.bodies.size(), {far, radius, 0});
-  scene.bodies[0].spacing = 1e-5;  // could not be sampled
+  scene.bodies[0].spacing = 1e-5;  // too fine to sample
   BodyDescription body = scene.bodies[2];
   body.name = "another ball";
   EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "");
@@ -329,7 +329,7 @@ TEST(Validate, AddsABodyWhereTheVatIsNow) {
   EXPECT_EQ(codes(), "");
   present.vat_offset = {0.5, 0, 0};
   EXPECT_EQ(codes(), "outside_vat /body");
-  body.position = {0.8, 0, 0};  // beyond the wall at time 0
+  body.position = {0.8, 0, 0};  // beyond the wall's position at time 0
   EXPECT_EQ(codes(), "");
 }
 

@@ -22,7 +22,7 @@ TEST(Warnings, AreOfTheStepThatAnAccuracyChooses) {
 }
 
 TEST(Warnings, OfAStepBeyondTheSpringsLimit) {
-  // The bound is omega^2 <= 2 k / m, so at dt = 1 ms Verlet is safe up to k = 2 m / dt^2 = 2e6.
+  // The bound is omega^2 <= 2 k / m. At dt = 1 ms, Verlet is stable up to k = 2 m / dt^2 = 2e6.
   EXPECT_EQ(warnings_of(oscillator(1.99e6, 0)), "");
   EXPECT_EQ(warnings_of(oscillator(2.01e6, 0)), "unstable_step /numerics/step");
 }
@@ -36,14 +36,14 @@ TEST(Warnings, OfIntegratorsThatMakeUndampedSpringsGrow) {
   EXPECT_EQ(warnings_of(scene), "");
 }
 
-/// With an integrator that takes damping at the velocity half a step before.
+/// Selects an integrator that computes damping from the velocity half a step before.
 Scene with_late_damping(Scene scene) {
   scene.numerics.integrator = IntegratorId::symplectic_euler;
   return scene;
 }
 
 TEST(Warnings, OfDampedSpringsBeyondTheStep) {
-  // 2 c / m dt = 2 is the limit: c = 1000 N s/m at 1 ms. Velocity Verlet has none.
+  // The limit is 2 c / m dt = 2: c = 1000 N s/m at 1 ms. Velocity Verlet has no limit.
   EXPECT_EQ(warnings_of(with_late_damping(oscillator(1, 990))), "");
   EXPECT_EQ(warnings_of(with_late_damping(oscillator(1, 1010))), "unstable_step /numerics/step");
   EXPECT_EQ(warnings_of(oscillator(1, 1010)), "");
@@ -55,7 +55,7 @@ TEST(Warnings, OfDampedSpringsBeyondTheStep) {
   EXPECT_EQ(warnings_of(scene), "unstable_step /numerics/step");
 }
 
-/// Two rigid particles of 1 kg, so that one contact has mu = 1/2.
+/// Two rigid particles of 1 kg. The reduced mass of their contact is 1/2 kg.
 Scene two_grains(const InterfaceConstants& contact) {
   Scene scene;
   scene.pressure_solver = PressureSolver::gas;
@@ -75,11 +75,11 @@ TEST(Warnings, OfStiffContacts) {
   EXPECT_EQ(warnings_of(two_grains({1.99e6, 0})), "");
   EXPECT_EQ(warnings_of(two_grains({2.01e6, 0})), "unstable_step /numerics/step");
   Scene scene = two_grains({1e9, 0});
-  scene.interfaces = {{{"wood", "wood"}, {1000, 1}, {}}};  // takes the default's place
+  scene.interfaces = {{{"wood", "wood"}, {1000, 1}, {}}};  // overrides the default
   EXPECT_EQ(warnings_of(scene), "");
   scene.interfaces[0].constants.stiffness = 2.01e6;
   EXPECT_EQ(warnings_of(scene), "unstable_step /numerics/step");
-  scene.bodies.pop_back();  // one body alone touches nothing
+  scene.bodies.pop_back();  // a single body has no contacts
   EXPECT_EQ(warnings_of(scene), "");
 }
 
@@ -99,7 +99,7 @@ TEST(Warnings, OfContactsThatNoStepHolds) {
 }
 
 TEST(Warnings, OfManyContactsOfOneBody) {
-  // 64 contacts at once on 8 kg: omega^2 = 64 k / m, so k <= 4 m / (64 dt^2) = 5e5.
+  // 64 simultaneous contacts on 8 kg: omega^2 = 64 k / m, so k <= 4 m / (64 dt^2) = 5e5.
   Scene scene;
   scene.pressure_solver = PressureSolver::gas;
   scene.materials.emplace_back();
@@ -124,7 +124,7 @@ TEST(Warnings, CountTheParticlesOfTheFlattestSide) {
   EXPECT_EQ(count(BoxShape{{0, 0, 0}, {0.5, 0.4, 0.3}}), 20u);
   EXPECT_EQ(count(BoxShape{{0, 0, 0}, {0.1, 0.1, 0.9}}), 9u);
   EXPECT_EQ(count(ParticleShape{{{0, 0, 0}}, {}, {1}, {1}, {}}), 1u);
-  // A plane that is not the axes': the principal axes find it.
+  // An oblique plane, found by its principal axes.
   const Vec3 u = Vec3(1, 2, 3).normalized();
   const Vec3 v = u.cross(Vec3::UnitX()).normalized();
   ParticleShape plane;
@@ -139,14 +139,14 @@ TEST(Warnings, OfMotionTooFastForTheStep) {
   scene.bodies[0].angular_velocity = {0, 0, 510};
   EXPECT_EQ(warnings_of(scene), "turns_too_fast /bodies/0/angular_velocity");
   scene.bodies[0].angular_velocity.setZero();
-  scene.bodies[1].velocity = {0, 199, 0};  // touch at 0.2 m, 1 ms
+  scene.bodies[1].velocity = {0, 199, 0};  // contact distance 0.2 m, step 1 ms
   EXPECT_EQ(warnings_of(scene), "");
   scene.bodies[1].velocity = {0, 201, 0};
   EXPECT_EQ(warnings_of(scene), "too_fast /bodies/1/velocity");
-  scene.bodies.erase(scene.bodies.begin());  // alone it can go as fast as it likes
+  scene.bodies.erase(scene.bodies.begin());  // a single body has no limit
   EXPECT_EQ(warnings_of(scene), "");
   scene.vat = Vat{{-9, -9, -9}, {9, 9, 9}, true, {}};
-  scene.bodies[0].velocity = {0, 101, 0};  // a wall is touched at 0.1 m
+  scene.bodies[0].velocity = {0, 101, 0};  // contact distance of a wall: 0.1 m
   EXPECT_EQ(warnings_of(scene), "too_fast /bodies/0/velocity");
 }
 

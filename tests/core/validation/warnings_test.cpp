@@ -53,7 +53,7 @@ Scene sea(Real step) {
   return scene;
 }
 
-// It is 1.95 m deep: 10 g H is 191 m^2/s^2.
+// The depth is 1.95 m: 10 g H is 191 m^2/s^2.
 TEST(Warnings, OfALiquidTooSoftForItsWeight) {
   Scene scene = sea(0.01);
   scene.pressure_solver = PressureSolver::tait;
