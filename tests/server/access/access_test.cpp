@@ -1,4 +1,4 @@
-// Who is let in. The names that begin with Owasp are items of OWASP's list for WebSockets.
+// Access control. Tests with the prefix Owasp cover items of the OWASP list for WebSockets.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,8 @@ TEST_F(Access, OwaspNothingIsDoneBeforeAuthentication) {
   stranger->send_raw(request.dump(), true);
   const Json refused =
       stranger->connection->wait_text([](const Json& text) { return text.at("id").is_null(); });
-  EXPECT_EQ(refused.at("error").at("data").at("limit"), "message_bytes") << "it is not even parsed";
+  EXPECT_EQ(refused.at("error").at("data").at("limit"), "message_bytes")
+      << "rejected before parsing";
 }
 
 TEST_F(DelayedAccess, OwaspAConnectionThatDoesNotAuthenticateIsClosed) {
@@ -79,7 +80,8 @@ TEST_F(DelayedAccess, OwaspAConnectionThatDoesNotAuthenticateIsClosed) {
   EXPECT_EQ(stranger->connection->close_code(), std::nullopt);
   server.clock().advance(1ms);
   EXPECT_EQ(stranger->connection->close_code(), kNotAuthenticated);
-  EXPECT_EQ(admin->connection->close_code(), std::nullopt) << "it is older, and has entered";
+  EXPECT_EQ(admin->connection->close_code(), std::nullopt)
+      << "an older connection with a token stays open";
   admin->result("server.info");
 }
 
@@ -138,7 +140,7 @@ TEST_F(Access, OnlyAnAdminGivesTicketsForAll) {
 TEST_F(Access, AnInvitationOpensOneSessionAndNoOther) {
   const auto owner = this->owner();
   const auto guest = invited(*owner, "controller");
-  EXPECT_EQ(joined.at("session"), own) << "without an id: the one it is for";
+  EXPECT_EQ(joined.at("session"), own) << "an invitation selects its session";
   EXPECT_EQ(joined.at("role"), "controller");
   EXPECT_EQ(guest->error("session.join", {{"session", "s1"}}).at("code"), 1006);
   EXPECT_EQ(guest->error("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("code"), 1006);
@@ -199,10 +201,10 @@ TEST(AccessTokens, AreBoundedAndOldOnesMakeRoom) {
   clock.advance(9s);
   EXPECT_FALSE(issue(10s));
   clock.advance(1s);
-  EXPECT_TRUE(issue(100s)) << "the first has expired";
+  EXPECT_TRUE(issue(100s)) << "the first ticket has expired";
   EXPECT_FALSE(issue(10s));
   EXPECT_TRUE(tokens.use(hash_of_token(second.value())));
-  EXPECT_TRUE(issue(10s)) << "the second is used up";
+  EXPECT_TRUE(issue(10s)) << "the second ticket is used";
   tokens.remove_session("s1", false);
   EXPECT_TRUE(issue(10s));
   EXPECT_TRUE(issue(10s));
@@ -232,8 +234,8 @@ TEST(Token, HashesAreTheSameOrNot) {
   }
 }
 
-// All 22 characters vary: the last has 2 bits left, the others 6. With 4096 tokens the chance that
-// some value of a character is missed is below 22 * 64 * exp(-4096 / 64), about 1e-25.
+// All 22 characters vary: the last has 2 bits, the others 6. With 4096 tokens, the probability that
+// some value of some character is missing is below 22 * 64 * exp(-4096 / 64), about 1e-25.
 TEST(Token, IsOfRandomCharactersAndNeverTheSame) {
   std::set<std::string> tokens;
   std::vector<std::set<char>> seen(22);
@@ -248,10 +250,10 @@ TEST(Token, IsOfRandomCharactersAndNeverTheSame) {
   EXPECT_EQ(seen[21].size(), 4u);
 }
 
-// Who is let in by what `vat serve` is told.
+// Access by the options of `vat serve`.
 
 constexpr const char* kVariable = "VAT_ADMIN_TOKEN";
-constexpr const char* kToken = "0123456789abcdef";  // of the least length
+constexpr const char* kToken = "0123456789abcdef";  // the minimum length
 
 class ServeAccessTest : public testing::Test {
  protected:
@@ -300,7 +302,8 @@ TEST_F(ServeAccessTest, MakesAnAdminsTokenWhereOneIsNeededAndNotGiven) {
   EXPECT_TRUE(made().made_token.empty());
   EXPECT_EQ(made().settings.admin, hash_of_token(kToken));
   settings.access = "open";
-  EXPECT_EQ(made().settings.admin, hash_of_token(kToken)) << "an admin is one in open mode too";
+  EXPECT_EQ(made().settings.admin, hash_of_token(kToken))
+      << "the admin token also works in open mode";
 }
 
 TEST_F(ServeAccessTest, TakesTheFirstLineOfAFileBeforeTheVariable) {

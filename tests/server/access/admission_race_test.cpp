@@ -1,4 +1,5 @@
-// Many who ask at the same moment for the last places: as many get one as there are, each round.
+// Many clients ask simultaneously for the last free places. In each round, exactly as many clients
+// succeed as there are places.
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +16,7 @@ constexpr int kAsking = 16;
 constexpr std::size_t kPlaces = 3;
 constexpr int kRounds = 20;
 
-/// Calls `ask(i)` for each i below kAsking, at once, each on a thread of its own.
+/// Calls `ask(i)` for each i below kAsking simultaneously, each on its own thread.
 template <class Ask>
 void all_at_once(Ask&& ask) {
   std::barrier start(kAsking);
@@ -45,7 +46,8 @@ class AdmissionRace : public testing::Test {
       clients.push_back(std::make_unique<TestClient>(*server, i + 1));
     }
   }
-  /// How many of all clients get a result; the others must get this limit.
+  /// Returns the number of clients that get a result. The other clients must get an error with this
+  /// limit.
   std::size_t admitted(const char* method, const Json& params, const std::string& limit,
                        std::size_t maximum = kPlaces) {
     std::vector<Json> replies(kAsking);
@@ -98,7 +100,7 @@ TEST_F(AdmissionRace, ForTheLastPlacesOfASession) {
   serve();
   connect_all();
   for (int round = 0; round < kRounds; ++round) {
-    for (int again = 0; again < 2; ++again) {  // who is in already may join again
+    for (int again = 0; again < 2; ++again) {  // members may join again
       EXPECT_EQ(admitted("session.join", {{"session", "s1"}}, "clients_per_session"), kPlaces);
     }
     for (const auto& client : clients) client->call("session.leave");
@@ -129,7 +131,7 @@ TEST_F(AdmissionRace, ForTheLastSessionsOfAnAddress) {
   }
 }
 
-// A lease, not a limit; but it is asked for as these are.
+// A grab is a lease, not a limit, but clients compete for it in the same way.
 TEST_F(AdmissionRace, ForTheHoldOfABody) {
   serve();
   connect_all();
@@ -153,8 +155,8 @@ TEST_F(AdmissionRace, ForTheHoldOfABody) {
   }
 }
 
-/// Real sockets, at several endpoints. Each round has a server of its own: who was there before may
-/// count until the server has seen it go.
+/// Real sockets at several endpoints. Each round uses a new server, because the previous clients
+/// count until the server has noticed their disconnection.
 class TransportRace : public testing::Test {
  protected:
   TransportRace() {
@@ -184,7 +186,7 @@ class TransportRace : public testing::Test {
         clients[i]->send_text("here");
         count += clients[i]->read_message().payload == "here" ? 1 : 0;
       } catch (const std::runtime_error&) {
-        // This one was refused.
+        // The server refused this client.
       }
     });
     return count;

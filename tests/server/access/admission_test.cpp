@@ -1,4 +1,4 @@
-// What counts against the limits: buckets of messages, the budget of all sessions, addresses.
+// Accounting of limits: token buckets of messages, the budget of all sessions, and addresses.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(TokenBucket, HoldsNoMoreThanABurst) {
   EXPECT_TRUE(bucket.take(1, later));
 }
 
-// A message longer than a burst passes once in a while, at the rate on average.
+// Messages larger than a burst pass occasionally, at the permitted average rate.
 TEST(TokenBucket, WhatIsMoreThanABurstIsOwed) {
   const SteadyClock::time_point start;
   TokenBucket bucket(10, 5, start);
@@ -122,7 +122,7 @@ TEST(ResourceBudget, ASharesChangeFitsOrChangesNothing) {
   ResourceShare share = budget.take_anyway({50, 0});
   EXPECT_TRUE(share.resize({51, 0}));
   EXPECT_EQ(budget.used().particles, 120U);
-  EXPECT_FALSE(share.resize({45, 0})) << "less always fits";
+  EXPECT_FALSE(share.resize({45, 0})) << "a reduction always succeeds";
   EXPECT_FALSE(share.resize({30, 0}));
   EXPECT_TRUE(share.resize({31, 0}));
   EXPECT_EQ(budget.used().particles, 100U);

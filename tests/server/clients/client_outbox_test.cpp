@@ -45,7 +45,7 @@ class Outbox : public testing::Test {
     subscribe();
   }
   void subscribe() { subscription = outbox.subscribe(membership, waker, now); }
-  /// Sends frames as long as it is ready for them.
+  /// Sends frames while the outbox is ready.
   void offer(std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t number = first; number <= last; ++number) {
       if (outbox.frame_channel(subscription).is_ready) send(number);
@@ -78,7 +78,7 @@ TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
 TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
   offer(1, 3);
   EXPECT_TRUE(outbox.acknowledge(1, now));
-  EXPECT_EQ(waker->count, 0) << "none was missed";
+  EXPECT_EQ(waker->count, 0) << "no frame was missed";
   offer(4, 10);
   EXPECT_TRUE(outbox.acknowledge(2, now));
   EXPECT_TRUE(outbox.acknowledge(3, now));
@@ -86,7 +86,7 @@ TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
   offer(11, 20);
   outbox.unsubscribe();
   EXPECT_TRUE(outbox.acknowledge(5, now));
-  EXPECT_EQ(waker->count, 1) << "it wants none any more";
+  EXPECT_EQ(waker->count, 1) << "the client no longer subscribes";
 }
 
 TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
@@ -94,7 +94,7 @@ TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
   EXPECT_TRUE(outbox.acknowledge(3, now));
   offer(4, 10);
   EXPECT_EQ(frame_count(), 6u);
-  EXPECT_TRUE(outbox.acknowledge(2, now)) << "late, and of no effect";
+  EXPECT_TRUE(outbox.acknowledge(2, now)) << "late acknowledgement without effect";
   offer(11, 12);
   EXPECT_EQ(frame_count(), 6u);
 }
@@ -108,7 +108,7 @@ TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
   EXPECT_FALSE(outbox.frame_channel(subscription).is_ready) << "the window is still full";
 }
 
-// What a peer that stops reading costs beyond the system's buffers.
+// The cost of a peer that stops reading, beyond the buffers of the operating system.
 TEST_F(Outbox, OneFrameAtMostWaitsForTheSocket) {
   connection->stall(true);
   offer(1, 50);
@@ -124,7 +124,7 @@ TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
   EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
-// The transport may be late to say that the socket has taken it.
+// The transport may report late that the socket has accepted the frame.
 TEST_F(Outbox, WhatIsAcknowledgedWaitsNoLonger) {
   connection->stall(true);
   offer(1, 1);
@@ -191,7 +191,7 @@ TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
     outbox.send(event);
     offer(1, 1);
   }
-  EXPECT_EQ(connection->queued(), queued) << "it grows no more";
+  EXPECT_EQ(connection->queued(), queued) << "the queue no longer grows";
   EXPECT_EQ(frame_count(), 0u);
 }
 
@@ -215,7 +215,7 @@ TEST_F(Outbox, WhatTheSocketHasTakenIsQueuedNoLonger) {
     connection->stall(true);
     outbox.send_event(membership, event);
     outbox.send_event(membership, event);
-    connection->stall(false);  // takes both
+    connection->stall(false);  // the socket accepts both
   }
   EXPECT_FALSE(connection->close_code().has_value());
 }
@@ -231,7 +231,7 @@ TEST_F(Outbox, TwoMessagesMayBeLongerThanTheQueue) {
   EXPECT_EQ(connection->close_code(), 4008);
 }
 
-// Joining again and again would otherwise send key frames without end.
+// Otherwise repeated joins would send key frames without limit.
 TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
   connection->stall(true);
   offer(1, 1);
@@ -240,8 +240,8 @@ TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
   subscribe();
   EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
   connection->stall(false);
-  EXPECT_FALSE(outbox.acknowledge(1, now)) << "of the membership before";
-  EXPECT_EQ(waker->count, 1) << "but it tells that there may be room";
+  EXPECT_FALSE(outbox.acknowledge(1, now)) << "acknowledgement of the previous membership";
+  EXPECT_EQ(waker->count, 1) << "the acknowledgement may free space";
   EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
@@ -256,7 +256,7 @@ TEST_F(Outbox, WhoAcknowledgesNothingIsClosedOnceThePatienceIsOver) {
   EXPECT_TRUE(outbox.acknowledge(1, now));
   now += kPatience / 2;
   outbox.close_if_silent(now, kPatience);
-  EXPECT_FALSE(connection->close_code().has_value()) << "the second is no older than that";
+  EXPECT_FALSE(connection->close_code().has_value()) << "the second frame is not older";
   now += std::chrono::milliseconds(1);
   outbox.close_if_silent(now, kPatience);
   EXPECT_EQ(connection->close_code(), 4008);
@@ -277,7 +277,7 @@ TEST_F(Outbox, SilenceIsAllowedWhereThereIsNothingToAcknowledge) {
   subscribe();
   now += kPatience / 2;
   outbox.close_if_silent(now, kPatience);
-  EXPECT_FALSE(connection->close_code().has_value()) << "it has subscribed a moment ago";
+  EXPECT_FALSE(connection->close_code().has_value()) << "the subscription is new";
   now += kPatience;
   outbox.close_if_silent(now, kPatience);
   EXPECT_EQ(connection->close_code(), 4008);

@@ -1,4 +1,4 @@
-// What a viewer that stops reading costs, over a real socket.
+// The cost of a viewer that stops reading, over a real socket.
 
 #include <random>
 
@@ -18,7 +18,7 @@ class NoWaker final : public FrameWaker {
   void wake(ConnectionId) override {}
 };
 
-/// Particles anywhere, anew in each state: nothing of it can be foretold, so frames are large.
+/// Random particle positions in each state. Frames are unpredictable and therefore large.
 PublishedState make_state(std::uint64_t tick, std::mt19937& random) {
   constexpr std::size_t kParticles = 60'000;
   std::uniform_real_distribution<double> place(0, 1);
@@ -58,10 +58,10 @@ TEST_F(StalledReader, OneFrameAtMostWaitsOutsideTheSystem) {
     most_queued = std::max(most_queued, connection->queued_bytes());
   }
   const std::string frame = client.read_message().payload;
-  EXPECT_GT(frame.size(), 200'000U) << "larger than what the system takes";
+  EXPECT_GT(frame.size(), 200'000U) << "larger than the system's buffers";
   EXPECT_GT(most_queued, 0U);
-  EXPECT_LT(most_queued, frame.size() + frame.size() / 2) << "one frame, of about this size";
-  // It reads again, and finds no more than what was in flight.
+  EXPECT_LT(most_queued, frame.size() + frame.size() / 2) << "one frame of about this size";
+  // The viewer reads again, and receives only the frames in flight.
   std::size_t frames = 1;
   client.send_text("done");
   ASSERT_TRUE(recorder.wait([&] { return recorder.received.size() == 1; }));
@@ -76,7 +76,7 @@ TEST_F(StalledReader, OneFrameAtMostWaitsOutsideTheSystem) {
 }
 
 #if VAT_HAS_SYSTEM_ALLOCATOR
-// Of short messages most is not their text.
+// Overhead dominates the memory of short messages.
 TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
   constexpr std::size_t kMessages = 20'000;
   constexpr std::size_t kText = 60;
@@ -84,14 +84,14 @@ TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
   WsClient client(port);
   ASSERT_TRUE(recorder.wait_opened(1));
   ClientOutbox outbox(recorder.connection(1), std::size_t{1} << 30);
-  outbox.send(std::string(std::size_t{4} << 20, 'x'));  // more than the system takes
+  outbox.send(std::string(std::size_t{4} << 20, 'x'));  // exceeds the system's buffers
   const std::size_t before = heap_in_use();
   for (std::size_t i = 0; i < kMessages; ++i) outbox.send(std::string(kText, 'y'));
   const auto taken = [&] { return (heap_in_use() - before) / kMessages; };
-  // Until the transport's thread has them, they are in its lane too.
+  // The transport's queue also contains the messages until its thread has taken them.
   constexpr std::size_t kCounted = kText + ControlQueue::kMessageCost;
   EXPECT_TRUE(wait_until([&] { return taken() <= kCounted; }));
-  EXPECT_GE(taken(), kCounted / 2) << "and not much less";
+  EXPECT_GE(taken(), kCounted / 2) << "memory is close to the accounted size";
 }
 #endif
 

@@ -1,4 +1,4 @@
-// Sessions without clients hibernate after a while, and end after a longer one.
+// Sessions without clients hibernate after some time, and end after a longer time.
 
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -11,8 +11,8 @@ using namespace std::chrono_literals;
 constexpr auto kResumeTime = 2s;
 constexpr auto kHibernateAfter = 10s;
 constexpr auto kExpireAfter = 60s;
-constexpr auto kStatusInterval = 500ms;  // sessions look after themselves so often
-constexpr auto kExpiryCheck = 15s;       // and the server after them
+constexpr auto kStatusInterval = 500ms;  // interval of a session's status
+constexpr auto kExpiryCheck = 15s;       // interval of the server's check of expired sessions
 
 class EmptySession : public SessionTest {
  protected:
@@ -25,7 +25,7 @@ class EmptySession : public SessionTest {
     return limits;
   }
 
-  /// As session.list tells it; null if it has ended.
+  /// Returns the entry of session.list; null if the session has ended.
   Json listed(const std::string& session) {
     const Json sessions = client->result("session.list").at("sessions");
     for (const Json& entry : sessions) {
@@ -37,7 +37,7 @@ class EmptySession : public SessionTest {
   std::string create() {
     return client->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
   }
-  /// Number of sessions in this state.
+  /// Returns the number of sessions in a state.
   std::string count(const std::string& state) {
     const std::string metrics = server.metrics();
     const std::string name = "vat_sessions{state=\"" + state + "\"} ";
@@ -53,7 +53,8 @@ TEST_F(EmptySession, HibernatesInTimeAndContinuesWhenSomebodyJoins) {
   server.clock().advance(2 * kStatusInterval);
   EXPECT_EQ(count("hibernating"), "1");
   const std::uint64_t tick = tick_of(session);
-  EXPECT_NEAR(static_cast<double>(tick), 10 / 0.02, 0.5 / 0.02) << "it has played for ten seconds";
+  EXPECT_NEAR(static_cast<double>(tick), 10 / 0.02, 0.5 / 0.02)
+      << "the session has played for ten seconds";
   server.clock().advance(10s);
   EXPECT_EQ(tick_of(session), tick);
   const auto visitor = join(session);
@@ -63,7 +64,7 @@ TEST_F(EmptySession, HibernatesInTimeAndContinuesWhenSomebodyJoins) {
   EXPECT_EQ(count("hibernating"), "0");
 }
 
-// Its steps are those of a session that was never empty.
+// A hibernated session continues with the same bits as a session that was never empty.
 TEST_F(EmptySession, ThatHasHibernatedHasTheSameBits) {
   const std::string session = create();
   server.clock().advance(2 * kHibernateAfter);
@@ -86,7 +87,7 @@ TEST_F(EmptySession, WithSomebodyInItPlaysOn) {
   EXPECT_EQ(tick_of(session), before + 50);
 }
 
-// Its participant may come back.
+// The participant may resume.
 TEST_F(EmptySession, IsNotEmptyWhileSomebodyIsAway) {
   const std::string session = create();
   join(session)->disconnect();
@@ -125,7 +126,7 @@ TEST_F(ExpiringSession, WithSomebodyInItDoesNotEnd) {
   EXPECT_FALSE(listed(session).is_null());
   visitor->disconnect();
   server.clock().advance(kExpireAfter);
-  EXPECT_FALSE(listed(session).is_null()) << "its participant was away at first";
+  EXPECT_FALSE(listed(session).is_null()) << "its participant was disconnected at first";
   server.clock().advance(kResumeTime + kExpiryCheck);
   EXPECT_TRUE(listed(session).is_null());
 }
@@ -164,7 +165,7 @@ TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
   const Json replay = client.result("replay.open", {{"session", "s1"}}).at("session");
   client.result("session.join", {{"session", replay}});
   server.clock().advance(2 * kExpireAfter);
-  EXPECT_EQ(sessions(), 3U) << "somebody is in the replay";
+  EXPECT_EQ(sessions(), 3U) << "a client is in the replay";
   client.result("session.join", {{"session", "s1"}});
   server.clock().advance(kExpireAfter - 1s);
   EXPECT_EQ(sessions(), 3U);
@@ -173,22 +174,24 @@ TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
   EXPECT_EQ(sessions(), 2U);
 }
 
-// Work that sessions cause without commands and ticks.
+// Work of sessions without commands and ticks.
 
 class IdleSession : public SessionTest {};
 
-// With a client that watches: statuses go on.
+// A client is connected, so statuses continue.
 TEST_F(IdleSession, WakesForItsStatusesOnly) {
   client->result("frames.subscribe");
   client->wait_frame([](const GridFrame&) { return true; });
-  server.clock().advance(1s);  // the first frame was acknowledged, the last beat was sent
+  server.clock().advance(
+      1s);  // lets the first frame be acknowledged and the last heartbeat be sent
   const std::size_t frames = client->connection->frame_count();
   const std::size_t tasks = server.clock().tasks_run();
   client->mark();
   server.clock().advance(10s);
   EXPECT_EQ(client->connection->frame_count(), frames);
   EXPECT_EQ(client->events("session.status").size(), 20U);
-  EXPECT_LE(server.clock().tasks_run() - tasks, 20U + 1) << "and one check for expired sessions";
+  EXPECT_LE(server.clock().tasks_run() - tasks, 20U + 1)
+      << "one more for the check of expired sessions";
 }
 
 TEST_F(IdleSession, WithNobodyInItWakesForItsStatusesOnly) {

@@ -1,4 +1,4 @@
-// Sessions come, are joined, left and closed.
+// Creating, joining, leaving and closing sessions.
 
 #include <future>
 
@@ -16,7 +16,7 @@ class SessionLifecycle : public SessionTest {
   std::string create(const std::string& name, const Json& scene = "mixed") {
     return client->result("session.create", {{"name", name}, {"scene", scene}}).at("session");
   }
-  /// The entry of session.list, or null.
+  /// Returns the entry of session.list, or null.
   Json find(const std::string& session) {
     const Json list = client->result("session.list");
     for (const Json& entry : list.at("sessions")) {
@@ -34,7 +34,7 @@ TEST_F(SessionLifecycle, ANewSessionPlaysAndHasNoClients) {
   EXPECT_EQ(entry.at("clients"), 0);
   EXPECT_EQ(entry.at("playing"), true);
   EXPECT_EQ(entry.at("particles"), find("s1").at("particles"));
-  EXPECT_EQ(find("s1").at("clients"), 1) << "to create is not to join";
+  EXPECT_EQ(find("s1").at("clients"), 1) << "creating a session does not join it";
 }
 
 TEST_F(SessionLifecycle, SessionsOfOneNameAreTwo) {
@@ -42,7 +42,7 @@ TEST_F(SessionLifecycle, SessionsOfOneNameAreTwo) {
   EXPECT_EQ(create("twin"), "s3");
   client->result("session.close", {{"session", "s2"}});
   EXPECT_EQ(find("s3").at("name"), "twin");
-  EXPECT_EQ(create("twin"), "s4") << "an id is never used twice";
+  EXPECT_EQ(create("twin"), "s4") << "ids are not reused";
 }
 
 TEST_F(SessionLifecycle, ASceneCanBeWritten) {
@@ -71,7 +71,7 @@ TEST_F(SessionLifecycle, AClientIsInOneSessionAtMost) {
   EXPECT_EQ(find("s1").at("clients"), 1);
   EXPECT_EQ(find("s2").at("clients"), 1);
   guest->result("session.join", {{"session", "s2"}});
-  EXPECT_EQ(find("s2").at("clients"), 1) << "to join again is to stay";
+  EXPECT_EQ(find("s2").at("clients"), 1) << "a repeated join changes nothing";
   guest->result("session.leave");
   EXPECT_EQ(find("s2").at("clients"), 0);
   EXPECT_EQ(guest->error("session.leave").at("code"), 1001);
@@ -129,7 +129,7 @@ TEST_F(SessionLifecycle, ADrainEndsInTime) {
   drain.wait();
 }
 
-// Each keeps a pool at work until it is due.
+// Each pending timer keeps a thread pool running until it expires.
 TEST_F(SessionLifecycle, StoppingCancelsAllTimers) {
   client->result("control.play");
   EXPECT_GT(server.clock().waiting(), 0U);
@@ -176,14 +176,14 @@ TEST_F(SessionLifecycle, ClosingTellsAllWhoAreInIt) {
     EXPECT_FALSE(event.at("reason").get<std::string>().empty());
     EXPECT_EQ((*guest)->error("control.play").at("code"), 1001);
   }
-  EXPECT_TRUE(client->events("session.closed").empty()) << "it is in another session";
+  EXPECT_TRUE(client->events("session.closed").empty()) << "the client is in another session";
   EXPECT_EQ(find("s2"), nullptr);
   first->result("session.join", {{"session", "s1"}});
 }
 
 TEST_F(SessionLifecycle, ClosingAnswersWhatWaitsForAStep) {
   const auto guest = join();
-  // So many ticks that the close comes before their end.
+  // The close arrives before the end of these ticks.
   const int step = guest->send("control.step", {{"ticks", 1000}});
   const int query = guest->send("session.hash");
   client->result("session.close", {{"session", "s1"}});
@@ -215,7 +215,7 @@ TEST_F(SessionLifecycle, ASceneIsLoadedForAll) {
   EXPECT_EQ(description.at("scene"), "unstable");
   EXPECT_EQ(description.at("tick"), 0);
   EXPECT_EQ(description.at("vat"), nullptr);
-  EXPECT_EQ(description.at("playing"), false) << "to load is not to play";
+  EXPECT_EQ(description.at("playing"), false) << "loading a scene does not start it";
   EXPECT_EQ(find("s1").at("scene"), "unstable");
 }
 

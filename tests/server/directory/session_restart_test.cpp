@@ -1,4 +1,4 @@
-// What outlives a server beside the sessions themselves: who was in them, and who may come in.
+// State that persists across a restart besides sessions: participants and invitations.
 
 #include <gmock/gmock.h>
 
@@ -65,7 +65,7 @@ TEST_F(Restart, InvitationsStayGoodForTheUsesThatAreLeft) {
   EXPECT_TRUE(is_good(twice));
   EXPECT_FALSE(is_good(twice));
   restart();
-  EXPECT_FALSE(is_good(twice)) << "used up before";
+  EXPECT_FALSE(is_good(twice)) << "already used";
   EXPECT_TRUE(is_good(always));
 }
 
@@ -119,7 +119,8 @@ TEST_F(Restart, WhoComesBackHasItsRoleAndItsFrames) {
 TEST_F(Restart, WhoIsWrittenDownWhileTheSessionStandsStillIsThereAfterACrash) {
   const auto guest = connect();
   const Json joined = guest->result("session.join", {{"session", "s1"}, {"name", "Bo"}});
-  // A beat comes with a status, each half second, and a second after the last one at the earliest.
+  // A heartbeat is sent with a status, every half second, at least one second after the last
+  // heartbeat.
   clock.advance(1s);
   host->server.flush();
   const auto is_written = [&] {
@@ -178,13 +179,13 @@ TEST_F(Restart, AdminsSeeAllSessionsAndTheirPeople) {
   EXPECT_FALSE(people[2].at("away"));
   EXPECT_EQ(guest->error("server.sessions").at("data").at("least_role"), "admin");
   guest->disconnect();
-  const Json later = admin->result("session.hash");  // its turn comes behind that of the end
+  const Json later = admin->result("session.hash");  // executed after the end
   const Json away = admin->result("server.sessions").at("sessions")[0].at("participants")[2];
   EXPECT_TRUE(away.at("away"));
   EXPECT_FALSE(away.contains("address"));
   admin->result("replay.open", {{"session", "s1"}});
   EXPECT_EQ(admin->result("server.sessions").at("sessions")[1].at("kind"), "replay");
-  // This server has nobody who would end it.
+  // This server has no handler that ends it.
   EXPECT_EQ(admin->error("server.drain").at("code"), 1006);
 }
 
@@ -208,7 +209,7 @@ TEST_F(Restart, WhatCannotBeLoggedIsRefusedCountedAndChangesNothing) {
   EXPECT_THAT(host->server.metrics(), HasSubstr("\nvat_storage_failures_total 1\n"));
 }
 
-// A folder that version 1 of the schema has left: a ball that is held, after 50 ticks.
+// A data folder of schema version 1 that contains a session with a held ball after 50 ticks.
 TEST(StoredByVersion1, ComesBackAsItWas) {
   const TemporaryFolder temporary;
   const std::string folder = temporary.file("data");

@@ -14,7 +14,7 @@ namespace {
 
 class SavedScenesTest : public SavedStatesTest {
  protected:
-  /// The entry of scene.list; null where there is none.
+  /// Returns the entry of scene.list; null if there is none.
   Json listed(const std::string& name) {
     const Json scenes = client().result("scene.list").at("scenes");
     for (const Json& one : scenes) {

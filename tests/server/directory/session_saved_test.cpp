@@ -37,7 +37,7 @@ TEST_P(SavedStatesTest, ALoadGoesOnExactly) {
   host->step(5);
   EXPECT_EQ(host->tick(), 12U);
   EXPECT_EQ(host->hash(), later);
-  client().result("control.reset");  // of what it was loaded with when it was saved
+  client().result("control.reset");  // resets to the scene that was loaded when the state was saved
   EXPECT_EQ(host->hash(), start);
 }
 
@@ -48,7 +48,7 @@ TEST_P(SavedStatesTest, WhatWasHeldIsLetGo) {
   client().result("session.save", kFirst);
   const std::string held = host->hash();
   client().result("session.load", kFirst);
-  EXPECT_NE(host->hash(), held) << "a grab of nobody pulls";
+  EXPECT_NE(host->hash(), held) << "the grab of the saved state must not act";
   EXPECT_TRUE(client()
                   .call("grab.move", {{"grab", grab.at("grab")}, {"target", {0, 0, 0}}})
                   .contains("error"));
@@ -103,7 +103,7 @@ TEST_P(SavedStatesTest, CountAndBytesAreLimited) {
   client().result("session.save", kFirst);
   client().result("session.save", {{"name", "second"}});
   refused("third", "states_per_session", 2);
-  client().result("session.save", kFirst);  // in place of the one that was
+  client().result("session.save", kFirst);  // replaces the previous state
   EXPECT_EQ(client().result("session.saves").at("states").size(), 2U);
 
   limits.max_states_per_session = 100;
@@ -127,7 +127,7 @@ TEST_P(SavedStatesTest, CountAndBytesAreLimited) {
 TEST_P(SavedStatesTest, ATooLargeOneIsNotLoadedAndChangesNothing) {
   client().result("session.save", kFirst);
   client().result("scene.load", {{"scene", "unstable"}});
-  if (!GetParam()) return;  // the limits are those of another server
+  if (!GetParam()) return;  // the smaller limits need a restart that keeps states
   ServerLimits few = limits;
   few.max_particles = 10;
   restart(few);
@@ -138,7 +138,7 @@ TEST_P(SavedStatesTest, ATooLargeOneIsNotLoadedAndChangesNothing) {
   EXPECT_EQ(host->hash(), before);
 }
 
-// The log has all that it needs: what was saved may be gone by then.
+// The log contains the loaded state, because the saved state may be deleted later.
 TEST_P(SavedStatesTest, ALoadIsThereAfterARestartAndSoIsWhatWasSaved) {
   host->step(4);
   client().result("session.save", kFirst);
@@ -154,7 +154,7 @@ TEST_P(SavedStatesTest, ALoadIsThereAfterARestartAndSoIsWhatWasSaved) {
     return;
   }
   EXPECT_EQ(host->hash(), before);
-  // Without its checkpoints, so by the log alone.
+  // Without checkpoints, the server restores the session from the log alone.
   host.reset();
   Database(folder() + "/checkpoints.db", Database::Mode::create).execute("DELETE FROM checkpoints");
   restart();
@@ -185,7 +185,7 @@ class SavedStateEntries : public testing::Test {
  protected:
   SavedStateEntries() : scene_(Simulation::create(to_scene(mixed_scene_text())).value()) {}
 
-  /// Why a state is not restored; a limit by its name.
+  /// Returns the error of a refused restore; for a limit, its name.
   std::string fault(const SavedState& state, std::size_t particles_in_all = 1'000'000) {
     ResourceBudget resources({particles_in_all, kUnlimitedResources.springs});
     const SessionEnvironment environment = environment_.with(resources);
@@ -200,7 +200,7 @@ class SavedStateEntries : public testing::Test {
       return error.what();
     }
   }
-  /// Of a session that has more bodies than its scene.
+  /// Returns the state of a session that has more bodies than its scene.
   SavedState grown() {
     Simulation simulation = Simulation::create(to_scene(mixed_scene_text())).value();
     const Snapshot as_loaded = simulation.snapshot();

@@ -18,7 +18,7 @@ class Wakes final : public FrameWaker {
   std::vector<ConnectionId> clients;
 };
 
-/// A viewer, and what it has got.
+/// A viewer and the frames that it received.
 struct TestViewer {
   std::shared_ptr<FakeConnection> connection;
   std::shared_ptr<ClientOutbox> outbox;
@@ -43,7 +43,7 @@ class FrameDeliveryTest : public testing::Test {
     delivery.add(viewer.outbox, viewer.outbox->subscribe(membership, wakes, now), std::move(wish));
     return viewer;
   }
-  /// One in which something has moved since all others.
+  /// Publishes a state in which the particles have moved since all previous states.
   void publish(std::uint64_t tick) { publish(tick, 1e-3 * static_cast<double>(++states_)); }
   void publish(std::uint64_t tick, double x, bool playing = true) {
     PublishedState state;
@@ -93,10 +93,10 @@ TEST_F(FrameDeliveryTest, AViewerGetsTheTicksThatItAskedFor) {
     acknowledge_all(third);
   }
   EXPECT_EQ(all.ticks(), (Ticks{1, 2, 3, 4, 5, 6, 7}));
-  EXPECT_EQ(third.ticks(), (Ticks{1, 3, 6})) << "the first at once";
+  EXPECT_EQ(third.ticks(), (Ticks{1, 3, 6})) << "the first state is sent immediately";
 }
 
-// The tick that it divides may never come here: a newer state has taken its place.
+// A newer state may have replaced the state of the divisible tick.
 TEST_F(FrameDeliveryTest, ATurnThatWasSkippedComesWithTheNextState) {
   const TestViewer third = add(every(3));
   for (const std::uint64_t tick : {1, 2, 4, 5, 7, 8}) {
@@ -117,9 +117,9 @@ TEST_F(FrameDeliveryTest, WhoIsNotReadyGetsTheNewestOnceItIs) {
   EXPECT_EQ(slow.ticks(), (Ticks{1, 2, 3}));
   acknowledge_all(slow);
   EXPECT_EQ(slow.ticks(), (Ticks{1, 2, 3, 50}));
-  EXPECT_EQ(slow.last().number, 50u) << "4 to 49 are left out";
+  EXPECT_EQ(slow.last().number, 50u) << "frames 4 to 49 are omitted";
   acknowledge_all(slow);
-  EXPECT_EQ(slow.ticks().size(), 4u) << "there is nothing new";
+  EXPECT_EQ(slow.ticks().size(), 4u) << "there is no new state";
 }
 
 TEST_F(FrameDeliveryTest, WhatShowsNothingNewIsLeftOut) {
@@ -173,7 +173,8 @@ TEST_F(FrameDeliveryTest, ViewersWhoHoldTheSameShareOneEncoding) {
     for (const TestViewer& viewer : viewers) acknowledge_all(viewer);
     publish(tick);
   }
-  // Two for ticks 3 and 4, until the late one holds what the others hold.
+  // Two encodings for each of the ticks 3 and 4, until the late viewer has the same frames as the
+  // others.
   EXPECT_TRUE(counted("vat_frames_encoded_total 8"));
   EXPECT_TRUE(counted("vat_frames_sent_total " + std::to_string(20 * 6 + 3)));
   EXPECT_EQ(late.ticks(), (Ticks{3, 4, 5}));
@@ -193,8 +194,8 @@ TEST_F(FrameDeliveryTest, ANewcomerToAStateAtRestSharesWhatComesNextSoon) {
   EXPECT_TRUE(counted("vat_frames_encoded_total 7"));
 }
 
-// Twenty groups, each with steps of its own; ten of them have two viewers. Eight places, four of
-// them for those who wait longest: a viewer is passed over at most five times in a row.
+// Twenty groups with different quanta, ten of which have two viewers. Of eight slots, four belong
+// to the groups that waited longest. A viewer is omitted at most five times in a row.
 TEST_F(FrameDeliveryTest, NobodyWaitsForEverWhereThereAreTooManyGroups) {
   constexpr std::size_t kGroups = 20;
   constexpr std::uint64_t kTicks = 100;
@@ -230,7 +231,8 @@ TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOther
   for (; tick < 400; ++tick) {
     publish(tick);
     acknowledge_all(quick);
-    // Each takes a frame in 60 ms, which is one in three ticks, and they do so at different times.
+    // Each viewer takes one frame per 60 ms (one in three ticks), and they do so at different
+    // times.
     for (std::size_t i = 0; i < slow.size(); ++i) {
       const auto frames = slow[i].connection->frames();
       if (tick % 3 != i || acknowledged[i] >= frames.size()) continue;
@@ -246,8 +248,8 @@ TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOther
       ++few;
       if (frame.header.tick % 4 == 0) ++together;
     }
-    EXPECT_GT(few, 20U) << "a quarter of the rate is what each can keep up with";
-    EXPECT_GT(4 * together, 3 * few) << "but for those that come late before it does";
+    EXPECT_GT(few, 20U) << "each viewer can receive a quarter of the rate";
+    EXPECT_GT(4 * together, 3 * few) << "most frames are on common ticks";
   }
   EXPECT_EQ(quick.last().stride, 1U);
   EXPECT_EQ(quick.ticks().size(), 400U);
@@ -266,12 +268,12 @@ TEST_F(FrameDeliveryTest, WhoIsKeptSlowSeesTheStateAtWhichTheSessionPauses) {
     acknowledge_all(slow);
   }
   publish(tick, 0.9);
-  EXPECT_LT(slow.last().tick, tick) << "it is not its turn";
+  EXPECT_LT(slow.last().tick, tick) << "the viewer's turn comes later";
   publish(tick, 0.9, false);
   EXPECT_EQ(slow.last().tick, tick);
 }
 
-// An eighth of a small body is no body any more, and its frames are short as it is.
+// An eighth of a small body would not show its shape, and its frames are short anyway.
 TEST_F(FrameDeliveryTest, WhoIsSlowStillGetsAllOfFewParticles) {
   for (const auto& [count, least] : {std::pair(1000U, 3), std::pair(16000U, 0)}) {
     particles = count;
@@ -285,8 +287,8 @@ TEST_F(FrameDeliveryTest, WhoIsSlowStillGetsAllOfFewParticles) {
   }
 }
 
-// Whatever is dropped, skipped, or joined late: each frame that comes is decoded from the ones
-// before it, and shows the state of its tick.
+// After dropped, skipped and late frames, each received frame decodes from the frames before it,
+// and shows the state of its tick.
 TEST_F(FrameDeliveryTest, EveryPathThroughTheFramesShowsTheSame) {
   std::mt19937 random(1);
   std::vector<TestViewer> viewers;

@@ -25,7 +25,7 @@ Vat make_vat() {
   return vat;
 }
 
-/// The greatest error per axis of what a client sees of the state, and the header's quantum.
+/// The largest error per axis of the positions that a client decodes, and the header's quantum.
 struct Sent {
   Real error = 0;
   Real quantum = 0;
@@ -48,7 +48,8 @@ Sent send(const PublishedState& state, const FrameGrid& grid) {
   return sent;
 }
 
-/// Rounding of origin + quantum * steps, beside the error that the protocol names.
+/// Returns the rounding error of origin + quantum * steps, in addition to the error that the
+/// protocol guarantees.
 Real rounding(const Sent& sent) {
   Real greatest = 0;
   for (const Vec3& x : sent.positions) greatest = std::max(greatest, x.cwiseAbs().maxCoeff());
@@ -92,7 +93,8 @@ TEST(FrameDomain, ParticlesBeyondTheVatAreCoveredToo) {
   EXPECT_LE(sent.error, 1e-4 + rounding(sent));
 }
 
-// A grid that does not cover a particle (make_frame_grid can be asked for any) moves it inside.
+// A grid that does not cover a particle moves it to the nearest position inside. make_frame_grid
+// accepts any grid.
 TEST(FrameDomain, APositionOutsideAGridIsMovedToTheNearestInside) {
   const PublishedState state = make_state({Vec3(-5, 0.5, 9), Vec3(0.25, 0.5, 0.75)});
   const Sent sent = send(state, make_frame_grid(Vec3::Zero(), Vec3::Ones(), 0));

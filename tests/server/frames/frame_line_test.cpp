@@ -1,4 +1,4 @@
-// Frames on a long, thin or broken line: they stay young, and their rate follows the line.
+// Frames over slow, long or broken connections: they stay recent, and their rate adapts.
 
 #include <gtest/gtest.h>
 
@@ -17,14 +17,15 @@ namespace {
 using namespace std::chrono_literals;
 using Seconds = std::chrono::duration<double>;
 
-/// A frame as its viewer sees it.
+/// A frame as received by a viewer.
 struct Seen {
   FrameHeader header;
-  Seconds age{};  ///< of its state, on arrival
+  Seconds age{};  ///< age of the state on arrival
   std::size_t bytes = 0;
 };
 
-/// A simulated line between the server and a viewer that acknowledges each frame on arrival.
+/// A simulated network line between the server and a viewer that acknowledges each frame on
+/// arrival.
 class Line final : public Connection {
  public:
   explicit Line(const SteadyClock::time_point& now) : now_(now) {}
@@ -38,7 +39,7 @@ class Line final : public Connection {
   std::size_t queued_bytes() const override { return 0; }
   void close(std::uint16_t, std::string_view) override { is_closed = true; }
 
-  /// The next frame that has arrived, in order.
+  /// Returns the next frame that has arrived, in order.
   std::shared_ptr<const std::string> take_arrived() {
     for (; !sent_.empty(); sent_.pop_front()) {
       const double size = static_cast<double>(sent_.front()->size());
@@ -76,7 +77,7 @@ class FrameLine : public testing::Test {
     delivery_.add(outbox_, outbox_->subscribe(membership, wakes_, now_), {});
   }
 
-  /// Frames that arrive in the next `time`, or until one is as wanted.
+  /// Returns the frames that arrive within `time`, or until a frame satisfies `until`.
   std::vector<Seen> watch(Seconds time, const std::function<bool(const Seen&)>& until = {}) {
     std::vector<Seen> all;
     for (const auto end = now_ + time; now_ < end; now_ += kStep) {
@@ -150,12 +151,12 @@ std::size_t count_older(const std::vector<Seen>& all, Seconds age) {
 
 class LongLine : public FrameLine, public testing::WithParamInterface<int> {};
 
-// No frame waits anywhere but on the line: each is sent when there is room, and is the newest then.
+// Frames wait only on the line: the server sends the newest state when there is capacity.
 TEST_P(LongLine, FramesAreNoOlderThanTheDelay) {
   line->delay = std::chrono::milliseconds(GetParam()) / 2;
   watch(1s);
   const std::vector<Seen> all = watch(10s);
-  // Three frames in each round trip, at most one in each tick.
+  // Three frames per round trip, and at most one per tick.
   const double most = std::min(50.0, 3 / (2 * Seconds(line->delay).count()));
   EXPECT_GT(static_cast<double>(all.size()), 0.5 * 10 * most);
   EXPECT_LE(count_older(all, line->delay + kTick), all.size() / 20);
@@ -172,7 +173,7 @@ TEST_F(FrameLine, AThinLineLowersTheRateAndAGoodOneRaisesItAgain) {
   watch(20s, [](const Seen& seen) { return seen.header.stride >= 3; });
   const std::vector<Seen> few = watch(2s);
   EXPECT_GE(few.back().header.stride, 2U);
-  // At most three frames are under way at once.
+  // At most three frames are in flight.
   const Seconds way(3 * static_cast<double>(all.back().bytes) / line->bytes_per_second);
   EXPECT_LE(count_older(few, way + 150ms), few.size() / 10);
   line->bytes_per_second = 0;
@@ -181,7 +182,8 @@ TEST_F(FrameLine, AThinLineLowersTheRateAndAGoodOneRaisesItAgain) {
   EXPECT_EQ(good.back().header.stride, 1U);
 }
 
-// As after a lost packet: the frames in flight arrive late, the next one is new.
+// After an interruption, as after a lost packet, the frames in flight arrive late. The next frame
+// is recent.
 TEST_F(FrameLine, AfterABreakThreeFramesAreOldAtMost) {
   watch(500ms);
   for (int i = 0; i < 4; ++i) {

@@ -24,8 +24,8 @@ class FramePaceTest : public testing::Test {
  protected:
   static constexpr auto kTick = 20ms;
 
-  /// A time of frames each of which finds the viewer ready or not, with acknowledgements that come
-  /// `queue` later than they could.
+  /// Simulates frames for a given time. Each finds the viewer ready or not. Acknowledgements arrive
+  /// `queue` later than possible.
   void run(std::chrono::seconds time, bool is_ready, Seconds queue = {}) {
     for (const auto end = now + time; now < end; now += kTick * pace.stride()) {
       ++delays.count;
@@ -40,7 +40,7 @@ class FramePaceTest : public testing::Test {
   SteadyClock::time_point now{1h};
   AckDelays delays;
   FramePace pace;
-  std::vector<Level> levels = {level()};  // one after the other
+  std::vector<Level> levels = {level()};  // sequence of levels
 };
 
 constexpr Level kBest = {1, 1, 3};
@@ -81,7 +81,7 @@ TEST_F(FramePaceTest, WhoMissesMostFramesGoesDownFaster) {
   EXPECT_GE(pace.stride(), 3U);
 }
 
-// Silence says nothing about the pace: there is a rule of its own for that.
+// Missing acknowledgements do not change the pace. Another rule handles them.
 TEST_F(FramePaceTest, NothingIsJudgedWithoutAnAcknowledgement) {
   delays.count = 5;
   pace.frame_due(true, delays, now);
@@ -90,7 +90,7 @@ TEST_F(FramePaceTest, NothingIsJudgedWithoutAnAcknowledgement) {
   EXPECT_EQ(level(), kBest);
 }
 
-// A viewer for whom every second frame is right, and each frame is too much.
+// A viewer that can receive every second frame, but not every frame.
 TEST_F(FramePaceTest, ARiseThatFailsIsTriedLessAndLessOften) {
   const auto count_rises = [&] {
     int rises = 0;
@@ -106,10 +106,10 @@ TEST_F(FramePaceTest, ARiseThatFailsIsTriedLessAndLessOften) {
   };
   const int first = count_rises();
   EXPECT_GT(first, 1);
-  EXPECT_LE(first, 8) << "after 1, 2, 4, 8, 16, and then every 32 s";
+  EXPECT_LE(first, 8) << "rises after 1, 2, 4, 8 and 16 s, then every 32 s";
   EXPECT_LE(count_rises(), 4);
   run(200s, true);
-  EXPECT_EQ(level(), kBest) << "and stays where it holds";
+  EXPECT_EQ(level(), kBest) << "the best level is kept";
 }
 
 TEST_F(FramePaceTest, TheDetailGoesDownNoFurtherThanHelps) {
@@ -117,7 +117,7 @@ TEST_F(FramePaceTest, TheDetailGoesDownNoFurtherThanHelps) {
   run(20s, false);
   EXPECT_EQ(level(), (Level{4, 4, 2}));
   run(2s, true);
-  EXPECT_EQ(level(), (Level{4, 4, 3})) << "it has not gone further in secret";
+  EXPECT_EQ(level(), (Level{4, 4, 3})) << "the level is limited internally too";
   pace.set_least_detail(0);
   run(20s, false);
   EXPECT_EQ(level(), kWorst);
@@ -125,7 +125,7 @@ TEST_F(FramePaceTest, TheDetailGoesDownNoFurtherThanHelps) {
   EXPECT_EQ(level(), (Level{4, 4, 3}));
 }
 
-// Level d shows one in 2^(3 - d), of which there are to be 2000 at least.
+// Level d shows one of 2^(3 - d) particles, and at least 2000 of them.
 TEST(LeastDetail, LeavesOutNothingOfAFewThousandParticles) {
   for (const std::size_t few : {0U, 1U, 2000U, 3999U}) EXPECT_EQ(least_detail(few), 3) << few;
   EXPECT_EQ(least_detail(4000), 2);
@@ -144,7 +144,7 @@ TEST_F(FramePaceTest, TheRateGoesDownNoFurtherThanIsAllowed) {
 
 class FrameWindowTest : public testing::Test {
  protected:
-  /// A frame that is acknowledged after so long.
+  /// Sends a frame that is acknowledged after `delay`.
   void pass(std::chrono::milliseconds delay) {
     window.sent(++number, now);
     now += delay;
@@ -163,19 +163,19 @@ TEST_F(FrameWindowTest, KnowsWhatIsInFlightAndSinceWhen) {
   window.sent(8, now += 10ms);
   EXPECT_EQ(window.in_flight(), 3U);
   EXPECT_EQ(window.waits_since(), first);
-  EXPECT_TRUE(window.acknowledge(6, now)) << "which acknowledges 5";
+  EXPECT_TRUE(window.acknowledge(6, now)) << "acknowledges frame 5";
   EXPECT_EQ(window.in_flight(), 2U);
   EXPECT_EQ(window.waits_since(), first + 10ms);
   EXPECT_FALSE(window.acknowledge(9, now));
   EXPECT_FALSE(window.acknowledge(0, now));
   EXPECT_TRUE(window.acknowledge(8, now));
   EXPECT_EQ(window.in_flight(), 0U);
-  EXPECT_TRUE(window.acknowledge(8, now)) << "again, of no effect";
+  EXPECT_TRUE(window.acknowledge(8, now)) << "a repeated acknowledgement has no effect";
   window.clear();
-  EXPECT_FALSE(window.acknowledge(8, now)) << "of another session";
+  EXPECT_FALSE(window.acknowledge(8, now)) << "acknowledgement of another session";
 }
 
-// The latest of those that are acknowledged together tells the way's delay.
+// If several frames are acknowledged together, the latest determines the delay.
 TEST_F(FrameWindowTest, MeasuresFromTheFrameThatIsAcknowledged) {
   window.sent(1, now);
   window.sent(2, now += 100ms);
@@ -192,7 +192,7 @@ TEST_F(FrameWindowTest, TheMeanFollowsAndTheLeastStays) {
   EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.02);
 }
 
-// A way that has become longer is none with a queue.
+// A longer minimum delay is not a queue.
 TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
   pass(20ms);
   for (int i = 0; i < 205; ++i) pass(100ms);
@@ -202,7 +202,7 @@ TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
 TEST(FrameGroups, AllWhereThereAreFew) {
   EXPECT_THAT(choose_groups({}, 8), ElementsAre());
   const std::vector<GroupClaim> claims = {{1, 0}, {5, 0}, {3, 9}};
-  EXPECT_THAT(choose_groups(claims, 3), ElementsAre(1, 2, 0)) << "the largest first";
+  EXPECT_THAT(choose_groups(claims, 3), ElementsAre(1, 2, 0)) << "largest first";
 }
 
 TEST(FrameGroups, HalfForTheLargestAndHalfForWhoHasWaited) {

@@ -38,7 +38,7 @@ std::span<const std::uint8_t> bytes_of(const SharedFrame& frame) {
 
 class FrameSourceTest : public testing::Test {
  protected:
-  /// The next tick, of a state that may have changed.
+  /// Publishes a possibly changed state as the next tick.
   void publish(PublishedState state) {
     state.header.tick = ++tick_;
     source.publish(state);
@@ -61,8 +61,8 @@ TEST_F(FrameSourceTest, OneFrameServesAllOfACut) {
   EXPECT_EQ(frame()->scale.grid.quantum, 2 * kError);
   const auto first = frame();
   publish(make_state());
-  EXPECT_NE(frame(), first) << "of another tick";
-  EXPECT_EQ(first->header.tick, 1U) << "who holds one keeps it as it was";
+  EXPECT_NE(frame(), first) << "frame of another tick";
+  EXPECT_EQ(first->header.tick, 1U) << "a frame in use does not change";
   EXPECT_EQ(frame()->header.tick, 2U);
 }
 
@@ -114,7 +114,7 @@ TEST_F(FrameSourceTest, WhatTheGridDoesNotTellIsNotShown) {
   publish(make_state(0.5));
   const auto coarse = frame();
   const auto fine = frame(kError / 10);
-  publish(make_state(0.5024));  // a quarter of the coarse grid's quantum from a position on it
+  publish(make_state(0.5024));  // moved from a grid position by a quarter of the coarse quantum
   EXPECT_TRUE(show_the_same(*coarse, *frame()));
   EXPECT_FALSE(show_the_same(*fine, *frame(kError / 10)));
 }
@@ -165,12 +165,12 @@ TEST_F(FrameSourceTest, BuildsOnWhatIsHeldAsFarAsThatGoes) {
   publish(make_state(0.5));
   show({second, first});
   publish(make_state(-2));
-  EXPECT_TRUE(show({second, first})) << "on another grid";
+  EXPECT_TRUE(show({second, first})) << "another grid";
   PublishedState next = make_state(-2);
   const auto third = frame();
   next.header.epoch = 2;
   publish(next);
-  EXPECT_TRUE(show({third, second})) << "in another epoch";
+  EXPECT_TRUE(show({third, second})) << "another epoch";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Frames and events: who gets which, how old, and at whose cost.
+// Delivery of frames and events in a session.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ TEST_F(SessionFrames, AreWhatTheSubscriptionAsksFor) {
                                       {"region", {{"min", {0, 0, 0}}, {"max", {1, 1, 0.5}}}},
                                       {"attributes", {{"speed", 1e-3}, {"density", 0.5}}}});
   const GridFrame frame = client->wait_frame([](const GridFrame&) { return true; });
-  EXPECT_EQ(frame.header.tick, 5U) << "the present state comes at once";
+  EXPECT_EQ(frame.header.tick, 5U) << "the current state is sent immediately";
   EXPECT_EQ(frame.header.number, 1U);
   EXPECT_EQ(frame.header.epoch, 2U);
   EXPECT_DOUBLE_EQ(frame.header.time, 0.1);
@@ -46,7 +46,7 @@ TEST_F(SessionFrames, AreWhatTheSubscriptionAsksFor) {
             10U);
 }
 
-// The fixture's deformable cube and its pool have particles at 0.1 m.
+// The fixture's cube and pool have a particle spacing of 0.1 m.
 TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
   const auto quantum = [this](const Json& params) {
     client->result("frames.subscribe", params);
@@ -63,7 +63,7 @@ TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
                      {"shape", {{"type", "sphere"}, {"radius", 0.04}}},
                      {"position", {0.2, 0.8, 0.8}}};
   client->result("world.add_body", {{"body", ball}});
-  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual) << "a rigid body has a pose";
+  EXPECT_DOUBLE_EQ(quantum(Json::object()), usual) << "a rigid body is sent as a pose";
   Json block = ball;
   block["name"] = "block";
   block["kind"] = "deformable";
@@ -76,7 +76,7 @@ TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
   EXPECT_LT(quantum({{"max_error", 0}}), usual / 10);
 }
 
-// What nothing touches falls: with the acceleration of gravity over each tick.
+// In free fall, the acceleration is that of gravity in each tick.
 TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
   client->result("world.set_gravity", {{"gravity", {0, 0, -5}}});
   client->result("frames.subscribe", {{"attributes", {{"acceleration", 1e-3}}}});
@@ -88,7 +88,7 @@ TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
     EXPECT_EQ(cube.attributes[3].size(), cube.particle_count());
     return cube.attributes[3].empty() ? 0 : 2e-3 * cube.attributes[3].at(0);
   };
-  EXPECT_EQ(cube_at(0), 0) << "no tick was run";
+  EXPECT_EQ(cube_at(0), 0) << "no tick has run";
   client->result("control.step");
   EXPECT_NEAR(cube_at(1), 5, 1.1e-3);
   client->result("world.set_gravity", {{"gravity", {3, 0, -4}}});
@@ -112,7 +112,7 @@ TEST_F(SessionFrames, AnUnsubscribedClientGetsNone) {
   client->wait_frame([](const GridFrame&) { return true; });
   client->result("frames.unsubscribe");
   client->result("control.step", {{"ticks", 5}});
-  const auto other = join();  // a later subscriber's frame of a state is the last
+  const auto other = join();  // the frame of a later subscriber is the last of a state
   other->result("frames.subscribe");
   other->wait_frame([](const GridFrame&) { return true; });
   EXPECT_EQ(client->connection->frames().size(), 1u);
@@ -129,7 +129,7 @@ TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
         client->wait_frame([&](const GridFrame& f) { return f.header.number > last; });
     last = frame.header.number;
     const Json reply = client->result("frames.ack", {{"number", last}});
-    EXPECT_GE(reply.at("tick"), frame.header.tick) << "no earlier than what it has seen";
+    EXPECT_GE(reply.at("tick"), frame.header.tick) << "not earlier than the last frame seen";
   }
   client->result("session.leave");
   EXPECT_EQ(client->result("frames.ack", {{"number", 1}}), Json::object());
@@ -138,7 +138,7 @@ TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
 TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
   client->result("frames.subscribe");
   for (int i = 0; i < 10; ++i) {
-    client->result("control.step", {{"ticks", 10}});  // the window fills, one frame is missed
+    client->result("control.step", {{"ticks", 10}});  // the window fills, so one frame is omitted
     client->mark();
     client->result("control.reset");
     const Json description = client->wait_event("session.description");
@@ -169,7 +169,7 @@ class SessionPatience : public SessionTest {
       : SessionTest(limits_with(&ServerLimits::frame_patience, std::chrono::seconds(1))) {}
 };
 
-// Also where nothing moves: a frame was sent, and nobody knows whether it came.
+// Applies also to a state at rest: the server sent a frame and does not know whether it arrived.
 TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
   client->result("frames.subscribe");
   client->wait_frame([](const GridFrame&) { return true; });
@@ -195,7 +195,7 @@ class SessionCoreTest : public testing::Test {
     wait();
     return connection;
   }
-  /// Everybody acknowledges what comes.
+  /// Runs a tick. All clients acknowledge their frames.
   void tick() {
     ASSERT_TRUE(core.tick(now, true));
     core.notifier().publish_tick();
@@ -204,7 +204,7 @@ class SessionCoreTest : public testing::Test {
       ASSERT_TRUE(outbox->acknowledge(connection->frames().back().header.number, now));
     }
   }
-  /// Until the frame threads have done what was posted to them.
+  /// Waits until the frame threads have executed all posted tasks.
   void wait() {
     std::promise<void> done;
     boost::asio::post(environment.shared.frame_threads, [&] { done.set_value(); });
@@ -223,7 +223,8 @@ class SessionCoreTest : public testing::Test {
   std::vector<std::pair<std::shared_ptr<FakeConnection>, std::shared_ptr<ClientOutbox>>> viewers_;
 };
 
-// The second frame of each builds on one frame, those after it on two, as everybody's.
+// The second frame of each client refers to one frame, the following frames to two, as those of the
+// other clients do.
 TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
   const auto first = subscribe();
   tick();
@@ -232,9 +233,9 @@ TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
   EXPECT_TRUE(counted("vat_frames_encoded_total 3"));
   const auto second = subscribe();
   const auto third = subscribe();
-  EXPECT_TRUE(second->frames().empty()) << "it comes with the next tick";
+  EXPECT_TRUE(second->frames().empty()) << "the frame is sent with the next tick";
   tick();
-  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2")) << "one for both";
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2")) << "one key frame for both clients";
   EXPECT_TRUE(counted("vat_frames_encoded_total 5"));
   for (const auto& connection : {first, second, third}) {
     ASSERT_FALSE(connection->frames().empty());
@@ -260,7 +261,7 @@ PublishedState make_state(std::uint64_t tick, bool has_speeds) {
   return state;
 }
 
-/// Keeps the pool's only thread from all other work.
+/// Blocks the only thread of the pool.
 class Block {
  public:
   explicit Block(boost::asio::thread_pool& pool) {
@@ -272,7 +273,7 @@ class Block {
   std::promise<void> released_;
 };
 
-// A state that waits was published for those who were there before.
+// A waiting state was published for the previous subscribers.
 TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   boost::asio::thread_pool pool(1);
   ServerMetrics metrics;
@@ -303,8 +304,8 @@ TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
   EXPECT_EQ(connection->frames()[0].header.tick, 8U);
 }
 
-// One that is filled, one that waits, one that is taken out of the mail and one that is shown: from
-// the fifth on a tick finds the memory that an earlier one has used.
+// Four states are in use: one is being filled, one waits, one was taken from the queue, and one is
+// shown. From the fifth on, a tick reuses the memory of an earlier state.
 TEST(FrameFeed, FourStatesGoRound) {
   constexpr std::size_t kParticles = 1000;
   boost::asio::thread_pool pool(1);
@@ -321,7 +322,7 @@ TEST(FrameFeed, FourStatesGoRound) {
     state.bodies.resize(1);
     state.bodies[0].positions.assign(kParticles, Vec3(0, 0, 1e-3 * static_cast<double>(tick)));
     feed->publish(state);
-    if (tick % 3 == 0) continue;  // the next one takes its place where it still waits
+    if (tick % 3 == 0) continue;  // the next state may replace a waiting one
     std::promise<void> done;
     boost::asio::post(pool, [&] { done.set_value(); });
     done.get_future().wait();

@@ -1,4 +1,4 @@
-// Files that were made for clients, each to be fetched once.
+// Files that the server made for clients. Each can be downloaded once.
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST(Downloads, AreServedByTheSite) {
   EXPECT_EQ(site("GET", late).status, 404);
 }
 
-// Recordings that clients bring in parts.
+// Recordings that clients upload in parts.
 
 const SteadyClock::time_point kStart{};
 

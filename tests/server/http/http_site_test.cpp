@@ -1,4 +1,4 @@
-// The viewer's site: paths, files and what is said about the server.
+// The viewer's site: paths, files and server information.
 
 #include "server/http/http_site.h"
 
@@ -34,7 +34,7 @@ TEST(RequestPath, Decodes) {
   EXPECT_EQ(request_path("/...a/b..c/..d"), "/...a/b..c/..d");
 }
 
-// No paths, broken escapes, ways up, and zero bytes.
+// Invalid paths: no path, broken escapes, parent folders, and zero bytes.
 TEST(RequestPath, RefusesWhatIsNotAPath) {
   for (const char* target : {"",
                              "a",
@@ -72,7 +72,7 @@ TEST(RequestPath, RefusesWhatIsNotAPath) {
   EXPECT_EQ(request_path(std::string("/a\0b", 4)), std::nullopt);
 }
 
-/// A viewer, beside a file that is none of it.
+/// The viewer's folder, and a file outside it.
 class HttpSite : public testing::Test {
  protected:
   HttpSite() {
@@ -229,7 +229,7 @@ TEST(StaticFiles, ContentTypes) {
 
 class ServedSite : public TransportTest {};
 
-// The command of the image, over a real socket.
+// Runs the health check command of the image over a real socket.
 TEST_F(ServedSite, PassesTheHealthCheckOfTheImage) {
   http_handler = make_http_site(StaticFiles::read("/none").value(),
                                 {[] { return ""; }, [] { return ServerPhase::ready; }, "{}"});

@@ -1,5 +1,5 @@
-// Commands take effect at the tick that their reply names and in the order in which they were sent:
-// the session ends in the bits of a simulation that is given the same commands at these ticks.
+// Commands take effect at the tick in their reply, in the order of sending. The session has the
+// same bits as a simulation that receives the same commands at these ticks.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class SessionCommands : public SessionTest {
   }
 };
 
-/// A command, and the same for a simulation.
+/// A command, and the equivalent call of a simulation.
 struct Command {
   const char* method;
   Json params;
@@ -40,7 +40,7 @@ InterfaceDescription wood_on_vat() {
   return interface;
 }
 
-// The ball is thrown at a wall, so that its interface with the vat acts.
+// The ball hits a wall, so its interface with the vat acts.
 TEST_F(SessionCommands, OfAPausedSessionTakeEffectBetweenItsSteps) {
   const std::string fresh = hash();
   EXPECT_EQ(fresh, hash_of(reference));
@@ -187,7 +187,7 @@ TEST_F(SessionCommands, ABodyMeltsWithANewEpoch) {
   EXPECT_EQ(client->error("grab.end", {{"grab", 1}}).at("code"), -32602);
 }
 
-// The frame of the tick in which a body melts comes after the description that it belongs to.
+// The frame of the tick in which a body melts follows the description with the new epoch.
 TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
   Json scene = Json::parse(mixed_scene_text());
   scene["bodies"][1]["melting"] = {{"into", "water"}, {"at", 0.05}};
@@ -208,7 +208,7 @@ TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
   EXPECT_EQ(client->error("grab.end", {{"grab", grab.at("grab")}}).at("code"), -32602);
 }
 
-/// The mixed scene with a nozzle that feeds its pool.
+/// The mixed scene with a nozzle that emits into the pool.
 Json scene_with_nozzle(std::size_t most_particles) {
   Json scene = Json::parse(mixed_scene_text());
   scene["emitters"] = {{{"name", "tap"},
@@ -231,8 +231,8 @@ TEST_F(SessionCommands, LiquidFlowsInWithoutANewEpoch) {
       client->wait_frame([](const GridFrame& each) { return each.header.tick == 10; });
   EXPECT_EQ(frame.header.epoch, before.at("epoch").get<std::uint32_t>());
   const auto particles = before.at("bodies").at(0).at("particles").get<std::size_t>();
-  // The tube holds two layers of one particle, and others come 0 s and 0.1 s after these; the last
-  // step of the ten ticks begins before 0.2 s.
+  // The tube contains two layers of one particle. Two more follow after 0 s and 0.1 s. The last
+  // step of the ten ticks starts before 0.2 s.
   EXPECT_EQ(frame.blocks.at(1).positions.size(), 3 * (particles + 4));
   EXPECT_TRUE(client->events("session.description").empty());
   const Json state = client->result("state.query", {{"bodies", {"pool"}}});
@@ -265,7 +265,7 @@ class PointerCommandsTest : public testing::Test {
   void add(ParticipantNumber participant, std::string_view method, const Json& params) {
     pointers.add(participant, {row_of(method), params, {}}, PendingReply(outbox, {}));
   }
-  /// "PARTICIPANT PARAMS CALLERS" of each that has waited.
+  /// Returns "PARTICIPANT PARAMS CALLERS" of each waiting command.
   std::vector<std::string> take() {
     std::vector<std::string> taken;
     for (const auto& newest : pointers.take()) {
@@ -312,7 +312,7 @@ TEST_F(PointerCommandsTest, TellsWhoseWait) {
   EXPECT_FALSE(pointers.has_of(1));
 }
 
-// At a twentieth of the speed a tick takes 0.4 s: all of these fall between two.
+// At a speed of 1/20 a tick takes 0.4 s. All commands arrive between two ticks.
 TEST_F(SessionTest, CommandsThatFollowAPointerWaitForTheNextTickAndAreAnsweredWithIt) {
   client->result("control.set_speed", {{"speed", 0.05}});
   client->result("control.play");
@@ -330,8 +330,7 @@ TEST_F(SessionTest, CommandsThatFollowAPointerWaitForTheNextTickAndAreAnsweredWi
   const Json description = client->wait_event("session.description", [](const Json& d) {
     return d.at("gravity") != Json({0, 0, -9.81});
   });
-  EXPECT_EQ(description.at("gravity"), Json({0, 0, -5}))
-      << "one of those before it was carried out";
+  EXPECT_EQ(description.at("gravity"), Json({0, 0, -5})) << "an earlier command was executed";
 }
 
 TEST_F(SessionTest, AQuestionOfTheSameClientIsAnsweredAfterWhatItSentBefore) {

@@ -26,7 +26,7 @@ TEST_F(SessionControl, APausedSessionStays) {
   EXPECT_EQ(client->result("control.pause").at("tick"), end) << "again";
   client->mark();
   wait_status([](const Json& status) { return status.at("playing") == false; });
-  // The status of each half second: ticks of 5 ms would have been many.
+  // The status arrives every half second. Ticks of 5 ms would send many more.
   wait_status([&](const Json& status) { return status.at("tick") == end; });
   EXPECT_EQ(hash(), before);
   client->result("control.step");
@@ -72,7 +72,7 @@ TEST_F(SessionControl, ResetGivesTheBitsOfAFreshSession) {
   client->result("control.step", {{"ticks", 10}});
   Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
   advance_ticks(reference, 10);
-  EXPECT_EQ(hash(), hash_of(reference)) << "no force, grab or gravity is left";
+  EXPECT_EQ(hash(), hash_of(reference)) << "no force, grab or changed gravity remains";
 }
 
 TEST_F(SessionControl, ResetGoesBackToTheSceneThatWasLoaded) {
@@ -130,7 +130,7 @@ TEST_F(SessionControl, TheSpeedIsToldAndKept) {
   EXPECT_EQ(client->result("session.join").at("description").at("speed"), 0.25);
 }
 
-// At four times the speed ticks of 0.02 s are due each 5 ms.
+// At four times the speed, ticks of 0.02 s are due every 5 ms.
 TEST_F(SessionControl, PlaysAtItsSpeed) {
   client->result("control.set_speed", {{"speed", 4}});
   client->result("control.play");
@@ -148,7 +148,7 @@ TEST_F(SessionControl, PlaysAtItsSpeed) {
   EXPECT_EQ(tick(), before + 10);
 }
 
-// What goes wrong inside: unstable scenes, and faults of the server itself.
+// Internal failures: unstable scenes, and faults of the server.
 
 class SessionFaults : public SessionTest {};
 
@@ -169,7 +169,7 @@ TEST_F(SessionFaults, AnUnstableSceneIsPausedAtTheLastGoodStateAndReported) {
   EXPECT_EQ(tick(), 0u);
 
   client->result("scene.load", {{"scene", "mixed"}});
-  EXPECT_EQ(client->result("control.step", {{"ticks", 3}}).at("tick"), 3) << "the server lives";
+  EXPECT_EQ(client->result("control.step", {{"ticks", 3}}).at("tick"), 3) << "the server continues";
 }
 
 TEST_F(SessionFaults, AGuardEndsAStep) {
@@ -178,11 +178,11 @@ TEST_F(SessionFaults, AGuardEndsAStep) {
   client->wait_event("session.guard");
 }
 
-// A connection whose sends throw stands for any fault in a turn: memory that runs out, say.
+// A connection that throws when sending represents any fault in a turn, such as a lack of memory.
 TEST_F(SessionFaults, AFaultPausesTheSessionWhichGoesOnListening) {
   const auto other = join();
   client->connection->fail(true);
-  other->send("control.play");  // its status cannot be sent to all
+  other->send("control.play");  // sending its status to this client fails
   client->send("session.hash");
   client->send("session.join");
   client->connection->fail(false);

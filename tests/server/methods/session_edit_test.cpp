@@ -1,5 +1,5 @@
-// What an editor does to a session: bodies put elsewhere, materials, the vat moved by hand. And
-// what it is shown of springs, contacts and energies.
+// Editing a session: moving bodies, changing materials, moving the vat. Queries of springs,
+// contacts and energies.
 
 #include "protocol/scene/scene_json.h"
 #include "tests/server/fixture/host.h"
@@ -122,7 +122,7 @@ TEST_F(StateConnections, AreThoseOfTheSimulation) {
             expected.springs.total);
   EXPECT_EQ(client->result("state.connections", {{"body", 1}}).at("springs").at("total"), 0);
   EXPECT_EQ(client->error("state.connections", {{"body", "none"}}).at("data").at("path"), "/body");
-  EXPECT_EQ(hash(), hash_of(reference)) << "who asks changes nothing";
+  EXPECT_EQ(hash(), hash_of(reference)) << "queries do not change the state";
 }
 
 TEST_F(StateConnections, AreAsManyAsWereAskedForAtMost) {
@@ -161,8 +161,8 @@ TEST_F(StatsWithDiagnostics, HaveTheSumsOfTheSimulation) {
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(told.at("momentum").at(static_cast<std::size_t>(axis)), momentum[axis]);
   }
-  EXPECT_LT(momentum.z(), 0) << "it falls";
-  EXPECT_EQ(hash(), hash_of(reference)) << "who asks changes nothing";
+  EXPECT_LT(momentum.z(), 0) << "the body falls";
+  EXPECT_EQ(hash(), hash_of(reference)) << "queries do not change the state";
 }
 
 }  // namespace

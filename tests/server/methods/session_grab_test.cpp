@@ -1,4 +1,4 @@
-// grab.*: a grab belongs to the client that started it and ends with it.
+// grab.*: a grab belongs to the client that started it, and ends with that client.
 
 #include "core/limits.h"
 #include "tests/server/fixture/session_fixture.h"
@@ -10,12 +10,12 @@ constexpr BodyId kBall = 3;
 
 class SessionGrabs : public SessionTest {
  protected:
-  /// Height of the ball's centre of mass.
+  /// Returns the height of the ball's centre of mass.
   double height() {
     const Json state = client->result("state.query", {{"bodies", {"ball"}}});
     return state.at("bodies").at(0).at("center_of_mass").at(2);
   }
-  /// What the simulation does with the same commands.
+  /// A simulation that receives the same commands.
   Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
 
   const Json kTarget = {0.5, 0.5, 0.9};
@@ -39,10 +39,10 @@ TEST_F(SessionGrabs, HoldMoveAndEnd) {
   ASSERT_TRUE(reference.grab_end(1));
   advance_ticks(reference, 20);
   EXPECT_EQ(hash(), hash_of(reference));
-  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "it has ended";
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "the grab has ended";
 }
 
-// Of the pool a corner is drained at the first tick; the others keep their numbers.
+// The first tick drains a corner of the pool. The other particles keep their numbers.
 TEST_F(SessionGrabs, NameAParticleByItsNumber) {
   Json scene = Json::parse(mixed_scene_text());
   scene["drains"] = Json::parse(R"([{"name": "hole", "min": [0, 0, 0], "max": [0.5, 0.5, 0.5]}])");
@@ -51,7 +51,7 @@ TEST_F(SessionGrabs, NameAParticleByItsNumber) {
   const Json state = client->result("state.query", {{"bodies", {"pool"}}}).at("bodies").at(0);
   const auto numbers = state.at("numbers").get<std::vector<std::uint32_t>>();
   ASSERT_EQ(numbers.size(), state.at("positions").size());
-  ASSERT_GT(numbers.back(), numbers.size() - 1) << "some are gone";
+  ASSERT_GT(numbers.back(), numbers.size() - 1) << "some particles are drained";
   std::uint32_t gone = 0;
   while (numbers[gone] == gone) ++gone;
   const Json params = {{"body", state.at("body")}, {"particle", gone}, {"target", kTarget}};
@@ -63,7 +63,7 @@ TEST_F(SessionGrabs, NameAParticleByItsNumber) {
   client->result("control.step", {{"ticks", 30}});
   const Json after = client->result("state.query", {{"bodies", {"pool"}}}).at("bodies").at(0);
   ASSERT_EQ(after.at("numbers").back(), numbers.back());
-  EXPECT_GT(after.at("positions").back().at(2), before + 0.05) << "it is pulled up";
+  EXPECT_GT(after.at("positions").back().at(2), before + 0.05) << "the particle is pulled up";
 }
 
 TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
@@ -92,15 +92,16 @@ TEST_F(SessionGrabs, EndWhenTheirClientLeavesOrJoinsAnotherSession) {
   const std::uint64_t second = other->grab(kBall);
   other->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
   other->result("session.join", {{"session", "s2"}});
-  EXPECT_EQ(client->error("grab.end", {{"grab", second}}).at("code"), -32602) << "nobody has it";
+  EXPECT_EQ(client->error("grab.end", {{"grab", second}}).at("code"), -32602)
+      << "the grab has ended";
   other->result("session.join", {{"session", "s1"}});
   const std::uint64_t third = other->grab(kBall);
   other->result("session.join", {{"session", "s1"}});
   EXPECT_EQ(other->error("grab.end", {{"grab", third}}).at("code"), -32602)
-      << "joining again is a fresh start";
+      << "a repeated join is a new start";
   client->result("control.step", {{"ticks", 5}});
   advance_ticks(reference, 5);
-  EXPECT_EQ(hash(), hash_of(reference)) << "the ball is free";
+  EXPECT_EQ(hash(), hash_of(reference)) << "the ball is not grabbed";
 }
 
 TEST_F(SessionGrabs, EndWithTheirBodyOrScene) {
@@ -127,7 +128,7 @@ TEST_F(SessionGrabs, OfAClientAreAtMostTen) {
   other->grab(2);
 }
 
-// A body for each client: one is held by one client at a time.
+// One body per client, because only one client can grab a body at a time.
 TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
   Json ball = {{"name", ""},
                {"kind", "rigid"},
@@ -139,7 +140,8 @@ TEST_F(SessionGrabs, OfASessionAreAtMostSixtyFour) {
     ball["position"] = {x, 5, 5};
     return client->result("world.add_body", {{"body", ball}}).at("body").get<BodyId>();
   };
-  client->result("scene.load", {{"scene", "unstable"}});  // without a vat to be outside of
+  client->result("scene.load",
+                 {{"scene", "unstable"}});  // this scene has no vat that would limit positions
   std::vector<std::unique_ptr<TestClient>> clients;
   BodyId body = 0;
   for (std::size_t i = 0; i < kMaxGrabs; ++i) {
@@ -166,7 +168,7 @@ TEST_F(SessionGrabs, ForcesOfASessionAreBoundedToo) {
   EXPECT_EQ(error.at("data").at("limit"), "applied_forces");
   EXPECT_EQ(error.at("data").at("maximum"), kMaxAppliedForces);
   EXPECT_EQ(hash(), before);
-  client->result("control.step");  // they end
+  client->result("control.step");  // the grabs end
   client->result("world.apply_force", force);
 }
 

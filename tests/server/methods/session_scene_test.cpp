@@ -1,4 +1,4 @@
-// scene.get: scenes that clients read, change and load.
+// scene.get: clients read, change and load scenes.
 
 #include "protocol/scene/scene_json.h"
 #include "tests/server/fixture/session_fixture.h"
@@ -47,7 +47,7 @@ TEST_F(SceneGet, TheCurrentOneHasWhatCommandsHaveChanged) {
   EXPECT_EQ(scene.at("gravity"), Json({1.0, 0.0, -9.0}));
   EXPECT_EQ(get().at("bodies").size(), 3u);
   EXPECT_EQ(get().at("bodies").at(0).at("name"), "pool");
-  // Nothing has moved yet, so that it starts as it is now.
+  // Nothing has moved yet, so the scene starts in the present state.
   EXPECT_EQ(hash_from(scene), changed);
   EXPECT_EQ(get(), scene);
 }
@@ -74,10 +74,10 @@ TEST_F(SceneGet, ANameAndCurrentDoNotGoTogether) {
   }
 }
 
-/// The greatest of a limit at which a scene is refused, and 0 where it is given at `high`.
+/// Returns the largest value of a limit at which the scene is refused. At `high` it is accepted.
 template <class Set>
 std::size_t refused_up_to(const Set& set, std::size_t high) {
-  std::size_t low = 1000;  // of settings
+  std::size_t low = 1000;  // needed by the settings
   while (low + 1 < high) {
     const std::size_t middle = (low + high) / 2;
     (set(middle) ? high : low) = middle;
@@ -87,7 +87,8 @@ std::size_t refused_up_to(const Set& set, std::size_t high) {
 
 class SceneGetLimits : public testing::Test {
  protected:
-  /// What scene.get says under such limits, and then what scene.load of it does.
+  /// Returns the error of scene.get under these limits. If there is none, loads the result with
+  /// scene.load.
   Json error_of_get(const ServerLimits& limits) {
     TestServer server(catalogue, test_settings(limits));
     EXPECT_TRUE(server.create_session("first", to_scene(mixed_scene_text())));
@@ -102,7 +103,7 @@ class SceneGetLimits : public testing::Test {
   const Catalogue catalogue = make_catalogue();
 };
 
-// Whatever is given may be sent back: the limit of a message that loads it is that of the answer.
+// Every returned scene can be sent back: the limit of the loading message equals that of the reply.
 TEST_F(SceneGetLimits, WhatIsGivenFitsIntoAMessage) {
   const std::size_t bytes = write_scene(to_scene(mixed_scene_text())).dump().size();
   const std::size_t least = refused_up_to(
@@ -118,7 +119,7 @@ TEST_F(SceneGetLimits, WhatIsGivenFitsIntoAMessage) {
       },
       2 * bytes);
   EXPECT_GE(least, bytes);
-  EXPECT_LE(least, bytes + 300) << "and no scene is refused that would fit";
+  EXPECT_LE(least, bytes + 300) << "a scene that fits is not refused";
 }
 
 TEST_F(SceneGetLimits, ValuesAreCountedAsThoseOfAMessage) {

@@ -22,15 +22,15 @@ using namespace std::chrono_literals;
 TEST(Heap, InUseIsWhatWasTakenAndNotGivenBack) {
   const std::size_t before = heap_in_use();
   auto small = std::make_unique<std::array<char, 1'000'000>>();
-  auto large = std::make_unique<std::array<char, 10'000'000>>();  // mapped by itself
+  auto large = std::make_unique<std::array<char, 10'000'000>>();  // allocated by mmap
   EXPECT_NEAR(static_cast<double>(heap_in_use() - before), 11e6, 1e5);
   small.reset();
   large.reset();
   EXPECT_NEAR(static_cast<double>(heap_in_use()), static_cast<double>(before), 1e5);
 }
 
-// Of small pieces that another thread has taken, one in 256 stays: the allocator gives nothing back
-// by itself, as its arena ends with a piece that is in use.
+// One in 256 small blocks of another thread stays in use. The allocator does not release memory by
+// itself, because a used block is at the end of its arena.
 TEST(Heap, GivesBackWhatLiesBetweenPiecesInUse) {
   constexpr std::size_t kPieces = 100'000;
   constexpr std::size_t kPieceBytes = 400;

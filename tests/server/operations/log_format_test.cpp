@@ -32,7 +32,7 @@ TEST(JsonLog, OneObjectALine) {
   EXPECT_EQ(object.size(), 3U);
 }
 
-// What a user may have put into a message makes no second line and no second member.
+// User text in a message must not add a line or a member.
 TEST(JsonLog, NothingInAMessageLeavesIt) {
   for (const std::string& message :
        {std::string("a\nb"), std::string(R"(", "level": "critical)"), std::string("\x1b[31m"),

@@ -41,7 +41,7 @@ TEST(ServerMetrics, WhatIsSoNow) {
   }
 }
 
-// A bucket counts what is at most its bound, so each holds those before it.
+// A bucket counts all values up to its bound, so it includes the smaller buckets.
 TEST(ServerMetrics, TicksAreCountedByTheirBounds) {
   ServerMetrics metrics;
   for (const auto time : {0.5ms, 0.6ms, 3.0ms, 5000.0ms}) {
@@ -60,7 +60,7 @@ TEST(ServerMetrics, TicksAreCountedByTheirBounds) {
   EXPECT_THAT(metrics.to_text({}), HasSubstr("\nvat_undone_substeps_total 8\n"));
 }
 
-// Of 1000 ticks those of 489 to 1000 ms are the last 512.
+// The last 512 of 1000 ticks take 489 to 1000 ms.
 TEST(ServerMetrics, QuantilesAreThoseOfTheLastTicks) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.to_text({}), HasSubstr("\nvat_recent_tick_seconds{quantile=\"0.5\"} 0\n"));
@@ -109,7 +109,7 @@ TEST(ServerMetrics, FramesByWhatBecameOfThem) {
   }
 }
 
-// session.stats, and what the server's metrics say of its sessions.
+// session.stats, and the metrics of sessions.
 
 constexpr int kStepsPerTick = 10;  // of the fixture's scene
 
@@ -118,7 +118,7 @@ class SessionStats : public SessionTest {
   const std::size_t particles =
       Simulation::create(to_scene(mixed_scene_text())).value().particle_count();
 
-  /// The value of the sample that begins so.
+  /// Returns the value of the sample with this name.
   double sample(const std::string& name) {
     std::istringstream lines(server.metrics());
     for (std::string line; std::getline(lines, line);) {
@@ -139,7 +139,7 @@ const Json* find_stage(const Json& stats, const std::string& name) {
 TEST_F(SessionStats, TellWhatTheTicksOfTheSceneCost) {
   client->result("control.step", {{"ticks", 3}});
   client->result("scene.load", {{"scene", "mixed"}});
-  EXPECT_EQ(client->result("session.stats").at("ticks"), 0) << "a new scene, a new account";
+  EXPECT_EQ(client->result("session.stats").at("ticks"), 0) << "a new scene resets the statistics";
   client->result("control.step", {{"ticks", 5}});
   const Json stats = client->result("session.stats");
   EXPECT_EQ(stats.at("tick"), 5);

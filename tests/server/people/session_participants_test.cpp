@@ -1,4 +1,4 @@
-// Who takes part in a session, and how a participant outlives its connection.
+// Participants of a session, and their persistence after a disconnection.
 
 #include <regex>
 
@@ -90,7 +90,7 @@ TEST_F(SessionParticipants, AreResumedWithAllThatTheyHad) {
   EXPECT_EQ(again.at("name"), "Eve");
   EXPECT_EQ(again.at("resume"), joined.at("resume"));
   EXPECT_EQ(again.at("resumed"), true);
-  guest->wait_frame([](const GridFrame&) { return true; });  // nobody has subscribed again
+  guest->wait_frame([](const GridFrame&) { return true; });  // no client has subscribed again
   guest->result("grab.end", {{"grab", grab}});
 }
 
@@ -109,7 +109,7 @@ TEST_F(SessionParticipants, CanBeTakenOverFromAConnectionThatIsStillOpen) {
   old->send("grab.end", {{"grab", grab}});
   old->disconnect();
   next->result("grab.move", {{"grab", grab}, {"target", {0.5, 0.5, 0.8}}});
-  EXPECT_EQ(old->connection->texts().size(), texts) << "what it sends is not read any more";
+  EXPECT_EQ(old->connection->texts().size(), texts) << "messages of the old connection are ignored";
   EXPECT_EQ(client->result("session.list").at("sessions").at(0).at("clients"), 2);
 }
 
@@ -155,12 +155,12 @@ TEST_F(AwayForAMoment, LeaveAndLetGoOfWhatTheyHeld) {
   EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), 1006);
   guest->disconnect();
   client->mark();
-  wait_for_clients(1);  // tells of the disconnection,
+  wait_for_clients(1);  // reports the disconnection
   client->mark();
-  wait_for_clients(1);  // and the next one of the end of the absence or of the time after it
+  wait_for_clients(1);  // reports the end of the absence, or of the time after it
   client->mark();
   wait_for_clients(1);
-  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "nobody has it";
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "the grab has ended";
   guest = connect();
   EXPECT_EQ(guest->result("session.join", resume_params(joined)).at("resumed"), false);
 }

@@ -1,4 +1,4 @@
-// What an owner decides, and how control is handed on.
+// Decisions of an owner, and requests for control.
 
 #include "tests/server/fixture/access_fixture.h"
 
@@ -39,9 +39,10 @@ TEST_F(SessionPeople, AnOwnerGivesAndTakesRoles) {
 
 TEST_F(SessionPeople, WhoLosesControlLetsGo) {
   const std::uint64_t grab = controller_->grab(3);
-  EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), 1006) << "it is another's";
+  EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), 1006)
+      << "the grab of another participant";
   owner_->result("participant.set_role", role_of_params(controller_number_, "viewer"));
-  EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "nobody has it";
+  EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "the grab has ended";
 }
 
 TEST_F(SessionPeople, OwnershipIsHandedOver) {
@@ -50,12 +51,12 @@ TEST_F(SessionPeople, OwnershipIsHandedOver) {
   EXPECT_EQ(role_of(*owner_), "controller");
   owner_->result("session.leave");
   EXPECT_EQ(owner_->result("session.join", {{"session", own}}).at("role"), "controller")
-      << "who made it does not get it back";
+      << "the creator does not become owner again";
 }
 
 TEST_F(SessionPeople, AnOwnerStaysOneUntilAnotherIs) {
   const std::uint64_t number = owner_->result("session.join", {{"session", own}}).at("participant");
-  EXPECT_EQ(role_of(*owner_), "owner") << "who made it owns it again";
+  EXPECT_EQ(role_of(*owner_), "owner") << "the creator is owner again";
   EXPECT_EQ(owner_->error("participant.set_role", role_of_params(number, "viewer")).at("code"),
             1006);
   EXPECT_EQ(owner_->error("participant.kick", {{"participant", number}}).at("code"), 1006);
@@ -80,10 +81,12 @@ TEST_F(SessionPeople, ControlIsAskedForAndHandedOver) {
   const std::uint64_t grab = controller_->grab(3);
   controller_->result("control.hand_over", {{"participant", viewer_number_}});
   viewer_->result("control.pause");
-  EXPECT_TRUE(viewer_->events("control.requested").empty()) << "a viewer cannot give it";
+  EXPECT_TRUE(viewer_->events("control.requested").empty()) << "a viewer cannot grant control";
   EXPECT_EQ(role_of(*controller_), "viewer");
-  EXPECT_EQ(viewer_->error("grab.end", {{"grab", grab}}).at("code"), -32602) << "it has let go";
-  EXPECT_EQ(viewer_->error("control.request").at("code"), 1006) << "it has it";
+  EXPECT_EQ(viewer_->error("grab.end", {{"grab", grab}}).at("code"), -32602)
+      << "the grab has ended";
+  EXPECT_EQ(viewer_->error("control.request").at("code"), 1006)
+      << "the participant already has control";
 }
 
 TEST_F(SessionPeople, AnOwnerKeepsWhatItHandsOver) {
@@ -114,9 +117,9 @@ TEST_F(SessionPeople, ALockedSessionLetsInTheOwnersGuestsAndAdminsOnly) {
   EXPECT_EQ(viewer_->wait_event("session.configured").at("name"), "private");
   const auto stranger = enter(ticket({{"role", "controller"}}));
   EXPECT_EQ(stranger->error("session.join", {{"session", own}}).at("code"), 1006);
-  EXPECT_EQ(stranger->error("session.hash").at("code"), 1001) << "it is in no session";
+  EXPECT_EQ(stranger->error("session.hash").at("code"), 1001) << "the client is in no session";
   const Json list = admin->result("session.list").at("sessions");
-  EXPECT_EQ(list.at(1).at("clients"), 3) << "nor is it counted";
+  EXPECT_EQ(list.at(1).at("clients"), 3) << "the client is not counted";
   EXPECT_EQ(list.at(1).at("name"), "private");
 
   enter(before)->result("session.join");
@@ -130,7 +133,7 @@ TEST_F(SessionPeople, ALockedSessionLetsInTheOwnersGuestsAndAdminsOnly) {
 }
 
 TEST_F(SessionPeople, TheUsualRoleIsTheOwnersToSay) {
-  auto guest = enter(viewer_resume_);  // lets in without a role of its own
+  auto guest = enter(viewer_resume_);  // admits without a separate role
   EXPECT_EQ(guest->result("session.join").at("role"), "viewer");
   owner_->result("session.configure", {{"default_role", "controller"}});
   EXPECT_EQ(guest->result("session.join").at("role"), "controller");

@@ -1,4 +1,4 @@
-// What the participants of a session see of each other, and who holds what.
+// Presence: the information that participants receive about one another, and their grabs.
 
 #include "tests/server/fixture/session_fixture.h"
 
@@ -21,7 +21,7 @@ class Presence : public SessionTest {
  protected:
   using SessionTest::SessionTest;
 
-  /// Waits until `client` is told of this participant as `fits` wants it.
+  /// Waits until `client` receives data of this participant that satisfies `fits`.
   static Json wait_for(TestClient& client, std::uint64_t number,
                        const std::function<bool(const Json&)>& fits) {
     Json seen;
@@ -105,7 +105,7 @@ TEST_F(Presence, TellsWhereSomebodyPoints) {
             "/position");
 }
 
-// The session pauses: nothing but the pointer makes it work.
+// The session is paused, so only the pointer causes work.
 TEST_F(Presence, IsToldTenTimesASecondAtMostAndTheLastAlways) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
@@ -146,7 +146,8 @@ TEST_F(Presence, ABodyIsHeldByOneAtATime) {
   EXPECT_EQ(error.at("data").at("holder"), Json({{"participant", 2}, {"name", "Ada"}}));
   client->grab(kCube);
   guest->result("grab.end", {{"grab", first}});
-  EXPECT_EQ(client->error("grab.start", params).at("code"), 1008) << "by another finger";
+  EXPECT_EQ(client->error("grab.start", params).at("code"), 1008)
+      << "another grab of the same client";
   guest->result("grab.end", {{"grab", second}});
   client->grab(kBall);
 }

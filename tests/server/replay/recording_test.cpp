@@ -5,7 +5,7 @@
 #include "core/saved/sealed_bytes.h"
 #include "core/support/byte_io.h"
 
-// The file of a recording: what is not one is refused, and named.
+// Files of recordings. The reader rejects invalid files and names the error.
 
 namespace vat::recording_test {
 namespace {
@@ -29,7 +29,7 @@ std::string code_of(std::span<const std::uint8_t> bytes) {
   return recording ? "" : recording.errors()[0].code;
 }
 
-/// Of what would be refused if a server had written it.
+/// Returns the path of the first error of a recording.
 std::string place_of(const Recording& recording) {
   const Result<Recording> read = read_recording(write_recording(recording));
   if (read) return "none";
@@ -110,7 +110,7 @@ TEST(RecordingFile, WithPartsOutOfOrderIsRefused) {
   EXPECT_EQ(place_of(recording), "/hashes");
 }
 
-// A log whose older entries are gone needs a moment from which it goes on.
+// A log without its older entries needs a moment at which it starts.
 TEST(RecordingFile, OfAShortenedLogBeginsAtItsFirstMoment) {
   Recording recording = make_recording();
   recording.log.erase(recording.log.begin() + 1, recording.log.begin() + 3);

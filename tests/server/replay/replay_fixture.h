@@ -18,7 +18,7 @@ namespace vat::test {
 
 inline const std::atomic<bool> kGoOn = false;
 
-/// A server that keeps its sessions, with one of them, and what such a session needs elsewhere.
+/// A server that stores its one session, and the environment of a replay outside the server.
 class ReplayTest : public testing::Test {
  protected:
   explicit ReplayTest(const ServerLimits& limits = {}, const StorageLimits& storage = {})
@@ -32,7 +32,7 @@ class ReplayTest : public testing::Test {
   }
   void TearDown() override { client_->disconnect(); }
 
-  /// All kinds of entries, with ticks between them.
+  /// Runs commands of all kinds, with ticks between them.
   void live() {
     step(5);
     client_->result("world.set_gravity", {{"gravity", {1, 0, -5}}});
@@ -49,7 +49,7 @@ class ReplayTest : public testing::Test {
     step(6);
     add("newer", 0.7);
     client_->result("control.reset");
-    add("newest", 0.3);  // whose id tells of those before
+    add("newest", 0.3);  // this id depends on the bodies before
     step(2);
     client_->result("world.apply_force", {{"body", 3}, {"force", {0, 0, 9}}, {"duration", 0.1}});
     TestClient other(server_, 2);
@@ -59,7 +59,7 @@ class ReplayTest : public testing::Test {
     other.result("session.leave");
     step(7);
   }
-  /// The ball comes back as body 4, in the motion that it had.
+  /// Removes the ball and restores it as body 4, with its motion.
   void remove_and_bring_back() {
     const Json ball = client_->result("state.query", {{"bodies", {"ball"}}}).at("bodies").at(0);
     Json motion;
@@ -70,7 +70,7 @@ class ReplayTest : public testing::Test {
     client_->result("world.remove_body", {{"body", 3}});
     client_->result("world.add_body", {{"body", body}, {"state", motion}});
   }
-  /// What a scene's editor does.
+  /// Runs the commands of a scene editor.
   void edit() {
     Json material = client_->result("scene.get").at("scene").at("materials").at(0);
     material["density"] = 800;
@@ -85,7 +85,7 @@ class ReplayTest : public testing::Test {
     client_->result("world.set_numerics", {{"integrator", "heun"}, {"step", 0.001}});
     client_->error("world.set_numerics", {{"step", 0.003}});
   }
-  static constexpr std::uint64_t kGrown = 5 + 3 + 4 + 2 + 2 + 6;  // two were added, one removed
+  static constexpr std::uint64_t kGrown = 5 + 3 + 4 + 2 + 2 + 6;  // two bodies added, one removed
   static constexpr std::uint64_t kTicks = kGrown + 2 + 3 + 7;
 
   void add(const std::string& name, double x) {
@@ -115,7 +115,7 @@ class ReplayTest : public testing::Test {
     return std::move(recording).value();
   }
 
-  /// A recording at play.
+  /// A recording being played.
   struct Replay {
     Replay(const Recording& recording, const SessionEnvironment& environment)
         : player(recording, environment), core("replay", {"replay"}, player.begin(), environment) {

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 class LimitedRecordings : public ReplayTest {
  protected:
-  LimitedRecordings()  // a state of the scene has more
+  LimitedRecordings()  // smaller than a state of the scene
       : ReplayTest(limits_with(&ServerLimits::max_recording_bytes, 1024)) {}
 };
 
@@ -52,14 +52,13 @@ TEST_F(LongRecordings, CountTheHashOfEachTick) {
   EXPECT_EQ(replayed.at("data").at("limit"), "recording_bytes");
 }
 
-/// A session whose log is full, and begins at a checkpoint: with commands behind that, or with
-/// none.
+/// A session whose full log starts at a checkpoint, with or without commands after it.
 class ShortenedLog : public ReplayTest, public testing::WithParamInterface<bool> {
  protected:
   ShortenedLog() : ReplayTest(unhurried_limits(), short_logs()) {}
   static StorageLimits short_logs() {
     StorageLimits limits;
-    limits.log_bytes = GetParam() ? 12'000 : 1000;  // the scene takes 1500
+    limits.log_bytes = GetParam() ? 12'000 : 1000;  // the scene takes 1500 bytes
     limits.checkpoint_after = std::chrono::milliseconds(1);
     return limits;
   }
@@ -127,7 +126,7 @@ TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {
 TEST_F(ReplayTest, OldDownloadsGoThoughNobodyAsksForAnother) {
   Downloads& downloads = server_.downloads();
   ASSERT_TRUE(downloads.add({"old", "content"}, server_.clock().now()));
-  const auto held = [&] { return downloads.forget_old({}); };  // at that time nothing has expired
+  const auto held = [&] { return downloads.forget_old({}); };  // nothing has expired at that time
   server_.clock().advance(Downloads::kPatience - 1s);
   EXPECT_GT(held(), 0U);
   server_.clock().advance(1min);

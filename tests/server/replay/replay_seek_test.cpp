@@ -1,4 +1,4 @@
-// How many ticks are run again on the way to a moment of a recording.
+// The number of ticks that a seek in a recording repeats.
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@ namespace {
 
 const std::atomic<bool> kGoOn = false;
 constexpr std::uint64_t kTicks = 300;
-constexpr double kTickWork = 0.1;  // [s] that each is said to take
+constexpr double kTickWork = 0.1;  // [s] reported work of each tick
 constexpr std::chrono::seconds kWanted{1};
-// So much work between two, and the tick that it comes after.
+// The maximum work between two checkpoints, and the tick that exceeds it.
 constexpr auto kMaxTicks = static_cast<std::uint64_t>(1 / kTickWork) + 1;
 
 StorageLimits limits_with(std::size_t checkpoint_bytes) {
@@ -33,11 +33,10 @@ StorageLimits limits_with(std::size_t checkpoint_bytes) {
   return limits;
 }
 
-/// A session that has run for so many ticks, as it is kept, with no time in it but the work that
-/// ticks are said to take.
+/// A stored session that has run for kTicks. Its time consists only of the reported work of ticks.
 class KeptSession {
  public:
-  /// With commands before these ticks.
+  /// `commands`: the ticks that a command precedes.
   explicit KeptSession(std::size_t checkpoint_bytes, const std::set<std::uint64_t>& commands = {})
       : storage_(folder_.file("data"), limits_with(checkpoint_bytes), environment_.clock) {
     const Scene scene = to_scene(mixed_scene_text());
@@ -58,7 +57,7 @@ class KeptSession {
     storage_.flush();
   }
   Recording record() { return record_session(storage_, number_, kMaxRecordingBytes).value(); }
-  /// Commands up to a sequence are forgotten, but for the first, which has the scene.
+  /// Deletes commands up to a sequence, except the first, which contains the scene.
   void shorten(std::uint64_t last) { storage_.sessions().trim(number_, last, 1); }
   const SessionEnvironment& environment() const { return environment_.shared; }
 
@@ -85,7 +84,7 @@ class KeptSession {
   std::uint64_t number_ = 0;
 };
 
-/// The most ticks that a seek runs, to every position, each from the end.
+/// Returns the largest number of ticks of a seek, over all positions. Each seek starts at the end.
 std::uint64_t most_ticks(const Recording& recording, ReplayPlayer& player, SessionCore& core) {
   std::uint64_t most = 0;
   for (std::uint64_t at = recording.begin; at <= recording.end; ++at) {
@@ -123,7 +122,8 @@ TEST(ReplaySeeks, GoOnFromWhereTheyAreWhereThatIsNearer) {
   Recording recording = session.record();
   recording.moments.clear();
   ReplayPlayer player(recording, session.environment());
-  player.set_cache({MomentCache::Seconds(1e9), 0});  // none, however slow the machine is
+  player.set_cache(
+      {MomentCache::Seconds(1e9), 0});  // no cache, independently of the speed of the machine
   SessionCore core("replay", {"n"}, player.begin(), session.environment());
   player.go_to_begin(core);
   player.play_to(core, 50, kGoOn);
@@ -192,7 +192,7 @@ TEST(MomentFilling, BeginsWithTheWidestGap) {
   };
   ASSERT_TRUE(wait_until([&] { return filler.is_done() || !begins_with_the_widest(); }));
   EXPECT_TRUE(begins_with_the_widest());
-  EXPECT_EQ(kept->count(), kTicks - 1);  // and there is the recording's own
+  EXPECT_EQ(kept->count(), kTicks - 1);  // the recording contains one more
 }
 
 TEST(MomentFilling, EndsWithItsReplay) {

@@ -26,7 +26,7 @@ inline std::string to_base64(const std::string& bytes) {
 
 inline constexpr std::size_t kMaxParticlesOfSession = 5000;
 
-/// A kept session `s1` that somebody called Ann has done something in, and a client that watches.
+/// A stored session `s1` in which Ann has sent commands, and a client that watches.
 class ReplaySession : public testing::Test {
  protected:
   ReplaySession() : catalogue_(make_catalogue()), server_(catalogue_, settings()) {
@@ -40,7 +40,8 @@ class ReplaySession : public testing::Test {
   }
   void TearDown() override { ann_->disconnect(); }
 
-  /// Notes the state of every position. The session ends at tick 11 of its second run.
+  /// Runs the session and notes the hash of every position. The session ends at tick 11 of its
+  /// second run.
   void live() {
     note();
     step(3);
@@ -65,10 +66,10 @@ class ReplaySession : public testing::Test {
   }
   void note() { hashes_[position_] = ann_->result("session.hash").at("hash"); }
 
-  /// Opens the replay and has `bob_` join it; what was opened.
+  /// Opens the replay, lets `bob_` join it, and returns the result of replay.open.
   Json open(const Json& params = {{"session", "s1"}}) {
     bob_.emplace(server_, 2);
-    // Who opens a session's past has to be a controller in it.
+    // Opening the past of a session needs the controller role in it.
     if (params.contains("session")) bob_->result("session.join");
     const Json opened = bob_->result("replay.open", params);
     joined_ = bob_->result("session.join", {{"session", opened.at("session")}, {"name", "Bob"}});
@@ -87,7 +88,7 @@ class ReplaySession : public testing::Test {
     return read_recording({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()})
         .value();
   }
-  /// Brings it in parts of so many bytes; the answer to the last.
+  /// Uploads a file in parts of `part` bytes. Returns the reply to the last part.
   Json import(TestClient& client, const std::string& file, std::size_t part = 3'000'000) {
     Json last;
     for (std::size_t at = 0; at < file.size(); at += part) {
@@ -104,7 +105,7 @@ class ReplaySession : public testing::Test {
     const std::vector<std::uint8_t> bytes = write_recording(recording);
     return import(client, std::string(bytes.begin(), bytes.end()));
   }
-  /// Every state that was noted is shown again.
+  /// Expects that the replay shows every noted state.
   void expect_states() {
     for (const auto& [position, expected] : hashes_) {
       seek(position);

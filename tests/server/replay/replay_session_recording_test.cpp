@@ -58,7 +58,8 @@ TEST_F(ReplaySession, RefusesFilesThatAreNoRecordings) {
             "/recording");
 }
 
-/// What no server has written: names that are no text, and commands that belong in no log.
+/// Recordings that no server writes: names that are not UTF-8, and commands that do not belong in a
+/// log.
 TEST_F(ReplaySession, IsNotHarmedByWhatAnybodyMayHaveWritten) {
   live();
   Recording recording = read(exported());
@@ -81,7 +82,7 @@ TEST_F(ReplaySession, IsNotHarmedByWhatAnybodyMayHaveWritten) {
   }
 }
 
-/// States that are larger than a session's limits allow are not unpacked.
+/// The server does not decompress states that exceed the limits of a session.
 TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
   live();
   ServerLimits limits;

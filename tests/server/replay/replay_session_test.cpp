@@ -51,14 +51,14 @@ TEST_F(ReplaySession, PlaysToItsEndAndPauses) {
   EXPECT_EQ(info.at("speed"), 4);
   EXPECT_TRUE(info.at("diverged").is_null());
   EXPECT_EQ(hash(), hashes_.at(position_));
-  // Further steps lead nowhere.
+  // Steps beyond the end have no effect.
   EXPECT_EQ(bob_->result("control.step", {{"ticks", 5}}).at("tick"), 11);
 }
 
 TEST_F(ReplaySession, TellsThoseWhoWereRecordedFromThoseWhoWatch) {
   live();
   open();
-  EXPECT_EQ(joined_.at("participant"), 1);  // a number that Ann has in the recording
+  EXPECT_EQ(joined_.at("participant"), 1);  // Ann has the same number in the recording
   seek(first_ + 5);
   Json people = bob_->result("replay.info").at("people");
   ASSERT_EQ(people.size(), 1U);
@@ -75,7 +75,7 @@ TEST_F(ReplaySession, TellsThoseWhoWereRecordedFromThoseWhoWatch) {
   ASSERT_EQ(watching.size(), 1U);
   EXPECT_EQ(watching[0].at("name"), "Bob");
   EXPECT_EQ(watching[0].at("grabs"), Json::array());
-  // Who watches leaves without a trace in what is shown.
+  // Viewers do not change the shown state.
   {
     TestClient carl(server_, 3);
     carl.result("session.join", {{"session", "r1"}});
@@ -136,7 +136,7 @@ TEST_F(ReplaySession, TellsOfItsPeopleTenTimesASecondAtMost) {
   const auto told_of_seeks = [&] {
     bob_->mark();
     server_.clock().advance(std::chrono::milliseconds(100));
-    // Somebody holds something at one of the two positions, and nobody does at the other.
+    // A grab is active at one of the two positions, and none at the other.
     for (int i = 0; i < kSeeks; ++i) seek(first_ + (i % 2 == 0 ? 5 : 9));
     return bob_->events("replay.people").size();
   };

@@ -24,7 +24,7 @@ TEST_F(ReplayTest, EndsInTheStateOfTheSession) {
   EXPECT_GT(replay.compared, 0U);
 }
 
-/// With the moments of the recording, and with those that it keeps as it plays alone.
+/// Seeks with the moments of the recording, and with those that the player stores itself.
 class SeekTest : public ReplayTest, public testing::WithParamInterface<bool> {};
 
 TEST_P(SeekTest, LeadsToTheSameStatesFromAnywhere) {
@@ -81,7 +81,7 @@ TEST_F(ReplayTest, TellsTheFirstTickThatDiffers) {
   Replay replay(recording, environment_);
   try {
     replay.player.play_to(replay.core, recording.end, kGoOn);
-    ADD_FAILURE() << "nothing was noticed";
+    ADD_FAILURE() << "the difference was not detected";
   } catch (const Diverged& difference) {
     EXPECT_EQ(replay.core.run().position(), gravity->position + 1);
     EXPECT_NE(std::string(difference.what()).find("at tick 6 "), std::string::npos)
@@ -90,7 +90,7 @@ TEST_F(ReplayTest, TellsTheFirstTickThatDiffers) {
   }
 }
 
-/// Why going to a position fails.
+/// Returns the error of a seek to a position.
 std::string fault_of_seek(ReplayPlayer& player, SessionCore& core, std::uint64_t position) {
   try {
     player.begin_seek(core, position);
@@ -119,7 +119,7 @@ TEST_F(ReplayTest, RefusesAMomentThatTellsOfAnotherPlace) {
   }
 }
 
-/// What a session had more of later than its scene has counts where a replay goes there.
+/// The limits also apply to bodies that the session added after loading its scene.
 TEST_F(ReplayTest, GoesToNoMomentBeyondTheLimits) {
   live();
   const Recording recording = record();

@@ -1,4 +1,4 @@
-// Rules that hold for every method of the protocol: roles, sessions and checks of parameters.
+// Rules for every method of the protocol: roles, sessions and checks of parameters.
 
 #include <gmock/gmock.h>
 
@@ -13,7 +13,8 @@
 namespace vat::test::every_method_test {
 namespace {
 
-/// All parameters of every method that has some, with values that are read without an error.
+/// Returns all parameters of every method that has some, with values that are read without an
+/// error.
 const std::map<std::string_view, Json>& all_params() {
   static const Json kTarget = {0, 0, 0};
   static const std::map<std::string_view, Json> kParams = {
@@ -75,7 +76,7 @@ constexpr Role kRoles[] = {Role::none, Role::viewer, Role::controller, Role::own
 
 class EveryMethod : public AccessTest {
  protected:
-  /// One who has this role in a session of its own, and that session.
+  /// A client with a given role in its own session, and that session.
   struct Cast {
     std::unique_ptr<TestClient> owner, subject;
     std::string session;
@@ -114,7 +115,8 @@ Json params_of(std::string_view method, const std::string& session) {
   return params;
 }
 
-/// For a method of the server it is that which one was let in with: an owner is a controller there.
+/// Returns the role that a method checks. For server methods it is the role at admission, where an
+/// owner is a controller.
 Role counting_role(const Method& method, Role role) {
   const bool is_of_server = method.row.role_source == RoleSource::connection;
   return is_of_server && role == Role::owner ? Role::controller : role;
@@ -139,7 +141,7 @@ TEST_F(EveryMethod, ByEveryRole) {
       }
       EXPECT_NE(code, 1007) << reply;
       EXPECT_EQ(is_refused, counting_role(method, role) < least)
-          << reply << " (does all_params() have the method's?)";
+          << reply << " (all_params() may lack this method)";
       if (!is_refused) continue;
       EXPECT_EQ(code, 1006);
       EXPECT_EQ(error.at("data").at("role"), to_string(counting_role(method, role)));
@@ -157,7 +159,7 @@ TEST_F(EveryMethod, OfASessionNeedsOne) {
   }
 }
 
-/// Of another type than the value.
+/// Returns a value of another type.
 Json wrong_value(const Json& value) {
   if (value.is_string()) return 7;
   return value.is_object() ? Json("x") : Json::object();

@@ -1,5 +1,4 @@
-// Every limit of server.info: the setting that it comes from, and a test that holds it at its
-// value and beyond.
+// Every limit of server.info: its setting, and a test at its value and one beyond.
 
 #include <filesystem>
 #include <fstream>
@@ -16,7 +15,7 @@ namespace {
 struct Limit {
   const char* name;
   const char* setting;  ///< null: fixed by PROTOCOL.md or the core
-  std::string test;     ///< "Suite.Name", as ctest calls it
+  std::string test;     ///< "Suite.Name" as in ctest
 };
 
 const std::vector<Limit>& limit_table() {
@@ -94,10 +93,10 @@ const std::vector<Limit>& limit_table() {
   return kTable;
 }
 
-/// Groups of settings that are no limits of server.info.
+/// Groups of settings that are not limits of server.info.
 const std::set<std::string> kOtherGroups = {"Server", "Access", "Storage"};
 
-/// One more than the least that a setting may be, and so differs from setting to setting.
+/// Returns the minimum of a setting plus one. The values differ between settings.
 double chosen_value(const Setting& setting, std::size_t place) {
   return std::stod(setting.range) + 1 + static_cast<double>(place);
 }
@@ -131,7 +130,7 @@ TEST(LimitTable, HasEveryLimitOfServerInfo) {
   EXPECT_EQ(told, listed);
 }
 
-// All settings are set, each to a value of its own: server.info tells each at its place.
+// Sets all settings to different values. server.info must report each in its member.
 TEST(LimitTable, ServerInfoTellsWhatTheSettingsSay) {
   ServeSettings settings;
   const std::vector<Setting> table = serve_settings(settings);

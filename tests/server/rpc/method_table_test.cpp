@@ -1,4 +1,4 @@
-// The documents and the client's types have the methods of the table, with the same properties.
+// Compares the method table with the documents and the client's types.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ Names all_names() {
   return names_of([](const MethodRow&) { return true; });
 }
 
-/// All matches of the first group.
+/// Returns all matches of the first group.
 Names matches(const std::string& text, const char* pattern) {
   const std::regex regex(pattern);
   Names names;
@@ -46,7 +46,7 @@ Names matches(const std::string& text, const char* pattern) {
   return names;
 }
 
-/// The code spans of the line of PROTOCOL.md that begins with `begin`, after this beginning.
+/// Returns the code spans of the line of PROTOCOL.md that starts with `begin`, after this text.
 Names documented_methods(const std::string& begin) {
   const std::string text = read_file("protocol/PROTOCOL.md");
   const std::size_t at = text.find('\n' + begin);
@@ -97,7 +97,7 @@ TEST(MethodTable, ProtocolDescribesItsMethods) {
 }
 
 TEST(MethodTable, LeastRolesAreThoseOfTheProtocol) {
-  std::map<std::string, Role> documented;  // by method, or by group as "grab.*"
+  std::map<std::string, Role> documented;  // by method, or by group such as "grab.*"
   const std::map<std::string, Role> lines{{"| none (not entered) |", Role::none},
                                           {"| `viewer` |", Role::viewer},
                                           {"| `controller` |", Role::controller},

@@ -1,4 +1,4 @@
-// protocol/schemas/ has what the server has: methods, and errors.
+// Compares protocol/schemas/ with the server: methods and errors.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace vat::test::schemas_test {
 namespace {
 
-/// The definitions of a file of schemas; empty where there is none.
+/// Returns the definitions of a schema file; empty if there are none.
 Json definitions(const std::string& name) {
   std::ifstream file(VAT_SOURCE_DIR "/protocol/schemas/" + name);
   return file ? Json::parse(file).at("$defs") : Json::object();
@@ -64,7 +64,7 @@ TEST(Schemas, HaveTheErrorsOfTheTable) {
   EXPECT_EQ(errors.at("reply_error").at("oneOf").size(), error_rows().size());
 }
 
-/// "code kind hint" of each row of PROTOCOL.md's table of errors.
+/// Returns "code kind hint" of each row of PROTOCOL.md's table of errors.
 std::vector<std::string> documented_rows() {
   std::ifstream document(VAT_SOURCE_DIR "/protocol/PROTOCOL.md");
   static const std::regex kRow(R"(\| (-?\d+) \| `(\w+)` \| .* \| (.+) \|)");

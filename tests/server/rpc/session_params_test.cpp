@@ -1,4 +1,4 @@
-// Parameters of each method: what is refused, with which words, and that nothing changes by it.
+// Parameters of each method: rejected values, their messages, and no change of state.
 
 #include "tests/server/fixture/session_fixture.h"
 
@@ -8,8 +8,8 @@ namespace {
 struct BadParams {
   std::string method;
   std::string params;
-  std::string path;     // of the first error
-  std::string message;  // what it contains: the rule that was broken
+  std::string path;     // path of the first error
+  std::string message;  // text that the message contains
   int code = -32602;
   std::string kind = "invalid_params";
 };
@@ -167,7 +167,7 @@ const std::vector<BadParams>& bad_params() {
 
 class BadParameters : public SessionTest {
  protected:
-  /// All that a client can see of the server's state.
+  /// Returns all state of the server that a client can query.
   Json observe() {
     return {client->result("session.hash"), client->result("session.list"),
             client->result("state.query"), client->result("session.join").at("description")};
@@ -227,7 +227,8 @@ TEST_F(GoodParameters, TheStateHasAllThatTheProtocolNames) {
   const Json& ball = state.at("bodies").at(0);
   EXPECT_EQ(ball.at("name"), "ball");
   ASSERT_EQ(ball.at("center_of_mass").size(), 3u);
-  // Of a symmetric lattice of fewer than a hundred particles: exact but for rounding.
+  // The lattice is symmetric, so the sums of less than a hundred particles are exact except for
+  // rounding.
   for (const Json& x : ball.at("center_of_mass")) EXPECT_NEAR(x.get<double>(), 0.7, 1e-14);
   EXPECT_EQ(ball.at("orientation"), Json({1, 0, 0, 0}));
   EXPECT_EQ(ball.at("velocity"), Json({0, 0, 0}));

@@ -1,4 +1,4 @@
-// What the server makes of each text that a client can send.
+// Replies of the server to every kind of text.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 struct BadText {
   std::string text;
   int code;
-  Json id;  // of the reply
+  Json id;  // id of the reply
 };
 
 std::string nested(std::size_t depth) {

@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The reason, or "" for a match.
+/// Returns the reason of a mismatch, or "" for a match.
 std::string reason(const char* pattern, const char* value, Captures captures = {}) {
   return mismatch(Json::parse(pattern), Json::parse(value), captures).value_or("");
 }
@@ -67,7 +67,7 @@ TEST(Pattern, ToleranceOfEachNumberInAList) {
 }
 
 TEST(Pattern, OrientationsWithinAnAngle) {
-  // A turn about z by 0.2 rad, by its half angle.
+  // A rotation about z by 0.2 rad, from its half angle.
   const char* turned = "[0.995004165278, 0, 0, 0.0998334166468]";
   EXPECT_TRUE(matches(R"({"$turned": [[1, 0, 0, 0], 0.2001]})", turned));
   EXPECT_FALSE(matches(R"({"$turned": [[1, 0, 0, 0], 0.1999]})", turned));

@@ -14,7 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Answers as a test says, at once.
+/// A client whose replies the test defines. It replies immediately.
 class FakeClient final : public Client {
  public:
   using Answer = std::function<std::vector<Message>(const std::string& sent)>;
@@ -51,9 +51,9 @@ Message frame(std::uint32_t number, std::uint32_t epoch) {
   return {Message::Kind::binary, std::string(bytes.begin(), bytes.end()), 0};
 }
 
-/// A server that answers {"say": [...]} by those messages: an object is sent as it stands, a list
-/// [number, epoch] as a key frame, a number closes, a text is sent raw. A request with an id and a
-/// method is answered by its params.
+/// A server that replies to {"say": [...]} with these messages. An object is sent unchanged, a list
+/// [number, epoch] as a key frame, a text as raw text. A number closes the connection. The reply to
+/// a request with id and method contains its params.
 std::vector<Message> answer(const std::string& sent) {
   const Json message = Json::parse(sent, nullptr, false);
   if (!message.is_object()) return {{Message::Kind::closed, "garbage", 1002}};
@@ -70,7 +70,7 @@ std::vector<Message> answer(const std::string& sent) {
   return messages;
 }
 
-/// What ends a script after {"connect": "a"}; "" where it ends well.
+/// Returns the error that ends a script after {"connect": "a"}; "" if the script succeeds.
 std::string outcome(const std::vector<const char*>& lines) {
   Player player(
       [](const ConnectRequest& request) -> Connected {
@@ -235,7 +235,7 @@ TEST(ReadDocument, TakesTheScriptAfterTheHeading) {
 }
 
 TEST(Player, WaitsForTicks) {
-  // A request is answered by its params: the tick never comes.
+  // The reply contains the request's params, so the tick is missing.
   EXPECT_THAT(outcome({R"({"wait_ticks": 3})"}), HasSubstr("at /result\n  expected a member"));
 }
 

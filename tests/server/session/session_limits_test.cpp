@@ -1,4 +1,4 @@
-// Limits of what clients may ask for together, and how often, at and beyond.
+// Limits of the number and the rate of client requests, at the limit and beyond.
 
 #include "core/limits.h"
 #include "core/validation/validate.h"
@@ -38,8 +38,8 @@ class SessionLimits : public SessionTest {
   }
 };
 
-// A burst passes, the next is refused and changes nothing, and after the time that the refusal
-// names the next one passes.
+// A burst passes. The next message is refused and changes nothing. After the time in the refusal, a
+// message passes.
 TEST_F(SessionLimits, MessagesOfAClassComeSoOften) {
   const auto other = join();
   Json refusal;
@@ -57,8 +57,8 @@ TEST_F(SessionLimits, MessagesOfAClassComeSoOften) {
   const double retry_after = refusal.at("data").at("retry_after");
   EXPECT_GT(retry_after, 0);
   EXPECT_LE(retry_after, 1.0 / 20);
-  other->result("control.pause");  // of another class
-  client->result("session.hash");  // of another connection
+  other->result("control.pause");  // message of another class
+  client->result("session.hash");  // message of another connection
   const auto seconds = [](double s) {
     return std::chrono::ceil<SteadyClock::duration>(std::chrono::duration<double>(s));
   };
@@ -73,7 +73,7 @@ TEST_F(SessionLimits, AControlThatIsRefusedChangesNothing) {
   const auto other = join();
   std::uint64_t steps = 0;
   for (int i = 0; i < 60; ++i) steps += other->call("control.step").contains("result") ? 1 : 0;
-  EXPECT_EQ(steps, 20U - 1) << "a burst of two seconds, of which the join was one";
+  EXPECT_EQ(steps, 20U - 1) << "a burst of two seconds, including the join";
   EXPECT_EQ(tick(), steps);
 }
 
@@ -138,7 +138,7 @@ TEST_F(SharedBudget, ParticlesOfAllSessions) {
   body["position"] = {0.3, 0.7, 0.7};
   expect_limit(client->error("world.add_body", {{"body", body}}), "particles_in_all");
   EXPECT_EQ(hash(), before);
-  client->result("scene.load", {{"scene", "mixed"}});  // in place of as many
+  client->result("scene.load", {{"scene", "mixed"}});  // replaces the same number of particles
   client->result("session.close", {{"session", "s2"}});
   client->result("world.add_body", {{"body", body}});
   expect_limit(client->error("session.create", {{"name", "n"}, {"scene", "mixed"}}),
@@ -147,7 +147,7 @@ TEST_F(SharedBudget, ParticlesOfAllSessions) {
   client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
 }
 
-// What a session may go back to stays its own.
+// A session reserves the particles of its scene, even if bodies are removed.
 TEST_F(SharedBudget, ARemovedBodyLeavesRoomForAReset) {
   client->result("world.remove_body", {{"body", 1}});
   client->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
@@ -173,9 +173,9 @@ TEST_F(FewParticles, AreThoseOfABodyThatIsAddedToo) {
   EXPECT_EQ(client->result("session.join").at("description").at("epoch"), 2);
 }
 
-// Limits to the unit: what has just the value passes, one more does not.
+// Exact limits: a message at the limit passes, and one beyond is refused.
 
-/// A request as text, with so many bytes.
+/// Returns a request as text with a given number of bytes.
 std::string request(std::string_view id, std::string_view method, std::size_t bytes,
                     const Json& params = Json::object()) {
   const Json message{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}};
@@ -197,14 +197,14 @@ class MessageLimits : public SessionTest {
   }
   MessageLimits() : SessionTest(limits()) {}
 
-  /// The next reply to this id, or to null.
+  /// Returns the next reply with this id or with null.
   Json answer(const std::string& text, const Json& id) {
     const std::size_t from = client->connection->texts().size();
     client->send_raw(text, id.is_null());
     return client->connection->wait_text(
         [&](const Json& reply) { return reply.contains("id") && reply.at("id") == id; }, from);
   }
-  /// What is wrong with a text that is no request.
+  /// Returns the error data of a text that is not a request.
   Json fault(const std::string& text) { return answer(text, nullptr).at("error").at("data"); }
 };
 
@@ -220,7 +220,7 @@ TEST_F(MessageLimits, BytesOfAMessage) {
   EXPECT_EQ(too_long.at("maximum"), 3000);
 }
 
-// Lists within each other, and a list of ones, are read as batches, which are refused.
+// Nested lists and a list of numbers are read as batches. Batches are refused.
 TEST_F(MessageLimits, DepthAndValuesOfAMessage) {
   EXPECT_EQ(fault(std::string(20, '[') + std::string(20, ']')).at("kind"), "invalid_request");
   EXPECT_EQ(fault(std::string(21, '[') + std::string(21, ']')).at("reason"), "too_deep");
@@ -250,7 +250,7 @@ struct SceneLimit {
   std::size_t needed;
 };
 
-// A session of the scene, of which one needs just as much.
+// The scene needs exactly the limit.
 TEST(SceneLimits, HoldAtTheirValueAndNotBeyond) {
   const Scene scene = to_scene(mixed_scene_text());
   const Simulation simulation = Simulation::create(scene).value();

@@ -1,5 +1,5 @@
-// Sessions that come back: a second server on the data folder of a first one that was not asked to
-// end its sessions, as after a crash; what it kept is copied while it runs.
+// Recovery of sessions after a crash: the test copies the data folder of a running server, and
+// starts a second server on the copy.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-/// A server on a data folder, with one client in its session s1.
+/// A server on a data folder, and a client in its session s1.
 class Life {
  public:
   Life(const Catalogue& catalogue, const std::string& folder, ManualClock& clock,
@@ -36,7 +36,7 @@ class Life {
 
   std::string hash() { return client->result("session.hash").at("hash"); }
   std::uint64_t tick() { return client->result("session.hash").at("tick"); }
-  /// What was posted is written then.
+  /// Waits until all posted data is written.
   void flush() { server_.flush(); }
 
  private:
@@ -52,10 +52,11 @@ class Life {
   Json joined;
 };
 
-/// What is written at this moment, as a crash leaves it.
+/// Copies the data as it is at this moment, as after a crash.
 void copy_data(const std::string& from, const std::string& to) {
   fs::create_directories(to);
-  for (const std::string name : {"/checkpoints.db", "/vat.db"}) {  // no checkpoint before its log
+  for (const std::string name :
+       {"/checkpoints.db", "/vat.db"}) {  // a checkpoint must not precede its log
     Database(from + name, Database::Mode::create)
         .execute(("VACUUM INTO '" + to + name + "'").c_str());
   }
@@ -65,7 +66,7 @@ class SessionRecoveryTest : public testing::Test {
  protected:
   SessionRecoveryTest() : catalogue(make_catalogue()) {}
 
-  /// Ends the present life as a crash does, and begins the next.
+  /// Ends the present server as a crash does, and starts the next.
   void crash(ServerLimits limits = {}) {
     const std::string next = folder.file("data" + std::to_string(++lives_));
     life->flush();
@@ -120,7 +121,7 @@ TEST_F(SessionRecoveryTest, CommandsAndTicksThatWereAnsweredAreThere) {
   EXPECT_EQ(life->joined.at("description").at("name"), "first");
   EXPECT_GT(life->joined.at("description").at("epoch"), epoch);
   EXPECT_TRUE(client().events("session.diverged").empty());
-  // And it goes on as it would have.
+  // The session continues without a difference.
   client().result("control.step", {{"ticks", 4}});
   const std::string later = life->hash();
   crash();
@@ -158,7 +159,7 @@ TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
   crash(impatient);
   EXPECT_TRUE(client().call("grab.move", {{"grab", 1}, {"target", {0, 0, 0}}}).contains("error"));
   clock.advance(500ms);  // to the next status
-  EXPECT_NE(life->hash(), held) << "the grab still pulls";
+  EXPECT_NE(life->hash(), held) << "the grab still acts";
   const std::string free = life->hash();
   crash();
   EXPECT_EQ(life->hash(), free);
@@ -167,7 +168,7 @@ TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
 TEST_F(SessionRecoveryTest, WhatWasAcceptedIsAcceptedAgainAndWhatWasRefusedIsNot) {
   ServerLimits few;
   const Simulation alone = Simulation::create(to_scene(mixed_scene_text())).value();
-  few.max_particles = alone.particle_count() + 2;  // too few for a second ball
+  few.max_particles = alone.particle_count() + 2;  // not enough for a second ball
   life.emplace(catalogue, data, clock, few);
   client().result("control.pause");
   EXPECT_EQ(client().error("world.add_body", {{"body", kBall}}).at("data").at("kind"),
@@ -193,7 +194,7 @@ TEST_F(SessionRecoveryTest, ACrashBetweenARefusalAndItsMarkIsNoDivergence) {
   crash();
   EXPECT_TRUE(client().events("session.diverged").empty());
   EXPECT_EQ(life->hash(), before);
-  // It is marked now: others may come behind it.
+  // The entry is marked now, so others may follow it.
   client().result("control.step", {{"ticks", 2}});
   crash();
   EXPECT_TRUE(client().events("session.diverged").empty());
@@ -221,7 +222,7 @@ TEST_F(SessionRecoveryTest, ASessionThatPlaysIsBackAtMostASecondEarlierAndPlays)
   const Json& description = life->joined.at("description");
   EXPECT_TRUE(description.at("playing"));
   EXPECT_EQ(description.at("speed"), 2);
-  EXPECT_GE(description.at("tick").get<std::uint64_t>() + 101, seen);  // a beat, and a tick
+  EXPECT_GE(description.at("tick").get<std::uint64_t>() + 101, seen);  // a heartbeat and a tick
 }
 
 TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
@@ -247,7 +248,7 @@ TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
   crash();
   EXPECT_EQ(life->hash(), start);
 
-  // The way before the newest checkpoint is not gone again: it may be damaged.
+  // Recovery skips the log before the newest checkpoint. This part may be damaged.
   life.reset();
   execute("UPDATE log SET params = 'damaged' WHERE sequence BETWEEN 3 AND 5");
   begin();
@@ -280,13 +281,13 @@ TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTel
   EXPECT_NE(told.at("reason").get<std::string>().find("hash"), std::string::npos) << told;
   EXPECT_FALSE(life->joined.at("description").at("playing"));
   EXPECT_EQ(client().error("session.save", {{"name", "n"}}).at("data").at("kind"), "not_allowed");
-  life.reset();  // nobody has touched it
+  life.reset();  // no client has used the session
   begin();
   client().wait_event("session.diverged");
   client().result("control.reset");
   client().result("control.step", {{"ticks", 2}});
   const std::string after = life->hash();
-  crash();  // it goes on from there
+  crash();  // the session continues from there
   EXPECT_EQ(life->hash(), after);
   EXPECT_TRUE(client().events("session.diverged").empty());
 }
@@ -326,7 +327,7 @@ TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
   client().result("control.pause");
   client().result("control.step", {{"ticks", 1000}});
   life.reset();
-  execute("DELETE FROM checkpoints", "/checkpoints.db");  // all ticks are to be run again
+  execute("DELETE FROM checkpoints", "/checkpoints.db");  // all ticks have to be repeated
   TestServer server(catalogue, test_settings({}, data));
   EXPECT_EQ(server.recover(), 1U);
   EXPECT_FALSE(server.is_ready());
@@ -343,7 +344,7 @@ TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
 TEST_F(SessionRecoveryTest, AClosedSessionStaysAwayAndANewOneGetsAnotherId) {
   begin();
   client().result("session.create", {{"name", "second"}, {"scene", "mixed"}});
-  client().result("session.join", {{"session", "s2"}});  // as its owner
+  client().result("session.join", {{"session", "s2"}});  // joins as the owner
   client().result("session.close", {{"session", "s2"}});
   crash();
   const Json sessions = client().result("session.list").at("sessions");
@@ -361,7 +362,7 @@ TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
   EXPECT_EQ(before.at("role"), "owner");
   client().result("session.configure", {{"name", "hers"}, {"locked", true}});
   client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
-  clock.advance(1s);  // it is then noted who is there
+  clock.advance(1s);  // time after which the present participants are stored
   crash();
   const Json after = client().result(
       "session.join", {{"session", made.at("session")}, {"resume", before.at("resume")}});

@@ -1,4 +1,4 @@
-// Sessions step on threads of their own first, and help one another with the rest.
+// A session's step runs on its own thread first. Free threads then help other sessions.
 
 #include <filesystem>
 #include <fstream>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kTicks = 10;
 
-/// Some thousand particles, so that a pass is worth a helper.
+/// A scene of some thousand particles, so that waking a helper is worthwhile.
 Scene pool_scene() {
   return to_scene(R"({
     "format": "vat.scene/1", "name": "pool", "title": "Pool",
@@ -31,7 +31,7 @@ ServerSettings with_threads(std::size_t threads) {
   return settings;
 }
 
-/// Processor time of the threads that do nothing but help [ns].
+/// Returns the processor time of the helper threads [ns].
 double helper_time() {
   double total = 0;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -46,7 +46,7 @@ double helper_time() {
 
 class SessionThreads : public testing::Test {
  protected:
-  /// Starts a paused session at tick 0, and a client in it.
+  /// Starts a paused session at tick 0 with one client.
   std::unique_ptr<TestClient> start(TestServer& server) {
     const SessionId id = server.create_session("pool", pool_scene()).value();
     auto client = std::make_unique<TestClient>(server, ++last_connection_);
@@ -72,7 +72,8 @@ TEST_F(SessionThreads, ALoneSessionIsHelped) {
   const auto client = start(server);
   const double before = helper_time();
   client->result("control.step", {{"ticks", kTicks}});
-  EXPECT_GT(helper_time(), before + 1e6) << "of some hundred milliseconds of work";
+  EXPECT_GT(helper_time(), before + 1e6)
+      << "helpers take part in some hundred milliseconds of work";
   EXPECT_EQ(client->result("session.hash").at("hash"), expected_hash());
 }
 

@@ -33,7 +33,7 @@ TEST(SlowTickGate, WhoFindsNoPlaceGetsTheFirstThatIsFree) {
   EXPECT_EQ(ticks.take(wake(4)), nullptr);
   second.reset();
   EXPECT_EQ(order, (std::vector<int>{3}));
-  EXPECT_EQ(ticks.take(wake(5)), nullptr) << "it is not the first in the line";
+  EXPECT_EQ(ticks.take(wake(5)), nullptr) << "not the first in the queue";
   first.reset();
   EXPECT_EQ(order, (std::vector<int>{3, 4}));
   std::vector<SlowTickGate::Place> gone = std::move(given);
@@ -48,7 +48,7 @@ TEST(SlowTickGate, APlaceThatNobodyTakesGoesToTheNext) {
   SlowTickGate ticks(1);
   SlowTickGate::Place place = ticks.take([](const SlowTickGate::Place&) {});
   bool came = false;
-  ticks.take([](const SlowTickGate::Place&) {});  // has gone meanwhile
+  ticks.take([](const SlowTickGate::Place&) {});  // has been released meanwhile
   ticks.take([&](const SlowTickGate::Place&) { came = true; });
   place.reset();
   EXPECT_TRUE(came);
@@ -84,7 +84,7 @@ TEST(SlowTickGate, NeverMoreAtOnceThanThereArePlaces) {
   EXPECT_LE(most, kPlaces);
 }
 
-// Sessions whose ticks take long, and the places for such ticks.
+// Sessions with slow ticks, and the slots for such ticks.
 
 /// A block of liquid whose ticks take tens of milliseconds.
 Scene heavy_scene() {
@@ -128,7 +128,7 @@ TEST_F(SessionPlaces, ALongTickWaitsForItsPlaceAndAShortOneDoesNot) {
   run_ticks(2);
   EXPECT_EQ(heavy->summary().tick, 2U);
   SlowTickGate::Place taken = places.take([](const SlowTickGate::Place&) {});
-  ASSERT_NE(taken, nullptr) << "a place is given back after each tick";
+  ASSERT_NE(taken, nullptr) << "each tick releases its slot";
   run_ticks(3);
   EXPECT_EQ(heavy->summary().tick, 2U);
   EXPECT_EQ(light->summary().tick, 5U);

@@ -27,7 +27,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPeriod{20};
 const Time kStart{std::chrono::hours(1)};
 
-/// Runs due ticks of a given duration until `end`; how many there were.
+/// Runs due ticks of a given duration until `end`. Returns their number.
 int run_until(TickClock& clock, Time end, milliseconds duration) {
   int ticks = 0;
   for (Time now = kStart; clock.due() < end; ++ticks) {
@@ -41,7 +41,7 @@ TEST(TickClock, FastTicksKeepTheSchedule) {
   TickClock clock;
   clock.start(kStart, kPeriod);
   EXPECT_EQ(clock.due(), kStart + kPeriod);
-  // Due at 20, 40, ... 980 ms: no drift by the ticks' own 5 ms.
+  // Due at 20, 40, ... 980 ms: the ticks' duration of 5 ms causes no drift.
   EXPECT_EQ(run_until(clock, kStart + milliseconds(1000), milliseconds(5)), 49);
   EXPECT_EQ(clock.due(), kStart + milliseconds(1000));
 }
@@ -50,7 +50,7 @@ TEST(TickClock, ATickThatIsALittleLateIsMadeUpFor) {
   TickClock clock;
   clock.start(kStart, kPeriod);
   clock.tick_done(clock.due() + milliseconds(35));
-  EXPECT_EQ(clock.due(), kStart + milliseconds(40)) << "due in the past: runs at once";
+  EXPECT_EQ(clock.due(), kStart + milliseconds(40)) << "due in the past, so it runs immediately";
   clock.tick_done(kStart + milliseconds(57));
   EXPECT_EQ(clock.due(), kStart + milliseconds(60)) << "on time again";
 }
@@ -60,13 +60,13 @@ TEST(TickClock, ALongPauseIsNotMadeUpFor) {
   clock.start(kStart, kPeriod);
   const Time late = kStart + milliseconds(10'000);
   clock.tick_done(late);
-  EXPECT_EQ(clock.due(), late - kPeriod) << "one period is made up for";
+  EXPECT_EQ(clock.due(), late - kPeriod) << "at most one period is made up";
   clock.tick_done(late);
   clock.tick_done(late);
   EXPECT_GT(clock.due(), late);
 }
 
-// No spiral: ticks of three periods run one after the other, and the delay does not grow.
+// Ticks of three periods run one after the other, and the delay does not grow.
 TEST(TickClock, TicksSlowerThanRealTimeRunInSlowMotion) {
   TickClock clock;
   clock.start(kStart, kPeriod);
@@ -76,7 +76,7 @@ TEST(TickClock, TicksSlowerThanRealTimeRunInSlowMotion) {
     clock.tick_done(now);
     EXPECT_LE(now - clock.due(), kPeriod);
   }
-  // As soon as ticks are fast again there are two to make up for, not two thousand.
+  // When ticks are fast again, two ticks are made up, not two thousand.
   int at_once = 0;
   for (; clock.due() <= now; ++at_once) clock.tick_done(now);
   EXPECT_EQ(at_once, 2);
@@ -85,7 +85,7 @@ TEST(TickClock, TicksSlowerThanRealTimeRunInSlowMotion) {
 TEST(TickClock, ThePeriodFollowsTheSpeed) {
   for (const double speed : {0.05, 0.3, 1.0, 4.0}) {
     const std::chrono::duration<double> period = tick_period(0.02, speed);
-    EXPECT_NEAR(period.count(), 0.02 / speed, 1e-9);  // the clock's resolution
+    EXPECT_NEAR(period.count(), 0.02 / speed, 1e-9);  // resolution of the clock
   }
   EXPECT_GT(tick_period(1e-12, 4), SteadyClock::duration::zero());
 }
@@ -127,11 +127,11 @@ TEST(RateMeter, DoesNotCallTheFirstTicksSlow) {
   EXPECT_TRUE(meter.slower_than(1));
 }
 
-constexpr std::uint64_t kStages = 10;  // a tick of these tests
+constexpr std::uint64_t kStages = 10;  // stages per tick
 
 class TickProfileTest : public testing::Test {
  protected:
-  /// True where the tick was looked at.
+  /// Returns true if the profile sampled the tick.
   bool tick(StageClock::Clock::duration time) {
     StageObserver* observer = profile.next_observer();
     for (std::uint64_t s = 0; s < kStages && observer != nullptr; ++s) {
@@ -144,7 +144,7 @@ class TickProfileTest : public testing::Test {
     profile.tick_done(time, report, metrics);
     return observer != nullptr;
   }
-  /// Of `count` ticks, how many were looked at.
+  /// Returns the number of sampled ticks.
   int looks(int count, StageClock::Clock::duration time) {
     int looked_at = 0;
     for (int i = 0; i < count; ++i) looked_at += tick(time) ? 1 : 0;
@@ -167,7 +167,7 @@ TEST_F(TickProfileTest, CountsEveryTick) {
   EXPECT_NE(metrics.to_text({}).find("vat_tick_duration_seconds_count 5\n"), std::string::npos);
 }
 
-// 10 stages at 40 ns are half a percent of 80 us.
+// 10 stages of 40 ns each are half a percent of 80 us.
 TEST_F(TickProfileTest, LooksAtEveryLongTick) {
   EXPECT_EQ(looks(100, 81us), 100);
   ASSERT_EQ(profile.totals().stages.size(), 1U);
@@ -189,11 +189,11 @@ TEST_F(TickProfileTest, LooksAtTheShortestTicksNowAndThen) {
 
 TEST_F(TickProfileTest, LooksMoreOftenWhereTicksGrowLonger) {
   looks(50, 1us);
-  looks(100, 1ms);  // one look at least
+  looks(100, 1ms);  // at least one sample
   EXPECT_EQ(looks(10, 1ms), 10);
 }
 
-/// The time that a stage clock of these tests reads.
+/// The time of the stage clock in these tests.
 Clock::time_point test_time;
 Clock::time_point read_test_time() {
   return test_time;
@@ -209,7 +209,7 @@ TEST(StageClock, ChargesEachStageUntilTheNext) {
   clock.stage_begins(copy);
   test_time += 10ms;
   clock.stages_end();
-  test_time += 500ms;  // between calls: no stage's
+  test_time += 500ms;  // between calls, so it belongs to no stage
   clock.stage_begins("second");
   test_time += 2ms;
   clock.stages_end();
@@ -227,8 +227,8 @@ Clock::time_point processor_time() {
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(thread_time()));
 }
 
-// All of a call is charged to some stage, with each control of the step. Processor time of the
-// thread: other work on the machine takes none of it.
+// The stages account for the complete call, with each step control. The clock measures the thread's
+// processor time, so other processes do not affect it.
 TEST(StageClock, NothingOfAStepIsLeftOut) {
   for (const StepControl control :
        {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
@@ -247,7 +247,7 @@ TEST(StageClock, NothingOfAStepIsLeftOut) {
   }
 }
 
-// The context ends when no timer is waiting any more.
+// The context ends if no timer is pending.
 TEST(SystemClock, TimersRunTheirTaskOnceAndInTime) {
   boost::asio::io_context io;
   SystemClock clock;

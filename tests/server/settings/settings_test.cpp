@@ -1,4 +1,4 @@
-// Settings from a file, the environment and options, and the page that lists them.
+// Settings from a file, the environment and options, and the document that lists them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -89,7 +89,7 @@ TEST_F(Settings, ValuesOutOfRangeNameTheRange) {
   EXPECT_FALSE(apply_file(table, "/no/such/file", sources));
 }
 
-// The ends of every range, and one beyond.
+// The ends of every range, and one beyond each.
 TEST_F(Settings, RangesHoldAtTheirEnds) {
   for (const Setting& setting : table) {
     if (!setting.is_number) continue;

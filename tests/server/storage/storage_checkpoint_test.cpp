@@ -21,7 +21,7 @@ namespace {
 
 using Seconds = CheckpointPace::Seconds;
 
-/// Bytes that do not shrink.
+/// Returns incompressible bytes.
 std::vector<std::uint8_t> noise(std::size_t count) {
   std::vector<std::uint8_t> bytes(count);
   std::uint32_t x = 1;
@@ -93,7 +93,7 @@ TEST_F(StorageCheckpoints, HaveHashesThatEndWhereTheSessionGoesOn) {
   EXPECT_EQ(store.hash_count(7), 4U);
   store.write_hashes(7, std::vector<TickHash>{{CheckpointStore::kMaxHashes + 4,
                                                3 * (CheckpointStore::kMaxHashes + 4)}});
-  EXPECT_EQ(hash_positions(store).front(), 4U);  // the rows before end too far back
+  EXPECT_EQ(hash_positions(store).front(), 4U);  // earlier rows end too far back
   store.keep_only({8});
   EXPECT_EQ(store.hash_count(7), 0U);
   EXPECT_EQ(store.hash_count(8), 1U);
@@ -105,12 +105,12 @@ TEST_F(StorageCheckpoints, BeyondTheirBytesTheyAreThinnedEvenly) {
     store.write(checkpoint(1, position, 1000));
   }
   const std::vector<std::uint64_t> kept = positions(store, 1);
-  ASSERT_GE(kept.size(), 9U);  // each takes some bytes more than 1000
+  ASSERT_GE(kept.size(), 9U);  // each takes slightly more than 1000 bytes
   ASSERT_LE(kept.size(), 10U);
   EXPECT_EQ(kept.front(), 0U);
   EXPECT_EQ(kept.back(), 64U);
-  // Of ten with the least gaps merged first none is wider than twice what an even share would be,
-  // doubled: intervals are powers of two.
+  // Merging the smallest gaps first keeps ten checkpoints. The widest gap is at most four times an
+  // even share, since intervals are powers of two.
   for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_LE(kept[i] - kept[i - 1], 4U * 64 / 9);
 }
 
@@ -139,7 +139,7 @@ TEST_F(StorageCheckpoints, ADamagedOneIsToldByItsKind) {
   database.execute("UPDATE checkpoints SET state = CAST(substr(state, 1, 900) AS BLOB)");
   try {
     store.read(store.places(1).at(0));
-    ADD_FAILURE() << "it was read";
+    ADD_FAILURE() << "a damaged checkpoint was read";
   } catch (const StorageError& error) {
     EXPECT_EQ(error.kind(), StorageError::Kind::corrupt);
   }
@@ -162,11 +162,11 @@ TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
 }
 
 struct Course {
-  double share = 0;  ///< of checkpoints in all work
+  double share = 0;  ///< fraction of checkpoints in all work
   Seconds longest{0};
 };
 
-/// A session that works in ticks of `tick` for so long, and whose checkpoints cost so much.
+/// Simulates a session with ticks of `tick` for `length`. A checkpoint takes `cost`.
 Course follow(CheckpointPace pace, Seconds tick, Seconds cost, Seconds length) {
   Course course;
   Seconds since{0};
@@ -195,9 +195,9 @@ TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
   for (const double cost : {0.01, 0.02, 0.05, 0.1}) {
     const Course course =
         follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(cost), Seconds(1000));
-    // Sums of a million roundings.
+    // Tolerance for a million roundings.
     EXPECT_LE(course.share, CheckpointPace::kMaxShare * (1 + 1e-9)) << cost;
-    // And no less than one tick in the time between two of them.
+    // At least the share minus one tick per checkpoint interval.
     EXPECT_GE(course.share, CheckpointPace::kMaxShare * 0.97 - cost / 1000) << cost;
   }
 }
@@ -223,7 +223,7 @@ class BoundedLog : public testing::Test {
     limits.log_bytes = 1000;
     return limits;
   }
-  /// Commands of 100 bytes each.
+  /// Appends commands of 100 bytes each.
   void append(SessionLog& log, int count) {
     for (int i = 0; i < count; ++i) {
       LogEntry entry{0, 5, 5, 1, "world.set_gravity", std::string(100, ' '), false};
@@ -269,7 +269,7 @@ TEST_F(BoundedLog, BeyondItsLimitItBeginsAtTheCheckpointAndKeepsTheScene) {
   EXPECT_EQ(sequences(), std::vector<std::uint64_t>({4, 14, 15}));
   ASSERT_FALSE(storage.checkpoints().places(number).empty());
   EXPECT_EQ(storage.checkpoints().places(number).back().sequence, 13U);
-  keep(log, 4);  // it is small again
+  keep(log, 4);  // the log is short again
   EXPECT_EQ(sequences().size(), 3U);
 }
 

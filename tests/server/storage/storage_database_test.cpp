@@ -1,4 +1,4 @@
-// What a database is opened as, and what is refused; transactions.
+// Opening a database, refused files, and transactions.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "server/storage/sqlite/schema.h"
 #include "server/storage/session_store.h"
+#include "server/storage/sqlite/schema.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test::storage_database_test {
@@ -31,7 +31,7 @@ std::string content_of(const std::string& path) {
   return std::move(text).str();
 }
 
-/// The kind of the error that opening gives; fails the test where it gives none.
+/// Returns the kind of the error of opening. Fails the test if there is no error.
 StorageError::Kind refusal(const std::string& path, const Schema& schema) {
   try {
     open_database(path, schema);
@@ -140,7 +140,7 @@ TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsToldByItsKind) {
   }
   EXPECT_EQ(kind, StorageError::Kind::full);
   EXPECT_EQ(database.number("SELECT count(*) FROM things"), 0);
-  Transaction transaction(database);  // and it goes on
+  Transaction transaction(database);  // the database remains usable
   database.execute("INSERT INTO things VALUES ('short')");
   transaction.commit();
   EXPECT_EQ(database.number("SELECT count(*) FROM things"), 1);
@@ -180,7 +180,7 @@ TEST_F(StorageSessions, ComeBackWithAllThatWasWritten) {
     store.append(number, entry(2, 10, R"({"gravity":[0,0,-1]})"));
     store.write_progress(number, {12, 11, 2, 0xfedcba9876543210, 4, true, 0.5, "[1]"});
     store.reach(number, 20);
-    store.reach(number, 15);  // earlier: it was further already
+    store.reach(number, 15);  // earlier than the stored position
   }
   SessionStore store(path);
   const std::vector<StoredSession> sessions = store.sessions();
@@ -270,7 +270,8 @@ TEST_F(StorageSessions, ATrimmedLogKeepsWhatLaterEntriesBuildOn) {
 TEST_F(StorageSessions, EntriesOfOneCallAreWrittenTogetherOrNotAtAll) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
-  const std::vector<LogEntry> entries = {entry(2, 1), entry(3, 1), entry(2, 1)};  // 2 twice
+  const std::vector<LogEntry> entries = {entry(2, 1), entry(3, 1),
+                                         entry(2, 1)};  // sequence 2 occurs twice
   EXPECT_THROW(store.append(number, entries), StorageError);
   EXPECT_EQ(sequences(store, number).size(), 1U);
   store.append(number, entry(2, 1));
@@ -299,14 +300,14 @@ TEST_F(StorageSessions, AFullDiskRefusesAndLosesNothing) {
   EXPECT_EQ(sequences(store, number).size(), written + 1);
 }
 
-/// Fails the test where one is missing.
+/// Fails the test if an entry is missing.
 std::uint64_t last_sequence(SessionStore& store, std::uint64_t session) {
   const std::vector<std::uint64_t> all = sequences(store, session);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i + 1);
   return all.size();
 }
 
-/// Appends entries until it is killed, and tells the number of each that is in.
+/// Appends entries until the process is killed. Writes the number of each stored entry to `told`.
 [[noreturn]] void append_for_ever(const std::string& path, int told) {
   SessionStore store(path);
   const std::uint64_t number = store.sessions().at(0).number;
@@ -329,7 +330,7 @@ TEST_F(StorageSessions, WhatWasWrittenSurvivesTheEndOfTheProcessAtAnyMoment) {
     if (child == 0) append_for_ever(path, ends[1]);
     ASSERT_GT(child, 0);
     close(ends[1]);
-    for (int i = 0; i < 20 + 7 * round; ++i) {  // so long it lives at least
+    for (int i = 0; i < 20 + 7 * round; ++i) {  // minimum lifetime
       ASSERT_EQ(read(ends[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
     }
     kill(child, SIGKILL);
@@ -340,7 +341,7 @@ TEST_F(StorageSessions, WhatWasWrittenSurvivesTheEndOfTheProcessAtAnyMoment) {
     SessionStore store(path);
     const std::uint64_t present = last_sequence(store, 1);
     EXPECT_GE(present, last);
-    EXPECT_LE(present, last + 1);  // one may be in and not be told
+    EXPECT_LE(present, last + 1);  // the last entry may be stored but not reported
   }
 }
 

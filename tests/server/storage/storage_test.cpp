@@ -57,7 +57,7 @@ TEST(StorageFolder, IsOneServersAtATime) {
     const DataFolder first(path);
     try {
       const DataFolder second(path);
-      ADD_FAILURE() << "both have it";
+      ADD_FAILURE() << "two servers have locked the folder";
     } catch (const StorageError& error) {
       EXPECT_EQ(error.kind(), StorageError::Kind::locked);
     }
@@ -67,8 +67,8 @@ TEST(StorageFolder, IsOneServersAtATime) {
 
 TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
   try {
-    const DataFolder folder("/proc/vat");  // nobody may, root neither
-    ADD_FAILURE() << "it was made";
+    const DataFolder folder("/proc/vat");  // not writable, even for root
+    ADD_FAILURE() << "the folder was created";
   } catch (const StorageError& error) {
     EXPECT_EQ(error.kind(), StorageError::Kind::read_only);
   }
@@ -100,7 +100,7 @@ TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
   EXPECT_EQ(storage.checkpoints().places(kept).size(), 1U);
 }
 
-/// Its timers are late: a task that is cancelled is queued already.
+/// A clock with late timers: a cancelled task is already queued.
 class LateClock final : public Clock {
  public:
   SteadyClock::time_point now() const override { return {}; }
@@ -127,7 +127,7 @@ class LateClock final : public Clock {
   std::atomic<int> starts = 0;
 };
 
-// A timer that is started again would keep the storage's thread running for ever.
+// A timer that restarts would keep the storage thread running forever.
 TEST(Storage, StartsNoTimerAtItsEnd) {
   const test::TemporaryFolder folder;
   LateClock clock;
@@ -152,7 +152,7 @@ TEST(Storage, MovesItsLogsEverySecond) {
   EXPECT_GT(larger, small);
   clock.advance(std::chrono::milliseconds(1));
   write();
-  EXPECT_EQ(std::filesystem::file_size(log), larger) << "it is used again from its start";
+  EXPECT_EQ(std::filesystem::file_size(log), larger) << "the log is reused from its start";
 }
 
 TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {

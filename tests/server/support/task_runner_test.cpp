@@ -35,8 +35,8 @@ TEST_P(TaskRunnerThreads, RunsEachBlockExactlyOnce) {
   }
 }
 
-// The blocks write plain memory: what they wrote must be visible to the caller, and what the caller
-// writes between two runs to the blocks, or this test fails here or under the thread sanitizer.
+// The blocks write plain memory. Their writes must be visible to the caller, and the caller's
+// writes between two runs to the blocks. Otherwise this test or the thread sanitizer fails.
 TEST_P(TaskRunnerThreads, ManyRunsSeeEachOthersWrites) {
   ThreadPoolRunner runner(GetParam());
   constexpr std::size_t kBlocks = 5;
@@ -78,7 +78,8 @@ TEST_P(TaskRunnerThreads, SeveralThrowingBlocksGiveOneException) {
   }
 }
 
-// Many at once, so that some helpers are late: one that missed the call to stop would never end.
+// Many runners at once, so that some helpers start late. A helper that missed the stop would never
+// end.
 TEST(TaskRunner, StopsWhereHelpersHaveHardlyBegun) {
   std::vector<std::thread> owners;
   std::atomic<int> stopped = 0;
@@ -104,19 +105,19 @@ TEST(TaskRunner, ZeroThreadsMeansTheCallerAlone) {
   EXPECT_EQ(ids, std::set{std::this_thread::get_id()});
 }
 
-/// Computes for some milliseconds: the rest of its run is then worth waking a helper.
+/// Computes for some milliseconds, so that waking a helper is worthwhile for the rest of the run.
 void work() {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(2);
   while (std::chrono::steady_clock::now() < end) {
   }
 }
 
-/// The threads that run blocks; a block waits here until enough of them have come.
+/// The threads that run blocks. A block waits until enough threads have arrived.
 class Threads {
  public:
   explicit Threads(std::size_t expected) : expected_(expected) {}
 
-  /// False if the expected number of threads does not come.
+  /// Returns false if the expected number of threads does not arrive.
   bool arrive() {
     constexpr std::chrono::seconds kPatience(60);
     std::unique_lock lock(mutex_);
@@ -157,11 +158,11 @@ TEST(TaskRunner, ShortRunsWakeNobody) {
   EXPECT_TRUE(is_worth(microseconds(40), 1, 1));
   EXPECT_FALSE(is_worth(microseconds(40), 8, 7));
   EXPECT_TRUE(is_worth(microseconds(40), 8, 8));
-  EXPECT_FALSE(is_worth(microseconds(1000), 8, 0)) << "nothing is left to do";
+  EXPECT_FALSE(is_worth(microseconds(1000), 8, 0)) << "no work is left";
 }
 
-/// Runs blocks until so many threads have come; the threads that ran one. The caller may run the
-/// first block before it wakes anybody.
+/// Runs blocks until `expected` threads have arrived. Returns the threads that ran a block. The
+/// caller may run the first block before it wakes helpers.
 std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::size_t expected) {
   Threads threads(expected);
   runner.run(10, [&](std::size_t b) {
@@ -188,7 +189,7 @@ TEST(TaskRunner, GuestsTakeThePlacesOfHelpers) {
   EXPECT_EQ(threads_of_a_long_run(runner, 3).size(), 3U);
 }
 
-// A helper may be about to begin a block as the guests come, but no more than that one.
+// A helper may start one block while the guests arrive, but not more.
 TEST(TaskRunner, HelpersLeaveForGuests) {
   constexpr std::size_t kThreads = 4;
   ThreadPoolRunner runner(kThreads);
@@ -204,7 +205,7 @@ TEST(TaskRunner, HelpersLeaveForGuests) {
       if (guests_are_there) ++helped_later;
       EXPECT_TRUE(threads.arrive());
     } else if (guests.empty()) {
-      EXPECT_TRUE(threads.arrive()) << "a helper has come";
+      EXPECT_TRUE(threads.arrive()) << "a helper has arrived";
       while (guests.size() < kThreads) {
         guests.push_back(std::make_unique<ThreadPoolRunner::HelperReservation>(runner));
       }
@@ -214,7 +215,8 @@ TEST(TaskRunner, HelpersLeaveForGuests) {
   EXPECT_LE(helped_later, kThreads - 1);
 }
 
-// The first caller and its helper stay in their blocks until the second caller has had a helper.
+// The first caller and its helper stay in their blocks until a helper has run a block of the second
+// caller.
 TEST(TaskRunner, TwoCallersAreBothHelped) {
   ThreadPoolRunner runner(4);
   Threads first(2);
@@ -241,7 +243,7 @@ TEST(TaskRunner, TwoCallersAreBothHelped) {
   may_end.set_value();
 }
 
-// A helper whose block of another caller takes long holds up that caller alone.
+// A slow block delays only the caller that it belongs to.
 TEST(TaskRunner, ACallerWaitsForItsOwnHelpersOnly) {
   ThreadPoolRunner runner(2);
   Threads threads(2);
@@ -295,8 +297,8 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Processor time of the whole process while `work` runs, over the time that it took. A thread that
-/// spins has about 1, and on a busy machine its share of a core; threads that sleep have 0.
+/// Returns the processor time of the process during `work`, divided by the elapsed time. It is
+/// about 1 for a spinning thread (less on a busy machine), and 0 for sleeping threads.
 template <class Work>
 double processor_load(const Work& work) {
   const double wall = wall_seconds();
@@ -305,7 +307,7 @@ double processor_load(const Work& work) {
   return (processor_seconds() - processor) / (wall_seconds() - wall);
 }
 
-// Both waits: helpers between jobs, and the caller for a helper's last block.
+// Covers both waits: helpers between jobs, and the caller for a helper's last block.
 TEST(TaskRunner, WaitingThreadsSleep) {
   constexpr double kMaxLoad = 0.25;
   constexpr std::chrono::milliseconds kWait(200);

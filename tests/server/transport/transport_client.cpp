@@ -144,7 +144,7 @@ std::string upgrade_headers(std::string_view subprotocol, std::string_view versi
 
 namespace {
 
-/// Reads the head of a reply; `rest` gets what came after it.
+/// Reads the head of a reply. `rest` receives the bytes after it.
 HttpReply read_head(RawClient& client, std::string& rest) {
   std::string bytes;
   while (bytes.find("\r\n\r\n") == std::string::npos) {
@@ -217,7 +217,7 @@ int WsClient::read_close() {
                      static_cast<unsigned char>(frame->payload[1]);
     try {
       raw_.write(client_frame(8, frame->payload.substr(0, 2)));
-    } catch (const std::runtime_error&) {  // the server need not wait for the answer
+    } catch (const std::runtime_error&) {  // the server need not wait for the reply
     }
     return code;
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <utility>  // Boost.Asio 1.74 under C++20 forgets it
+#include <utility>  // missing in Boost.Asio 1.74 under C++20
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -15,23 +15,23 @@
 
 namespace vat::test {
 
-/// Then a test fails rather than hangs.
+/// The time after which a test fails.
 inline constexpr std::chrono::seconds kPatience{10 * kSlowdown};
 
-/// Bytes as they are, to and from 127.0.0.1. A call that cannot end within kPatience throws
-/// std::runtime_error, as does a write to a peer that has gone.
+/// A TCP connection from 127.0.0.1 that sends and receives raw bytes. A call that does not end
+/// within kPatience throws std::runtime_error, as does a write to a closed peer.
 class RawClient {
  public:
-  /// `from`: another address of this machine.
+  /// `from` is another address of this machine.
   explicit RawClient(std::uint16_t port, const char* from = "127.0.0.1");
 
   void write(std::string_view bytes);
-  /// At least one byte; empty: the peer has closed or reset the connection.
+  /// Returns at least one byte, or an empty string if the peer has closed or reset the connection.
   std::string read_some();
   std::string read_exactly(std::size_t size);
-  /// All until the peer closes or resets the connection.
+  /// Returns all bytes until the peer closes or resets the connection.
   std::string read_all();
-  /// Ends the connection with a reset, as a killed process with unread bytes does.
+  /// Ends the connection with a reset, like a killed process with unread bytes.
   void reset();
   void close();
 
@@ -47,12 +47,12 @@ struct HttpReply {
   int status = 0;
   std::string head;
   std::string body;
-  /// The header's value; empty where there is none.
+  /// Returns the header's value; empty if there is none.
   std::string header(std::string_view name) const;
 };
 
 HttpReply parse_reply(const std::string& bytes);
-/// One request with the given header lines, each ending in CRLF.
+/// Sends one request with the given header lines, each ending in CRLF.
 HttpReply http(std::uint16_t port, std::string_view method, std::string_view target,
                std::string_view headers = "", std::string_view body = "");
 
@@ -61,23 +61,23 @@ struct Frame {
   std::string payload;
 };
 
-/// The bytes of a masked client frame.
+/// Returns the bytes of a masked client frame.
 std::string client_frame(int opcode, std::string_view payload, bool final = true);
 
-/// A WebSocket in the hands of a test: written from RFC 6455, not with the server's library.
+/// A WebSocket client written from RFC 6455, independent of the server's library.
 class WsClient {
  public:
-  /// Opens /ws with vat.v1; throws where the server refuses.
+  /// Opens /ws with vat.v1. Throws if the server refuses.
   explicit WsClient(std::uint16_t port, const char* from = "127.0.0.1");
 
   void send_text(std::string_view text) { raw_.write(client_frame(1, text)); }
   void send_binary(std::string_view bytes) { raw_.write(client_frame(2, bytes)); }
-  /// Nothing where the connection has ended.
+  /// Returns no value if the connection has ended.
   std::optional<Frame> read_frame();
-  /// The next text or binary message; throws where the connection ends instead.
+  /// Returns the next text or binary message. Throws if the connection ends.
   Frame read_message();
-  /// Reads on to the close frame and answers it. Returns its code, 0 where the connection ends
-  /// without one.
+  /// Reads up to the close frame and answers it. Returns its code; 0 if the connection ends without
+  /// one.
   int read_close();
   RawClient& raw() { return raw_; }
 
@@ -86,10 +86,10 @@ class WsClient {
   std::string buffer_;
 };
 
-/// Header lines of a correct upgrade of vat.v1, without Host.
+/// Returns the header lines of a correct upgrade to vat.v1, without Host.
 std::string upgrade_headers(std::string_view subprotocol = "vat.v1",
                             std::string_view version = "13");
-/// Status of an upgrade with these header lines.
+/// Returns the reply to an upgrade with these header lines.
 HttpReply try_upgrade(std::uint16_t port, std::string_view target, std::string_view headers);
 
 }  // namespace vat::test

@@ -1,6 +1,5 @@
-// Cases of RFC 6455 in the order of Autobahn's groups, as far as they are the server's: framing,
-// pings, reserved bits and opcodes, fragmentation, UTF-8, closing. Limits are in
-// transport_message_test.cpp.
+// Server cases of RFC 6455 in the order of Autobahn's groups: framing, pings, reserved bits and
+// opcodes, fragmentation, UTF-8, closing. transport_message_test.cpp covers limits.
 
 #include "tests/server/transport/transport_fixture.h"
 
@@ -20,7 +19,7 @@ class WebSocketConformance : public TransportTest {
     recorder.echo = true;
     start();
   }
-  /// The close code that these bytes bring about.
+  /// Returns the close code that these bytes cause.
   int closed_by(const std::string& bytes) {
     WsClient client(port);
     client.raw().write(bytes);
@@ -38,7 +37,7 @@ std::string close_frame(int code, const std::string& reason = "") {
   return client_frame(kClose, payload + reason);
 }
 
-// 1: frames of every size, text and binary; the bounds of the three lengths.
+// Group 1: text and binary frames of every size, and the bounds of the three length formats.
 TEST_F(WebSocketConformance, Framing) {
   for (const std::size_t size : {0, 1, 125, 126, 127, 128, 65535, 65536, 1000000}) {
     for (const int opcode : {kText, kBinary}) {
@@ -47,7 +46,7 @@ TEST_F(WebSocketConformance, Framing) {
   }
 }
 
-// 2: pings of every size are answered with their payload; pongs that nobody asked for are not.
+// Group 2: pings of every size are answered with their payload. Unsolicited pongs are not.
 TEST_F(WebSocketConformance, PingsAndPongs) {
   for (const std::string& payload :
        {std::string(), std::string("\x00\xff\xfe", 3), std::string(125, 'p')}) {
@@ -62,7 +61,7 @@ TEST_F(WebSocketConformance, PingsAndPongs) {
   EXPECT_EQ(closed_by(client_frame(kPing, "p", false)), 1002);
 }
 
-// 3: each of the reserved bits, in text, ping and close.
+// Group 3: each of the reserved bits, in text, ping and close.
 TEST_F(WebSocketConformance, ReservedBits) {
   for (const int bit : {0x10, 0x20, 0x40, 0x70}) {
     for (const int opcode : {kText, kPing, kClose}) {
@@ -73,7 +72,7 @@ TEST_F(WebSocketConformance, ReservedBits) {
   }
 }
 
-// 4: each of the opcodes that mean nothing.
+// Group 4: each of the reserved opcodes.
 TEST_F(WebSocketConformance, ReservedOpcodes) {
   for (const int opcode : {3, 4, 5, 6, 7, 11, 12, 13, 14, 15}) {
     EXPECT_EQ(closed_by(client_frame(opcode, "")), 1002) << opcode;
@@ -81,7 +80,8 @@ TEST_F(WebSocketConformance, ReservedOpcodes) {
   }
 }
 
-// 5: fragments, with control frames between; no start, and a start within.
+// Group 5: fragments with control frames between them, a missing start, and a start within a
+// message.
 TEST_F(WebSocketConformance, Fragmentation) {
   EXPECT_EQ(
       echoed(client_frame(kText, "a", false) + client_frame(0, "b", false) + client_frame(0, "c")),
@@ -101,14 +101,15 @@ TEST_F(WebSocketConformance, Fragmentation) {
   EXPECT_EQ(closed_by(client_frame(kText, "a") + client_frame(0, "b")), 1002);
 }
 
-// Every byte in a packet of its own.
+// Every byte is a separate packet.
 TEST_F(WebSocketConformance, FramesByteByByte) {
   WsClient client(port);
   for (const char byte : client_frame(kText, "slowly")) client.raw().write({&byte, 1});
   EXPECT_EQ(client.read_message().payload, "slowly");
 }
 
-// 6: UTF-8: the longest of each length, in one frame and cut within a character.
+// Group 6: valid UTF-8. The longest sequence of each length, in one frame and split within a
+// character.
 TEST_F(WebSocketConformance, GoodUtf8) {
   for (const std::string& text :
        {std::string("\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5"), std::string("\0", 1),
@@ -122,7 +123,8 @@ TEST_F(WebSocketConformance, GoodUtf8) {
   }
 }
 
-// Bytes that begin nothing, half characters, too long ones, surrogates, and beyond the last plane.
+// Invalid UTF-8: bad start bytes, truncated and overlong sequences, surrogates, and values beyond
+// the last plane.
 TEST_F(WebSocketConformance, BadUtf8) {
   for (const std::string& text :
        {std::string("\xce\xba\xe1\xbd\xb9\xed\xa0\x80"), std::string("\x80"),
@@ -137,8 +139,8 @@ TEST_F(WebSocketConformance, BadUtf8) {
   EXPECT_EQ(echoed(client_frame(kBinary, "\xff")), "\xff");
 }
 
-// 7: codes that a peer may give come back; those that it may not, half a code and reasons that are
-// not UTF-8 close with 1002. Nothing is answered after a close.
+// Group 7: the server echoes permitted codes. Forbidden codes, half a code and reasons that are not
+// UTF-8 close with 1002. The server does not answer after a close.
 TEST_F(WebSocketConformance, CloseCodes) {
   for (const int code :
        {1000, 1001, 1002, 1003, 1007, 1008, 1009, 1010, 1011, 3000, 3999, 4000, 4999}) {
@@ -154,7 +156,7 @@ TEST_F(WebSocketConformance, CloseCodes) {
   EXPECT_EQ(closed_by(close_frame(1000) + client_frame(kText, "too late")), 1000);
 }
 
-// Frames of a client are masked, without exception.
+// Client frames must be masked.
 TEST_F(WebSocketConformance, UnmaskedFrames) {
   for (const char opcode : {'\x81', '\x82', '\x89', '\x88'}) {
     EXPECT_EQ(closed_by(std::string{opcode, '\x00'}), 1002);

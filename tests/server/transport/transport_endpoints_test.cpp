@@ -1,4 +1,4 @@
-// Several endpoints on one port, each with a thread of its own.
+// Several endpoints on one port, each with its own thread.
 
 #include <set>
 #include <thread>
@@ -15,7 +15,7 @@ class TransportEndpointsTest : public TransportTest {
     settings.endpoints = 3;
     recorder.echo = true;
   }
-  /// Opens that many connections, each of which has been answered.
+  /// Opens `count` connections, and waits for a reply on each.
   void connect(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       clients.push_back(std::make_unique<WsClient>(port));
@@ -28,15 +28,15 @@ class TransportEndpointsTest : public TransportTest {
   std::vector<std::unique_ptr<WsClient>> clients;
 };
 
-// The system chooses the endpoint by a hash: that 60 connections all get the same of three happens
-// once in 3^59.
+// The system chooses the endpoint by a hash. The probability that 60 connections all get the same
+// of three endpoints is 3^-59.
 TEST_F(TransportEndpointsTest, ShareTheConnections) {
   start();
   connect(60);
   transport->stop();
   std::set<std::thread::id> threads;
   for (const auto& [id, thread] : recorder.threads) threads.insert(thread);
-  EXPECT_EQ(recorder.connections.size(), 60u) << "each has an id of its own";
+  EXPECT_EQ(recorder.connections.size(), 60u) << "each connection has a different id";
   EXPECT_GT(threads.size(), 1u);
 }
 
@@ -57,7 +57,7 @@ TEST_F(TransportEndpointsTest, LimitsHoldForAllTogether) {
   connect(1);
 }
 
-// A shared message goes out of several threads at once, and is let go when the last has sent it.
+// Several threads send a shared message simultaneously. It is released after the last has sent it.
 TEST_F(TransportEndpointsTest, SendOneMessageToAll) {
   start();
   connect(30);
@@ -70,7 +70,7 @@ TEST_F(TransportEndpointsTest, SendOneMessageToAll) {
   EXPECT_EQ(bytes.use_count(), 1);
 }
 
-// Two programs that share a port would get each other's clients.
+// Two programs that share a port would receive each other's clients.
 TEST_F(TransportEndpointsTest, APortInUseIsAnErrorThatNamesIt) {
   start();
   settings.port = port;

@@ -22,7 +22,7 @@
 
 namespace vat::test {
 
-/// Keeps what the transport tells; a test waits for what it expects.
+/// Records the calls of the transport. Tests wait for the expected calls.
 class Recorder : public ConnectionHandler {
  public:
   struct Received {
@@ -49,7 +49,7 @@ class Recorder : public ConnectionHandler {
     change([&] { order_ok &= is_known(id) && ended.insert(id).second; });
   }
 
-  /// False where `condition` (read under the lock) does not come true in time.
+  /// Returns false if `condition`, evaluated under the lock, does not become true in time.
   bool wait(const std::function<bool()>& condition) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kPatience, condition);
@@ -72,10 +72,11 @@ class Recorder : public ConnectionHandler {
 
   bool echo = false;
   std::map<ConnectionId, std::shared_ptr<Connection>> connections;
-  std::map<ConnectionId, std::thread::id> threads;  ///< on which each was opened
+  std::map<ConnectionId, std::thread::id> threads;  ///< thread on which each connection was opened
   std::set<ConnectionId> ended;
   std::vector<Received> received;
-  /// Opened, then messages, then closed: each connection once, and on one thread.
+  /// Whether each connection was opened, then received messages, then closed, once and on one
+  /// thread.
   bool order_ok = true;
 
  private:

@@ -1,5 +1,5 @@
-// What attackers send: the memory that it costs, and what another user notices of it. Both are
-// measured; memory is that of this process, attackers included.
+// Attacks by flooding: memory use, and the delay for another client. Memory is that of this
+// process, including the attackers.
 
 #include <algorithm>
 #include <atomic>
@@ -18,15 +18,15 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-/// Beyond what was used before [bytes]. A sanitizer's shadow of memory is many times the memory.
+/// Memory beyond the initial use [bytes]. A sanitizer's shadow memory is many times as large.
 constexpr double kMaxMemory = 48e6 * kSlowdown;
-/// Of a message to the server and back. A server that waits for its attackers takes 10 s, the time
-/// limit of a handshake.
+/// Round trip of a message to the server [s]. A server that waits for its attackers takes 10 s, the
+/// time limit of a handshake.
 constexpr double kMaxDelay = 8;  // [s]
 
 class TransportFloodTest : public TransportTest {
  protected:
-  /// Attacks beside another user, who is asked all the time.
+  /// Runs an attack while another client sends requests continuously.
   template <class Attack>
   void withstand(Attack&& attack) {
     recorder.echo = true;
@@ -52,7 +52,7 @@ class TransportFloodTest : public TransportTest {
     EXPECT_LT(most - before, kMaxMemory);
     EXPECT_LT(std::ranges::max(delays), kMaxDelay);
   }
-  /// Writes until the peer ends it; what was written.
+  /// Writes until the peer closes. Returns the number of bytes written.
   static std::size_t write_until_closed(RawClient& client, const std::string& bytes,
                                         std::size_t most, milliseconds interval = milliseconds(0)) {
     std::size_t written = 0;
@@ -61,13 +61,13 @@ class TransportFloodTest : public TransportTest {
         client.write(bytes);
         pause(interval);
       }
-    } catch (const std::runtime_error&) {  // cut off
+    } catch (const std::runtime_error&) {  // the server closed the connection
     }
     return written;
   }
 };
 
-// Slowloris: a byte of a header or of a body now and then, on many connections.
+// Slowloris: many connections that occasionally send one byte of a header or body.
 TEST_F(TransportFloodTest, DripsOfHeadersAndBodies) {
   settings.handshake_timeout = milliseconds(1000);
   withstand([&] {
@@ -84,11 +84,11 @@ TEST_F(TransportFloodTest, DripsOfHeadersAndBodies) {
       return drips.empty();
     };
     EXPECT_TRUE(wait_until(are_cut_off))
-        << "cut off once their time was over, however much they still sent";
+        << "closed at the time limit although they still sent data";
   });
 }
 
-// A message of which a byte comes now and then holds its connection only, which must answer pings.
+// A slow message occupies only its connection, and this must answer pings.
 TEST_F(TransportFloodTest, DripsOfMessages) {
   settings.ping_interval = milliseconds(300);
   withstand([&] {
@@ -124,7 +124,7 @@ TEST_F(TransportFloodTest, ConnectionsThatSayNothingAsFastAsTheyCome) {
   });
 }
 
-// A length is not believed before the bytes are there.
+// The server does not allocate memory for announced bytes before they arrive.
 TEST_F(TransportFloodTest, FramesThatSayTheyAreHuge) {
   withstand([&] {
     for (int i = 0; i < 200; ++i) {
@@ -137,8 +137,8 @@ TEST_F(TransportFloodTest, FramesThatSayTheyAreHuge) {
   });
 }
 
-// As much as a message may be on many connections, and never its end: the greatest cost by design,
-// a megabyte each here.
+// Many connections that send messages of the maximum size without their end. This is the largest
+// cost by design, here one megabyte each.
 TEST_F(TransportFloodTest, MessagesThatNeverEnd) {
   withstand([&] {
     std::vector<std::unique_ptr<WsClient>> clients;

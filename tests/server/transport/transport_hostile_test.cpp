@@ -32,7 +32,7 @@ TEST_F(TransportHostileTest, GarbageInPlaceOfARequest) {
     RawClient client(port);
     try {
       client.write(garbage);
-      client.read_all();  // ends: an error page, or the time limit
+      client.read_all();  // ends with an error page or at the time limit
     } catch (const std::runtime_error& error) {
       EXPECT_EQ(std::string(error.what()).find("patience"), std::string::npos);
     }
@@ -49,7 +49,7 @@ TEST_F(TransportHostileTest, GarbageInPlaceOfFrames) {
     WsClient client(port);
     try {
       client.raw().write(garbage);
-    } catch (const std::runtime_error&) {  // the server was quicker
+    } catch (const std::runtime_error&) {  // the server closed first
     }
   }
   ASSERT_TRUE(recorder.wait_closed(50));
@@ -70,7 +70,7 @@ TEST_F(TransportHostileTest, AHandshakeThatNeverEndsIsCutOff) {
         slow.write("X");
         pause(milliseconds(50));
       }
-    } catch (const std::runtime_error&) {  // cut off, as it should be
+    } catch (const std::runtime_error&) {  // closed as expected
     }
   });
   EXPECT_EQ(silent.read_all(), "");
@@ -132,8 +132,8 @@ TEST_F(TransportHostileTest, APeerThatAnswersPingsStays) {
   EXPECT_EQ(recorder.ended.size(), 0u);
 }
 
-// A pong for each of these would be 25 MB, more than the kernel's buffers hold: unless the server
-// leaves some out, they pile up in its memory.
+// Pongs for all pings would be 25 MB, more than the kernel's buffers hold. Unless the server skips
+// some, they accumulate in its memory.
 TEST_F(TransportHostileTest, AFloodOfPingsFromAPeerThatNeverReads) {
   start();
   WsClient client(port);
@@ -159,9 +159,9 @@ TEST_F(TransportHostileTest, SocketsThatSayNothingAreLimited) {
   start();
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 300; ++i) idle.push_back(std::make_unique<RawClient>(port));
-  EXPECT_EQ(idle.back()->read_all(), "");  // at once, long before the handshake's time limit
+  EXPECT_EQ(idle.back()->read_all(), "");  // immediately, long before the handshake's time limit
   idle.clear();
-  const auto is_accepted = [&] {  // once the server has seen them go
+  const auto is_accepted = [&] {  // after the server has noticed the disconnections
     try {
       expect_alive();
       return true;
@@ -190,16 +190,16 @@ TEST_F(TransportHostileTest, AnAddressHasItsShareOfTheConnections) {
   expect_alive();
   transport->stop();
   EXPECT_EQ(refusals, std::vector<std::string>{"connections_per_address"});
-  EXPECT_EQ(std::count(closes.begin(), closes.end(), 1001), 2) << "by the server's stop";
+  EXPECT_EQ(std::count(closes.begin(), closes.end(), 1001), 2) << "closed by the server's stop";
 }
 
-// Sockets that say nothing are counted too, and others come in beside them.
+// Silent sockets count too. Other addresses can still connect.
 TEST_F(TransportHostileTest, AnAddressHasItsShareOfTheSockets) {
   settings.max_connections_per_address = 4;
   start();
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 100; ++i) idle.push_back(std::make_unique<RawClient>(port));
-  EXPECT_EQ(idle.back()->read_all(), "");  // at once, long before the handshake's time limit
+  EXPECT_EQ(idle.back()->read_all(), "");  // immediately, long before the handshake's time limit
   RawClient elsewhere(port, "127.0.0.2");
   elsewhere.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
   EXPECT_NE(elsewhere.read_all().find(" 200 "), std::string::npos);

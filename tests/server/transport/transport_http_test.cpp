@@ -98,12 +98,12 @@ TEST_F(TransportUpgradeTest, GrantsTheSubprotocol) {
   const HttpReply reply = try_upgrade(port, "/ws?name=x", upgrade_headers("vat.v2, vat.v1"));
   EXPECT_EQ(reply.status, 101);
   EXPECT_EQ(reply.header("Sec-WebSocket-Protocol"), "vat.v1");
-  // The answer to this key that RFC 6455, section 1.3 prints.
+  // The reply to this key in RFC 6455, section 1.3.
   EXPECT_EQ(reply.header("Sec-WebSocket-Accept"), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
   EXPECT_TRUE(recorder.wait_closed(1));
 }
 
-// The library takes these for a draft of 2010 and answers without asking.
+// The library treats these as a draft of 2010 and replies without calling the handler.
 TEST_F(TransportUpgradeTest, RefusesVersionsThatTheLibraryAccepts) {
   for (const char* version : {"", "0"}) {
     EXPECT_GE(try_upgrade(port, "/ws", upgrade_headers("vat.v1", version)).status, 400) << version;
@@ -120,7 +120,7 @@ TEST_F(TransportUpgradeTest, AdmitsPagesOfThisServerOnly) {
   }
 }
 
-/// The status of a refusal, or 101.
+/// Returns the status of a refusal, or 101.
 int status_of(const UpgradeRequest& request) {
   const std::vector<std::string> allowed{"https://example.org", "http://b.example:8443"};
   const auto refusal = refuse_upgrade(request, allowed);
@@ -147,7 +147,7 @@ TEST(UpgradeRules, RefuseOtherPathsVersionsAndSubprotocols) {
   EXPECT_EQ(status_of({"/ws", "host:80", "", "13", several}), 101);
 }
 
-// Origins are compared by their whole names, whatever the case of their letters.
+// Origins are compared by their complete names, without regard to case.
 TEST(UpgradeRules, RefuseOtherOrigins) {
   for (const char* good : {"https://example.org", "https://EXAMPLE.org", "http://b.example:8443",
                            "http://host:80", "https://host:80", ""}) {

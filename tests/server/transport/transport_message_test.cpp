@@ -55,7 +55,8 @@ TEST_F(TransportMessageTest, FragmentsCountTogether) {
   EXPECT_EQ(client.read_close(), 1009);
 }
 
-// The peer is told why although it goes on sending: the server reads on for a while.
+// The peer receives the reason although it still sends, because the server continues to read for
+// some time.
 TEST_F(TransportMessageTest, TheCloseFrameReachesAPeerInTheMiddleOfALargeMessage) {
   settings.max_message_bytes = 1000;
   start();
@@ -97,7 +98,7 @@ TEST_F(TransportMessageTest, SendsFromManyThreadsKeepEachThreadsOrder) {
   for (std::thread& thread : threads) thread.join();
 }
 
-// More than the kernel's buffers of both ends can hold.
+// Exceeds the kernel's buffers at both ends.
 TEST_F(TransportMessageTest, CountsTheBytesThatTheSocketHasNotTaken) {
   start();
   WsClient client(port);
@@ -115,7 +116,8 @@ TEST_F(TransportMessageTest, CountsTheBytesThatTheSocketHasNotTaken) {
   EXPECT_EQ(bytes.use_count(), 1) << "shared bytes are still held";
 }
 
-/// Bytes that go out to a peer that reads nothing, until one message of 16 KiB waits for a second.
+/// Sends bytes to a peer that does not read, until one message of 16 KiB waits for a second.
+/// Returns the number of accepted bytes.
 std::size_t bytes_taken(Connection& connection) {
   constexpr std::size_t kMost = 16 * 1024 * 1024;
   const auto bytes = std::make_shared<const std::string>(16 * 1024, 'x');
@@ -127,8 +129,8 @@ std::size_t bytes_taken(Connection& connection) {
   return kMost;
 }
 
-// What the system has taken is late for the peer and cannot be taken back. The server's side holds
-// twice its setting (socket(7)), the peer's what it holds before it grows with reading.
+// Bytes in the system's buffers cannot be withdrawn. The server's side holds twice its setting
+// (socket(7)), the peer's side its initial buffer size.
 TEST_F(TransportMessageTest, TheSystemTakesLittleForAPeerThatDoesNotRead) {
   start();
   WsClient client(port);
@@ -172,7 +174,7 @@ TEST_F(TransportMessageTest, ClosesWithTheGivenCodeAndSendsNothingAfterwards) {
   EXPECT_EQ(connection->queued_bytes(), 0u);
 }
 
-// 123 bytes fit; each of these characters has two.
+// 123 bytes fit. Each of these characters has two bytes.
 TEST_F(TransportMessageTest, AReasonTooLongForACloseFrameIsCutAtACharacter) {
   start();
   WsClient client(port);

@@ -131,7 +131,7 @@ std::string error_of_start(Transport& transport) {
 }
 
 TEST_F(TransportStopTest, AnAddressOfNobodyIsAnErrorThatNamesIt) {
-  settings.host = "192.0.2.1";  // for documentation only, RFC 5737
+  settings.host = "192.0.2.1";  // reserved for documentation, RFC 5737
   EXPECT_EQ(error_of_start(*make_websocket_transport(settings, recorder, http_handler)),
             "cannot listen on 192.0.2.1:0: Cannot assign requested address");
   settings.host = "example.org";
@@ -139,7 +139,7 @@ TEST_F(TransportStopTest, AnAddressOfNobodyIsAnErrorThatNamesIt) {
             "cannot listen on example.org:0: the host must be a numeric address");
 }
 
-// What the transport asks of the system for its sockets, which are looked for among this process's.
+// Socket options that the transport sets. The tests find its sockets among those of this process.
 
 std::uint16_t local_port(int file) {
   sockaddr_in address{};
@@ -148,7 +148,8 @@ std::uint16_t local_port(int file) {
   return address.sin_family == AF_INET ? ntohs(address.sin_port) : 0;
 }
 
-/// The value of a socket option; absent if the server has closed the socket in the meantime.
+/// Returns the value of a socket option; absent if the server has closed the socket in the
+/// meantime.
 std::optional<int> option(int file, int level, int name) {
   int value = -1;
   socklen_t size = sizeof value;
@@ -156,7 +157,7 @@ std::optional<int> option(int file, int level, int name) {
   return value;
 }
 
-/// The server's sockets: those that listen, or those of its connections.
+/// Returns the server's listening sockets, or those of its connections.
 std::vector<int> sockets_of(std::uint16_t port, bool listening) {
   constexpr int kMaxFiles = 4096;
   std::vector<int> files;
@@ -169,7 +170,7 @@ std::vector<int> sockets_of(std::uint16_t port, bool listening) {
 
 class TransportSocketsTest : public TransportTest {};
 
-// Else a frame's end may wait for an acknowledgement that the peer holds back for 40 ms.
+// Otherwise the end of a frame may wait for an acknowledgement that the peer delays by 40 ms.
 TEST_F(TransportSocketsTest, SendAtOnce) {
   settings.endpoints = 2;
   start();
@@ -181,7 +182,7 @@ TEST_F(TransportSocketsTest, SendAtOnce) {
   for (const int socket : sockets) EXPECT_EQ(option(socket, IPPROTO_TCP, TCP_NODELAY), 1);
 }
 
-// socket(7): the system takes twice the setting, for what it needs itself.
+// socket(7): the system doubles the setting for its own use.
 TEST_F(TransportSocketsTest, HoldLittle) {
   settings.send_buffer_bytes = 100'000;
   start();
@@ -196,7 +197,7 @@ bool wait_for_no_socket(std::uint16_t port) {
   return wait_until([port] { return sockets_of(port, false).empty(); });
 }
 
-/// A handler of HTTP requests that does not answer until it is told to.
+/// An HTTP handler that blocks until the test lets it answer.
 class SlowHandler {
  public:
   HttpResponse operator()() {
@@ -212,8 +213,8 @@ class SlowHandler {
   std::promise<void> may_answer_;
 };
 
-// As browsers do: the close frame is answered, and the connection ended once the server has ended
-// its half. The server is at something else meanwhile, and learns of all of that end at once.
+// The sequence of browsers: the client answers the close frame, and closes after the server has
+// closed its half. The server is busy meanwhile, and processes all of this at once.
 TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
   SlowHandler handler;
   http_handler = [&](std::string_view, std::string_view) { return handler(); };
@@ -233,7 +234,7 @@ TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
   EXPECT_TRUE(wait_for_no_socket(port));
 }
 
-// At once, not after the second that a peer may take for its half.
+// Immediately, not after the second that a peer may take to close its half.
 TEST_F(TransportSocketsTest, AreGivenBackAfterTheClientHasClosed) {
   constexpr std::size_t kClients = 8;
   start();
@@ -250,8 +251,8 @@ TEST_F(TransportSocketsTest, AreGivenBackAfterTheClientHasClosed) {
   EXPECT_TRUE(recorder.wait_closed(kClients));
 }
 
-// Many come at once, when a server starts again. tcpi_sacked of a socket that listens is how many
-// may wait.
+// After a restart of the server many clients connect at once. For a listening socket, tcpi_sacked
+// is the length of its queue.
 TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {
   start();
   const std::vector<int> sockets = sockets_of(port, true);
@@ -264,7 +265,7 @@ TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {
   EXPECT_GE(info.tcpi_sacked, std::min(1024U, most));
 }
 
-// A handler that is slow holds up those who come meanwhile, and costs none of them its connection.
+// A slow handler delays the clients that connect meanwhile, but does not close their connections.
 TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
   SlowHandler handler;
   http_handler = [&](std::string_view, std::string_view) { return handler(); };

@@ -1,4 +1,4 @@
-// The port with TLS: https and wss, and nothing below TLS 1.2.
+// TLS on the port: https and wss, from TLS 1.2.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -16,7 +16,7 @@ namespace vat::test::transport_tls_test {
 
 namespace {
 
-/// A peer that speaks one version of TLS. Every call ends within kPatience.
+/// A peer that offers one version of TLS. Every call ends within kPatience.
 class TlsClient {
  public:
   TlsClient(std::uint16_t port, int version)
@@ -35,7 +35,7 @@ class TlsClient {
     }
     SSL_CTX_set_min_proto_version(context_.get(), version);
     SSL_CTX_set_max_proto_version(context_.get(), version);
-    SSL_CTX_set_security_level(context_.get(), 0);  // else it offers nothing old by itself
+    SSL_CTX_set_security_level(context_.get(), 0);  // otherwise OpenSSL does not offer old versions
     tls_.reset(SSL_new(context_.get()));
     SSL_set_fd(tls_.get(), socket_);
     is_open_ = SSL_connect(tls_.get()) == 1;
@@ -50,7 +50,7 @@ class TlsClient {
       throw std::runtime_error("the peer has gone");
     }
   }
-  /// At least so many bytes, or all until the end.
+  /// Returns at least `size` bytes, or all bytes until the end.
   std::string read(std::size_t size) {
     std::string bytes;
     std::array<char, 65536> part;
@@ -76,7 +76,7 @@ class TransportTlsTest : public TransportTest {
     settings.tls_key = folder.file("key.pem");
     write_certificate(settings.tls_certificate, settings.tls_key);
   }
-  /// Why the transport cannot be made.
+  /// Returns the error of creating the transport.
   std::string failure() {
     try {
       start();
@@ -136,7 +136,7 @@ TEST_F(TransportTlsTest, AnswersNothingInPlainText) {
   EXPECT_TRUE(TlsClient(port, TLS1_3_VERSION).is_open());
 }
 
-// The library's limit for it is 5 s.
+// The library's time limit is 5 s.
 TEST_F(TransportTlsTest, AHandshakeThatNeverEndsIsCutOff) {
   start();
   RawClient silent(port);
