@@ -6,36 +6,35 @@
 #include "core/scene/scene.h"
 #include "tests/support/scenes.h"
 
-/// Bodies and scenes that the stability tests are made of.
+/// Bodies and scenes of the stability tests.
 namespace vat::stability {
 
-inline constexpr Real kSpacing =
-    0.05;  // [m] of every lattice here, but where a case says otherwise
+inline constexpr Real kSpacing = 0.05;  // [m] lattice spacing, unless a case has another
 inline constexpr BodyKind kKinds[] = {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid};
 
-/// Earth's gravity, the default numerics and the materials "water", "oil" (liquids, and anything
-/// else), "rubber" (deformable) and "wood" (rigid). Contacts have 1 kN/m, walls 10 kN/m.
+/// Returns a scene with Earth's gravity, default numerics and the materials "water" and "oil" (for
+/// all kinds), "rubber" (deformable) and "wood" (rigid). Contacts have 1 kN/m, walls 10 kN/m.
 Scene make_scene();
-/// The same in a closed vat from the origin to (1, 1, 1) m.
+/// Returns the same scene in a closed vat from the origin to (1, 1, 1) m.
 Scene make_tank();
 
-/// n^3 particles about `center` with a mass for 1000 kg/m^3, and springs between neighbours of a
-/// deformable one.
+/// Returns n^3 particles around `center` with 1000 kg/m^3. If the block is deformable, springs join
+/// neighbours.
 BodyDescription make_block(std::string name, BodyKind kind, int n, const Vec3& center,
                            Real spacing = kSpacing);
-/// One particle.
+/// Returns a body of one particle.
 BodyDescription make_particle(std::string name, BodyKind kind, const Vec3& position, Real mass,
                               Real radius = kSpacing / 2);
-/// Two particles on the x axis with a spring.
+/// Returns a body of two particles on the x axis that a spring joins.
 BodyDescription make_spring_pair(std::string name, Real distance, Real rest_length,
                                  const SpringConstants& spring, std::vector<Real> masses);
-/// The material that a block of this kind has.
+/// Returns the material of blocks of this kind.
 const char* material_of(BodyKind kind);
 
-/// Makes the scene's step the given part of its least limit, and its tick about 20 ms; every scene
-/// must have one that is not 0.
+/// Sets the step to the fraction `part` of its smallest limit, and the tick to about 20 ms. The
+/// limit must be finite and positive.
 void take_stable_step(Scene& scene, Real part);
-/// The least limit of the scene's step; infinite where there is none.
+/// Returns the smallest limit of the scene's step; infinite if there is none.
 Real least_step_limit(const Scene& scene);
 
 }  // namespace vat::stability

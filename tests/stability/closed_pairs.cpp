@@ -7,7 +7,7 @@
 namespace vat::stability {
 namespace {
 
-/// The surface of a cubic lattice of n^3 points.
+/// Returns the surface points of a cubic lattice of n^3 points.
 std::vector<Vec3> make_shell(int n) {
   const Real half = (n - 1) / 2.0 * kSpacing;
   std::vector<Vec3> shell = test::make_lattice(n, n, n, kSpacing);

@@ -19,7 +19,7 @@ TEST(ClosedPairs, KeepMomentumAndAngularMomentumOverTenThousandSteps) {
   }
 }
 
-// That the test would see a force without reaction: an outer one does the same.
+// Shows that the test detects a force without reaction: an external force has the same effect.
 TEST(ClosedPairs, NoticeAForceFromOutside) {
   Scene scene = make_closed_pair(BodyKind::deformable, BodyKind::rigid);
   scene.gravity = {0, 0, -1e-9};

@@ -7,13 +7,13 @@
 #include "tests/stability/builders.h"
 #include "tests/stability/transform.h"
 
-// A scene and the same scene seen differently stay the same up to round-off.
+// A transformed scene gives the transformed result, up to round-off.
 
 namespace vat::stability::invariance_test {
 namespace {
 
-/// Two bodies of every kind in a heap, so that every pairing touches, and off the lattice so that
-/// no particle is at a cutoff.
+/// Two bodies of every kind in a heap, so that every pairing is in contact. They are off the
+/// lattice, so that no particle is at a cutoff.
 Scene make_heap(IntegratorId integrator) {
   Scene scene = make_scene();
   scene.gravity = {0.3, -0.2, -9.81};
@@ -48,11 +48,11 @@ Scene make_heap_in_vat(IntegratorId integrator) {
 
 constexpr std::uint32_t kSteps = 200;
 
-/// Where particle `i` of body `b` is expected, given its place in the first run.
+/// Returns the expected position of particle `i` of body `b` from its position in the first run.
 using Expectation = std::function<Vec3(const Vec3& position, Real time)>;
 
 struct Compared {
-  Real apart = 0;           ///< the greatest distance from the expectation [m]
+  Real apart = 0;           ///< maximum distance from the expected position [m]
   Real contact_energy = 0;  ///< at the end [J]
 };
 
@@ -77,8 +77,8 @@ Compared compare(const Scene& scene, const Scene& other, const Expectation& expe
   return result;
 }
 
-/// Round-off of 1e-16 in places of up to 10 m, growing through some ten contacts and through the
-/// liquids by up to three times in each hundredth of a second.
+/// Round-off of 1e-16 at positions up to 10 m. It grows in about ten contacts, and in liquids by up
+/// to a factor of three per hundredth of a second.
 constexpr Real kRoundOff = 1e-15 * 59049;
 
 class Invariance : public testing::TestWithParam<IntegratorId> {};

@@ -36,7 +36,7 @@ VatPose vat_pose(const Vat& vat, Real time) {
   return {half * (1 - std::cos(omega * time)), half * omega * std::sin(omega * time)};
 }
 
-/// One particle as walls see it; where it is rigid, its body turns.
+/// A particle in contact with a wall. If it is rigid, its body rotates.
 struct Touching {
   Real mass;
   Real radius;
@@ -45,8 +45,8 @@ struct Touching {
   std::optional<Vec3> spin;
 };
 
-/// Of a wall that pushes along the axis with `push`, with its sign, at `distance` from the centre:
-/// Coulomb's friction, but at slow slips proportional to them.
+/// Returns the friction of a wall that exerts `push` (signed) along the axis at `distance` from the
+/// centre. Friction is Coulomb's, but proportional to the slip at small slips.
 Vec3 friction(const InterfaceConstants& law, const Touching& particle, const VatPose& pose,
               int axis, Real push, Real distance) {
   Vec3 slip = particle.velocity - pose.velocity;
@@ -59,7 +59,7 @@ Vec3 friction(const InterfaceConstants& law, const Touching& particle, const Vat
   return slow.norm() > most ? Vec3(-most * slip.normalized()) : Vec3(-slow);
 }
 
-/// Of a closed vat's six walls on one particle.
+/// Returns the force of the six walls of a closed vat on one particle.
 Vec3 wall_force(const Vat& vat, const VatPose& pose, const InterfaceConstants& law,
                 const Touching& particle) {
   Vec3 force = Vec3::Zero();

@@ -10,8 +10,8 @@
 namespace vat::stability {
 namespace {
 
-/// Sums of N terms of random sign and half a unit of round-off each, of some dozen operations in a
-/// step; linear in the worst case, of which it is far below.
+/// Returns the bound of sums of N terms with random signs, with half a unit of round-off in each of
+/// some dozen operations per step. The worst case would be linear.
 Real round_off(std::uint64_t steps) {
   return 12 * 1.2e-16 * std::sqrt(static_cast<Real>(steps)) + 1e-15;
 }
@@ -30,7 +30,7 @@ Real energy_of(const Diagnostics& now) {
   return now.kinetic_energy + now.elastic_energy + now.contact_energy + now.gravitational_energy;
 }
 
-/// Energies over the run: its bounds, and whether it has a trend.
+/// Energies during the run: range and trend.
 struct EnergySeries {
   std::vector<Real> values;
 
@@ -46,7 +46,7 @@ struct EnergySeries {
     }
     return greatest;
   }
-  /// Between the means of the first and the last half.
+  /// Returns the difference between the means of the first and the last half.
   Real drift() const {
     const std::size_t half = values.size() / 2;
     return std::abs(mean(half, values.size()) - mean(0, half)) / std::abs(values.front());
@@ -61,7 +61,8 @@ struct Run {
   std::uint64_t hash = 0;
 };
 
-/// Steps on, looking a thousand times. The looks are no multiple of a period of what is watched.
+/// Advances the simulation and calls `watch` a thousand times. The interval is not a multiple of
+/// any period.
 Run watch_run(const Scene& scene, std::uint64_t steps, const Watch& watch) {
   constexpr std::uint64_t kLooks = 1000;
   Simulation simulation = test::make_simulation(scene);
@@ -83,7 +84,7 @@ LongRunRow make_row(const Run& run, std::string scene, std::string quantity, Rea
           std::move(reason), run.steps,           run.undone, run.hash};
 }
 
-/// The case DEF-1 of the dossier: omega dt = 0.1.
+/// The case DEF-1 of the validation: omega dt = 0.1.
 std::vector<LongRunRow> run_oscillator(std::uint64_t steps) {
   Scene scene = make_scene();
   scene.gravity = Vec3::Zero();
@@ -102,14 +103,14 @@ std::vector<LongRunRow> run_oscillator(std::uint64_t steps) {
   const Real swing = kPhase * kPhase / 4;
   return {make_row(run, "oscillator", "energy, greatest change", energy.greatest_change(),
                    1.01 * swing, "(omega dt)^2 / 4, of velocity Verlet"),
-          // The mean over 500 phases of a swing of that size is known to its 1 / sqrt(500) only.
+          // The mean of 500 phases of such an oscillation is known to 1 / sqrt(500) only.
           make_row(run, "oscillator", "energy, drift", energy.drift(), swing / std::sqrt(250.0),
                    "no trend: what the mean of 500 looks leaves"),
           make_row(run, "oscillator", "amplitude", amplitude - 1, round_off(steps) + 1e-12,
                    "starts at a turning point of the discrete motion")};
 }
 
-/// The case DEF-6b: eight masses and all 28 springs between them, spinning.
+/// The case DEF-6b: eight rotating masses, joined by all 28 springs.
 Scene make_spring_cube() {
   Scene scene = make_scene();
   scene.gravity = Vec3::Zero();
@@ -140,12 +141,13 @@ std::vector<LongRunRow> run_spring_cube(std::uint64_t steps) {
     energy.values.push_back(energy_of(now));
     elastic = std::max(elastic, now.elastic_energy);
     momentum_error = std::max(momentum_error, (long_momentum_of(now) - momentum).norm());
-    // About the origin: the centre of mass flies away, and with it grows what L is the sum of.
+    // Angular momentum is about the origin. The centre of mass moves away, and the terms of L grow
+    // with its distance.
     const Real size = 1 + now.bodies[0].center_of_mass.norm();
     angular_error =
         std::max(angular_error, (angular_momentum_of(now) - angular_momentum).norm() / size);
   });
-  // z^2 (K / 6 + U / 12) at both ends of the modified energy, of what is in motion in the springs.
+  // Modified energy: z^2 (K / 6 + U / 12) at both ends, for the energy that moves in the springs.
   const Real phase = 2 * scene.numerics.step / least_step_limit(scene);
   const Real in_springs = 2 * elastic / energy.values.front();
   const Real bound = 2 * phase * phase / 6 * std::max(in_springs, 0.0) + phase * phase / 6;
@@ -182,8 +184,10 @@ std::vector<LongRunRow> run_top(std::uint64_t steps) {
     energy.values.push_back(energy_of(now));
     error = std::max(error, (angular_momentum_of(now) - angular_momentum).norm());
   });
-  // A symmetric splitting of fourth order in dt times the turning rate |L| / I_min, with a constant
-  // of order one; angular momentum is state, and nothing acts on it.
+  // A symmetric splitting of fourth order in dt times the rotation rate
+  // L
+  // / I_min, with a constant of order one. Angular momentum is part of the state, and no torque
+  // acts.
   const Real phase = 0.02 * std::sqrt(20.0) / 2;
   return {
       make_row(run, "top", "energy, greatest change", energy.greatest_change(),
@@ -191,7 +195,7 @@ std::vector<LongRunRow> run_top(std::uint64_t steps) {
       make_row(run, "top", "angular momentum / (kg m^2/s)", error, 0, "constant by construction")};
 }
 
-/// The case RIG-6: five bodies of 2 kg on each other.
+/// The case RIG-6: a stack of five bodies of 2 kg.
 std::vector<LongRunRow> run_stack(std::uint64_t steps) {
   constexpr Real kStiffness = 5e4;
   constexpr Real kMass = 2;
@@ -231,11 +235,11 @@ std::vector<LongRunRow> run_stack(std::uint64_t steps) {
                    kinetic / (kMass * kGravity * overlap), 1e-6, "the dossier's measure of rest")};
 }
 
-/// A pool that is left alone, and the mean kinetic energies of the last quarters of the run.
+/// An undisturbed pool, and its mean kinetic energies in the last quarters of the run.
 struct Pool {
   Run run;
-  Real third_quarter = 0;  ///< over m g H
-  Real last_quarter = 0;   ///< over m g H
+  Real third_quarter = 0;  ///< relative to m g H
+  Real last_quarter = 0;   ///< relative to m g H
   std::size_t outside = 0;
 };
 
@@ -261,8 +265,8 @@ Pool run_pool_of(Real viscosity, std::uint64_t steps) {
   return pool;
 }
 
-/// The case LIQ-3. The forces of pressure do work on closed paths, since density and pressure have
-/// different kernels: a liquid comes to rest where viscosity takes away more than that.
+/// The case LIQ-3. Density and pressure have different kernels, so pressure forces do work on
+/// closed paths. A liquid comes to rest if viscosity dissipates more than that.
 std::vector<LongRunRow> run_pool(std::uint64_t steps) {
   const Pool pool = run_pool_of(20, steps);
   return {make_row(pool.run, "pool", "kinetic energy / m g H", pool.last_quarter, 1e-5,
@@ -271,7 +275,7 @@ std::vector<LongRunRow> run_pool(std::uint64_t steps) {
                    "walls hold")};
 }
 
-/// A liquid too thin for that boils for ever, at a level that must not rise.
+/// A liquid with less viscosity remains in motion, at a level that must not rise.
 std::vector<LongRunRow> run_thin_pool(std::uint64_t steps) {
   const Pool pool = run_pool_of(1, steps);
   return {make_row(pool.run, "thin pool", "kinetic energy, growth by a quarter of the run",

@@ -15,7 +15,7 @@ Vec3 mirror(const Vec3& v) {
   return {-v.x(), v.y(), v.z()};
 }
 
-/// Of an axis of rotation.
+/// Mirrors an axis of rotation.
 Vec3 mirror_axis(const Vec3& v) {
   return {v.x(), -v.y(), -v.z()};
 }

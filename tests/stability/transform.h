@@ -2,13 +2,13 @@
 
 #include "core/simulation/simulation.h"
 
-/// The same scene seen differently. Bodies must be of explicit particles.
+/// Transformed scenes. Bodies must consist of explicit particles.
 namespace vat::stability {
 
 Scene rotated(Scene scene, const Quat& rotation);          ///< about the origin; without a vat
-Scene translated(Scene scene, const Vec3& offset);         ///< with its vat
-Scene in_moving_frame(Scene scene, const Vec3& velocity);  ///< everything moves; without a vat
-Scene mirrored(Scene scene);                               ///< x becomes -x
-Scene renumbered(Scene scene);                             ///< bodies and particles in reverse
+Scene translated(Scene scene, const Vec3& offset);         ///< including its vat
+Scene in_moving_frame(Scene scene, const Vec3& velocity);  ///< all bodies move; without a vat
+Scene mirrored(Scene scene);                               ///< maps x to -x
+Scene renumbered(Scene scene);                             ///< reverses bodies and particles
 
 }  // namespace vat::stability

@@ -7,8 +7,8 @@
 
 namespace vat::validation {
 
-/// All cases in the order of the table. Each group is made in a file of its own in cases/; a new
-/// group is declared here and added in cases.cpp.
+/// Returns all cases in the order of the table. Each group has a file in cases/. A new group is
+/// declared here and added in cases.cpp.
 const std::vector<Case>& all_cases();
 
 std::vector<Case> oscillator_cases();

@@ -9,7 +9,7 @@ namespace vat::validation {
 
 namespace {
 
-/// Magnitude of the windowed samples' Fourier transform.
+/// Returns the magnitude of the Fourier transform of the windowed samples.
 Real spectrum(const std::vector<Real>& samples, Real phase_step) {
   const Real window_step = 2 * std::numbers::pi / static_cast<Real>(samples.size());
   std::complex<Real> sum = 0;
@@ -66,7 +66,7 @@ Real fitted_frequency(const std::vector<Real>& samples, Real interval) {
   return std::acos(numerator / (2 * denominator)) / interval;
 }
 
-// Golden-section search one period of the record to both sides, within which there is one maximum.
+// Golden-section search within one period of the record to each side, where there is one maximum.
 Real spectral_frequency(const std::vector<Real>& samples, Real interval, Real guess) {
   const Real golden = (std::sqrt(5.0) - 1) / 2;
   const Real width = 2 * std::numbers::pi / static_cast<Real>(samples.size());

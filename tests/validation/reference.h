@@ -7,11 +7,11 @@
 
 namespace vat::validation {
 
-/// The value of tests/validation/reference.json at a JSON pointer such as "/rigid/RIG-1/energy".
-/// Throws std::out_of_range, with the pointer, where there is none.
+/// Returns the value of tests/validation/reference.json at a JSON pointer such as
+/// "/rigid/RIG-1/energy". Throws std::out_of_range with the pointer if there is none.
 const Json& reference_at(const std::string& pointer);
 
-/// The same as a number, or as a vector of three. Throw where it is something else.
+/// Return the value as a number, or as a vector of three. Throw if it has another type.
 Real reference(const std::string& pointer);
 Vec3 reference_vector(const std::string& pointer);
 

@@ -21,7 +21,7 @@ Real kinetic_energy(const BodyView& body) {
   return sum;
 }
 
-/// Of the forces that moved the nodes from rest in the first step.
+/// Returns the largest force that moved the nodes from rest in the first step.
 Real greatest_force(const BodyView& body, Real step) {
   Real greatest = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
@@ -30,7 +30,7 @@ Real greatest_force(const BodyView& body, Real step) {
   return greatest;
 }
 
-/// Rest lengths that follow from the shape would change with it.
+/// Sets the rest lengths. Otherwise they would follow from the changed shape.
 void keep_rest_lengths(BodyDescription& body) {
   const ParticleShape& nodes = std::get<ParticleShape>(body.shape);
   for (SpringDescription& spring : body.springs) {

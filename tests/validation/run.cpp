@@ -26,7 +26,7 @@ T value_of(Result<T> result, const std::string& what) {
   return std::move(result).value();
 }
 
-/// The number of steps in an interval. Throws where it is not whole.
+/// Returns the number of steps in an interval. Throws if it is not whole.
 std::uint32_t whole_steps(Real interval, Real step) {
   const Real count = std::round(interval / step);
   if (count < 0 || std::abs(interval / step - count) > 1e-6) {

@@ -7,7 +7,7 @@
 namespace vat::stability {
 namespace {
 
-/// An attempt in one, two, four and eight parts is all that the guard may spend on a step.
+/// The guard tries a step in one, two, four and eight parts, and then gives up.
 constexpr std::uint64_t kMaxAttempts = 1 + 2 + 4 + 8;
 
 std::size_t count_non_finite(const Simulation& simulation) {
@@ -33,7 +33,7 @@ std::string describe(const GuardEvent& event) {
   return std::string(to_string(event.cause)) + " at " + std::to_string(event.time) + " s";
 }
 
-/// Reads the state of a simulation after a tick into the outcome.
+/// Adds the state of a simulation after a tick to the outcome.
 void observe(const Simulation& simulation, Outcome& outcome) {
   const Diagnostics now = simulation.diagnostics();
   outcome.particles = simulation.particle_count();
@@ -47,7 +47,7 @@ void observe(const Simulation& simulation, Outcome& outcome) {
   }
 }
 
-/// One tick. True where the run may go on.
+/// Runs one tick. Returns true if the run can continue.
 bool take_tick(const AdversarialCase& adversarial, Simulation& simulation, Outcome& outcome) {
   const std::uint64_t before = simulation.state_hash();
   const Real start = simulation.time();
@@ -113,7 +113,7 @@ Outcome run(const AdversarialCase& adversarial, TaskRunner* runner) {
       if (adversarial.expected != Expected::refusal) outcome.fault = "refused: " + outcome.message;
       return outcome;
     }
-    if (adversarial.expected == Expected::refusal) outcome.fault = "was not refused";
+    if (adversarial.expected == Expected::refusal) outcome.fault = "the scene was not refused";
     if (outcome.fault.empty()) run_created(adversarial, created.value(), outcome);
   } catch (const std::exception& error) {
     outcome.ending = Ending::broken;

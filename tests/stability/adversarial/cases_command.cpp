@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "core/limits.h"
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 namespace {
@@ -14,7 +14,7 @@ using Command = std::function<void(Simulation&, std::uint32_t)>;
 
 Scene make_crowded_tank() {
   Scene scene = make_tank();
-  // A hand gives up to 200 m/s^2 over half the tank.
+  // A grab accelerates half the tank by up to 200 m/s^2.
   for (auto& interface : scene.interfaces) interface.constants.stiffness = 1e5;
   scene.bodies = {make_block("pool", BodyKind::liquid, 5, {0.5, 0.5, 0.14}),
                   make_block("jelly", BodyKind::deformable, 3, {0.4, 0.5, 0.34}),
@@ -30,7 +30,7 @@ void add_case(Cases& cases, const std::string& name, Expected expected, Command 
                    .command = std::move(command)});
 }
 
-/// Throws, so that a case fails whose command does not do what it is there for.
+/// Throws if a command fails, so that its case cannot pass without it.
 void require(const Status& status) {
   if (!status) throw std::runtime_error(status.errors().front().message);
 }
@@ -115,7 +115,7 @@ void add_hands(Cases& cases) {
       });
 }
 
-/// Every way into a simulation that takes numbers: refused, and nothing changed.
+/// Passes a value to every command that takes numbers. Each must refuse it and change nothing.
 void inject(Simulation& simulation, Real value) {
   const std::uint64_t before = simulation.state_hash();
   const BodyId cube = *simulation.find_body("cube");
@@ -128,7 +128,8 @@ void inject(Simulation& simulation, Real value) {
       simulation.set_interface({{"water", "wood"}, {value, 0}, {}}).ok();
   if (taken || simulation.state_hash() != before) throw std::runtime_error("was taken");
   require(simulation.grab_start(2, cube, 0, {0.6, 0.5, 0.4}));
-  if (simulation.grab_move(2, bad).ok()) throw std::runtime_error("was taken by a grab");
+  if (simulation.grab_move(2, bad).ok())
+    throw std::runtime_error("a grab accepted an invalid target");
   require(simulation.grab_end(2));
 }
 
@@ -183,7 +184,8 @@ std::vector<AdversarialCase> with_other_integrators(const std::vector<Adversaria
       AdversarialCase other = original;
       other.name += std::string(", ") + vat::to_string(integrator);
       other.scene.numerics.integrator = integrator;
-      // The steps and the judgement are those of velocity Verlet; another may be stopped, no more.
+      // Steps and conditions suit velocity Verlet. With another integrator, the guard may stop the
+      // run.
       other.expected = Expected::may_stop;
       other.judge = {};
       result.push_back(other);

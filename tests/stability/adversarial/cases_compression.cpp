@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 namespace {
 
-/// A spring crushed to part of its length pushes with k l at most: from rest its particles part
-/// with l (1 - part) sqrt(k / mu) when it is relaxed, and no faster later.
+/// A spring compressed to a fraction `part` of its length exerts at most k l. Its particles start
+/// at rest. When it is relaxed, they separate with l (1 - part) sqrt(k / mu), which is their
+/// maximum speed.
 void add_springs(Cases& cases) {
   for (const Real part : {0.5, 0.1, 0.01}) {
     constexpr Real kLength = 1;
@@ -65,14 +66,14 @@ void add_contacts(Cases& cases) {
   }
 }
 
-/// What a unit of mass of a gas of p = k (rho - rho_0) gives off from `density` times rho_0 [J/kg].
+/// Returns the energy per mass [J/kg] that a gas with p = k (rho - rho_0) releases as it expands
+/// from `density` times rho_0.
 Real internal_energy(Real stiffness, Real density) {
   return stiffness * (std::log(density) + 1 / density - 1);
 }
 
 /// Liquid at a multiple of its rest density, in the middle of a tank or filling a narrow one. The
-/// walls bear the push of its start and particles at the speed of its burst, eight behind each
-/// other.
+/// walls resist the initial pressure, and eight particles in a row at the speed of expansion.
 void add_liquids(Cases& cases) {
   constexpr Real kRadius = kSpacing / 2;
   for (const Real density : {1.5, 3.0, 10.0}) {
@@ -103,7 +104,7 @@ void add_liquids(Cases& cases) {
   }
 }
 
-/// Walls that give way to everything, and a load that no wall of these scenes is made for.
+/// Walls that are too soft for their load.
 void add_soft_walls(Cases& cases) {
   constexpr Real kGravities = 50;
   for (const BodyKind kind : kKinds) {

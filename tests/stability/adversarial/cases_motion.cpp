@@ -2,15 +2,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 namespace {
 
 constexpr Real kRadius = kSpacing / 2;
 
-/// A wall of stiffness k bears a particle up to the speed r sqrt(k / m): slower ones turn round
+/// A wall of stiffness k stops a particle up to the speed r sqrt(k / m). Slower particles turn back
 /// before their centres reach the wall.
 void add_shots_at_walls(Cases& cases) {
   constexpr Real kMass = 0.1;
@@ -34,9 +34,9 @@ void add_shots_at_walls(Cases& cases) {
   }
 }
 
-/// Several times too fast for the scene's step: the guard must take it in parts.
+/// Projectiles that are several times too fast for the step, so the guard must divide it.
 void add_shots_in_long_steps(Cases& cases) {
-  for (const Real travel : {1.5, 3.0, 6.0, 20.0}) {  // radii in a step
+  for (const Real travel : {1.5, 3.0, 6.0, 20.0}) {  // radii per step
     Scene scene = make_tank();
     constexpr Real kStep = 1e-3;
     const Real speed = travel * kRadius / kStep;
@@ -53,7 +53,7 @@ void add_shots_in_long_steps(Cases& cases) {
   }
 }
 
-/// A plate one particle thick, hit on a particle or between four of them.
+/// A plate one particle thick. The projectile hits a particle, or the gap between four particles.
 Scene make_plate(bool between, Real part, BodyKind kind) {
   constexpr Real kStiffness = 1e5;
   constexpr Real kShot = 0.1;
@@ -86,7 +86,7 @@ void add_shots_at_plates(Cases& cases) {
                                      label(part) + " of the speed it bears",
                              .scene = make_plate(between, part, kind),
                              .duration = 0.1};
-        const Real kept = part < 1 ? -1 : 1;  // the side on which the shot must be at the end
+        const Real kept = part < 1 ? -1 : 1;  // side of the plate on which the projectile must end
         shot.judge = [kept](const Simulation& simulation) {
           const Real x = test::position_of(simulation, 1).x() -
                          simulation.bodies()[0].pose->center_of_mass.x();
@@ -98,10 +98,10 @@ void add_shots_at_plates(Cases& cases) {
   }
 }
 
-/// Makes the walls and the liquid stiff enough for a block of n^3 particles that falls through
-/// `height` under `acceleration`.
+/// Makes walls and liquid stiff enough for a block of n^3 particles that falls through `height`
+/// under `acceleration`.
 void stiffen(Scene& scene, int n, Real acceleration, Real height) {
-  const Real mass = 0.125 * n * n * n;  // a rigid block may come down on one corner
+  const Real mass = 0.125 * n * n * n;  // a rigid block may land on one corner
   const Real speed2 = 2 * acceleration * height;
   for (auto& interface : scene.interfaces) {
     interface.constants.stiffness = std::max(1e4, 4 * mass * speed2 / (kRadius * kRadius));
@@ -143,7 +143,7 @@ void add_heavy_vats(Cases& cases) {
   }
 }
 
-/// The walls start at once with the vat's speed against what rests beside them.
+/// Walls that start suddenly with the vat's speed, next to bodies at rest.
 void add_sudden_vats(Cases& cases) {
   for (const Real period : {1.0, 0.05, 0.001}) {
     Scene scene = make_tank();

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 
@@ -26,7 +26,8 @@ std::string names(BodyKind first, BodyKind second) {
   return std::string(to_string(first)) + " and " + to_string(second);
 }
 
-/// Two blocks in free space, the second shifted from the first; liquids are of two materials.
+/// Two blocks in free space. The second is displaced from the first. Liquids have different
+/// materials.
 Scene make_two_blocks(BodyKind first, BodyKind second, const Vec3& shift) {
   Scene scene = make_scene();
   scene.gravity = Vec3::Zero();
@@ -61,8 +62,8 @@ void add_blocks(Cases& cases) {
   }
 }
 
-/// Overlap delta of two single particles on springs of stiffness k parts them with
-/// delta sqrt(k / mu), whatever their kinds.
+/// Two particles of any kinds that overlap by delta, with springs of stiffness k, separate with
+/// delta sqrt(k / mu).
 void add_pairs(Cases& cases) {
   for (const Real depth : {0.01, 0.5, 0.9}) {
     constexpr Real kStiffness = 1000;
@@ -82,15 +83,15 @@ void add_pairs(Cases& cases) {
                      .judge = [speed](const Simulation& simulation) {
                        const Vec3 apart =
                            test::velocity_of(simulation, 1) - test::velocity_of(simulation, 0);
-                       // Verlet's error over half an oscillation is z^2/24, and as much again of
-                       // the step in which the contact ends; z = 0.0115.
+                       // The error of Verlet over half an oscillation is z^2/24, and the same again
+                       // for the step in which the contact ends; z = 0.0115.
                        const bool good = std::abs(apart.x() / speed - 1) < 1e-4;
                        return good ? std::string() : "parts at " + label(apart.x()) + " m/s";
                      }});
   }
 }
 
-/// Particles of one body in one place, or nearly.
+/// Particles of one body that coincide or nearly coincide.
 void add_within_a_body(Cases& cases) {
   for (const Real distance : {0.0, 1e-300, 1e-160, 1e-12}) {
     for (const BodyKind kind : kKinds) {
@@ -119,8 +120,8 @@ BodyDescription make_heap(BodyKind kind, std::size_t count) {
                          0.025);
 }
 
-/// All in one place. A liquid of n has n^2 pairs: above the limit it is refused, and at it there
-/// must be memory for them.
+/// Coincident particles. A liquid of n particles has n^2 pairs. Above the limit it is refused, and
+/// at the limit it must fit into memory.
 void add_heaps(Cases& cases) {
   for (const BodyKind kind : kKinds) {
     for (const std::size_t count : {300U, 2000U}) {

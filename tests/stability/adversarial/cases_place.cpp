@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 namespace {
 
-/// Bodies of all kinds on each other in a tank at `offset`.
+/// Bodies of all kinds in contact, in a tank at `offset`.
 Scene make_mixed_tank(const Vec3& offset) {
   Scene scene = make_tank();
   scene.vat->min += offset;
@@ -19,7 +19,8 @@ Scene make_mixed_tank(const Vec3& offset) {
   return scene;
 }
 
-/// How far two runs of the same scene are apart at most, one of them moved by `offset` [m].
+/// Returns the largest distance between the particles of two runs of one scene. One run is
+/// displaced by `offset` [m].
 Real greatest_distance(const Simulation& a, const Simulation& b, const Vec3& offset) {
   Real greatest = 0;
   const auto first = a.bodies();
@@ -71,7 +72,8 @@ void add_few(Cases& cases) {
   }
 }
 
-/// Below rest density there is no pressure: one or two particles fly like stones, to round-off.
+/// Below rest density there is no pressure. One or two particles fly ballistically, except for
+/// round-off.
 void add_isolated_liquid(Cases& cases) {
   for (const std::size_t count : {1U, 2U}) {
     Scene scene = make_scene();
@@ -90,14 +92,15 @@ void add_isolated_liquid(Cases& cases) {
                      .judge = [velocity](const Simulation& simulation) {
                        const Real t = simulation.time();
                        const Vec3 flown = t * velocity - Vec3(0, 0, 0.5 * 9.81 * t * t);
-                       // A thousand sums of numbers up to 5, half a unit of round-off each.
+                       // A thousand additions of numbers up to 5, with half a unit of round-off
+                       // each.
                        const Real error = (test::position_of(simulation, 0) - flown).norm();
                        return error < 1e-12 ? std::string() : label(error) + " m off";
                      }});
   }
 }
 
-/// Rigid bodies whose inertia would be singular without the particles' own size.
+/// Rigid bodies whose inertia would be singular without the size of the particles.
 void add_thin_rigid_bodies(Cases& cases) {
   const std::pair<const char*, std::vector<Vec3>> shapes[] = {
       {"point", {{0, 0, 0}}},
@@ -108,7 +111,7 @@ void add_thin_rigid_bodies(Cases& cases) {
   for (const auto& [name, points] : shapes) {
     for (const Real spin : {0.0, 100.0}) {
       Scene scene = make_tank();
-      // A corner of the plate comes with 0.1 m times the spin, and all of its mass.
+      // A corner of the plate hits with 0.1 m times the spin, and the plate's mass.
       for (auto& interface : scene.interfaces) interface.constants.stiffness = 1e6;
       scene.bodies = {test::make_body("thin", BodyKind::rigid, "wood",
                                       test::make_particles(points, 0.1), kSpacing / 2)};
@@ -123,7 +126,7 @@ void add_thin_rigid_bodies(Cases& cases) {
   }
 }
 
-/// n^3 particles of a liquid in a block over the floor, and `layers` layers of rigid blocks above.
+/// A liquid block of n^3 particles above the floor, and `layers` layers of rigid blocks above it.
 Scene make_crowd(int n, int layers) {
   Scene scene = make_tank();
   const Real width = (n + 2) * kSpacing;

@@ -3,13 +3,13 @@
 #include <limits>
 
 #include "core/limits.h"
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 namespace {
 
-/// A pool, a jelly and a cube, not far from one another, for a change of one value.
+/// A pool, a jelly and a cube close together. A case changes one value.
 Scene make_trio() {
   Scene scene = make_tank();
   scene.bodies = {make_block("pool", BodyKind::liquid, 4, {0.5, 0.5, 0.12}),
@@ -31,7 +31,7 @@ void set_masses(Scene& scene, Real mass) {
   }
 }
 
-/// Everything off is a world of free flight: k = 0 is no force, not a fault.
+/// Disabled forces mean free flight: k = 0 is valid.
 const std::pair<const char*, Change> kMild[] = {
     {"no stiffness of contacts",
      [](Scene& s) {

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/stability/builders.h"
 #include "tests/stability/adversarial/cases.h"
+#include "tests/stability/builders.h"
 
 namespace vat::stability {
 namespace {
 
-/// Two balls on each other: the contacts bear the weight with a tenth of a radius of overlap.
+/// Two stacked balls. Under the weight, the contacts overlap by a tenth of a radius.
 Scene make_stack(Real lower_mass, Real upper_mass) {
   Scene scene = make_tank();
   const Real radius = 0.05;
@@ -50,7 +50,7 @@ void add_mass_ratios(Cases& cases) {
   }
 }
 
-/// A chain whose springs alternate between stiff and soft.
+/// A chain of alternating stiff and soft springs.
 BodyDescription make_chain(Real stiff, Real soft) {
   ParticleShape shape = test::make_particles({}, 1);
   for (int n = 0; n < 12; ++n) shape.positions.push_back({0.05 * n, 0, 0});
@@ -89,7 +89,7 @@ void add_stiff_beside_soft(Cases& cases) {
   }
 }
 
-/// Steps of a multiple of what is stable: not to be followed, but to be stopped or survived.
+/// Steps of a multiple of the stable step. The guard may stop the run.
 void add_long_steps(Cases& cases) {
   Scene oscillator = make_scene();
   oscillator.bodies = {make_spring_pair("pair", 1.1, 1, {100, 0}, {0.1, 0.1})};

@@ -11,7 +11,8 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-/// Modes of M x'' + C x' + K x = 0 with C = K 2 ratio / omega_max: each has its own damping.
+/// Returns the modes of M x'' + C x' + K x = 0 with C = K 2 ratio / omega_max. Each has another
+/// damping.
 std::vector<Oscillation> modes_of(const Matrix& stiffness, const Eigen::VectorXd& masses,
                                   Real ratio) {
   const Eigen::VectorXd root = masses.cwiseSqrt().cwiseInverse();
@@ -32,7 +33,7 @@ Real damping_of(const LinearCase& linear) {
   return 2 * linear.damping_ratio / std::sqrt(greatest) * linear.stiffness;
 }
 
-/// Moves every free particle along the axes by up to the displacement, in turns.
+/// Moves every free particle by up to the displacement, along each axis in turn.
 void displace(std::vector<Vec3>& points, const std::vector<Index>& fixed, Real displacement,
               bool in_space) {
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -42,7 +43,7 @@ void displace(std::vector<Vec3>& points, const std::vector<Index>& fixed, Real d
   }
 }
 
-/// A body of springs at rest length in free space, and its modes.
+/// Returns a body of springs at rest length in free space, and its modes.
 LinearCase make_springs(std::string name, const std::vector<Vec3>& points, std::vector<Real> masses,
                         std::vector<Index> fixed, std::vector<SpringDescription> springs,
                         Real ratio) {
@@ -119,8 +120,8 @@ LinearCase make_lattice(Real stiffness, Real mass_ratio, Real ratio) {
                       ratio);
 }
 
-/// Balls on the floor under their weight, each a single rigid particle: they stay in contact as
-/// long as they move by less than they overlap.
+/// Returns balls at rest on the floor, each a rigid particle. They stay in contact if they move by
+/// less than their overlap.
 LinearCase make_balls(std::string name, const std::vector<Real>& masses, Real stiffness,
                       Real ratio) {
   LinearCase linear;
@@ -140,7 +141,7 @@ LinearCase make_balls(std::string name, const std::vector<Real>& masses, Real st
   scene = make_tank();
   Real total = 0;
   for (const Real mass : masses) total += mass;
-  // So that all of them together press the first ball in by a tenth of its radius.
+  // The weight of all balls presses the first ball in by a tenth of its radius.
   const Real radius = 0.05;
   const Real gravity = 0.1 * radius * stiffness / total;
   scene.gravity = {0, 0, -gravity};
@@ -180,7 +181,8 @@ std::vector<LinearCase> implicit_cases(bool quick) {
   for (LinearCase& linear : cases) {
     linear.body += ", implicit springs";
     linear.steps = 500;
-    // The forces' rounding in so long a step moves particles by more than the explicit cases start.
+    // In such a long step, rounding of the forces moves particles by more than the displacement of
+    // the explicit cases.
     auto& positions = std::get<ParticleShape>(linear.scene.bodies[0].shape).positions;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       positions[i] = linear.rest[i] + 1000 * (positions[i] - linear.rest[i]);
@@ -194,8 +196,7 @@ std::vector<LinearCase> implicit_cases(bool quick) {
 std::vector<LinearCase> linear_cases(bool quick) {
   std::vector<LinearCase> cases;
   for (const Real stiffness : quick ? std::vector<Real>{1e4} : std::vector<Real>{1e4, 1e8}) {
-    const Real ball =
-        stiffness / 1e4;  // [kg] heavier where more gravity than there may be is needed
+    const Real ball = stiffness / 1e4;  // [kg] heavier, where gravity would exceed its range
     for (const Real ratio : {0.0, 0.05, 0.1, 0.5, 1.0}) {
       cases.push_back(make_oscillator(stiffness, ratio));
       cases.push_back(make_balls("ball on the floor", {ball}, stiffness, ratio));

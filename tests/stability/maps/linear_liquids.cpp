@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kLatticeEdge = 8;
 
-/// For each particle of the lattice a vector along x that depends on x alone, without a mean: all
-/// waves along an axis. Some others grow whatever the step, since the kernels of density and
-/// pressure differ.
+/// Returns a displacement along x for each particle. It depends on x only and has zero mean, so it
+/// contains all waves along an axis. Other waves can grow with any step, since density and pressure
+/// have different kernels.
 std::vector<Vec3> make_noise(Real size) {
   std::vector<Vec3> noise(kLatticeEdge * kLatticeEdge * kLatticeEdge);
   for (std::size_t i = 0; i < noise.size(); ++i) {
@@ -22,15 +22,15 @@ std::vector<Vec3> make_noise(Real size) {
   return noise;
 }
 
-/// Mass of a lattice's particles for which their sums give this density.
+/// Returns the mass of the lattice's particles that gives this density.
 Real mass_for(const Scene& scene, Real density) {
   const Simulation simulation = test::make_simulation(scene);
   const BodyView body = simulation.bodies()[0];
   return body.masses[0] * density / simulation.liquid_fields(body.id).value().density[0];
 }
 
-/// n^3 particles of a liquid that is hardly denser than at rest, so that its pressure is nowhere
-/// cut off and yet too weak to push the lattice out of its order within the run.
+/// A liquid of n^3 particles, slightly denser than at rest. The pressure is positive everywhere,
+/// and too weak to disturb the lattice during the run.
 LinearCase make_liquid(bool is_viscous, Real spacings) {
   constexpr Real kDenser = 1 + 1e-5;
   const Real support = spacings * kSpacing;

@@ -78,9 +78,9 @@ ProjectionPoint measure_projection(ProjectionPoint point) {
 }
 
 bool is_stable(const ProjectionPoint& point) {
-  constexpr Real kSeen = 1e-3;  // of a diameter
+  constexpr Real kSeen = 1e-3;  // relative to the diameter
   constexpr Real kRoundOff = 1e-9;
-  // The shortest steps are over before the fall is.
+  // Runs with the shortest steps end before the fall does.
   const bool has_landed = point.step >= 1e-3;
   return !point.is_guarded && point.energy_gain <= kRoundOff && point.overlap <= kSeen &&
          (!has_landed || point.kinetic_energy <= kSeen);

@@ -96,7 +96,7 @@ StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator) {
     point.measured =
         point.theory * largest_stable_part(linear, integrator, point.theory, linear.steps);
   } else if (is_stable(linear, integrator, kGrowing / point.frequency, linear.steps)) {
-    point.measured = kGrowing / point.frequency;  // which is not what theory says
+    point.measured = kGrowing / point.frequency;  // not a result of theory
   }
   return point;
 }

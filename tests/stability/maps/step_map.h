@@ -8,35 +8,35 @@
 
 namespace vat::stability {
 
-/// A scene that is linear near its rest, so that its largest stable step is known.
+/// A scene that is linear near its rest state, so its largest stable step is known.
 struct LinearCase {
-  int steps = 3000;        ///< in which a step that is too long is seen
-  std::string body;        ///< what oscillates
-  Real stiffness = 0;      ///< of its springs or contacts [N/m]
-  Real mass_ratio = 1;     ///< of its heaviest to its lightest particle
-  Real damping_ratio = 0;  ///< of its fastest mode
-  Scene scene;             ///< a little away from rest
-  std::vector<Vec3> rest;  ///< of all its particles [m]
-  Real displacement = 0;   ///< of the start from rest [m]
+  int steps = 3000;        ///< number after which an unstable step is detected
+  std::string body;        ///< the oscillating system
+  Real stiffness = 0;      ///< springs or contacts [N/m]
+  Real mass_ratio = 1;     ///< heaviest to lightest particle
+  Real damping_ratio = 0;  ///< fastest mode
+  Scene scene;             ///< slightly displaced from rest
+  std::vector<Vec3> rest;  ///< rest positions of all particles [m]
+  Real displacement = 0;   ///< initial displacement [m]
   std::vector<Oscillation> modes;
 };
 
-/// The bodies of springs alone, with implicit springs: no step is too long.
+/// Returns the cases of springs only, with implicit springs. They have no step limit.
 std::vector<LinearCase> implicit_cases(bool quick);
-/// Oscillator, pair, chain, lattice, ball on the floor, pair of balls on the floor, and a liquid on
-/// a lattice that repeats itself, with sound or viscosity alone.
+/// Returns the cases: oscillator, pair, chain, lattice, ball on the floor, two balls on the floor,
+/// and a periodic liquid lattice with sound only or viscosity only.
 std::vector<LinearCase> linear_cases(bool quick);
-/// The liquids of those. Their one mode is that of find_step_limits(), for which the limits of
-/// velocity Verlet, c dt / h and nu dt / h^2, were found with the linear dispersion operator.
+/// Returns the cases of liquids. They have the mode of find_step_limits(). Its limits of velocity
+/// Verlet, c dt / h and nu dt / h^2, follow from the linear dispersion operator.
 std::vector<LinearCase> liquid_cases(bool quick);
 
-/// The least of the modes' limits [s].
+/// Returns the smallest limit of the modes [s].
 Real theoretical_step(const LinearCase& linear, IntegratorId integrator);
 
-/// The greatest part of `step` up to 1.5 that a run does not let grow, to 1 / 128; 0 where not even
-/// a quarter is stable. A part is stable where within `steps` steps no particle goes beyond a
-/// thousand times the start's displacement, and none twice as far in the second half as in the
-/// first. Undamped with explicit Euler or Heun every step grows, slowly where it is short.
+/// Returns the largest fraction of `step`, up to 1.5, that is stable, to 1 / 128; 0 if a quarter is
+/// unstable. A step is stable if, within `steps` steps, no particle exceeds a thousand times the
+/// initial displacement, or twice its maximum of the first half in the second half. Without
+/// damping, explicit Euler and Heun grow with every step, slowly if the step is short.
 Real largest_stable_part(const LinearCase& linear, IntegratorId integrator, Real step, int steps);
 
 struct StepMapPoint {
@@ -45,21 +45,21 @@ struct StepMapPoint {
   Real stiffness = 0;
   Real mass_ratio = 1;
   Real damping_ratio = 0;
-  Real frequency = 0;  ///< of the fastest mode [rad/s]
+  Real frequency = 0;  ///< fastest mode [rad/s]
   Real theory = 0;     ///< [s]
   Real measured = 0;   ///< [s]
 };
 
-/// One point of the map: bisects about theory, or where that is 0, shows that omega dt = 1.5 grows.
-/// Theory must be finite.
+/// Computes a point of the map by bisection about the theoretical step. If that is 0, shows that
+/// omega dt = 1.5 grows. The theoretical step must be finite.
 StepMapPoint map_point(const LinearCase& linear, IntegratorId integrator);
 
-/// The longest of the steps that are tried where theory is infinite: 10^5 over the frequency
-/// [rad/s], or kMaxStep.
+/// Returns the longest tried step if theory has no limit: 10^5 over the frequency [rad/s], or
+/// kMaxStep.
 Real longest_tried_step(Real frequency);
 
-/// The same where theory is infinite: measured is the longest of steps from 1 over the frequency to
-/// longest_tried_step(), a decade apart, up to which all are stable.
+/// Computes a point if theory has no limit. `measured` is the longest stable step of a series from
+/// 1 over the frequency to longest_tried_step(), in factors of ten.
 StepMapPoint map_point_without_limit(const LinearCase& linear, IntegratorId integrator);
 
 }  // namespace vat::stability

@@ -9,8 +9,8 @@
 namespace vat::stability::step_map_test {
 namespace {
 
-// The start need not have the fastest mode in it alone, so that more than the limit may pass a
-// short run; less may not.
+// The start contains other modes besides the fastest one. A short run may therefore pass slightly
+// above the limit, but it must not fail below it.
 TEST(StepMap, ReachesTheoryOnLinearCases) {
   for (const LinearCase& linear : linear_cases(true)) {
     for (const IntegratorId integrator : test::kIntegrators) {
@@ -20,7 +20,7 @@ TEST(StepMap, ReachesTheoryOnLinearCases) {
                    std::to_string(linear.damping_ratio) + ", mass ratio " +
                    std::to_string(linear.mass_ratio));
       EXPECT_GE(point.measured, 0.95 * point.theory);
-      // Of liquids theory is a bound.
+      // For liquids, theory gives a bound.
       EXPECT_LE(point.measured, (linear.scene.periodic ? 1.5 : 1.1) * point.theory);
     }
   }

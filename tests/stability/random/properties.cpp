@@ -27,7 +27,7 @@ std::string property_number(Real value) {
   return text;
 }
 
-/// Steps one by one, with a ledger of momentum and energy.
+/// Runs step by step, with balances of momentum and energy.
 std::string run_with_ledger(Simulation& simulation, std::uint32_t steps, PropertyReport& report,
                             std::optional<Snapshot>& densest) {
   Ledger ledger(simulation);
@@ -59,8 +59,8 @@ std::string run_with_ledger(Simulation& simulation, std::uint32_t steps, Propert
 }
 
 std::string judge_budgets(const Scene& scene, const PropertyReport& report) {
-  // What the guard took in parts has other quadratures than the ledger, which does not see the
-  // impulses of hard walls either.
+  // Divided steps have another quadrature than the ledger. The ledger also excludes impulses of
+  // hard walls.
   if (report.undone > 0 || report.wall_stops > 0) return {};
   if (report.has_momentum_budget && report.momentum_error > report.momentum_bound) {
     return "momentum does not add up: " + property_number(report.momentum_error);
@@ -93,7 +93,7 @@ std::string judge_snapshot(Simulation& simulation, const Snapshot& snapshot) {
     simulation.restore(snapshot);
     simulation.advance(kSteps);
     hash = simulation.state_hash();
-    simulation.advance(kSteps);  // away from there, so that there is something to restore
+    simulation.advance(kSteps);  // moves away from the snapshot
   }
   return hashes[0] == hashes[1] ? "" : "going back to a snapshot gives other bits";
 }

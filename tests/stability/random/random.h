@@ -8,7 +8,7 @@
 
 namespace vat::stability {
 
-/// Numbers that do not depend on the standard library's distributions.
+/// Random numbers that do not depend on the standard library's distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -16,7 +16,7 @@ class Random {
   Real between(Real low, Real high) {
     return low + (high - low) * (static_cast<Real>(engine_() >> 11U) * 0x1p-53);
   }
-  /// Over orders of magnitude.
+  /// Returns a number with a uniform logarithm.
   Real scale(Real low, Real high) { return std::exp(between(std::log(low), std::log(high))); }
   int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(count)); }
   bool chance(Real part) { return between(0, 1) < part; }

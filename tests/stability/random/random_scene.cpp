@@ -12,7 +12,7 @@
 namespace vat::stability {
 namespace {
 
-/// Damping that is a part of critical for a mass.
+/// Returns a random fraction of the critical damping of a mass.
 Real damping(Random& random, Real stiffness, Real mass) {
   return random.chance(0.4) ? 0 : random.between(0, 0.5) * std::sqrt(stiffness * mass);
 }
@@ -98,7 +98,7 @@ bool is_inside(const SampledBody& body, const Vat& vat) {
   return true;
 }
 
-/// Puts the body where there is room; false where none was found.
+/// Places the body without overlaps. Returns false if no place was found.
 bool place(Random& random, const Scene& scene, std::vector<SampledBody>& others,
            BodyDescription& body) {
   const auto material = std::ranges::find(scene.materials, body.material, &Material::name);
@@ -121,7 +121,7 @@ Real mass_of(const SampledBody& body) {
   return mass;
 }
 
-/// Of bodies of which the lightest particle has this mass.
+/// Returns an interface of bodies whose lightest particle has this mass.
 InterfaceConstants random_law(Random& random, Real stiffness, Real mass) {
   const Real rough = random.between(0.05, 1);
   const Real pick = random.between(0, 1);
@@ -140,8 +140,8 @@ InterfaceConstants random_law(Random& random, Real stiffness, Real mass) {
   return {stiffness, damping(random, stiffness, mass), pick < 0.7 ? rough : 0};
 }
 
-/// Walls that turn round the heaviest body on a single particle, after a fall through the vat and
-/// at the speeds of its start and of the vat, within half a radius.
+/// Adds interfaces. A wall must stop the heaviest body at a single particle within half a radius,
+/// after a fall through the vat and at the initial speeds of body and vat.
 void add_interfaces(Random& random, Scene& scene, std::span<const SampledBody> samples,
                     Real spacing) {
   Real heaviest = 0;
@@ -169,7 +169,7 @@ void add_interfaces(Random& random, Scene& scene, std::span<const SampledBody> s
   scene.default_interface = random_law(random, stiffness, lightest);
 }
 
-/// An integrator that the scene allows, and steps of at most 0.4 of their limit.
+/// Selects an integrator that the scene permits, and a step of at most 0.4 of its limit.
 void choose_numerics(Random& random, Scene& scene) {
   constexpr Real kMinAllowedStep = 2e-5;
   const Real pick = random.between(0, 1);

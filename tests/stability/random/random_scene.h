@@ -6,10 +6,9 @@
 
 namespace vat::stability {
 
-/// A valid scene that is expected to be stable, the same for the same seed on every machine: one to
-/// six bodies of all kinds, shapes and materials, apart from one another, in a vat that may move;
-/// walls that bear the fall through the whole vat, and steps below the limits that
-/// find_step_limits() knows.
+/// Returns a valid scene that should be stable, identical for the same seed on every machine. It
+/// has one to six separate bodies of all kinds, shapes and materials, in a vat that may move. The
+/// walls resist a fall through the vat, and steps are below the limits of find_step_limits().
 Scene random_scene(std::uint64_t seed);
 
 }  // namespace vat::stability

@@ -52,7 +52,7 @@ TEST(RandomScenes, KeepTheirProperties) {
   EXPECT_GT(with_budget, kScenes / 5);
 }
 
-// Of a scene that fails as soon as it has a rigid body and moves.
+// A scene fails as long as it has a rigid body that moves.
 TEST(Shrinking, LeavesWhatMakesASceneFail) {
   Scene scene = make_tank();
   scene.vat->motion = SlideMotion{Vec3::UnitX(), 0.1, 1};

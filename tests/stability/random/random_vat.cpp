@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real kGravity = 9.81;
 
-/// The floor's part of a lattice that the whole vat holds, `layers` high.
+/// A pool that fills the lower `layers` layers of the vat's lattice.
 BodyDescription make_random_pool(const Vec3& cells, int layers, Real spacing) {
   const Vec3 size(cells.x(), cells.y(), layers);
   BodyDescription pool{"pool", BodyKind::liquid, "water",
@@ -21,21 +21,21 @@ BodyDescription make_random_pool(const Vec3& cells, int layers, Real spacing) {
   return pool;
 }
 
-/// A ball or a block above the pool, apart from the walls.
+/// A ball or block above the pool, away from the walls.
 BodyDescription make_floater(Random& random, const Vec3& cells, int layers, Real spacing,
                              int number) {
   BodyDescription body{"floater " + std::to_string(number),
                        random.chance(0.5) ? BodyKind::rigid : BodyKind::deformable, "solid",
                        BoxShape{Vec3::Zero(), Vec3::Constant(2 * spacing)}, spacing};
   if (random.chance(0.5)) body.shape = SphereShape{Vec3::Zero(), 1.3 * spacing};
-  // Side by side along x, two cells from walls and from one another.
+  // Placed along x, two cells from walls and from one another.
   body.position = spacing * Vec3(2.5 + 4 * number, random.between(2.5, cells.y() - 2.5),
                                  layers + random.between(1.5, 2));
   body.velocity = random.vector(std::sqrt(kGravity * spacing));
   return body;
 }
 
-/// To and fro, with at most twice gravity's acceleration.
+/// Returns an oscillation with at most twice the acceleration of gravity.
 SlideMotion make_motion(Random& random, Real width) {
   const Real stroke = random.scale(0.02, 0.5) * width;
   const Real acceleration = random.between(0.2, 2) * kGravity;
@@ -47,7 +47,7 @@ Real greatest_slide(const Vat& vat) {
   return vat.motion ? std::numbers::pi * vat.motion->stroke / vat.motion->period : 0;
 }
 
-/// Materials, contacts that bear the fall of a body through the vat, and steps.
+/// Sets materials, contacts that resist a fall through the vat, and steps.
 void set_constants(Random& random, RandomVat& vat, Real spacing, PressureSolver solver) {
   Scene& scene = vat.scene;
   const Real height = scene.vat->max.z() - scene.vat->min.z();
@@ -75,7 +75,7 @@ Vec3 gravity_at(const RandomVat& vat, Real time) {
 
 std::string random_text_of(const GuardEvent& event, bool failed) {
   return std::string(to_string(event.cause)) + ", body " + std::to_string(event.body) + ", " +
-         std::to_string(event.time) + (failed ? " s: the guard could not go on" : " s");
+         std::to_string(event.time) + (failed ? " s: the guard ended the run" : " s");
 }
 
 Real greatest_speed(const Simulation& simulation) {
@@ -95,7 +95,7 @@ RandomVat random_vat(std::uint64_t seed, PressureSolver solver) {
   const bool is_incompressible = solver == PressureSolver::incompressible;
   vat.scene = test::make_scene(
       is_incompressible ? IntegratorId::symplectic_euler : IntegratorId::velocity_verlet, 1e-3);
-  // How long its steps may be depends on its pressure.
+  // The stable step depends on the pressure.
   if (is_incompressible) vat.scene.numerics.control = StepControl::adaptive;
   vat.scene.name = std::string(to_string(solver)) + "-vat-" + std::to_string(seed);
   vat.scene.pressure_solver = solver;

@@ -10,7 +10,7 @@
 namespace vat::stability {
 namespace {
 
-/// False where the shape cannot get smaller.
+/// Halves the shape. Returns false if it cannot become smaller.
 bool halve(Shape& shape, Real spacing) {
   if (auto* box = std::get_if<BoxShape>(&shape)) {
     if (box->size.maxCoeff() <= spacing) return false;
@@ -33,7 +33,7 @@ bool halve(Shape& shape, Real spacing) {
   return false;
 }
 
-/// Smaller scenes, the boldest steps first.
+/// Returns smaller scenes, those with the largest reduction first.
 std::vector<Scene> smaller(const Scene& scene) {
   std::vector<Scene> result;
   const auto offer = [&](auto&& change) {

@@ -9,12 +9,12 @@
 
 namespace vat::stability {
 
-/// The smallest scene that was found for which `fails` holds, starting from one for which it does:
-/// bodies, interfaces, motions and gravity are left out and sizes halved for as long as it still
-/// fails, at most `tries` times.
+/// Returns the smallest scene found for which `fails` is true, starting with a scene for which it
+/// is true. Removes bodies, interfaces, motions and gravity, and halves sizes, in at most `tries`
+/// attempts.
 Scene shrink(const Scene& scene, const std::function<bool(const Scene&)>& fails, int tries = 200);
 
-/// Writes the scene as a file that every command takes.
+/// Writes the scene as a file that every command accepts.
 Status write_scene_file(const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace vat::stability

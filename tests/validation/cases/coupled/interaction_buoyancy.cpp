@@ -17,8 +17,8 @@ constexpr Real kVolume =
 constexpr const char* kInterface =
     "the threshold of the spring interface sets the force instead of the displaced liquid";
 
-/// The scene with `threshold` spacings between liquid and ball, the ball's centre at `height`, and
-/// without liquid in the ball.
+/// A scene with `threshold` spacings between liquid and ball, the ball's centre at `height`, and no
+/// liquid in the ball.
 Scene pool_with_ball(Real threshold, Real density_ratio, Real height = 0.4) {
   Scene scene = load_scene("INT-5");
   scene.bodies[1].position.z() = height;
@@ -35,7 +35,7 @@ std::string buoyancy_text(Real value) {
   return digits.substr(0, digits.find('.') + 3);
 }
 
-// --- INT-5, INT-8 ---
+// INT-5, INT-8.
 
 void check_held(Sheet& sheet, Real threshold) {
   Run run = sheet.start(pool_with_ball(threshold, 1));
@@ -65,12 +65,12 @@ void run_held(Sheet& sheet) {
   for (const Real threshold : {1.0, 1.5}) check_held(sheet, threshold);
 }
 
-// --- INT-1 ---
+// INT-1.
 
 void check_floating(Sheet& sheet, const char* ratio, Real threshold) {
   const Real exact =
       reference(std::string("/interaction/INT-1/sphere_draft_over_diameter/") + ratio);
-  // It starts where it should float, for it is slow to rise between the walls.
+  // The ball starts at its equilibrium, since it rises slowly between the walls.
   Scene scene =
       pool_with_ball(threshold, std::stod(ratio), kDepth + kBuoyancyRadius * (1 - 2 * exact));
   scene.bodies[1].fixed = false;
@@ -97,7 +97,7 @@ void run_floating(Sheet& sheet) {
   }
 }
 
-// --- INT-3 ---
+// INT-3.
 
 void check_release(Sheet& sheet, const char* ratio) {
   Scene scene = pool_with_ball(1.25, std::stod(ratio));
@@ -108,7 +108,7 @@ void check_release(Sheet& sheet, const char* ratio) {
   run.advance_to(1.5);
   sheet.add(std::string("distance moved while held [m], density ratio ") + ratio, 0,
             (run.body("ball").pose->center_of_mass - held_at).norm(), within(0, "held"), run);
-  constexpr Real kWhile = 0.04;  // two periods of the ball on the springs of the interface
+  constexpr Real kWhile = 0.04;  // two periods of the ball on the interface springs
   run.advance_to(1.5 + kWhile);
   const std::string at = std::string("/interaction/INT-3/sphere/") + ratio + '/';
   sheet.add(std::string("acceleration downwards after release [m/s2], density ratio ") + ratio,

@@ -9,7 +9,7 @@ namespace vat::validation {
 
 namespace {
 
-// --- INT-6 ---
+// INT-6.
 
 void run_impact(Sheet& sheet) {
   for (const char* stiffness : {"1000", "10000", "100000"}) {
@@ -35,9 +35,9 @@ void run_impact(Sheet& sheet) {
   }
 }
 
-// --- INT-7 ---
+// INT-7.
 
-/// Bodies of the scene that meet.
+/// The colliding bodies of the scene.
 struct Pairing {
   const char* name;
   std::vector<std::size_t> bodies;
@@ -79,7 +79,8 @@ void check_pairing(Sheet& sheet, const Pairing& pairing, bool viscous) {
             at_least("the bodies have met"), run);
   sheet.add("change of momentum / sum m|v|" + of, 0, linear / scale, within(1e-12, "round-off"),
             run);
-  if (viscous) return;  // [MCG03]'s viscous force is along v_ij, not x_ij: it keeps no spin
+  if (viscous)
+    return;  // the viscous force of [MCG03] acts along v_ij, not x_ij, so it does not conserve spin
   sheet.add("change of angular momentum [kg m2/s]" + of, 0, angular,
             within(1e-10, "round-off of central forces"), run);
 }

@@ -8,31 +8,31 @@
 
 #include "tests/validation/cases.h"
 
-// Liquid that presses on soft tissue: a column of it bounces on a bed of springs. The motion is
-// that along the height alone, so both are rods with closed solutions.
+// Liquid on soft tissue: a column of liquid bounces on a bed of springs. The motion is vertical, so
+// both are rods with closed-form solutions.
 
 namespace vat::validation {
 
 namespace {
 
-/// The lattice of springs: columns of particles, held apart by the vat, under pressure.
+/// The lattice of springs under pressure: columns of particles, kept apart by the vat.
 struct Bed {
   Real spacing = 0;
   Real structural = 0;  ///< [N/m]
-  Real shear = 0;       ///< [N/m] of both diagonals of each cell
-  Real floor = 0;       ///< [N/m] under each column
+  Real shear = 0;       ///< [N/m] both diagonals of each cell
+  Real floor = 0;       ///< [N/m] below each column
   Real density = 0;
   int columns = 0;
   int rows = 0;
 
-  /// Pressure [Pa] of a layer that is pressed by the strain e. Diagonals of length s, sqrt(2) at
-  /// rest, push with shear (sqrt(2) - s) spacing, of which (1 - e)/s is along the height.
+  /// Returns the pressure [Pa] of a layer at the compressive strain e. Diagonals of length s
+  /// (sqrt(2) at rest) exert shear (sqrt(2) - s) spacing, of which (1 - e)/s is vertical.
   Real pressure(Real e) const {
     const Real s = std::hypot(1 - e, 1);
     const Real diagonals = 2 * (1 - 1.0 / columns);
     return structural * e + diagonals * shear * (std::numbers::sqrt2 / s - 1) * (1 - e);
   }
-  /// d pressure / d e.
+  /// Returns d pressure / d e.
   Real modulus(Real e) const {
     constexpr Real kDifference = 1e-4;
     return (pressure(e + kDifference) - pressure(e - kDifference)) / (2 * kDifference);
@@ -42,7 +42,8 @@ struct Bed {
     for (int n = 0; n < 20; ++n) e -= (pressure(e) - under) / modulus(e);
     return e;
   }
-  /// How much the top sinks onto the lowest layer under a pressure and the bed's own weight.
+  /// Returns the displacement of the top relative to the lowest layer, under a pressure and the
+  /// bed's weight.
   Real compression(Real above) const {
     Real sum = 0;
     for (int row = 1; row < rows; ++row) {
@@ -65,7 +66,7 @@ Bed bed_of(const Scene& scene) {
           .rows = static_cast<int>(std::lround(size.z() / body.spacing))};
 }
 
-/// Root of a function that rises through it between the bounds.
+/// Returns the root of an increasing function between the bounds.
 template <class Function>
 Real root_between(Real low, Real high, Function&& function) {
   for (int n = 0; n < 60; ++n) {
@@ -75,9 +76,9 @@ Real root_between(Real low, Real high, Function&& function) {
   return (low + high) / 2;
 }
 
-/// Slowest motion of a rod of liquid, free on top, on a rod of springs that is held at its foot:
-/// what both do to their interface is rho c tan(omega H/c) = rho' c' cot(omega T/c'). The floor's
-/// springs give as a piece of the bed that is modulus/floor spacings long.
+/// Returns the period of the slowest mode of a liquid rod with a free top on a spring rod with a
+/// fixed foot. At their interface, rho c tan(omega H/c) = rho' c' cot(omega T/c'). The floor's
+/// springs act like modulus/floor spacings of the bed.
 Real bounce_period(const Scene& scene, const Bed& bed, Real strain) {
   const Material& water = scene.materials[0];
   const Real depth = std::get<BoxShape>(scene.bodies[0].shape).size.z();
@@ -93,7 +94,7 @@ Real bounce_period(const Scene& scene, const Bed& bed, Real strain) {
   return 2 * std::numbers::pi / omega;
 }
 
-/// Mean height of a layer of the bed.
+/// Returns the mean height of a layer of the bed.
 Real height_of(const BodyView& view, const Bed& bed, int row) {
   const auto columns = static_cast<std::size_t>(bed.columns);
   Real sum = 0;
@@ -107,7 +108,7 @@ struct Bounce {
   Real compression = 0;  ///< mean over whole periods
 };
 
-/// Whole periods are from one passage downwards through the middle to another.
+/// Whole periods lie between downward passages through the middle.
 Bounce measure_bed(const std::vector<Real>& compressions, Real interval, Real middle) {
   std::vector<Real> passages;
   std::vector<std::size_t> samples;
@@ -140,7 +141,7 @@ void run_bed_bounce(Sheet& sheet) {
     compressions.push_back(height - height_of(view, bed, bed.rows - 1) + height_of(view, bed, 0));
   });
   const Bounce bounce = measure_bed(compressions, kInterval, expected);
-  // The liquid presses somewhere between the bed's top layer and its own lowest one.
+  // The liquid acts between the bed's top layer and the liquid's lowest layer.
   const Real place = bed.spacing / 2 / height;
   sheet.add("mean compression of the bed [m]", expected, bounce.compression,
             within_relative(place, "half a spacing of the bed's height"), run);

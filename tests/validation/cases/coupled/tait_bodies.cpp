@@ -12,7 +12,7 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kTaitRadius = 0.1;  // of the ball: four spacings [m]
+constexpr Real kTaitRadius = 0.1;  // ball radius: four spacings [m]
 constexpr Real kTaitVolume = 4 * std::numbers::pi / 3 * kTaitRadius * kTaitRadius * kTaitRadius;
 constexpr const char* kTaitAsked = "asked of a liquid that is to float bodies right";
 
@@ -20,16 +20,16 @@ struct TaitPool {
   Real width = 0.5;  ///< [m]
   Real depth = 0;    ///< [m]
 
-  /// On its axis at a height.
+  /// Returns the point on the axis at a height.
   Vec3 at(Real height) const { return {width / 2, width / 2, height}; }
 };
 
-/// Narrow for a quick run: what rests does not feel the walls.
+/// Returns a narrow pool for a quick run. A ball at rest is not affected by the walls.
 TaitPool pool_at_rest(const Sheet& sheet, Real depth) {
   return {sheet.quick() ? 0.35 : 0.5, depth};
 }
 
-/// The scene with that pool, and a ball of that density ratio with its centre at that place.
+/// A scene with this pool and a ball of this density ratio, centred at `center`.
 Scene tait_pool_with_ball(const TaitPool& pool, Real density_ratio, const Vec3& center) {
   const Real depth = pool.depth;
   Scene scene = load_scene("INT-5-tait");
@@ -51,16 +51,17 @@ void free_ball(Scene& scene, Real release) {
   scene.bodies[1].release = release;
 }
 
-// --- INT-5 ---
+// INT-5.
 
-/// Digits of i in a base, mirrored at the point, less a half: places spread evenly over -0.5..0.5.
+/// Returns the digits of i in a base, mirrored at the point, minus a half: positions evenly
+/// distributed over -0.5..0.5.
 Real spread(int i, int base) {
   Real sum = -0.5;
   for (Real part = 1.0 / base; i > 0; i /= base, part /= base) sum += part * (i % base);
   return sum;
 }
 
-/// Mean force upwards on the ball over 0.3 s, over rho g V.
+/// Returns the mean upward force on the ball over 0.3 s, divided by rho g V.
 Real buoyancy(Run& run) {
   run.advance_to(0.9);
   Real sum = 0;
@@ -73,7 +74,8 @@ Real buoyancy(Run& run) {
 }
 
 void run_tait_held(Sheet& sheet) {
-  // Where the lattice happens to be cut makes a percent: the mean over its places is judged.
+  // The position of the ball in the lattice changes the result by one percent. The mean over
+  // positions is compared.
   const int places = sheet.quick() ? 2 : 8;
   Row row{.metric = "buoyant force / (rho g V), mean of " + std::to_string(places) + " places",
           .reference = 1,
@@ -89,7 +91,7 @@ void run_tait_held(Sheet& sheet) {
   sheet.add(row);
 }
 
-// --- INT-8 ---
+// INT-8.
 
 void run_dam(Sheet& sheet) {
   Scene scene = load_scene("INT-8-tait");
@@ -106,13 +108,13 @@ void run_dam(Sheet& sheet) {
             within_relative(0.02, "a hundredth each for the pressure's level and slope"), run);
 }
 
-// --- INT-1 ---
+// INT-1.
 
 Real exact_draft(const char* ratio) {
   return reference(std::string("/interaction/INT-1/sphere_draft_over_diameter/") + ratio);
 }
 
-/// The pool with a ball of that density ratio, placed a spacing higher than it floats.
+/// A pool and a ball of this density ratio, one spacing above its equilibrium.
 Scene pool_with_floating_ball(const TaitPool& pool, const char* ratio) {
   const Real height = pool.depth + kTaitRadius * (1 - 2 * exact_draft(ratio)) + 0.025;
   return tait_pool_with_ball(pool, std::stod(ratio), pool.at(height));
@@ -141,8 +143,8 @@ void run_tait_floating(Sheet& sheet) {
   }
 }
 
-/// The ball as a lattice of springs, which the pressure of the liquid, at most rho g 2R, strains by
-/// 2R rho g dx/k, 3 %, and the forces along the diagonals less.
+/// Makes the ball a lattice of springs. The pressure of the liquid, at most rho g 2R, strains it by
+/// 2R rho g dx/k = 3 %. Forces along the diagonals reduce that.
 void make_soft(Scene& scene) {
   const SpringConstants spring{2000, 2};
   scene.bodies[1].kind = BodyKind::deformable;
@@ -160,9 +162,9 @@ void run_soft_floating(Sheet& sheet) {
   }
 }
 
-// --- INT-3 ---
+// INT-3.
 
-/// Downwards, in a spherical shell of liquid as wide as the pool.
+/// Returns the downward acceleration in a spherical shell of liquid as wide as the pool.
 Real release_acceleration(const TaitPool& pool, Real ratio) {
   const Real b3 = std::pow(pool.width / 2 / kTaitRadius, 3);
   const Real added_mass = 0.5 * (b3 + 2) / (b3 - 1);
@@ -174,7 +176,7 @@ void check_tait_release(Sheet& sheet, const char* ratio) {
   const TaitPool pool{.depth = 0.5};
   Scene scene = tait_pool_with_ball(pool, std::stod(ratio), pool.at(0.25));
   scene.settling->until = 0.4;
-  // The theory is that of a liquid without viscosity.
+  // The theory applies to a liquid without viscosity.
   scene.materials[0].liquid->viscosity = 0;
   scene.materials[0].liquid->artificial_viscosity = 0.005;
   free_ball(scene, kRelease);
@@ -182,7 +184,7 @@ void check_tait_release(Sheet& sheet, const char* ratio) {
   run.advance_to(kRelease);
   Real sum_tv = 0;
   Real sum_tt = 0;
-  // Before drag and the floor matter: the ball moves by an eighth of its radius at most.
+  // Ends before drag and the floor matter: the ball moves by at most an eighth of its radius.
   run.observe_until(kRelease + 0.06, 0.02, [&] {
     const Real t = run.simulation().time() - kRelease;
     sum_tv -= t * run.body("ball").pose->velocity.z();
@@ -200,7 +202,7 @@ void run_tait_release(Sheet& sheet) {
   }
 }
 
-// --- a ball on the floor ---
+// A ball on the floor.
 
 void run_sinking(Sheet& sheet) {
   const TaitPool pool = pool_at_rest(sheet, 0.35);
@@ -208,7 +210,7 @@ void run_sinking(Sheet& sheet) {
   free_ball(scene, 0.6);
   Run run = sheet.start(scene);
   run.advance_to(sheet.quick() ? 2 : 4);
-  // Its weight less its buoyancy, on one spring of the lowest layer of particles.
+  // Weight minus buoyancy, on one spring of the lowest layer of particles.
   const Real sink = 500 * kTaitVolume * kGravity / scene.interfaces[0].constants.stiffness;
   const RigidPose pose = *run.body("ball").pose;
   sheet.add("height of the centre on the floor / radius", 1, pose.center_of_mass.z() / kTaitRadius,

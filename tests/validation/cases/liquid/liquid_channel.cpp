@@ -14,7 +14,8 @@ Real constant(const char* name) {
   return reference(std::string("/liquid/LIQ-7/") + name);
 }
 
-/// Speed at the height z above the resting plate, t after the other began to move.
+/// Returns the speed at the height z above the plate at rest, at time t after the other plate
+/// started.
 Real couette(Real z, Real t) {
   const Real length = constant("L");
   const Real top = constant("V0");
@@ -27,7 +28,7 @@ Real couette(Real z, Real t) {
   return speed;
 }
 
-/// Speed at the height z between resting plates, t after the force began to act.
+/// Returns the speed at the height z between plates at rest, at time t after the force started.
 Real poiseuille(Real z, Real t) {
   const Real length = constant("L");
   const Real nu = constant("nu");
@@ -42,7 +43,7 @@ Real poiseuille(Real z, Real t) {
 
 using Profile = Real (*)(Real z, Real t);
 
-/// Relative L2 distance of the particles' speeds from the profile.
+/// Returns the relative L2 distance between the particles' speeds and the profile.
 Real profile_error(const Run& run, Profile profile) {
   const BodyView body = run.body();
   Real error = 0;
@@ -55,9 +56,9 @@ Real profile_error(const Run& run, Profile profile) {
   return std::sqrt(error / scale);
 }
 
-/// The viscosity of a square lattice over that of its material, for flows that vary little over a
-/// support of `reach` spacings: the second moment of the Laplacian, summed, over the square of the
-/// density's sum.
+/// Returns the effective viscosity of a square lattice, relative to that of its material, for flows
+/// that are almost uniform over a support of `reach` spacings: the summed second moment of the
+/// Laplacian, divided by the square of the density sum.
 Real lattice_viscosity(int reach) {
   Real density = 0;
   Real moment = 0;
@@ -72,8 +73,9 @@ Real lattice_viscosity(int reach) {
   return moment / (density * density);
 }
 
-/// The same of the weakly compressible liquid's central viscosity, whose force acts along the line
-/// between two particles: too weak along the axes of a lattice, too strong along its diagonals.
+/// Returns the same ratio for the central viscosity of the weakly compressible liquid. Its force
+/// acts along the line between two particles: it is too weak along the lattice axes, and too strong
+/// along the diagonals.
 Real central_lattice_viscosity(int reach) {
   const SmoothingKernel kernel(KernelId::wendland_c2, reach, 2);
   Real sum = 0;
@@ -97,7 +99,7 @@ Scene channel(PressureSolver solver, bool moving_plate, int layers, int reach) {
   }
   const Real height = constant("L");
   const Real spacing = height / layers;
-  const Real width = 2 * reach * spacing;  // the least period
+  const Real width = 2 * reach * spacing;  // minimum period
   scene.periodic->max.x() = width;
   scene.vat->max.x() = width;
   scene.bodies[0].shape = BoxShape{{width / 2, 0, height / 2}, {width, 1, height}};
@@ -154,17 +156,17 @@ void run_channel(Sheet& sheet) {
   check_convergence(sheet, solver, "poiseuille", false, poiseuille);
 }
 
-// --- LIQ-19 ---
+// LIQ-19.
 
-/// W. Nusselt's film, with the viscosity that is set: that of particles is between a lattice's and
-/// this one.
+/// Nusselt's film with the nominal viscosity. The effective viscosity is between this value and
+/// that of a lattice.
 Real film_speed(const Scene& scene, Real z) {
   const Real nu = scene.materials[0].liquid->viscosity / scene.materials[0].density;
   const Real depth = scene.bodies[0].position.z() * 2;
   return scene.gravity.x() / nu * (depth * z - z * z / 2);
 }
 
-/// Mean speed of the film that has become steady, over that of theory.
+/// Returns the mean speed of the steady film, relative to theory.
 Real mean_film_speed(const Run& run) {
   Real sum = 0;
   Real exact = 0;
@@ -200,7 +202,7 @@ void check_film(Sheet& sheet, PressureSolver solver) {
   }
 }
 
-/// Steps of 8 and 80 times what explicit viscosity allows.
+/// Uses steps of 8 and 80 times the limit of explicit viscosity.
 void run_film(Sheet& sheet) {
   check_film(sheet, PressureSolver::tait);
   check_film(sheet, PressureSolver::incompressible);

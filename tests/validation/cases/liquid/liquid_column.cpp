@@ -10,26 +10,26 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kColumnDepth = 0.5;  // before it is compressed [m]
+constexpr Real kColumnDepth = 0.5;  // uncompressed [m]
 constexpr const char* kWalls =
     "the walls exert forces, but do not contribute to the density, so the density at the floor is "
     "too low";
 constexpr const char* kColumnAsked = "error of the best explicit solvers with 20 layers";
 
-/// Of the gas with a speed of sound of 10 m/s.
+/// Pressure of the gas with a speed of sound of 10 m/s.
 Real gas_pressure(Real z) {
   const Real level = reference("/liquid/LIQ-3/H0=0.5,c=10/gas_height");
   return z < level ? 1e5 * std::expm1(kGravity * (level - z) / 100) : 0;
 }
 
-/// Of Tait's liquid with a speed of sound of 20 m/s.
+/// Pressure of Tait's liquid with a speed of sound of 20 m/s.
 Real tait_pressure(Real z) {
   const Real level = reference("/liquid/LIQ-3/H0=0.5,c=20/tait_height");
   const Real base = 1 + 6 * kGravity * (level - z) / 400;
   return z < level ? 4e5 / 7 * (std::pow(base, 7.0 / 6) - 1) : 0;
 }
 
-/// Heights and mean pressures of the particles over the last second of a run.
+/// Mean heights and pressures of the particles over the last second of a run.
 struct MeanPressure {
   std::vector<Real> heights;
   std::vector<Real> pressures;
@@ -56,7 +56,7 @@ MeanPressure mean_pressure(Run& run, Real from, Real until) {
   return mean;
 }
 
-/// Relative L2 distance of the pressures from the exact ones.
+/// Returns the relative L2 distance between the pressures and the exact ones.
 Real pressure_error(const MeanPressure& mean, Real (*exact_pressure)(Real z)) {
   Real error = 0;
   Real scale = 0;
@@ -99,7 +99,7 @@ void check_column(Sheet& sheet, int layers) {
             found.at_zero / reference("/liquid/LIQ-3/H0=0.5,c=10/gas_p_bottom"),
             fine ? within(0.2, "slope and depth") : reported(kWalls), run);
   const Real middle = run.diagnostics().bodies[0].center_of_mass.z();
-  // The gas law's liquid has its middle a little below half its height.
+  // The centre of the gas-law liquid is slightly below half of its height.
   sheet.add("twice the mean height [m]" + of, reference("/liquid/LIQ-3/H0=0.5,c=10/gas_height"),
             2 * middle, reported(kWalls), run);
   sheet.add("relative L2 error of the pressure" + of,

@@ -20,8 +20,8 @@ Series measured_series(const char* times, const char* values) {
           reference_at(kSeries + values).get<std::vector<Real>>()};
 }
 
-/// RMS relative distance of the front from the experiment for T >= 0.8, where the gate of the
-/// experiment has let the liquid go `shift` later.
+/// Returns the RMS relative distance between the front and the experiment for T >= 0.8, if the
+/// experiment's gate releases the liquid `shift` later.
 Real front_error(const Series& front, Real shift) {
   const Series experiment = measured_series("T_values", "Z_values");
   Real sum = 0;

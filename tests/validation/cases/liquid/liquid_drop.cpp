@@ -16,7 +16,7 @@ constexpr const char* kNoEnergy =
 const std::string kElsewhere = "same method elsewhere, spacing R/";
 const std::string kDropAsked = "error of the best explicit solvers";
 
-/// Semi-axes of the ellipse or ellipsoid that has the body's second moments [m].
+/// Returns the semi-axes of the ellipse or ellipsoid with the body's second moments [m].
 Vec3 semi_axes(const Run& run) {
   const BodyView body = run.body();
   Vec3 moments = Vec3::Zero();
@@ -25,7 +25,8 @@ Vec3 semi_axes(const Run& run) {
   return ((dimensions + 2) / static_cast<Real>(body.positions.size()) * moments).cwiseSqrt();
 }
 
-/// Axes over those at the start: a lattice cut to a ball has not quite the moments of the ball.
+/// Returns the axes relative to the start. The moments of a lattice cut to a ball differ slightly
+/// from those of the ball.
 Vec3 stretch_at(Run& run, const Vec3& start, Real time) {
   run.advance_to(time);
   return semi_axes(run).cwiseQuotient(start);
@@ -44,9 +45,9 @@ void add_momentum(Sheet& sheet, const Run& run, const std::string& of = "") {
   sheet.add("momentum / sum m|v|" + of, 0, momentum_error(run), within(1e-12, "round-off"), run);
 }
 
-// --- LIQ-9a ---
+// LIQ-9a.
 
-/// How far a drop may be from theory.
+/// Permitted distances from theory.
 struct EllipseTolerances {
   Tolerance long_axis;
   Tolerance short_axis;
@@ -89,15 +90,15 @@ void run_tait_elliptic(Sheet& sheet) {
       within(1 - reference(published + "E"), kElsewhere + "50")};
   Scene scene = load_scene("LIQ-9a-tait");
   scene.pair_precision =
-      PairPrecision::double_precision;  // momentum is to be kept to its last digits
+      PairPrecision::double_precision;  // to conserve momentum to the last digits
   check_elliptic(sheet, scene, tolerances);
   scene.kernel = KernelId::cubic_spline;
   check_elliptic(sheet, scene, tolerances, ", cubic spline");
 }
 
-// --- LIQ-9b ---
+// LIQ-9b.
 
-/// Relative error of the long axis after a second, `layers` particles to the radius.
+/// Returns the relative error of the long axis after a second. The radius has `layers` particles.
 Real ellipsoid_error(Sheet& sheet, int layers, Row& row) {
   Scene scene = load_scene("LIQ-9b");
   set_spacing(scene, 1.0 / layers);
@@ -141,10 +142,10 @@ void run_ellipsoid(Sheet& sheet) {
   sheet.add(row);
 }
 
-// --- LIQ-9c, LIQ-9d ---
+// LIQ-9c, LIQ-9d.
 
-/// Mean period [s] over the next `count` periods, from the times at which x and z axes are equal.
-/// Calls `watch` after every step.
+/// Returns the mean period [s] of the next `count` periods, from the times at which the x and z
+/// axes are equal. Calls `watch` after every step.
 Real mean_period(
     Run& run, int count, const std::function<void()>& watch = [] {}) {
   std::vector<Real> zeros;
@@ -165,7 +166,7 @@ Real mean_period(
   return zeros.back() / count;
 }
 
-/// What is done against the field's pull counts as potential energy.
+/// The work against the field counts as potential energy.
 void add_swing(Sheet& sheet, Scene scene, const std::string& at, int periods) {
   set_rest_mass(scene);
   const std::string of = ", " + std::to_string(periods) + " periods";
@@ -211,7 +212,7 @@ void run_swing(Sheet& sheet) {
   add_swing(sheet, load_scene("LIQ-9d"), "/liquid/LIQ-9d/", 2);
 }
 
-// --- LIQ-10 ---
+// LIQ-10.
 
 void run_patch(Sheet& sheet) {
   Scene scene = load_scene("LIQ-10");
@@ -219,7 +220,7 @@ void run_patch(Sheet& sheet) {
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.01)));
   const Diagnostics start = run.diagnostics();
   const Real mass = start.bodies[0].mass;
-  // Of the area that the particles stand for, at its mass: the spin is 1 rad/s, the side 1 m.
+  // The area follows from the particles' mass. The spin is 1 rad/s, the side 1 m.
   sheet.add(
       "initial angular momentum [kg m2/s]", mass / 6, start.bodies[0].angular_momentum.y(),
       within_relative(std::pow(scene.bodies[0].spacing, 2) * 1.01, "dx^2 of the midpoint rule"),

@@ -6,13 +6,14 @@
 
 namespace vat::validation {
 
-/// y = at_zero + slope x.
+/// The line y = at_zero + slope x.
 struct Line {
   Real slope = 0;
   Real at_zero = 0;
 };
 
-/// By least squares over the points with x from `least` to `most`; at least two different.
+/// Returns the least-squares fit of the points with x from `least` to `most`. There must be at
+/// least two different x.
 Line fitted_line(const std::vector<Real>& x, const std::vector<Real>& y, Real least, Real most);
 
 }  // namespace vat::validation

@@ -6,12 +6,12 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kSpeed = 2;         // of the nozzle [m/s]
-constexpr Real kArea = 0.1 * 0.1;  // of its opening: 5 x 5 spacings [m^2]
+constexpr Real kSpeed = 2;         // nozzle speed [m/s]
+constexpr Real kArea = 0.1 * 0.1;  // opening area: 5 x 5 spacings [m^2]
 const Vec3 kOpening(0.2, 0.25, 0.8);
 constexpr Real kSpacing = 0.02;
 
-/// Height of the jet's centre where it crosses x, over the particles within half a spacing.
+/// Returns the height of the jet's centre at x, from the particles within half a spacing.
 Real height_at(const Run& run, Real x) {
   Real sum = 0;
   int count = 0;
@@ -23,7 +23,7 @@ Real height_at(const Run& run, Real x) {
   return sum / count;
 }
 
-/// Of the jet at x, over the time it takes for a few layers to pass.
+/// Returns the mean height of the jet at x, over the time in which a few layers pass.
 Real mean_height(Run& run, Real x) {
   Real sum = 0;
   int samples = 0;
@@ -46,7 +46,7 @@ void run_jet(Sheet& sheet) {
   sheet.add("volume flow in [m3/s]", kSpeed * kArea,
             static_cast<Real>(now.emitted_particles - before) * volume / time,
             within_relative(1e-12, "whole layers in whole intervals"), run);
-  // The stream is one layer thick in time when it is caught.
+  // The drain removes whole layers, so the time is known to one layer.
   sheet.add("volume flow out [m3/s]", kSpeed * kArea,
             static_cast<Real>(now.drained_particles - drained) * volume / time,
             within(25 * volume / time, "a layer"), run);

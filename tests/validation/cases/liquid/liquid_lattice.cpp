@@ -17,9 +17,9 @@ void set_support(Scene& scene, const std::string& over_spacing) {
   scene.materials[0].liquid->support_radius = std::stod(over_spacing) * kLatticeSpacing;
 }
 
-// --- LIQ-1 ---
+// LIQ-1.
 
-/// A lattice, by the points of its unit cell.
+/// A lattice, given by the points of its unit cell.
 struct Cell {
   const char* name;
   std::vector<Vec3> points;
@@ -31,7 +31,7 @@ std::vector<Cell> cells() {
           {"fcc", {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}}};
 }
 
-/// A periodic world of 8^3 cells, each particle standing for the volume of kLatticeSpacing^3.
+/// A periodic world of 8^3 cells. The volume of each particle is kLatticeSpacing^3.
 Scene lattice_scene(const Cell& cell) {
   constexpr int kCells = 8;
   Scene scene = load_scene("LIQ-1");
@@ -65,9 +65,9 @@ void run_sums(Sheet& sheet) {
   }
 }
 
-// --- LIQ-2 ---
+// LIQ-2.
 
-/// A world as long as a wave of `count` spacings, and two supports across.
+/// A periodic world as long as a wave of `count` spacings, and two support radii wide.
 Scene wave_scene(const std::string& name, int count, const std::string& reach) {
   Scene scene = load_scene(name);
   set_support(scene, reach);
@@ -82,7 +82,7 @@ Real wave_number(int count) {
   return 2 * std::numbers::pi / (count * kLatticeSpacing);
 }
 
-/// Amplitude of sin(k x), of values at the places of an undisturbed lattice.
+/// Returns the amplitude of sin(k x) of values at undisturbed lattice positions.
 template <class Value>
 Real amplitude(const std::vector<Vec3>& places, Real k, const Value& value) {
   Real sum = 0;
@@ -97,7 +97,7 @@ std::vector<Vec3> lattice_places(Scene scene) {
   return {places.begin(), places.end()};
 }
 
-/// What the density makes of a wave in the masses.
+/// Returns the amplitude of the density for a wave in the masses.
 Real smoothed_wave(Sheet& sheet, int count, const std::string& reach, Row& row) {
   constexpr Real kWave = 0.1;
   Scene scene = wave_scene("LIQ-1", count, reach);
@@ -140,28 +140,28 @@ void run_interpolation(Sheet& sheet) {
   }
 }
 
-// --- LIQ-4 ---
+// LIQ-4.
 
-/// The order in which values at halved spacings come together, from three of them.
+/// Returns the order of convergence from the values at three successively halved spacings.
 Real order_of_approach(Real coarse, Real middle, Real fine) {
   return std::log2((middle - coarse) / (fine - middle));
 }
 
-/// omega / (c k) of a sound wave of `count` spacings.
+/// Returns omega / (c k) of a sound wave of `count` spacings.
 Real sound_frequency(Sheet& sheet, int count, const std::string& reach, Row& row) {
   const Real k = wave_number(count);
   const Real step = 0.2 * kLatticeSpacing / 10;  // c = 10 m/s
   Scene scene = with_step(wave_scene("LIQ-4", count, reach), step);
   PlaneWave& wave = scene.bodies[0].displacement_field->waves[0];
   wave.wave_vector.x() = k;
-  // A little more dense than at rest, so that the pressure is above zero in the troughs too.
+  // Slightly denser than at rest, so that the pressure is positive in the troughs too.
   const Real background = 2 * k * wave.amplitude.x();
   const std::vector<Vec3> places = lattice_places(scene);
   scene.bodies[0].mass = (1 + background) * kDensity * std::pow(kLatticeSpacing, 3) *
                          static_cast<Real>(places.size()) /
                          reference("/liquid/LIQ-1/table/sc/" + reach + "/poly6");
   Run run = sheet.start(scene);
-  const Real interval = step * std::round(count / 2.0);  // a tenth of a period
+  const Real interval = step * std::round(count / 2.0);  // one tenth of a period
   std::vector<Real> samples;
   run.observe_until(15 * interval, interval, [&] {
     const std::span<const Vec3> now = run.body().positions;
@@ -172,7 +172,8 @@ Real sound_frequency(Sheet& sheet, int count, const std::string& reach, Row& row
   row.state_hash = run.state_hash();
   const Real omega = fitted_frequency(samples, interval);
   const Real z = omega * step;
-  return omega / (1 + z * z / 24) / (10 * k);  // less the frequency error of velocity Verlet
+  return omega / (1 + z * z / 24) /
+         (10 * k);  // corrected for the frequency error of velocity Verlet
 }
 
 void run_sound(Sheet& sheet) {
@@ -180,7 +181,7 @@ void run_sound(Sheet& sheet) {
     std::vector<Real> found;
     for (const int count : {10, 20, 40, 80}) {
       if (sheet.quick() && count == 80) continue;
-      // The published operator has half the pressure force: see core/REFERENCES.md.
+      // The published operator has half of the pressure force: see core/REFERENCES.md.
       Row row{
           .metric = "omega/(c k), wave of " + std::to_string(count) + " spacings, H/dx = " + reach,
           .reference = std::sqrt(Real{2}) * reference(std::string("/liquid/LIQ-4/table/mcg03/") +
@@ -200,15 +201,16 @@ void run_sound(Sheet& sheet) {
   }
 }
 
-// --- LIQ-5 ---
+// LIQ-5.
 
-/// Viscosity that the decay of a shear wave of `count` spacings shows, over that of the material.
+/// Returns the viscosity from the decay of a shear wave of `count` spacings, relative to that of
+/// the material.
 Real shear_viscosity(Sheet& sheet, const std::string& name, int count, const std::string& reach,
                      Row& row) {
   const Real k = wave_number(count);
   const Real step = 0.01;
   const Real support = std::stod(reach) * kLatticeSpacing;
-  // Well within what is stable, and slow enough for the error of Runge-Kutta to be 1e-7.
+  // Well below the stability limit, and slow enough for a Runge-Kutta error of 1e-7.
   const Real nu = 0.05 * std::min(support * support, 1 / (k * k)) / step;
   Scene scene = with_step(wave_scene(name, count, reach), step);
   scene.materials[0].liquid->viscosity = nu * kDensity;
@@ -251,9 +253,9 @@ void run_shear(Sheet& sheet) {
   }
 }
 
-/// Of the published central form with Wendland's kernel. The weakly compressible liquid scales the
-/// kernel's gradient so that a lattice feels a slope in full: without, it feels as much of it as
-/// long waves of sound have of their speed, times the lattice's density.
+/// Returns the ratio for the published central form with Wendland's kernel. The weakly compressible
+/// liquid scales the kernel's gradient so that a linear profile on a lattice is exact. Without the
+/// scaling, the factor is the speed ratio of long sound waves times the lattice's density.
 Real published_shear(const std::string& reach, int count) {
   const std::string sound = "/liquid/LIQ-4/table/wendlandC2_var/" + reach + '/';
   const Real long_wave =

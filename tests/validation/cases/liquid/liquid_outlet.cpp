@@ -10,10 +10,10 @@ namespace vat::validation {
 
 namespace {
 
-constexpr Real kSlot = 0.1;         // between the plates' faces; five spacings [m]
-constexpr Real kOutletWidth = 0.8;  // of the tank [m]
+constexpr Real kSlot = 0.1;         // between the faces of the plates; five spacings [m]
+constexpr Real kOutletWidth = 0.8;  // tank width [m]
 
-/// Area of liquid above the plates [m^2].
+/// Returns the area of liquid above the plates [m^2].
 Real area_left(const Run& run) {
   const BodyView water = run.body("water");
   const auto above =
@@ -21,7 +21,7 @@ Real area_left(const Run& run) {
   return static_cast<Real>(above) * water.masses[0] / 1000;
 }
 
-/// Goes on until the liquid above the plates is `depth` deep; the time then [s].
+/// Advances until the liquid above the plates is `depth` deep. Returns the time [s].
 Real time_at_depth(Run& run, Real depth) {
   while (area_left(run) > depth * kOutletWidth) {
     if (run.simulation().time() > 10) throw std::runtime_error("the tank does not run out");
@@ -30,7 +30,8 @@ Real time_at_depth(Run& run, Real depth) {
   return run.simulation().time();
 }
 
-/// Time that a jet as wide as the slot, of the speed sqrt(2 g h), takes from one depth to another.
+/// Returns the time in which a jet as wide as the slot, with the speed sqrt(2 g h), lowers the
+/// depth from `from` to `to`.
 Real ideal_time(Real from, Real to) {
   return kOutletWidth / kSlot * std::sqrt(2 / 9.81) * (std::sqrt(from) - std::sqrt(to));
 }
@@ -40,7 +41,7 @@ void run_outlet(Sheet& sheet) {
   set_rest_mass(scene);
   scene.materials[0].liquid->viscosity = 1000 * artificial_viscosity(scene, 0.05);
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.01)));
-  // The flow takes a while to begin, and at last the depth is no more than the slot.
+  // The start of the flow takes some time, and at the end the depth is that of the slot.
   const Real begin = time_at_depth(run, 0.3);
   const Real coefficient = ideal_time(0.3, 0.15) / (time_at_depth(run, 0.15) - begin);
   sheet.add("coefficient of discharge of a slot of five spacings",

@@ -4,33 +4,35 @@
 
 namespace vat::validation {
 
-/// Density of particles of density times spacing^dimensions on a cubic (square) lattice, over the
-/// rest density: the sum of poly6 over the lattice.
+/// Returns the density of a cubic (square) lattice, relative to the rest density: the sum of poly6
+/// over the lattice. Each particle's mass is density times spacing^dimensions.
 Real lattice_density(int dimensions, Real support_over_spacing);
 
-/// Gives the first body of the scene, a sampled liquid, the mass with which its lattice has the
-/// rest density. Without it the gas law takes the error of the sum for a pressure; the weakly
+/// Sets the mass of the scene's first body, a sampled liquid, so that its lattice has the rest
+/// density. Otherwise the gas law converts the error of the sum into a pressure. The weakly
 /// compressible liquid scales its kernel instead.
 void set_rest_mass(Scene& scene);
 
-/// Sets the lattice spacing of the first body, a sampled liquid, with the support radius in
-/// proportion, and its mass as above.
+/// Sets the lattice spacing of the first body, a sampled liquid, and its support radius in
+/// proportion. Sets its mass as set_rest_mass() does.
 void set_spacing(Scene& scene, Real spacing);
 
-/// Makes the walls as stiff to a particle of the first body as a layer of the liquid is, with a
-/// tenth of critical damping: undamped walls keep the liquid at the boil.
+/// Makes the walls as stiff for a particle of the first body as a layer of the liquid, with a tenth
+/// of critical damping. Undamped walls would keep the liquid in motion.
 void set_walls_like_liquid(Scene& scene);
 
-/// Kinematic viscosity alpha c H / (2 (d + 2)) that the artificial viscosity `alpha` of Monaghan's
-/// form stands for, with the support radius H in the place of its length [m^2/s].
+/// Returns the kinematic viscosity alpha c H / (2 (d + 2)) [m^2/s] of Monaghan's artificial
+/// viscosity `alpha`. The support radius H is its length.
 Real artificial_viscosity(const Scene& scene, Real alpha);
 
-/// Height of a layer of weakly compressible liquid at rest that is that thick without compression,
-/// under the weight of `above` more of it [m]: dz/dz_0 = rho_0/rho = (1 + 7 g depth / c^2)^(-1/7).
+/// Returns the height of a layer of weakly compressible liquid at rest, under the weight of `above`
+/// [m] of the liquid. `thickness` is its uncompressed height: dz/dz_0 = rho_0/rho = (1 + 7 g depth
+/// / c^2)^(-1/7).
 Real pressed_height(Real thickness, Real above, Real c2);
 
-/// The longest step, a whole part of `interval`, in which sound goes a fifth of the support radius,
-/// or two fifths in a weakly compressible liquid: half of what is stable is 0.48 or 0.43 of it.
+/// Returns the longest step that divides `interval` and in which sound travels at most a fifth of
+/// the support radius, or two fifths in a weakly compressible liquid. Half of the stable step is
+/// 0.48 or 0.43 of the support radius.
 Real acoustic_step(const Scene& scene, Real interval);
 
 }  // namespace vat::validation

@@ -9,8 +9,7 @@
 #include "tests/validation/cases/liquid/pool.h"
 #include "tests/validation/reference.h"
 
-// The incompressible liquid, and beside it the weakly compressible one: their errors against the
-// seconds that the rows have.
+// Incompressible and weakly compressible liquids: their errors and run times.
 
 namespace vat::validation {
 
@@ -18,8 +17,8 @@ namespace {
 
 const char* const kTarget = "twice the error that a weakly compressible liquid may have";
 
-/// The scene's liquid at rest density with this solver, in adaptive steps of at most `step`.
-/// `speed`: the greatest that is expected [m/s].
+/// Returns the scene with its liquid at rest density, this solver, and adaptive steps of at most
+/// `step`. `speed` is the expected maximum [m/s].
 Scene with_solver(Scene scene, PressureSolver solver, Real spacing, Real speed, Real step) {
   const bool is_tait = solver == PressureSolver::tait;
   scene.pressure_solver = solver;
@@ -41,12 +40,13 @@ void add_density(Sheet& sheet, const std::string& of, const SolverRun& result) {
             at_most("target of the solver"), result.run);
 }
 
-// --- LIQ-3 ---
+// LIQ-3.
 
 constexpr Real kSolverDepth = 0.5;
 
-/// The weakly compressible column's scene, settling and all; of incompressible liquid with its
-/// artificial viscosity as a real one, for there is no sound that it could go by.
+/// Returns the scene of the weakly compressible column, with settling. For the incompressible
+/// liquid, the artificial viscosity becomes a physical one, since that liquid has no speed of
+/// sound.
 Scene make_column(PressureSolver solver, Real spacing) {
   Scene scene = load_scene("LIQ-3-tait");
   if (solver == PressureSolver::tait) {
@@ -81,7 +81,7 @@ void check_columns(Sheet& sheet) {
   }
 }
 
-// --- LIQ-15 ---
+// LIQ-15.
 
 void check_dam_break(Sheet& sheet, PressureSolver solver, int layers) {
   const DamBreakRun result = run_dam_break(solver, layers, sheet.runner());
@@ -105,11 +105,11 @@ void check_dam_breaks(Sheet& sheet) {
   }
 }
 
-// --- INT-1 ---
+// INT-1.
 
 constexpr Real kSolverRadius = 0.2;  // of the ball: four spacings [m]
 
-/// A ball that starts where it should float, in a pool of which it displaces as much as it should.
+/// A ball at its equilibrium in a pool that already contains the displaced volume.
 Scene solver_pool_with_ball(const std::string& ratio, Real draft) {
   Scene scene = with_solver(load_scene("INT-5"), PressureSolver::incompressible, 0.05, 0, 0.005);
   BodyDescription& ball = body_of(scene, "ball");
@@ -164,7 +164,7 @@ DamBreakRun run_dam_break(PressureSolver solver, int layers, TaskRunner* runner)
 ColumnRun run_column(PressureSolver solver, int layers, TaskRunner* runner) {
   ColumnRun column{{Run(make_column(solver, kSolverDepth / layers), runner), {}}, {}, {}};
   Run& run = column.run;
-  run.advance_to(0.02);  // its first step moves what was placed too close together
+  run.advance_to(0.02);  // the first step separates particles that are too close
   run.observe_until(2, 0.02, [&] { column.density.add(run.diagnostics()); });
   const std::size_t count = run.body().positions.size();
   column.heights.assign(count, 0);

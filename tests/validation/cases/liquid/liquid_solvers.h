@@ -7,40 +7,40 @@
 #include "tests/validation/cases/liquid/liquid_dam_break.h"
 #include "tests/validation/run.h"
 
-/// Problems that pressure solvers with walls of their own, tait and incompressible, are compared
-/// on.
+/// Problems for the comparison of pressure solvers with their own wall treatment, tait and
+/// incompressible.
 namespace vat::validation {
 
-/// Particles that are too dense, over a run.
+/// Density excess of the particles during a run.
 struct DensityError {
-  Real mean = 0;  ///< over particles and times
+  Real mean = 0;  ///< mean over particles and times
   Real greatest = 0;
   int samples = 0;
 
   void add(const Diagnostics& now);
 };
 
-/// A run of one of the solvers, and how dense its liquid became.
+/// A run with one solver, and its density errors.
 struct SolverRun {
   Run run;
   DensityError density;
 };
 
-/// A dam break (LIQ-15) of columns `layers` particles wide.
+/// A dam break (LIQ-15). The column is `layers` particles wide.
 struct DamBreakRun : SolverRun {
   DamBreak seen;
 };
 DamBreakRun run_dam_break(PressureSolver solver, int layers, TaskRunner* runner);
 
-/// A column at rest (LIQ-3), `layers` high: its particles' heights and pressures, means over the
-/// last of three seconds.
+/// A column at rest (LIQ-3), `layers` particles high. Heights and pressures of its particles are
+/// means over the last of three seconds.
 struct ColumnRun : SolverRun {
   std::vector<Real> heights;    ///< [m]
   std::vector<Real> pressures;  ///< [Pa]
 
-  /// Relative L2 distance of the pressures from those of water.
+  /// Returns the relative L2 distance between the pressures and hydrostatic pressures.
   Real pressure_error() const;
-  /// The greatest speed at the end, over sqrt(g H).
+  /// Returns the maximum speed at the end, divided by sqrt(g H).
   Real residual_speed() const;
 };
 ColumnRun run_column(PressureSolver solver, int layers, TaskRunner* runner);

@@ -11,7 +11,8 @@ namespace {
 
 constexpr Real kSurfaceRadius = 0.05;
 
-/// The radius `layers` spacings and the support radius 2.5 of them with curvature in space, else 3.
+/// A drop with a radius of `layers` spacings. The support radius is 2.5 spacings with curvature in
+/// three dimensions, otherwise 3.
 Scene make_drop(SurfaceModel model, int dimensions, int layers) {
   Scene scene = load_scene("LIQ-8");
   scene.surface_model = model;
@@ -23,7 +24,7 @@ Scene make_drop(SurfaceModel model, int dimensions, int layers) {
   return with_step(scene, acoustic_step(scene, 0.001));
 }
 
-/// Of a ball or disc with the body's volume, over the radius of the reference.
+/// Returns the radius of a ball or disc with the body's volume, relative to the reference.
 Real radius_ratio(const Run& run) {
   const Scene& scene = run.simulation().scene();
   Real mass = 0;
@@ -34,7 +35,7 @@ Real radius_ratio(const Run& run) {
   return radius / kSurfaceRadius;
 }
 
-/// Whether the body is longer along z than along x.
+/// Returns the length along z minus that along x.
 Real stretch(const Run& run) {
   const BodyView body = run.body();
   const Vec3 center = run.diagnostics().bodies[0].center_of_mass;
@@ -43,7 +44,7 @@ Real stretch(const Run& run) {
   return std::log(moments.z() / moments.x());
 }
 
-/// Twice the time between the first and the last of `count` + 1 times at which the drop is round.
+/// Returns twice the mean time between `count` + 1 successive times at which the drop is round.
 Real period(Run& run, int count) {
   std::vector<Real> zeros;
   const Real step = run.simulation().step_size();
@@ -58,7 +59,7 @@ Real period(Run& run, int count) {
   return 2 * (zeros.back() - zeros.front()) / count;
 }
 
-/// The pressure within half the radius, averaged over a swing.
+/// Returns the pressure within half the radius, averaged over an oscillation.
 Real inner_pressure(Run& run, Real duration) {
   Real sum = 0;
   std::size_t count = 0;
@@ -75,9 +76,9 @@ Real inner_pressure(Run& run, Real duration) {
   return sum / static_cast<Real>(count);
 }
 
-/// The period goes with R^1.5, and R is known to half a spacing. What curves and presses is spread
-/// over a support radius h: the force allows for h/R to the first order, half of which is left
-/// where surfaces are not smooth.
+/// The period is proportional to R^1.5, and R is known to half a spacing. Curvature and pressure
+/// are distributed over a support radius h. The force corrects h/R to first order. Half of that
+/// error remains if surfaces are not smooth.
 void add_drop(Sheet& sheet, SurfaceModel model, int dimensions, int layers) {
   const bool is_plane = dimensions == 2;
   const std::string of = std::string(is_plane ? ", in the plane" : ", in space") + ", " +

@@ -10,17 +10,17 @@ namespace vat::validation {
 
 namespace {
 
-/// Where the liquid's centre of mass is along x, in the tank [m].
+/// Returns the x coordinate of the liquid's centre of mass in the tank [m].
 Real center(const Run& run) {
   return run.diagnostics().bodies[0].center_of_mass.x() - run.simulation().vat_offset().x();
 }
 
-/// Height of what is at z without compression, in gas of that depth, as the weight above presses.
+/// Returns the height of a gas layer with the uncompressed height z, under the weight above it.
 Real pressed_gas(Real z, Real depth, Real c2) {
   return -c2 / kGravity * std::log(1 - kGravity * z / (c2 + kGravity * depth));
 }
 
-/// Puts every particle of a lattice where the weight above presses it.
+/// Moves every particle of a lattice to its height under the weight above it.
 void press_together(ParticleShape& shape, Real depth, const Scene& scene) {
   const Real c2 = scene.materials[0].liquid->stiffness;
   const bool tait = scene.pressure_solver == PressureSolver::tait;
@@ -29,7 +29,7 @@ void press_together(ParticleShape& shape, Real depth, const Scene& scene) {
   }
 }
 
-/// The scene's first body as the particles of its lattice.
+/// Returns the lattice particles of the scene's first body.
 ParticleShape lattice_of(const Scene& scene) {
   const Run run(scene);
   const std::span<const Vec3> places = run.body().positions;
@@ -38,9 +38,9 @@ ParticleShape lattice_of(const Scene& scene) {
   return shape;
 }
 
-// --- LIQ-12 ---
+// LIQ-12.
 
-constexpr Real kWave = 0.05;  // amplitude of the surface at the start [m]
+constexpr Real kWave = 0.05;  // initial amplitude of the surface [m]
 
 Scene standing_wave(const std::string& name, int layers) {
   Scene scene = load_scene(name);
@@ -52,7 +52,7 @@ Scene standing_wave(const std::string& name, int layers) {
   }
   ParticleShape shape = lattice_of(scene);
   press_together(shape, depth, scene);
-  for (Vec3& x : shape.positions) {  // as a linear wave moves them
+  for (Vec3& x : shape.positions) {  // displacement of a linear wave
     const Real scale = kWave / std::sinh(std::numbers::pi * depth);
     x += scale * Vec3(-std::cosh(std::numbers::pi * x.z()) * std::sin(std::numbers::pi * x.x()), 0,
                       std::sinh(std::numbers::pi * x.z()) * std::cos(std::numbers::pi * x.x()));
@@ -69,7 +69,7 @@ void check_standing_wave(Sheet& sheet, const std::string& name, int layers) {
   const Swing seen = observe_swing(run, 3.2, [&] { return center(run) - 0.5; });
   const Real steepness = reference(at + "k") * kWave;
   const Real period = reference(at + "T") / (1 - 0.194641 * steepness * steepness / 2);
-  // Over whole periods, for the liquid at rest may be a little to one side.
+  // Uses whole periods, since the rest position may be slightly off-centre.
   sheet.add("period [s]" + of, period, (seen.zeros.at(4) - seen.zeros[0]) / 2,
             tait          ? within_relative(0.01, "error of the best explicit solvers")
             : layers > 20 ? within_relative(0.02, "published target")
@@ -94,9 +94,10 @@ void run_standing_wave(Sheet& sheet, const std::string& name) {
   check_standing_wave(sheet, name, sheet.quick() ? 30 : 40);
 }
 
-// --- LIQ-13 ---
+// LIQ-13.
 
-/// Where linear waves put the centre of mass, t after the tank began to accelerate by 1 m/s^2.
+/// Returns the displacement of the centre of mass by linear waves, at time t after the tank started
+/// to accelerate by 1 m/s^2.
 Real sloshed(Real t, Real depth) {
   Real shift = 0;
   for (int n = 1; n < 200; n += 2) {
@@ -119,7 +120,7 @@ void run_sliding_tank(Sheet& sheet) {
   press_together(shape, depth, scene);
   scene.bodies[0].shape = shape;
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.01)));
-  // What a rise of the surface by one spacing at the wall, in the first mode, is worth.
+  // Effect of a rise of the surface at the wall by one spacing, in the first mode.
   const Tolerance tolerance = within(2 * spacing / (std::numbers::pi * std::numbers::pi * depth),
                                      "a surface known to a spacing at the wall");
   for (const char* time : {"0.2", "0.4", "0.6", "0.8", "1.0"}) {

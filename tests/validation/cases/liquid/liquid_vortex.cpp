@@ -9,14 +9,15 @@ namespace vat::validation {
 
 namespace {
 
-/// Speed of the vortices at x, relative to the greatest.
+/// Returns the speed of the vortices at x, relative to the maximum.
 Real pattern(const Vec3& x) {
   const Vec3 angle = 2 * std::numbers::pi * x;
   return std::hypot(std::cos(angle.x()) * std::sin(angle.z()),
                     std::sin(angle.x()) * std::cos(angle.z()));
 }
 
-/// Mean distance of the particles' speeds from the solution's, over the mean speed of that.
+/// Returns the mean difference between the particles' speeds and the solution, relative to the mean
+/// speed of the solution.
 Real speed_error(const Run& run, Real greatest) {
   const BodyView body = run.body();
   Real error = 0;
@@ -76,7 +77,7 @@ void run_tait_vortices(Sheet& sheet) {
     const Real exact = reference(std::string("/liquid/LIQ-6/Ek_ratio/") + time);
     sheet.add("L1 error of the speeds" + at, late ? reference(published + "t=2/L1") : 0.03,
               speed_error(run, greatest), at_most("particle shifting elsewhere, 50 x 50"), run);
-    // The published greatest speed is that much above the solution's.
+    // The published maximum speed exceeds the solution by this amount.
     const Real excess = reference(published + "t=" + time + "/umax") - 1;
     sheet.add("kinetic energy / exact kinetic energy" + at, 1,
               run.diagnostics().kinetic_energy / energy / exact,

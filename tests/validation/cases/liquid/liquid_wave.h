@@ -7,13 +7,13 @@
 
 namespace vat::validation {
 
-/// Of a quantity that swings about zero.
+/// A quantity that oscillates about zero.
 struct Swing {
-  std::vector<Real> zeros;     ///< times at which it changes its sign [s]
-  std::vector<Real> extremes;  ///< its greatest magnitudes from one of them to the next
+  std::vector<Real> zeros;     ///< times of sign changes [s]
+  std::vector<Real> extremes;  ///< maximum magnitudes between successive zeros
 };
 
-/// Runs on to `until`, a whole number of hundredths of a second, and looks at `quantity` after
+/// Advances to `until`, a whole number of hundredths of a second, and samples `quantity` after
 /// each.
 Swing observe_swing(Run& run, Real until, const std::function<Real()>& quantity);
 

@@ -10,12 +10,12 @@ namespace vat::validation {
 
 namespace {
 
-// --- LIQ-16 ---
+// LIQ-16.
 
 const std::string kExperiment = "/data_series/spheric_test_2/";
 constexpr const char* kTaitDamAsked = "error of the best explicit solvers";
 
-/// Particles in the box of a body, as many as its spacing asks for, so that they fill it.
+/// Returns particles that fill the box of a body, with a number that follows from its spacing.
 ParticleShape fill(const BoxShape& box, Real spacing, Real density) {
   const Eigen::Array3i counts = (box.size.array() / spacing).round().cast<int>();
   const Vec3 cell = box.size.array() / counts.cast<Real>();
@@ -38,14 +38,14 @@ Scene tank(Real spacing) {
   scene.materials[0].liquid->support_radius *= spacing / water.spacing;
   water.spacing = spacing;
   water.shape = fill(std::get<BoxShape>(water.shape), spacing, 1000);
-  // Whole layers in the box, no wider than the liquid's but for a fiftieth.
+  // Whole layers in the box, with at most 1.02 times the liquid's spacing.
   const Real edge = std::get<BoxShape>(scene.bodies[1].shape).size.x();
   scene.bodies[1].spacing = edge / std::ceil(edge / (1.02 * spacing));
   return with_step(scene, acoustic_step(scene, 0.0025));
 }
 
-/// Height of the liquid at a gauge in the tank's middle: the volume of the particles around it by
-/// ground area, weighted so that those of a lattice count alike wherever the gauge is.
+/// Returns the height of the liquid at a gauge in the tank's middle: the volume of nearby particles
+/// per ground area. The weights make the result independent of the gauge's position in a lattice.
 Real gauge(const Run& run, Real x, Real spacing) {
   const BodyView water = run.body("water");
   const auto weight = [&](Real distance) {
@@ -59,7 +59,8 @@ Real gauge(const Run& run, Real x, Real spacing) {
   return height;
 }
 
-/// Mean pressure of the particles within two spacings of the sensor P1, on the face of the box.
+/// Returns the mean pressure of the particles within two spacings of the sensor P1 on the face of
+/// the box.
 Real pressure_at_box(const Run& run, Real spacing) {
   const Vec3 sensor(0.8245, 0.471, 0.021);
   const BodyView water = run.body("water");
@@ -74,7 +75,8 @@ Real pressure_at_box(const Run& run, Real spacing) {
   return count > 0 ? sum / count : 0;
 }
 
-/// When the pressure at the box first passes half of the experiment's peak [s].
+/// Returns the first time at which the pressure at the box exceeds half of the experiment's peak
+/// [s].
 Real half_peak_time(Run& run, Real spacing) {
   constexpr Real kInterval = 0.0025;
   const Real half = reference(kExperiment + "events/P1_peak") / 2;
@@ -90,15 +92,16 @@ Real half_peak_time(Run& run, Real spacing) {
 
 struct Gauge {
   const char* name;
-  std::size_t column;  ///< of the experiment's series
+  std::size_t column;  ///< column of the experiment's series
   Real x;              ///< [m]
 };
 
-/// Mean distance of the gauges' heights from the experiment over six seconds, over its greatest.
+/// Returns the mean difference between the gauges' heights and the experiment over six seconds,
+/// relative to its maximum.
 std::vector<Real> height_errors(Run& run, const std::vector<Gauge>& gauges, Real spacing) {
   std::vector<Real> sums(gauges.size(), 0);
   std::vector<Real> greatest(gauges.size(), 0);
-  const Json& series = reference_at(kExperiment + "series_0p1s");  // a row for each 0.1 s
+  const Json& series = reference_at(kExperiment + "series_0p1s");  // one row per 0.1 s
   for (std::size_t row = 0; row < series.size(); ++row) {
     run.advance_to(0.1 * static_cast<Real>(row));
     for (std::size_t i = 0; i < gauges.size(); ++i) {

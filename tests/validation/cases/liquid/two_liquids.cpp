@@ -12,24 +12,25 @@ namespace vat::validation {
 namespace {
 
 constexpr Real kWaveNumber = std::numbers::pi;  // half a wave in the tank [1/m]
-constexpr std::size_t kAbove = 0;               // of the scene's materials and bodies
+constexpr std::size_t kAbove = 0;               // index in the scene's materials and bodies
 constexpr std::size_t kBelow = 1;
 constexpr Real kLayersWave = 0.05;  // amplitude of the interface [m]
 
-/// Linear waves of two liquids without viscosity, the upper one with a free surface (H. Lamb,
-/// Hydrodynamics, 6th ed., Cambridge, 1932, art. 231).
+/// Linear waves of two inviscid liquids, the upper one with a free surface (H. Lamb, Hydrodynamics,
+/// 6th ed., Cambridge, 1932, art. 231).
 struct TwoLayers {
   Real density_below = 0;  ///< [kg/m^3]
   Real density_above = 0;
   Real depth_below = 0;  ///< [m]
   Real depth_above = 0;
 
-  /// What acts at the interface of deep layers.
+  /// Returns the fraction of gravity that acts at the interface of deep layers.
   Real share_of_gravity() const {
     return (density_below - density_above) / (density_below + density_above);
   }
 
-  /// Of the slower of the two modes of the wave number, which is that of the interface: omega^2.
+  /// Returns omega^2 of the slower of the two modes of the wave number, which is that of the
+  /// interface.
   Real omega2() const {
     const Real coth_below = 1 / std::tanh(kWaveNumber * depth_below);
     const Real coth_above = 1 / std::tanh(kWaveNumber * depth_above);
@@ -40,7 +41,8 @@ struct TwoLayers {
     return (b - std::sqrt(b * b - 4 * a * c)) / (2 * a);
   }
 
-  /// How far that mode, with its crest at the left wall, moves what is at x, with z from the floor.
+  /// Returns the displacement at x by that mode, with its crest at the left wall and z measured
+  /// from the floor.
   Vec3 displacement(const Vec3& x) const {
     const Real k = kWaveNumber;
     const Real below = kLayersWave / std::sinh(k * depth_below);
@@ -48,7 +50,7 @@ struct TwoLayers {
       return below * Vec3(-std::cosh(k * x.z()) * std::sin(k * x.x()), 0,
                           std::sinh(k * x.z()) * std::cos(k * x.x()));
     }
-    // From the same pressure on both sides of the interface.
+    // The pressure is equal on both sides of the interface.
     const Real push = density_below * below * std::cosh(k * depth_below) -
                       (density_below - density_above) * kGravity * k * kLayersWave / omega2();
     const Real even = push / density_above;
@@ -59,8 +61,8 @@ struct TwoLayers {
   }
 };
 
-/// A body of the two layers, pressed as by their weight at rest, with the velocities of the wave
-/// where it passes through level: no displacement is free of changes of volume but a small one.
+/// Returns a body of one of the layers, compressed by the weight at rest, with the velocities of
+/// the wave as it passes through zero. Only a small displacement would conserve volumes.
 ParticleShape wave_of(const Scene& scene, const TwoLayers& layers, std::size_t body) {
   const Real c2_above = scene.materials[kAbove].liquid->stiffness;
   const Real c2_below = scene.materials[kBelow].liquid->stiffness;
@@ -88,7 +90,7 @@ TwoLayers layers_of(const Scene& scene) {
           depth(kAbove)};
 }
 
-/// Each layer in that many layers of particles.
+/// A scene in which each layer has `count` layers of particles.
 Scene interfacial_wave(int count, Real density_ratio) {
   Scene scene = load_scene("LIQ-18");
   Material& light = scene.materials[kAbove];

@@ -40,7 +40,7 @@ void run_dumbbell(Sheet& sheet) {
                 [&](const Run& end) { return std::abs(length(end) - expected); });
 }
 
-/// A small radial swing beside the circle, at the same angular momentum.
+/// Adds a small radial oscillation to the circle, with the same angular momentum.
 void run_radial_swing(Sheet& sheet) {
   Scene scene = with_method(load_scene("DEF-6a"), IntegratorId::runge_kutta_4, 1e-3);
   auto& nodes = std::get<ParticleShape>(scene.bodies[0].shape).positions;
@@ -92,7 +92,7 @@ void add_cube_run(Sheet& sheet, const char* name, IntegratorId integrator, const
     sheet.add("angular momentum drift [kg m^2/s], " + method, 1e-12, drifted.angular_momentum,
               at_most("round-off"), run);
   }
-  const auto text = reference_at(published + "/1").get<std::string>();  // such as "dE 3.2e-03"
+  const auto text = reference_at(published + "/1").get<std::string>();  // for example "dE 3.2e-03"
   sheet.add("energy drift, " + method, std::stod(text.substr(3)), drifted.energy,
             within_relative(0.05, "same method elsewhere, two digits"), run);
 }
@@ -115,7 +115,7 @@ void run_cube(Sheet& sheet) {
                                                           {"rk4", IntegratorId::runge_kutta_4}};
   for (const auto& [name, integrator] : methods) {
     for (const char* step : {"0.01", "0.001"}) add_cube_run(sheet, name, integrator, step);
-    // The springs start at rest length, so that symplectic Euler takes Verlet's path.
+    // The springs start at rest length, so symplectic Euler follows the path of Verlet.
     const Real order = std::max<Real>(2, theoretical_order(integrator));
     add_order_row(sheet, scene, integrator, halved(5e-3, 3), 5, order, corner_error);
   }

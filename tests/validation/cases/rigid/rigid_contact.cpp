@@ -20,14 +20,14 @@ void set_step(Scene& scene, Real step) {
   scene.numerics.tick = step;
 }
 
-/// What a run saw of contacts, in the order of time. Between steps the gap is taken as linear.
+/// Contacts during a run in order of time. The gap is linear between steps.
 struct Contacts {
   std::vector<Real> begins;  ///< [s]
   std::vector<Real> ends;    ///< [s]
-  Real deepest = 0;          ///< overlap [m]
+  Real deepest = 0;          ///< maximum overlap [m]
 };
 
-/// Steps until `time` and watches `gap` [m], which is negative in contact.
+/// Advances to `time` and records contacts of `gap` [m], which is negative in contact.
 template <class Gap>
 Contacts watch(Run& run, Real time, const Gap& gap) {
   Contacts seen;
@@ -46,7 +46,7 @@ Contacts watch(Run& run, Real time, const Gap& gap) {
   return seen;
 }
 
-// --- RIG-4 ---
+// RIG-4.
 
 void check_bounce(Sheet& sheet) {
   const std::string at = "/rigid/RIG-4a/";
@@ -69,7 +69,7 @@ void check_bounce(Sheet& sheet) {
             seen.begins.at(1) - seen.begins.at(0), tolerance, run);
 }
 
-/// Speed after a bounce over that before it, less one: worst of 16 places of the step at contact.
+/// Returns the relative change of speed by a bounce: the worst of 16 phases of the step at contact.
 Real worst_bounce(Sheet& sheet, Real step, Row& row) {
   Real worst = 0;
   for (int phase = 0; phase < 16; ++phase) {
@@ -113,7 +113,7 @@ void check_restitution(Sheet& sheet) {
     scene.interfaces[0].constants.damping = rate;
     Run run = sheet.start(scene);
     run.advance_to(0.1);
-    // The dashpot's force begins with a jump, somewhere within a step.
+    // The damping force starts with a jump within a step.
     sheet.add(std::string("restitution, damping ratio ") + zeta,
               reference(at + zeta + "/e_no_adhesion"), run.body().pose->velocity.z(),
               within(rate * run.simulation().step_size(), "one step of the damping, c dt/m"), run);
@@ -126,7 +126,7 @@ void run_bounce(Sheet& sheet) {
   check_restitution(sheet);
 }
 
-// --- RIG-5 ---
+// RIG-5.
 
 void check_collision(Sheet& sheet, const std::string& name) {
   const std::string at = "/rigid/" + name + "/";
@@ -166,13 +166,13 @@ void run_collisions(Sheet& sheet) {
   for (const char* name : {"RIG-5a", "RIG-5b", "RIG-5c"}) check_collision(sheet, name);
 }
 
-// --- RIG-6 ---
+// RIG-6.
 
 constexpr int kStack = 5;
 
 std::array<Real, kStack> overlaps(const Run& run) {
   std::array<Real, kStack> result{};
-  Real below = -0.05;  // a floor is a ball's surface away from its mirror image
+  Real below = -0.05;  // a floor acts at half of the distance between two balls
   for (int i = 0; i < kStack; ++i) {
     const Real z = run.simulation().bodies()[static_cast<std::size_t>(i)].pose->center_of_mass.z();
     result[static_cast<std::size_t>(i)] = 0.1 - (z - below);
@@ -201,7 +201,7 @@ void check_rest(Sheet& sheet) {
             at_most("published target"), run);
 }
 
-/// The undamped stack, started in its n-th mode at a thousandth of the least overlap.
+/// The undamped stack, in its n-th mode with an amplitude of a thousandth of the smallest overlap.
 Scene mode_of_stack(int n) {
   Scene scene = load_scene("RIG-6");
   scene.default_interface.damping = 0;
@@ -239,14 +239,14 @@ void run_contact_stack(Sheet& sheet) {
   check_modes(sheet);
 }
 
-// --- RIG-8 ---
+// RIG-8.
 
 void run_eccentric(Sheet& sheet) {
   for (const char* stiffness : {"1000", "10000", "100000", "1000000"}) {
     Scene scene = load_scene("RIG-8");
     const Real k = std::stod(stiffness);
     scene.interfaces[0].constants.stiffness = k;
-    set_step(scene, 1e-3 / std::sqrt(k));  // omega of one end is the root of k
+    set_step(scene, 1e-3 / std::sqrt(k));  // omega of one end is sqrt(k)
     Run run = sheet.start(scene);
     run.advance_to(run.simulation().step_size() * std::ceil(0.15 / run.simulation().step_size()));
     const std::string at = std::string("/rigid/RIG-8_dumbbell/finite_k_vcm_omega_tc/") + stiffness;

@@ -16,7 +16,8 @@ Real radians(Real degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Frequency of the block on its contact, and the rate at which its slip dies out [1/s].
+/// Returns the rate at which the slip decays [1/s]. It equals the frequency of the block on its
+/// contact.
 Real contact_rate(const Scene& scene) {
   return std::sqrt(scene.interfaces[0].constants.stiffness);
 }
@@ -25,7 +26,7 @@ Real speed_of(const Run& run) {
   return run.body().velocities[0].x();
 }
 
-/// The block at rest on a slope, where its contact bears its weight.
+/// A block at rest on a slope. Its contact carries its weight.
 Scene block_on_slope(Real angle) {
   Scene scene = load_scene("RIG-7");
   const Real g = of_reference("g");
@@ -42,7 +43,7 @@ void check_stop(Sheet& sheet) {
   Run run = sheet.start(scene);
   const Real step = run.simulation().step_size();
   while (speed_of(run) > deceleration / rate) run.advance_to(run.simulation().time() + step);
-  // From mu g / rate on the speed falls as exp(-rate t) rather than evenly to zero.
+  // Below mu g / rate, the speed decays as exp(-rate t) and not linearly.
   sheet.add("time until sticking [s]", of_reference("stop_time"), run.simulation().time(),
             within(1 / rate + step, "1 / sqrt(k/m) of the regularisation, and a step"), run);
   run.advance_to(1);
@@ -52,7 +53,7 @@ void check_stop(Sheet& sheet) {
             run);
 }
 
-/// Whether the block slips after a tenth of a second, long against 1 / rate.
+/// Returns whether the block slips after a tenth of a second, which is long compared with 1 / rate.
 bool slips(Sheet& sheet, Real degrees) {
   const Scene scene = block_on_slope(radians(degrees));
   Run run = sheet.start(scene);
@@ -79,7 +80,7 @@ void check_slopes(Sheet& sheet) {
             (speed_of(run) - before) / 0.5, within_relative(1e-9, "even, to round-off"), run);
 }
 
-/// A ball in place of the block.
+/// A ball instead of the block.
 Scene ball(Real angle, Real speed) {
   Scene scene = block_on_slope(angle);
   scene.bodies[0].kind = BodyKind::rigid;

@@ -10,14 +10,14 @@ namespace vat::validation {
 
 namespace {
 
-/// Far beyond the 2 / omega of the springs of RIG-4 to RIG-7, 20 ms to 2 ms.
+/// Far beyond 2 / omega of the springs of RIG-4 to RIG-7, which is 20 ms to 2 ms.
 constexpr Real kFrame = 1.0 / 60;
 
 InterfaceConstants projection(Real friction, Real restitution) {
   return {.friction = friction, .law = InterfaceLaw::projection, .restitution = restitution};
 }
 
-/// A validation scene with projections in place of its springs.
+/// Loads a validation scene and replaces its contact springs by projections.
 Scene load_hard(const char* name, Real step, Real friction, Real restitution) {
   Scene scene = with_step(load_scene(name), step);
   scene.default_interface = projection(friction, restitution);
@@ -35,7 +35,7 @@ Real steps_until(Real time, Real step) {
   return step * std::ceil(time / step - 1e-6);
 }
 
-// --- RIG-4 and RIG-5 ---
+// RIG-4 and RIG-5.
 
 void check_projected_restitution(Sheet& sheet) {
   for (const Real e : {1.0, 0.5, 0.0}) {
@@ -78,7 +78,7 @@ void check_collisions(Sheet& sheet) {
   }
 }
 
-// --- RIG-6 ---
+// RIG-6.
 
 constexpr int kProjectedStack = 5;
 
@@ -109,7 +109,7 @@ void check_stack(Sheet& sheet) {
             run.diagnostics().kinetic_energy / (2 * 9.81 * 1e-4), at_most("published target"), run);
 }
 
-// --- RIG-7 ---
+// RIG-7.
 
 Real projected_of_reference(const char* name) {
   return reference(std::string("/rigid/RIG-7/") + name);
@@ -130,7 +130,7 @@ Scene ball_on_slope(Real angle, Real step, Real friction) {
   return scene;
 }
 
-/// The same with a block of 4 by 4 by 2 balls.
+/// The same for a block of 4 by 4 by 2 balls.
 Scene projected_block_on_slope(Real angle, Real step, Real friction) {
   Scene scene = ball_on_slope(angle, step, friction);
   ParticleShape block;
@@ -216,14 +216,14 @@ void check_projected_rolling(Sheet& sheet) {
             pose_of(down).velocity.x() / 0.5, within_relative(1e-6, "the solve"), down);
 }
 
-// --- RIG-8 ---
+// RIG-8.
 
 void check_eccentric(Sheet& sheet) {
   const Scene scene = load_hard("RIG-8", 1e-4, 0, 1);
   Run run = sheet.start(scene);
   run.advance_to(0.15);
   const Real omega = reference("/rigid/RIG-8_dumbbell/omega_out");
-  // It turns within the step in which it bounces; and its ends are balls of 1 mm.
+  // The body turns within the step of the bounce, and its ends are balls of 1 mm.
   const Tolerance tolerance = within(1e-4 * std::abs(omega), "omega dt");
   sheet.add("dumbbell's centre afterwards [m/s]", reference("/rigid/RIG-8_dumbbell/v_cm_out"),
             pose_of(run).velocity.z(), tolerance, run);

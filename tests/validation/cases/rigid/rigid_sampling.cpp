@@ -8,7 +8,7 @@ namespace vat::validation {
 
 namespace {
 
-/// A solid of which the principal moments over the mass are known.
+/// A solid with known principal moments per mass.
 struct Solid {
   const char* name;
   Shape shape;
@@ -18,8 +18,8 @@ struct Solid {
   Tolerance tolerance;
 };
 
-/// Spacings that are no simple fractions of the sizes: where the lattice does not fit the surface,
-/// the error jumps about its trend.
+/// Returns spacings that are not simple fractions of the sizes. The error then varies around its
+/// trend.
 std::vector<Real> uneven_spacings() {
   std::vector<Real> spacings;
   for (int i = 0; i < 10; ++i) spacings.push_back(0.09 * std::pow(0.8, i));
@@ -44,7 +44,7 @@ std::vector<Solid> solids() {
            Vec3(across, across, r * r / 2), uneven_spacings(), 1, cut}};
 }
 
-/// Moments over the mass [m^2], from the angular momentum of a turn about each axis.
+/// Returns the moments per mass [m^2] from the angular momentum of a rotation about each axis.
 Vec3 sampled_moments(Sheet& sheet, const Shape& shape, Real spacing, Row& row) {
   Vec3 moments;
   for (int axis = 0; axis < 3; ++axis) {
@@ -101,7 +101,8 @@ Place sampling_place_of(Sheet& sheet, IntegratorId integrator, Real step, Row& r
   return {run.body().pose->center_of_mass, run.body().pose->orientation};
 }
 
-/// Against a run of the best method at a much finer step, of which the energy tells how good it is.
+/// Compares with a run of the best method at a much smaller step. Its energy error shows its
+/// accuracy.
 void run_torque(Sheet& sheet) {
   Row fine{.metric = "relative change of the energy in the run compared with",
            .reference = 0,

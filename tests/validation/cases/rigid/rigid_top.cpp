@@ -23,7 +23,7 @@ Vec3 body_rate(const Run& run) {
   return pose.orientation.conjugate() * pose.angular_velocity;
 }
 
-/// Angle [rad] between the body and the attitude at the pointer.
+/// Returns the angle [rad] between the body and the attitude in the reference.
 Real attitude_error(const Run& run, const std::string& pointer) {
   const Json& q = reference_at(pointer);
   const Quat exact(q.at(0).get<Real>(), q.at(1).get<Real>(), q.at(2).get<Real>(),
@@ -31,7 +31,8 @@ Real attitude_error(const Run& run, const std::string& pointer) {
   return run.body().pose->orientation.angularDistance(exact.normalized());
 }
 
-/// Of free rotation. The two methods that kick and drift take it from a fourth-order composition.
+/// Returns the order of free rotation. The two kick-drift methods use a fourth-order composition
+/// for it.
 Real free_rotation_order(IntegratorId integrator) {
   const bool drifts =
       integrator == IntegratorId::symplectic_euler || integrator == IntegratorId::velocity_verlet;
@@ -69,7 +70,7 @@ void check_motion(Sheet& sheet) {
   for (const auto& [name, time] : times) {
     run.advance_to(time);
     const std::string at = std::string("(") + name + ")";
-    // The phase error of a method without drift of the energy grows with time at most.
+    // Without a drift of the energy, the phase error grows at most linearly.
     const Tolerance tolerance = within(published * std::max(Real{1}, time / 10),
                                        "Runge-Kutta on the quaternion elsewhere (reference.json)");
     const Vec3 error = body_rate(run) - reference_vector("/rigid/RIG-1/w/" + std::string(name));
@@ -103,8 +104,8 @@ void run_asymmetric(Sheet& sheet) {
   check_drift(sheet);
 }
 
-/// First time [s] at which omega about the middle axis is zero, by linear interpolation between
-/// steps.
+/// Returns the first time [s] at which omega about the intermediate axis is zero, interpolated
+/// linearly between steps.
 Real first_zero(Run& run, Real step) {
   for (Real before = body_rate(run).y();;) {
     const Real begin = run.simulation().time();

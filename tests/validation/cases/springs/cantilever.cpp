@@ -32,8 +32,8 @@ Equilibrium add_static_rows(Sheet& sheet) {
   return rest;
 }
 
-/// Frequency of small swings along one axis of a beam that is in equilibrium. The start excites
-/// little but the lowest mode: velocities that grow with the square of the distance.
+/// Adds the frequency of small oscillations of a beam in equilibrium along one axis. The initial
+/// velocities grow with the square of the distance, so the start excites mainly the lowest mode.
 void add_frequency(Sheet& sheet, Scene scene, int axis, const std::string& metric, Real expected) {
   constexpr Real kStep = 1e-3;
   auto& beam = std::get<ParticleShape>(scene.bodies[0].shape);
@@ -55,8 +55,8 @@ void add_frequency(Sheet& sheet, Scene scene, int axis, const std::string& metri
             within_relative(z2 / 24 + 1e-5, "z^2/24 of Verlet, fit 1e-5"), run);
 }
 
-/// Errors of the tip's height after 0.5 and 1 s against those of the same methods elsewhere, which
-/// are given to three digits.
+/// Compares errors of the tip's height after 0.5 and 1 s with published errors of the same methods,
+/// given to three digits.
 void add_published_errors(Sheet& sheet) {
   const Scene scene = load_scene("DEF-5");
   const std::pair<const char*, IntegratorId> methods[] = {

@@ -16,7 +16,7 @@ Real mode_shape(int mode, int node) {
   return std::sin(mode * std::numbers::pi * node / (kMasses + 1));
 }
 
-/// Displaces the nodes from their places along the x axis in one mode.
+/// Displaces the nodes from the x axis in one mode.
 Scene chain_in_mode(int mode, int axis, Real amplitude) {
   Scene scene = with_step(load_scene("DEF-2"), kChainStep);
   std::vector<Vec3>& positions = std::get<ParticleShape>(scene.bodies[0].shape).positions;
@@ -28,7 +28,7 @@ Scene chain_in_mode(int mode, int axis, Real amplitude) {
   return scene;
 }
 
-/// Amplitude of the mode in the present state; a constant part would spoil the fit.
+/// Returns the amplitude of the mode in the present state. A constant part would falsify the fit.
 Real mode_amplitude(const BodyView& chain, int mode, int axis) {
   Real sum = 0;
   for (int i = 1; i <= kMasses; ++i) {

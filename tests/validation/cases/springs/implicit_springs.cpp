@@ -16,10 +16,10 @@ Scene load_implicit(const std::string& name) {
   return scene;
 }
 
-/// Along a line the method is the implicit midpoint rule, whatever z = omega dt.
+/// In one dimension the method is the implicit midpoint rule for any z = omega dt.
 void add_oscillator_rows(Sheet& sheet) {
   constexpr Real kOmega = 10;
-  constexpr Real kStretch = 1e-3;  // [m] so small that a step of z = 1000 does not turn it round
+  constexpr Real kStretch = 1e-3;  // [m] small, so that a step of z = 1000 does not reverse it
   for (const Real z : {1.0, 10.0, 1000.0}) {
     const std::uint32_t steps = sheet.quick() ? 100 : 1000;
     Scene scene = with_step(load_implicit("DEF-1"), 0.01);
@@ -41,7 +41,7 @@ void add_oscillator_rows(Sheet& sheet) {
   }
 }
 
-/// Errors of the beam's tip beside those of position-based and of block descent methods.
+/// Compares errors of the beam's tip with those of position-based and block descent methods.
 void add_beam_rows(Sheet& sheet) {
   const std::string beam = "/deformable/DEF-5/dynamic_release/tip_z/";
   const Scene scene = load_implicit("DEF-5");
@@ -49,7 +49,7 @@ void add_beam_rows(Sheet& sheet) {
   for (const char* method : {"xpbd_1_iteration", "vbd"}) {
     for (const Json& published :
          reference_at(std::string("/measured_yardsticks/cantilever_dynamic_DEF5/") + method)) {
-      if (!published.at(0).is_number()) continue;  // iterated more than once
+      if (!published.at(0).is_number()) continue;  // more than one iteration
       const Real step = 0.5 / std::round(0.5 / published.at(0).get<Real>());
       Run run = sheet.start(with_step(scene, step));
       for (const int half : {1, 2}) {
@@ -87,13 +87,15 @@ void add_cube_rows(Sheet& sheet) {
             std::abs(run.energy() / energy - 1), at_most("no drift; 4 tolerances a step"), run);
 }
 
-/// With springs of 10^9 N/m that are damped, the cube is a rigid one in steps of omega dt = 10^3.
+/// With damped springs of 10^9 N/m, the cube is rigid in steps of omega dt = 10^3.
 void add_rigid_rows(Sheet& sheet) {
   Scene scene = with_step(load_implicit("DEF-6b"), 5e-3);
   for (SpringDescription& spring : scene.bodies[0].springs) spring.constants = {1e9, 1e5};
   Run run = sheet.start(scene);
   run.advance_to(1);
-  // A cube's moments are equal, so it turns by |omega| t about its axis.
+  // All moments of a cube are equal, so it rotates by
+  // omega
+  // t about its axis.
   const Vec3 omega(1, 2, 3);
   const Vec3 corner = Eigen::AngleAxisd(omega.norm(), omega.normalized()) * Vec3(0.5, 0.5, 0.5) +
                       Vec3(0.3, -0.2, 0.1);

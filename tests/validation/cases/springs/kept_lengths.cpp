@@ -11,7 +11,7 @@
 namespace vat::validation {
 namespace {
 
-/// Four times the time in which the pendulum first comes to hang down.
+/// Returns four times the time at which the pendulum first hangs vertically.
 Real period_of(Run& run, Real step) {
   Real before = run.body().positions[1].x();
   while (before > 0 && run.simulation().time() < 2) {
@@ -23,9 +23,9 @@ Real period_of(Run& run, Real step) {
   return 0;
 }
 
-// What the thread takes from the speed is inelastic: (w dt)^2 / 2 of the energy in a step, and
-// w^2 = 2 g cos / L on the way, so at most 2 g dt T / 4 / 2 of the energy until it hangs down, and
-// half of that of the speed.
+// The thread removes velocity inelastically: (w dt)^2 / 2 of the energy per step. With w^2 = 2 g
+// cos / L, the loss is at most 2 g dt T / 4 / 2 of the energy until it hangs vertically, and half
+// of that of the speed.
 void add_pendulum(Sheet& sheet) {
   const Real expected = reference("/deformable/DEF-4a/period/90");
   for (const IntegratorId integrator :
@@ -47,7 +47,7 @@ void add_pendulum(Sheet& sheet) {
   }
 }
 
-/// A soft cloth hanging from its corners falls into its shape.
+/// Expects the equilibrium shape of a soft cloth that hangs from its corners.
 void add_cloth(Sheet& sheet) {
   for (const bool is_limited : {true, false}) {
     Scene scene = with_step(load_scene("DEF-3c"), 1e-4);
@@ -74,7 +74,7 @@ void add_cloth(Sheet& sheet) {
   }
 }
 
-/// One cell of particles alone, drawn out by a ten-thousandth.
+/// One cell of particles, stretched by 1e-4.
 void add_breathing(Sheet& sheet, int dimensions) {
   constexpr Real kStep = 1e-4;
   constexpr Real kModulus = 1e4;
@@ -89,7 +89,8 @@ void add_breathing(Sheet& sheet, int dimensions) {
   scene.bodies[0].displacement_field = VectorField{{0, 0, 0.25}, stretch.asDiagonal(), {}};
   Run run = sheet.start(scene);
   const Real mass = run.body().masses[0];
-  // With the lengths a s, s = 1 + e: K a^d (d e)^2 / 2 of energy, and 2^d masses at a sqrt(d) / 2.
+  // With the lengths a s and s = 1 + e, the energy is K a^d (d e)^2 / 2. 2^d masses are at a
+  // sqrt(d) / 2.
   const Real side = std::pow(0.1, dimensions - 2) * dimensions * dimensions * kModulus;
   const Real omega = std::sqrt(side / (std::pow(2, dimensions) * mass * dimensions / 4));
   std::vector<Real> samples;
@@ -102,7 +103,7 @@ void add_breathing(Sheet& sheet, int dimensions) {
             within_relative(3e-4 + std::pow(omega * kStep, 2) / 24, "amplitude 1e-4, Verlet"), run);
 }
 
-/// Of the volume at the start that a body's cells have.
+/// Returns the volume of a body's cells, relative to the start.
 Real kept_volume(const SampledBody& sample, const Run& run) {
   Real start = 0;
   Real now = 0;
@@ -122,7 +123,7 @@ void add_block(Sheet& sheet) {
     Run run = sheet.start(one);
     run.advance_to(sheet.quick() ? 2 : 5);
     const Real lost = 1 - kept_volume(sample, run);
-    // The mean pressure under its own weight is at most rho g h / 2.
+    // The mean pressure under its weight is at most rho g h / 2.
     sheet.add(std::string("volume lost under its own weight, ") +
                   (is_kept ? "K = 10^5 Pa" : "springs alone"),
               is_kept ? 1000 * 9.81 * 0.5 / 2 / 1e5 : 0.1, lost,

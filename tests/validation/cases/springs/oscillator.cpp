@@ -17,14 +17,15 @@ Real position(const Run& run) {
   return run.body().positions[1].x();
 }
 
-/// Distance to the exact state at t = 1 s in the phase plane, where the exact run is a circle [m].
+/// Returns the distance [m] to the exact state at t = 1 s in the phase plane, in which the exact
+/// path is a circle.
 Real phase_plane_error(const Run& run) {
   const Real x = position(run) - reference(kOscillator + "x/1");
   const Real v = run.body().velocities[1].x() - reference(kOscillator + "v/1");
   return std::hypot(x, v / reference(kOscillator + "omega"));
 }
 
-/// Short enough for the leading term of the error, and long enough for it to stand above round-off.
+/// Returns steps at which the leading term of the error dominates, and exceeds round-off.
 std::vector<Real> steps_for(IntegratorId integrator) {
   const Real order = theoretical_order(integrator);
   return halved(order < 2 ? 1e-3 : order < 4 ? 1e-2 : 2e-2, 4);
@@ -48,8 +49,8 @@ void add_oscillator_published_errors(Sheet& sheet, const Scene& scene) {
   }
 }
 
-/// x and v after 100 s. The phase error of a step is z^3/24 with z = omega dt; the next term is a
-/// hundredth of it at most.
+/// Adds x and v after 100 s. The phase error of a step is z^3/24 with z = omega dt. The next term
+/// is at most a hundredth of it.
 void add_long_run(Sheet& sheet, const Scene& scene) {
   Run run = sheet.start(with_method(scene, IntegratorId::velocity_verlet, 1e-3));
   sheet.add("energy at the start [J]", reference(kOscillator + "energy"), run.energy(),
@@ -92,7 +93,7 @@ void run_damped(Sheet& sheet) {
   }
 }
 
-/// The pair's own phase error, and of symplectic Euler the shift of half a step beside it.
+/// Returns the phase error of velocity Verlet, plus the half-step shift for symplectic Euler.
 Real pair_bound(IntegratorId integrator, Real step, Real time) {
   const std::string pair = "/deformable/DEF-1b/";
   const Real omega = reference(pair + "omega");
@@ -130,7 +131,7 @@ void run_pair(Sheet& sheet) {
   }
 }
 
-/// Energy after 100 steps of z = 0.1, against the growth factor of the method.
+/// Compares the energy after 100 steps of z = 0.1 with the growth factor of the method.
 void run_energy(Sheet& sheet) {
   constexpr Real kStep = 0.01;
   constexpr int kSteps = 100;
@@ -150,7 +151,8 @@ void run_energy(Sheet& sheet) {
   }
 }
 
-/// Greatest and last deviation of the energy over many periods: bounded, without a trend.
+/// Adds the maximum and last deviation of the energy over many periods. They are bounded and have
+/// no trend.
 void add_bounded_energy(Sheet& sheet, IntegratorId integrator, Real bound, const char* source) {
   constexpr Real kStep = 0.01;
   const Real end = sheet.quick() ? 1e3 : 1e4;
@@ -166,7 +168,8 @@ void add_bounded_energy(Sheet& sheet, IntegratorId integrator, Real bound, const
 void run_energy_case(Sheet& sheet) {
   run_energy(sheet);
   const Real z = reference(kOscillator + "omega") * 0.01;
-  // The modified energies v^2 + (1 - z^2/4) omega^2 x^2 and E -+ z/2 omega x v stay exactly.
+  // The modified energies v^2 + (1 - z^2/4) omega^2 x^2 and E -+ z/2 omega x v are exactly
+  // conserved.
   constexpr Real kRoundOff = 1 + 1e-9;
   add_bounded_energy(sheet, IntegratorId::velocity_verlet, z * z / 4 * kRoundOff,
                      "modified energy: z^2/4");

@@ -36,8 +36,8 @@ void add_pendulum_published_errors(Sheet& sheet, const Scene& scene) {
   }
 }
 
-/// The path with Runge-Kutta, whose error at t = 5 s is below omega t z^4/120 of the vibration's
-/// amplitude: the extension by gravity at the bottom, 3 m g / k.
+/// Adds the path with Runge-Kutta. Its error at t = 5 s is below omega t z^4/120 of the vibration's
+/// amplitude, which is the extension at the bottom, 3 m g / k.
 void add_path(Sheet& sheet, Scene scene, const std::string& stiffness) {
   constexpr Real kStep = 1e-3;
   scene.bodies[0].springs[0].constants.stiffness = std::stod(stiffness);

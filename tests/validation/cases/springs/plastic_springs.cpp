@@ -8,7 +8,7 @@
 namespace vat::validation {
 namespace {
 
-/// How a run solves: by an integrator, or with implicit springs.
+/// A method of a run: an integrator, or implicit springs.
 struct Way {
   const char* name;
   IntegratorId integrator;
@@ -28,7 +28,7 @@ void set_gravity(Run& run, Real gravity) {
   if (!run.simulation().set_gravity({0, 0, -gravity})) throw std::logic_error("gravity refused");
 }
 
-/// Changes the weight of 1 kg [N] by 1 N a second, and waits until nothing moves.
+/// Changes the weight of 1 kg [N] by 1 N per second, and waits until the motion has ended.
 void load_slowly(Run& run, Real from, Real to) {
   constexpr Real kIncrement = 0.1;
   const int count = static_cast<int>(std::lround(std::abs(to - from) / kIncrement));
@@ -39,8 +39,8 @@ void load_slowly(Run& run, Real from, Real to) {
   run.advance_to(run.simulation().time() + 10);
 }
 
-// Under a load_plastic S, with the elastic strain S / k: p = (S / k -+ Y) / H where it yields, to
-// one side after the other, and as it was where it does not.
+// Under a load S with the elastic strain S / k, the plastic strain is p = (S / k -+ Y) / H if the
+// spring yields in one direction, and unchanged otherwise.
 void add_stress_strain(Sheet& sheet) {
   constexpr Real kStiffness = 1000;
   constexpr Real kYield = 0.01;
@@ -63,7 +63,8 @@ void add_stress_strain(Sheet& sheet) {
   }
 }
 
-// A push of m v^2 / 2: the spring takes k Y^2 / 2 elastically and the rest at the force k Y.
+// An impulse of energy m v^2 / 2: the spring stores k Y^2 / 2 elastically, and the rest becomes
+// plastic at the force k Y.
 void add_push(Sheet& sheet) {
   constexpr Real kSpeed = 1;
   constexpr Real kYield = 0.01;
@@ -86,7 +87,7 @@ void add_push(Sheet& sheet) {
       });
       const std::string method =
           std::string(", step ") + (step == 1e-4 ? "1e-4" : "1e-5") + ", " + way.name;
-      // Within a step the force rises by up to k v dt beyond k Y, half of that on the average.
+      // Within a step, the force exceeds k Y by up to k v dt, on average by half of that.
       const Real first_order = set * kSpeed * step / (2 * kYield);
       sheet.add("permanent strain of a push" + method, set, (least + greatest) / 2,
                 within(first_order, "first order: v dt / 2 Y of it"), run);
@@ -106,7 +107,7 @@ void add_chain(Sheet& sheet) {
       set_gravity(run, gravity);
       run.advance_to(run.simulation().time() + 0.02);
     }
-    // The first spring bears ten masses of 0.1 kg: it tears at k 0.1 l0 = 10 N.
+    // The first spring carries ten masses of 0.1 kg. It tears at k 0.1 l0 = 10 N.
     sheet.add(std::string("gravity at tearing [m/s2], ") + way.name, 10, gravity,
               within(3 * kIncrement, "steps of the load_plastic, which swings by as much again"),
               run);

@@ -12,7 +12,7 @@ const std::vector<Vec3>& equilibrium_nodes(const Equilibrium& rest) {
   return std::get<ParticleShape>(rest.scene.bodies[0].shape).positions;
 }
 
-/// A length of a body in equilibrium, to 1e-6 of itself.
+/// Adds a length of a body in equilibrium, with a relative tolerance of 1e-6.
 void add_length(Sheet& sheet, const Equilibrium& rest, const std::string& metric, Real expected,
                 Real measured) {
   Row row = rest.origin;
