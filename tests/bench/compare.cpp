@@ -17,7 +17,7 @@ namespace {
 struct CompareOptions {
   std::string before;
   std::string after;
-  double tolerance = 10;  ///< per cent
+  double tolerance = 10;  ///< percent
 };
 
 Result<std::vector<TimedRow>> read_rows(const std::string& name) {
@@ -30,7 +30,7 @@ void print_unmatched(const std::vector<TimedRow>& rows, const std::string& file)
   for (const TimedRow& row : rows) std::cout << "only in " << file << ": " << row.title() << '\n';
 }
 
-/// Times of different machines say little of what was changed.
+/// Warns if the times are from different machines.
 void warn_of_machines(const Comparison& comparison) {
   for (const Comparison::Pair& pair : comparison.pairs) {
     if (pair.before.machine == pair.after.machine) continue;

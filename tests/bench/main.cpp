@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   try {
     const int exit_code = vat::bench::run_command(argc, argv);
     if (std::cout.flush()) return exit_code;
-    std::cerr << "vat bench: standard output cannot be written\n";  // a full disk, say
+    std::cerr << "vat bench: standard output cannot be written\n";  // for example, the disk is full
   } catch (const std::exception& error) {
     std::cerr << "vat bench: " << error.what() << '\n';
   }

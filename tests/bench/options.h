@@ -9,29 +9,29 @@
 
 namespace vat::bench {
 
-/// What the sub-commands that run cases have in common.
+/// Options of the sub-commands that run cases.
 struct Options {
-  std::string output;              ///< folder of the results
+  std::string output;              ///< folder for the results
   bool quick = false;              ///< fewer and shorter runs
-  std::vector<std::string> cases;  ///< none: all
-  bool list = false;               ///< print the names of the cases, and stop
-  std::size_t threads = 1;         ///< of each simulation
+  std::vector<std::string> cases;  ///< empty: all
+  bool list = false;               ///< print the names of the cases and stop
+  std::size_t threads = 1;         ///< per simulation
 };
 
-/// Adds --output, --quick, --case and --list; the results go to build/bench/NAME by default, NAME
-/// being the command's.
+/// Adds --output, --quick, --case and --list. The default folder of results is build/bench/NAME
+/// with the name of the command.
 void add_case_options(CLI::App& command, Options& options);
-/// The same and --threads.
+/// Adds the same options and --threads.
 void add_options(CLI::App& command, Options& options);
-/// For options that are a number of threads.
+/// Returns the validator of options for a number of threads.
 CLI::Validator thread_count_range();
 
-/// Positions in `known` of the names that `wanted` lists, all if it is empty. An unknown name is an
-/// error that lists the known ones.
+/// Returns the indices in `known` of the names in `wanted`, or all indices if it is empty. An
+/// unknown name gives an error with the known names.
 Result<std::vector<std::size_t>> choose(const std::vector<std::string>& wanted,
                                         const std::vector<std::string>& known);
 
-/// Prints one name a line.
+/// Prints one name per line.
 void print_names(const std::vector<std::string>& names);
 
 }  // namespace vat::bench

@@ -21,7 +21,7 @@ namespace vat::bench {
 int run_command(int argc, char** argv) {
   CLI::App app{"Speed, validation, accuracy and stability of the simulation, and many viewers",
                "vat bench"};
-  // Not require_subcommand(1): that would hide which word is not a sub-command.
+  // require_subcommand(1) would not report which word is not a sub-command.
   app.require_subcommand(0, 1);
   app.callback([&app] {
     if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

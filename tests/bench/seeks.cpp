@@ -33,7 +33,7 @@ struct SeeksOptions {
   std::string output = VAT_SOURCE_DIR "/build/bench/seeks";
 };
 
-constexpr std::uint64_t kMost = 100;   // ticks of one call, which is answered within a minute
+constexpr std::uint64_t kMost = 100;   // ticks per call, which must be answered within a minute
 constexpr std::uint64_t kTurn = 1000;  // ticks between two commands
 constexpr double kAsked = 0.2;         // [s]
 
@@ -67,7 +67,7 @@ class Seeks {
          "--data", folder / "data", "--max-controls-per-second", "1e6", "--log-level", "error"}};
   }
 
-  /// A session that has run, with a command now and then; its id.
+  /// Records a session with occasional commands. Returns its id.
   std::string record() {
     const Json session = caller_.result("session.list").at("sessions").at(0).at("session");
     caller_.result("session.join", {{"session", session}});

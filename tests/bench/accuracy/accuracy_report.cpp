@@ -10,7 +10,7 @@ namespace vat::bench {
 
 namespace {
 
-/// Errors above the size of the problem say nothing but that the method failed.
+/// Errors above the size of the problem mean that the method failed.
 std::vector<std::array<Real, 2>> points_of(const std::vector<Solution>& solutions,
                                            double (*cost)(const Solution&)) {
   std::vector<std::array<Real, 2>> points;

@@ -18,15 +18,15 @@ struct ProblemResult {
   std::vector<Solution> solutions;
 };
 
-/// One row a solution, everything but the seconds the same on all machines.
+/// Returns one row per solution. Everything except the seconds is the same on all machines.
 Table solutions_table(const std::vector<ProblemResult>& results);
-/// For each problem and target error the cheapest method, by evaluations and by wall time.
+/// Returns the cheapest method for each problem and target error, by evaluations and by wall time.
 Table cheapest_table(const std::vector<ProblemResult>& results);
 
 LogPlot error_against_seconds(const ProblemResult& result);
 LogPlot error_against_evaluations(const ProblemResult& result);
 
-/// Writes solutions and cheapest methods as tables, and two plots a problem.
+/// Writes the tables of solutions and cheapest methods, and two plots per problem.
 Status write_accuracy(const std::vector<ProblemResult>& results,
                       const std::filesystem::path& folder);
 

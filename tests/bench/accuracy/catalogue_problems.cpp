@@ -30,8 +30,8 @@ Scene load_catalogue(const std::string& name) {
   return std::move(scene).value();
 }
 
-/// A scene of the catalogue over its first impacts. Later its particles go ways of their own, with
-/// every method.
+/// A catalogue scene until after its first impacts. Later the particle paths diverge with every
+/// method.
 Problem first_impacts(const std::string& name, TaskRunner* runner) {
   Problem problem{.title = "Scene " + name + ", its first 0.3 s",
                   .error_name = "centres of mass against a fine run, in ways from the start",
@@ -40,7 +40,8 @@ Problem first_impacts(const std::string& name, TaskRunner* runner) {
                   .step_counts = doubled(75, 5),
                   .longest_step_count = 75,
                   .error = {}};
-  constexpr int kFiner = 2;  // than the finest steps, and of order 4 but for contacts
+  constexpr int kFiner =
+      2;  // factor relative to the finest steps; the order is 4 except at contacts
   const Real step = problem.end / (static_cast<Real>(kFiner) * problem.step_counts.back());
   Run fine(validation::with_method(problem.scene, IntegratorId::runge_kutta_4, step), runner);
   const std::vector<Vec3> start = centers_of(fine);

@@ -8,12 +8,13 @@ namespace vat::bench {
 
 namespace {
 
-/// Solutions with an error above the size of the problem have not begun to converge.
+/// Solutions with an error above the size of the problem do not converge yet.
 bool is_converging(const Solution& solution) {
   return solution.failure.empty() && solution.error <= 1;
 }
 
-/// Where the line between two solutions reaches `error`, which lies between their errors.
+/// Returns the cost at which the line between two solutions reaches `error`, which is between their
+/// errors.
 double cost_between(const Solution& coarse, const Solution& fine, Real error,
                     double (*cost)(const Solution&)) {
   const double share = std::log(error / coarse.error) / std::log(fine.error / coarse.error);

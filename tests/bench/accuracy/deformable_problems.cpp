@@ -26,8 +26,9 @@ Problem pendulum(TaskRunner*) {
           }};
 }
 
-/// So stiff that it is a pendulum of one length: after 5/4 of its period it hangs down again, drawn
-/// out by three times its weight. What it is drawn out before delays it by 2e-6 lengths.
+/// The stiffness makes it a pendulum of constant length. After 5/4 of its period it hangs
+/// vertically, stretched by three times its weight. The earlier stretching delays it by 2e-6
+/// lengths.
 Problem stiff_pendulum(TaskRunner*) {
   constexpr Real kStiffness = 1e8;  // [N/m]
   Scene scene = validation::load_scene("DEF-4");
@@ -69,7 +70,7 @@ Problem cube(TaskRunner*) {
           }};
 }
 
-/// The problem with implicit springs, from steps on that are eight times as long.
+/// The same problem with implicit springs, with steps from eight times the length.
 Problem with_implicit_springs(Problem problem) {
   problem.title += ", implicit springs";
   for (Material& material : problem.scene.materials) material.implicit_springs = true;
@@ -97,7 +98,7 @@ constexpr Real kLampSpacing = 0.1;  // [m]
 constexpr Real kSoft = 1e3;         // [N/m]
 constexpr Real kStiff = 1e6;
 
-/// A soft cube of 512 particles hangs on a stiff one of 8, which is held by a corner.
+/// A soft cube of 512 particles that hangs on a stiff one of 8, which is fixed at a corner.
 BodyDescription make_lamp() {
   std::vector<Vec3> points = test::make_lattice(8, 8, 8, kLampSpacing);
   std::vector<SpringDescription> springs = test::join_near(points, 1.5 * kLampSpacing, {kSoft, 0});
@@ -125,7 +126,7 @@ BodyDescription make_lamp() {
   return lamp;
 }
 
-/// One part in 65 needs steps 30 times as short as the rest.
+/// One part in 65 needs 30 times shorter steps than the others.
 Problem lamp(TaskRunner* runner) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 5e-5);
   scene.gravity = {0, 0, -9.81};

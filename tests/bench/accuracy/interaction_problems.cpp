@@ -24,7 +24,8 @@ Problem push(TaskRunner*) {
           }};
 }
 
-/// Almost all of it is free flight and slow swinging: steps that fit the contact are wasted there.
+/// Mostly free flight and slow oscillation, for which steps that suit the contact are unnecessarily
+/// short.
 Problem impact(TaskRunner* runner) {
   Problem problem{.title = "Ball that hits a cube of springs",
                   .error_name = "places against a fine run, in ways from the start",
@@ -33,15 +34,15 @@ Problem impact(TaskRunner* runner) {
                   .step_counts = doubled(100, 9),
                   .longest_step_count = 100,
                   .error = {}};
-  // The contact begins and ends with kinks, at which Runge-Kutta is of second order only.
+  // The contact starts and ends with kinks, where Runge-Kutta has second order only.
   problem.error = error_against_fine_run(problem, 16, runner);
   return problem;
 }
 
 constexpr Real kPoolSpacing = 0.05;  // [m]
 
-/// A jelly of 27 particles, stiff enough to need steps 20 times as short as the liquid's, falls
-/// into a pool of 320.
+/// A jelly of 27 particles falls into a pool of 320. Its stiffness needs 20 times shorter steps
+/// than the liquid.
 Scene make_pool() {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-4);
   scene.gravity = {0, 0, -9.81};

@@ -6,11 +6,11 @@
 
 #include "tests/bench/accuracy/accuracy_report.h"
 
-/// Explicit springs against implicit ones, and penalties against projection: the same problem, the
-/// same error, two laws.
+/// Compares explicit with implicit springs, and penalties with projection, at the same problem and
+/// error.
 namespace vat::bench {
 
-/// A problem solved by two laws. Both live in the results that this came from.
+/// A problem solved with two laws. Both point into the given results.
 struct LawPair {
   const ProblemResult* first = nullptr;
   const ProblemResult* second = nullptr;
@@ -18,15 +18,15 @@ struct LawPair {
   std::string second_law;
 };
 
-/// Results whose names are BASE and BASE-implicit, or BASE and BASE-projection.
+/// Returns the pairs of results named BASE and BASE-implicit, or BASE and BASE-projection.
 std::vector<LawPair> pairs_of_laws(const std::vector<ProblemResult>& results);
 
-/// For each problem, law and target error the method that takes the least time.
+/// Returns the fastest method for each problem, law and target error.
 Table laws_table(const std::vector<LawPair>& pairs);
-/// Error against seconds, for each law what no other of its solutions is better than.
+/// Returns a plot of error against seconds with the Pareto front of each law.
 LogPlot laws_plot(const LawPair& pair);
 
-/// Writes the table, and a plot a pair, BASE-laws; nothing where there are no pairs.
+/// Writes the table, and a plot BASE-laws for each pair. Writes nothing if there are no pairs.
 Status write_laws(const std::vector<LawPair>& pairs, const std::filesystem::path& folder);
 
 }  // namespace vat::bench

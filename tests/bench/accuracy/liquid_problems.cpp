@@ -8,7 +8,7 @@ namespace {
 
 const char* const kErrorName = "places against a fine run, in ways from the start";
 
-/// A quarter of a validation scene, which repeats itself across the wave anyway.
+/// A quarter of a validation scene, which is uniform across the wave.
 Scene narrow(const std::string& name) {
   constexpr Real kWidth = 0.4;
   Scene scene = validation::load_scene(name);
@@ -46,7 +46,7 @@ Problem shear(TaskRunner* runner) {
                        runner);
 }
 
-/// Half as fine as the validation case: the error in time does not need its particles.
+/// Half the resolution of the validation case, since the time error does not depend on it.
 Problem drop(TaskRunner* runner) {
   Scene scene = validation::load_scene("LIQ-9a");
   scene.bodies[0].spacing *= 2;

@@ -15,13 +15,13 @@ using validation::Run;
 
 namespace {
 
-/// From steps that are as long as stability allows, and a quarter of the tolerance for each next
-/// solution: errors of second order fall like that where steps are halved.
+/// Returns tolerances that start at the longest stable step. Each is a quarter of the previous one,
+/// as second-order errors decrease when steps are halved.
 Real tolerance_of(std::size_t index) {
   return kMaxTolerance * std::pow(0.25, static_cast<Real>(index));
 }
 
-/// The first tolerances leave the steps at the stable ones.
+/// The first tolerances do not shorten the stable steps.
 constexpr std::size_t kFinerTolerances = 2;
 
 bool is_varied(const Method& method) {
@@ -44,7 +44,7 @@ Scene scene_for(const Problem& problem, const Method& method, std::size_t index)
   return scene;
 }
 
-/// Runs to the end; notes what every repetition has to agree on.
+/// Runs to the end, and compares the result with that of earlier repetitions.
 double run_once(const Problem& problem, const Scene& scene, TaskRunner* runner,
                 Solution& solution) {
   Run run(scene, runner);
@@ -127,7 +127,8 @@ std::vector<Solution> sweep(const Problem& problem, const Method& method,
   const std::size_t count = problem.step_counts.size() + (has_own_steps ? kFinerTolerances : 0);
   for (std::size_t i = 0; i < count; i += settings.stride) {
     const Scene scene = scene_for(problem, method, i);
-    if (!Simulation::create(scene, runner)) continue;  // too long a step, or a method not offered
+    if (!Simulation::create(scene, runner))
+      continue;  // the step is too long, or the method is not available
     solutions.push_back(solve(problem, scene, settings, runner));
     if (solutions.back().seconds > settings.longest_run) break;
   }

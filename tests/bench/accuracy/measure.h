@@ -8,47 +8,48 @@
 
 namespace vat::bench {
 
-/// How a scene is solved.
+/// An integrator and a step control.
 struct Method {
   IntegratorId integrator;
   StepControl control;
 };
-/// Every integrator with every step control.
+/// Returns every integrator with every step control.
 std::vector<Method> all_methods();
-/// Such as "velocity_verlet, adaptive".
+/// Returns a name such as "velocity_verlet, adaptive".
 std::string name_of(const Method& method);
 
 /// One solution of a problem.
 struct Solution {
   Method method;
-  Real step = 0;       ///< [s]; of varied control the longest
-  Real tolerance = 0;  ///< of varied control
-  Real error = 0;      ///< relative; not a number where the run failed
+  Real step = 0;       ///< [s]; the longest of variable control
+  Real tolerance = 0;  ///< of variable control
+  Real error = 0;      ///< relative; not a number if the run failed
   double seconds = 0;  ///< median
   std::uint64_t steps = 0;
   std::uint64_t force_evaluations = 0;
   Real evaluations_per_particle = 0;
   std::uint64_t state_hash = 0;
-  std::string failure;  ///< why there is no error; empty: there is one
+  std::string failure;  ///< reason of a missing error; empty if there is one
 };
 
 struct SweepSettings {
-  int repetitions = 5;       ///< timed, after one that warms the caches; fewer of long runs
-  std::size_t stride = 1;    ///< every how-manieth step of the problem is tried
-  double longest_run = 0.4;  ///< [s]; a method's sweep ends with the run that takes longer
+  int repetitions = 5;       ///< timed, after one that warms the caches; fewer for long runs
+  std::size_t stride = 1;    ///< uses every stride-th step of the problem
+  double longest_run = 0.4;  ///< [s]; a method's sweep ends with the first run that takes longer
 };
 
-/// Solves the problem with ever finer steps; those with which the scene is not valid are left out.
-/// Throws std::logic_error where two runs of one solution end in different states.
+/// Solves the problem with decreasing steps, except those for which the scene is invalid. Throws
+/// std::logic_error if two runs of one solution end in different states.
 std::vector<Solution> sweep(const Problem& problem, const Method& method,
                             const SweepSettings& settings, TaskRunner* runner);
 
-/// Those that no other is better than in both error and cost, in the order of rising cost.
+/// Returns the Pareto front of error and cost, by increasing cost.
 std::vector<Solution> pareto_front(const std::vector<Solution>& solutions,
                                    double (*cost)(const Solution&));
 
-/// The cheapest one with an error of at most `error` that its method also keeps with every finer
-/// solution: errors of opposite signs cancel here and there. `solutions` are as sweep() gives them.
+/// Returns the cheapest solution with an error of at most `error`, if all finer solutions of its
+/// method have that too. Errors of opposite signs may cancel in single solutions. `solutions` must
+/// be in the order of sweep().
 std::optional<Solution> cheapest(const std::vector<Solution>& solutions, Real error,
                                  double (*cost)(const Solution&));
 

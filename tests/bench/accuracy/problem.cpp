@@ -17,7 +17,7 @@ std::vector<Vec3> all_positions(const Run& run) {
   return positions;
 }
 
-/// Of the distances between two lists of the same particles.
+/// Returns the root mean square distance between two lists of the same particles.
 Real root_mean_square(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   Real sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();

@@ -10,28 +10,28 @@
 
 namespace vat::bench {
 
-/// A scene whose error at one time can be told, to be solved by every method.
+/// A scene with a known error at one time, solved by every method.
 struct Problem {
   std::string title;
-  std::string error_name;  ///< what is compared, and with what; the error is relative to its size
+  std::string error_name;  ///< compared quantity and reference; the error is relative to its size
   Scene scene;
   Real end = 0;                            ///< [s]
-  std::vector<std::uint32_t> step_counts;  ///< of fixed steps from start to end, rising
-  /// Number of the longest steps of varied control; 0: as with fixed steps.
+  std::vector<std::uint32_t> step_counts;  ///< of fixed steps from start to end, increasing
+  /// Number of the longest steps of variable control; 0: as with fixed steps.
   std::uint32_t longest_step_count = 0;
-  /// How many times as many there are with each finer tolerance.
+  /// Factor of that number with each smaller tolerance.
   std::uint32_t longest_step_growth = 1;
   std::function<Real(const validation::Run&)> error;
 };
 
-/// A problem by its name. Making one may run a reference solution.
+/// A problem with its name. Creating the problem may run a reference solution.
 struct ProblemEntry {
-  std::string name;  ///< of the validation case where there is one, and how it is varied
+  std::string name;  ///< name of the validation case, if there is one, and its variation
   std::function<Problem(TaskRunner*)> make;
-  bool is_long = false;  ///< left out of quick runs that do not name it
+  bool is_long = false;  ///< quick runs include it only by name
 };
 
-/// All problems: deformable, rigid, liquid, interaction, and scenes of the catalogue.
+/// Returns all problems: deformable, rigid, liquid, interaction, and catalogue scenes.
 const std::vector<ProblemEntry>& all_problems();
 
 std::vector<ProblemEntry> deformable_problems();
@@ -40,12 +40,12 @@ std::vector<ProblemEntry> liquid_problems();
 std::vector<ProblemEntry> interaction_problems();
 std::vector<ProblemEntry> catalogue_problems();
 
-/// `count` numbers from `first` on, each twice the one before.
+/// Returns `count` numbers, starting with `first`, each twice the previous one.
 std::vector<std::uint32_t> doubled(std::uint32_t first, int count);
 
-/// The error of all particles' positions against a fine solution of the same equations, by
-/// Runge-Kutta with `factor` times as many steps as the problem's finest, relative to the ways from
-/// the start; roots of mean squares.
+/// Returns the error of all particles' positions relative to a fine solution of the same equations.
+/// It uses Runge-Kutta with `factor` times as many steps as the problem's finest. The error is
+/// relative to the displacements from the start, as a ratio of root mean squares.
 std::function<Real(const validation::Run&)> error_against_fine_run(const Problem& problem,
                                                                    int factor, TaskRunner* runner);
 

@@ -24,7 +24,7 @@ Problem spinning_top(TaskRunner*) {
           }};
 }
 
-/// Falls, in free flight again after two whole cycles, so that only the time in flight counts.
+/// The ball is in free flight after two complete bounces, so only the flight time matters.
 Real bounce_height(Real time) {
   const Real cycle = reference("/rigid/RIG-4a/period_full");
   const Real in_flight = time - 2 * cycle;
@@ -46,7 +46,7 @@ Problem bounce(TaskRunner*) {
           }};
 }
 
-/// The relative motion is free flight, half a sine while in touch, and free flight.
+/// The relative motion is free flight, half a sine during contact, and free flight.
 Problem collision(TaskRunner*) {
   constexpr Real kEnd = 0.04;
   return {.title = "Two balls collide",
@@ -60,12 +60,12 @@ Problem collision(TaskRunner*) {
             constexpr Real kSpeed = 3;
             const Real after = kEnd - kGap / kSpeed - reference("/rigid/RIG-5a/contact_time");
             const Real distance = 0.1 + kSpeed * after;
-            const Real expected = 0.02 - 2.0 / 3.0 * distance;  // of a centre of mass at rest
+            const Real expected = 0.02 - 2.0 / 3.0 * distance;  // for a centre of mass at rest
             return std::abs(run.body().positions[0].x() - expected) / (2 * after);
           }};
 }
 
-/// The scene with projections of this restitution, and its own friction, in place of springs.
+/// The scene with projections of this restitution, and its friction, instead of springs.
 Scene with_projections(Scene scene, Real restitution) {
   const auto project = [&](InterfaceConstants& constants) {
     constants = {.friction = constants.friction,
@@ -77,7 +77,7 @@ Scene with_projections(Scene scene, Real restitution) {
   return scene;
 }
 
-/// Without a time of contact.
+/// A collision without contact duration.
 Problem hard_collision(TaskRunner* runner) {
   Problem problem = collision(runner);
   problem.title = "Two balls collide, by projection";
@@ -93,7 +93,7 @@ Problem hard_collision(TaskRunner* runner) {
   return problem;
 }
 
-/// A block that slides to its stop.
+/// A block that slides until it stops.
 Problem slide(TaskRunner*) {
   return {.title = "A block slides to its stop",
           .error_name = "way to the stop, in that way",

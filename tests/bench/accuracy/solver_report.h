@@ -8,10 +8,10 @@
 #include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"
 
-/// The pressure solvers with walls of their own against each other, at ever finer spacings.
+/// Comparison of the pressure solvers with their own wall treatment, at decreasing spacings.
 namespace vat::bench {
 
-/// One run of one solver.
+/// A run of one solver.
 struct SolverResult {
   std::string problem;
   std::string error_name;
@@ -25,14 +25,15 @@ struct SolverResult {
   std::uint64_t hash = 0;
 };
 
-/// `repetitions` of each run, for the time; `finest`: the most layers.
+/// Runs all solvers. `repetitions` of each run determine the time. `finest` is the largest number
+/// of layers.
 std::vector<SolverResult> compare_solvers(int repetitions, int finest, TaskRunner* runner);
 
 Table solvers_table(const std::vector<SolverResult>& results);
-/// Error against seconds of one problem, a line a solver.
+/// Returns a plot of error against seconds for one problem, with a line per solver.
 LogPlot solvers_plot(const std::vector<SolverResult>& results, const std::string& problem);
 
-/// Writes the table, and a plot a problem.
+/// Writes the table, and a plot per problem.
 Status write_solvers(const std::vector<SolverResult>& results, const std::filesystem::path& folder);
 
 }  // namespace vat::bench

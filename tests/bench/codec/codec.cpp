@@ -23,7 +23,7 @@ constexpr Real kFloatBits = 96;  // three float32
 constexpr Real kNanosecond = 1e-9;
 
 struct CodecOptions : Options {
-  bool times_web = true;  ///< the decoder in TypeScript too
+  bool times_web = true;  ///< also times the TypeScript decoder
 };
 
 struct CodecRow {
@@ -157,7 +157,7 @@ const CodecResult* find(const Results& results, const std::string& scene,
   return nullptr;
 }
 
-/// Adds what is aimed at for these frames, if they were measured.
+/// Adds the targets of these frames, if they were measured.
 void add_bits(const Results& results, const std::string& scene, const CodecSetting& setting,
               const std::string& what, Real limit, std::vector<Target>& targets) {
   const CodecResult* result = find(results, scene, setting);
@@ -187,7 +187,7 @@ void add_rate(const Results& results, const std::string& scene, Real limit,
                      8e-3 * kFrameRate * result->delta_bytes});
 }
 
-/// The time of a frame of 30 000 particles, by that of a particle.
+/// Adds the time of a frame of 30 000 particles, from the time per particle.
 void add_web_decoders(const Results& results, std::vector<Target>& targets) {
   constexpr Real kParticles = 30'000;
   for (const auto& [scene, particles, times] : results.decoders) {

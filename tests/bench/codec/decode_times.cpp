@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kWeb = VAT_SOURCE_DIR "/web";
-constexpr int kRounds = 3;  // and one before
+constexpr int kRounds = 3;  // after one more
 constexpr Real kDecodeMillisecond = 1e-3;
 
-/// A row is a decoder, its version, "delta" or "key", and a time [ms]; those of a decoder follow
-/// each other.
+/// Reads rows of decoder, version, "delta" or "key", and a time [ms]. Rows of one decoder are
+/// adjacent.
 Result<std::vector<DecodeTimes>> read_times(const fs::path& file) {
   Result<CsvFile> csv = read_csv_file(file);
   if (!csv) return csv.errors();
@@ -51,7 +51,7 @@ DecodeTimes time_decoder(const std::vector<FrameBytes>& stream) {
       const bool is_good = decoder.decode(stream[f]).ok();
       const Real seconds = std::chrono::duration<Real>(Clock::now() - begin).count();
       if (!is_good) throw std::runtime_error("a decoder refuses what was encoded");
-      if (round == 0 || f == 1) continue;  // frame 1 is the only one with one reference
+      if (round == 0 || f == 1) continue;  // frame 1 has one reference, unlike all others
       (is_key_frame(stream[f]) ? times.keys : times.deltas).push_back(seconds);
     }
   }

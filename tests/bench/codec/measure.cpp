@@ -65,7 +65,7 @@ Real error_of(const PublishedState& state, const GridFrame& frame) {
   return worst;
 }
 
-/// Particles that a frame has, those of rigid bodies as in the whole scene.
+/// Returns the particles of a frame. For rigid bodies, it is the number in the complete scene.
 std::size_t shown(const GridFrame& frame) {
   std::size_t count = 0;
   for (const GridBlock& block : frame.blocks) count += block.particle_count();
@@ -116,7 +116,7 @@ CodecResult measure_codec(const Recording& recording, const std::vector<GridFram
     FrameReferences references;
     if (!sent.empty()) references.first = &sent[0];
     if (sent.size() > 1) references.second = &sent[1];
-    Samples warm_up;  // a stream begins once, with one frame and then one reference
+    Samples warm_up;  // the stream starts with a frame without and one with one reference
     measure_one(frame, references, encoder, decoder, sent.size() < 2 ? warm_up : deltas);
     if (f % kKeyInterval == kKeyInterval / 2) {
       FrameDecoder alone;

@@ -8,36 +8,36 @@
 
 namespace vat::bench {
 
-/// What a viewer gets of a recording.
+/// The frames that a viewer receives of a recording.
 struct CodecSetting {
-  Real share = 64;   ///< the greatest error is the spacing over this
-  Real dropped = 0;  ///< part of the frames, at random
+  Real share = 64;   ///< the maximum error is the spacing divided by this
+  Real dropped = 0;  ///< randomly dropped fraction of the frames
   std::uint8_t detail = kFullDetail;
 };
 
 struct CodecResult {
-  std::size_t particles = 0;  ///< that frames have on average, those of rigid bodies included
+  std::size_t particles = 0;  ///< mean number per frame, including those of rigid bodies
   std::size_t delta_frames = 0;
-  Real delta_bytes = 0;  ///< mean, of whole frames
+  Real delta_bytes = 0;  ///< mean of complete frames
   Real key_bytes = 0;
   Real encode = 0;  ///< median over frames [s]
   Real decode = 0;
   Real encode_key = 0;
   Real decode_key = 0;
-  Real worst_error = 0;  ///< of a position, in greatest errors
+  Real worst_error = 0;  ///< of a position, relative to the maximum error
 
   Real bits(Real bytes) const { return 8 * bytes / static_cast<Real>(particles); }
 };
 
-/// The recording on the grids of a session that is asked for this error.
+/// Returns the frames of a session with this maximum error.
 std::vector<GridFrame> on_grids(const Recording& recording, Real max_error);
 
-/// Frames as a server sends them to one client: on the last two that it got. Throws
-/// std::runtime_error where a decoder does not end in the same integers.
+/// Encodes frames as a server does for one client, relative to the last two received frames. Throws
+/// std::runtime_error if a decoder gives other integers.
 CodecResult measure_codec(const Recording& recording, const std::vector<GridFrame>& frames,
                           const CodecSetting& setting);
 
-/// The value below which this part of them lies; 0 of none.
+/// Returns the value below which the fraction `part` of the values lies; 0 if there are none.
 Real quantile(std::vector<Real> values, Real part);
 Real median(std::vector<Real> values);
 

@@ -25,8 +25,8 @@ namespace {
 using Positions = std::vector<std::uint16_t>;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Encodes, and decodes again; `before` are the positions of the frame before, of as many
-/// particles, or none.
+/// Encodes and decodes positions. `before` are the positions of the previous frame with the same
+/// number of particles, or empty.
 struct Peer {
   const char* name;
   const char* what;
@@ -69,7 +69,7 @@ Bytes zstd_unpacked(const Bytes& bytes) {
   return plain;
 }
 
-/// Differences to the frame before, their low bytes in front of their high ones.
+/// Returns the differences to the previous frame, first their low bytes and then their high bytes.
 Bytes difference_planes(const Positions& positions, const Positions& before) {
   const std::size_t count = positions.size();
   Bytes planes(2 * count);
@@ -113,7 +113,7 @@ Peer zstd_delta_peer() {
 #endif
 
 #ifdef VAT_HAS_MESHOPTIMIZER
-constexpr std::size_t kVertex = 8;  // meshoptimizer wants a multiple of four bytes
+constexpr std::size_t kVertex = 8;  // meshoptimizer needs a multiple of four bytes
 
 Bytes mesh_encoded(const Positions& positions) {
   const std::size_t count = positions.size() / 3;

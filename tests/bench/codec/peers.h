@@ -7,17 +7,17 @@
 
 namespace vat::bench {
 
-/// What others make of the positions of the same frames, each alone.
+/// The result of another codec for the positions of the same frames, each coded independently.
 struct PeerResult {
   std::string name;
   std::string what;
-  bool is_built_in = true;  ///< false: its library was not there when the bench was built
-  Real bits = 0;            ///< of a particle, mean
-  Real encode = 0;          ///< [s] of a particle, median over frames
+  bool is_built_in = true;  ///< false: its library was missing at build time
+  Real bits = 0;            ///< mean per particle
+  Real encode = 0;          ///< [s] per particle, median over frames
   Real decode = 0;
 };
 
-/// Of liquid and deformable bodies; frames without either give nothing.
+/// Measures positions of liquid and deformable bodies. Frames without either are ignored.
 std::vector<PeerResult> measure_peers(const std::vector<GridFrame>& frames);
 
 }  // namespace vat::bench

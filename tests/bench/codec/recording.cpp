@@ -11,7 +11,7 @@
 namespace vat::bench {
 namespace {
 
-/// Frames are taken at ticks.
+/// Sets the tick to the frame interval.
 Scene at_frame_rate(Scene scene) {
   Numerics& numerics = scene.numerics;
   numerics.tick = 1 / kFrameRate;
@@ -31,7 +31,7 @@ Scene catalogue_scene(const std::string& name) {
   return at_frame_rate(std::move(scene).value());
 }
 
-/// The paper's Figure 2 with its vat at its place, so that all comes to rest.
+/// Figure 2 of the article with its vat at rest, so that all bodies come to rest.
 Scene figure_2_in_a_still_vat() {
   Scene scene = catalogue_scene("sliding-vat-liquid");
   scene.vat->motion.reset();

@@ -8,29 +8,29 @@
 
 namespace vat::bench {
 
-/// A run of which frames are made.
+/// A simulated scene from which frames are made.
 struct CodecScene {
   std::string name;
   Scene scene;
-  Real spacing = 0;    ///< [m] of the particles
+  Real spacing = 0;    ///< [m] particle spacing
   Real begin = 0;      ///< [s] simulated before the first frame
   Real seconds = 0;    ///< recorded
-  bool rests = false;  ///< all bodies must sleep when the first frame is taken
+  bool rests = false;  ///< all bodies must sleep at the first frame
 };
 
-/// Frames a second.
+/// Frames per second.
 inline constexpr Real kFrameRate = 30;
 
-/// The dam breaks by which the peers' codecs were measured, from the start and for four seconds; a
-/// pool, settled and asleep; the paper's two scenes, in motion and at rest. `quick`: smaller and
-/// shorter.
+/// Returns the scenes: the dam breaks of the other codecs' measurements, from the start for four
+/// seconds; a settled, sleeping pool; and the article's two scenes, moving and at rest. `quick`
+/// makes them smaller and shorter.
 std::vector<CodecScene> codec_scenes(bool quick);
 
 struct Recording {
   std::vector<PublishedState> states;
   std::size_t particles = 0;  ///< of all bodies
 };
-/// Throws std::runtime_error where the run fails, or does not come to rest.
+/// Records a scene. Throws std::runtime_error if the run fails or does not come to rest.
 Recording record(const CodecScene& scene, std::size_t threads);
 
 }  // namespace vat::bench

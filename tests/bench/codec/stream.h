@@ -9,16 +9,16 @@
 
 namespace vat::bench {
 
-/// Of the frames that are also coded as key frames.
+/// Interval of the frames that are also coded as key frames.
 inline constexpr std::size_t kKeyInterval = 10;
 
 using FrameBytes = std::vector<std::uint8_t>;
 
-/// What a decoder is timed with, in the order of decoding: each frame on the two before it, as a
-/// client gets them; then each kKeyInterval-th once more as a key frame.
+/// Returns the frames with which a decoder is timed, in decoding order: each frame relative to the
+/// two before it, as clients receive them, then each kKeyInterval-th again as a key frame.
 std::vector<FrameBytes> stream_of(const std::vector<GridFrame>& frames);
 
-/// Writes each frame behind the number of its bytes (u32, little-endian).
+/// Writes each frame, preceded by the number of its bytes (u32, little-endian).
 Status write_stream(const std::vector<FrameBytes>& stream, const std::filesystem::path& file);
 
 }  // namespace vat::bench

@@ -27,7 +27,7 @@ Result<std::string> read_text(const fs::path& file) {
   return text;
 }
 
-/// FOLDER/COMMAND/NAME.json, as the command of that name writes it.
+/// Reads FOLDER/COMMAND/NAME.json, the result of the command with this name.
 Result<Json> read_document_rows(const fs::path& folder, const std::string& command,
                                 const std::string& name) {
   const fs::path file = folder / command / (name + ".json");
@@ -50,7 +50,7 @@ std::map<std::string, std::string> case_titles() {
 struct Content {
   const char* marker;
   const char* command;
-  const char* name;  ///< of the result
+  const char* name;  ///< name of the result
   Table (*make)(const Json& rows);
 };
 

@@ -10,7 +10,7 @@ namespace vat::bench {
 
 namespace {
 
-/// NAME of the line `<!-- WORD NAME -->`.
+/// Returns NAME of the line `<!-- WORD NAME -->`.
 std::optional<std::string> name_in(const std::string& line, const std::string& word) {
   const std::string before = "<!-- " + word + " ";
   const std::string after = " -->";
@@ -19,7 +19,7 @@ std::optional<std::string> name_in(const std::string& line, const std::string& w
   return line.substr(before.size(), line.size() - before.size() - after.size());
 }
 
-/// Copies a page line by line, with the contents in place of what stands between markers.
+/// Copies a page line by line, and replaces the text between markers by the contents.
 class Filler {
  public:
   explicit Filler(const std::map<std::string, std::string>& contents) : contents_(contents) {}

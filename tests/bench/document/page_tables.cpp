@@ -13,7 +13,7 @@ std::string cell_text(const Json& row, const char* column) {
   return row.at(column).get<std::string>();
 }
 
-/// With three digits; a dash where the value is absent.
+/// Formats a value with three digits, or as a dash if it is absent.
 std::string cell_number(const Json& row, const char* column) {
   const Json& value = row.at(column);
   if (value.is_null()) return "–";
@@ -31,7 +31,7 @@ Real share(const Json& row) {
   return value.is_null() ? 0 : value.get<Real>();
 }
 
-/// Consecutive rows with the same case.
+/// Returns groups of consecutive rows with the same case.
 std::vector<std::vector<Json>> by_case(const Json& rows) {
   std::vector<std::vector<Json>> groups;
   for (const Json& row : rows) {

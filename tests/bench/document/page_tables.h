@@ -6,35 +6,36 @@
 #include "protocol/json/json_reader.h"
 #include "tests/bench/report/table.h"
 
-/// The tables of core/ACCURACY.md, from the rows that the other commands write as JSON. They throw
-/// nlohmann::json::exception where a row lacks a column.
+/// The tables of core/ACCURACY.md, from the JSON results of the other commands. The functions throw
+/// nlohmann::json::exception if a row lacks a column.
 namespace vat::bench {
 
-/// One row a case: of its metrics the one that uses most of its tolerance, and the number of all;
-/// of cases without tolerances the first one. `titles` are the cases' by name.
+/// Returns one row per case: the metric that uses most of its tolerance, and the number of all
+/// metrics. For cases without tolerances, it is the first metric. `titles` contains the cases'
+/// titles by name.
 Table cases_table(const Json& validation, const std::map<std::string, std::string>& titles);
-/// The README's selection of these cases, without the number of metrics.
+/// Returns the README's selection of these cases, without the number of metrics.
 Table summary_table(const Json& validation, const std::map<std::string, std::string>& titles);
-/// The metrics that the method cannot reach, and why.
+/// Returns the metrics that the method cannot reach, with the reason.
 Table limits_table(const Json& validation);
 
-/// One row a problem: for each error the method with the fewest evaluations.
+/// Returns one row per problem: the method with the fewest evaluations for each error.
 Table methods_table(const Json& cheapest);
-/// One row for each problem and error that fixed steps can reach.
+/// Returns one row for each problem and error that fixed steps can reach.
 Table steps_table(const Json& control);
 
-/// One row for each problem and law: for each error the method with the least time, and the time.
+/// Returns one row per problem and law: the fastest method and its time for each error.
 Table laws_table(const Json& laws);
 
-/// Everything but the seconds and hashes.
+/// Returns all columns except seconds and hashes.
 Table solvers_table(const Json& solvers);
 /// Density error and iterations by tolerance. Times are in the plot only.
 Table tolerances_table(const Json& tolerances);
 
-/// Everything but the seconds.
+/// Returns all columns except the seconds.
 Table counts_table(const Json& stability);
 
-/// One row for each race: times of both programs, their ratio, and the machine.
+/// Returns one row per race: times of both programs, their ratio, and the machine.
 Table race_table(const Json& race);
 
 }  // namespace vat::bench

@@ -24,10 +24,10 @@ struct FanoutOptions {
   double max_error = 0;
 };
 
-constexpr std::size_t kOtherFiles = 64;  // open files of a load process beside its sockets
+constexpr std::size_t kOtherFiles = 64;  // open files of a load process besides its sockets
 
-/// Water that is carried to and fro, in few and long steps: 30 ticks a second, each of which moves
-/// every particle.
+/// Water in a vat that moves back and forth, with few long steps: 30 ticks per second, each of
+/// which moves every particle.
 constexpr const char* kScene = R"({
   "format": "vat.scene/1", "name": "fanout", "title": "Sloshing",
   "materials": [{"name": "water", "density": 1000,

@@ -4,7 +4,7 @@
 
 namespace vat::bench {
 
-/// `vat bench fanout`: many viewers of one session, over real sockets.
+/// `vat bench fanout`: many viewers of one session over real sockets.
 void add_fanout_command(CLI::App& app, int& exit_code);
 
 }  // namespace vat::bench

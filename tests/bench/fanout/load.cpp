@@ -74,7 +74,7 @@ Sightings read_sightings(int file) {
   return seen;
 }
 
-/// What the process does.
+/// The load process.
 class Load {
  public:
   Load(const LoadSettings& settings, const ViewerCounts& counts, std::uint32_t seed, int from,
@@ -152,7 +152,7 @@ class Load {
       const int before = viewer.socket();
       if (viewer.kind() == ViewerKind::plain || viewer.kind() == ViewerKind::stalled) continue;
       if (!viewer.look_at_clock(now, sightings(viewer))) continue;
-      // A new socket, maybe of the same number, is not watched yet.
+      // A new socket, possibly with the same number, is not in the poll set yet.
       const bool is_new = viewer.kind() == ViewerKind::restless || before != viewer.socket();
       if (viewer.socket() >= 0) {
         watch(viewer.socket(), EPOLLIN, i, is_new ? EPOLL_CTL_ADD : EPOLL_CTL_MOD);
@@ -173,7 +173,7 @@ class Load {
   const int events_;
   std::vector<std::unique_ptr<Viewer>> viewers_;
   std::size_t connected_ = 0;
-  std::size_t framed_ = 0;  // as many have got one
+  std::size_t framed_ = 0;  // number of viewers that have received a frame
   LoadSightings seen_;
   LoadClock::time_point next_look_;
   char command_ = 0;

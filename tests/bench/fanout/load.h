@@ -12,24 +12,24 @@ namespace vat::bench {
 using ViewerCounts = std::array<std::size_t, kViewerKinds>;
 using LoadSightings = std::array<Sightings, kViewerKinds>;
 
-/// Viewers in a process of their own, so that what they cost is not the server's. It must be
+/// Viewers in a separate process, so that their cost is not counted as the server's. It must be
 /// started while this program has one thread.
 class LoadProcess {
  public:
-  /// Connects the viewers at once. Throws std::runtime_error where there is no process.
+  /// Connects the viewers. Throws std::runtime_error if the process cannot be started.
   LoadProcess(const LoadSettings& settings, const ViewerCounts& viewers, std::uint32_t seed);
   ~LoadProcess();
   LoadProcess(const LoadProcess&) = delete;
   LoadProcess& operator=(const LoadProcess&) = delete;
 
-  /// Waits until every viewer has got a frame. Throws where that takes longer than a minute, or
-  /// the process fails.
+  /// Waits until every viewer has received a frame. Throws after one minute, or if the process
+  /// fails.
   void wait_ready();
-  /// What is seen from now on counts.
+  /// Starts the measurement.
   void begin();
-  /// What was seen since begin().
+  /// Returns the measurements since begin().
   LoadSightings tell();
-  /// The same; ends the process.
+  /// Returns the measurements since begin(), and ends the process.
   LoadSightings end();
 
  private:

@@ -8,7 +8,7 @@ namespace vat::bench {
 namespace {
 
 constexpr int kDraws = 2000;
-constexpr double kOutside = 0.025;  // on either side of the interval
+constexpr double kOutside = 0.025;  // excluded on either side of the interval
 constexpr std::size_t kMinSegments = 5;
 
 double segment_quantile(std::vector<float>& values, double share) {

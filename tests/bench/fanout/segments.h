@@ -16,13 +16,12 @@ struct QuantileRatio {
   double high = 0;
 };
 
-/// The value that a share of all has not above it, of all segments together. NaN where there is no
-/// value.
+/// Returns the quantile `share` of the values of all segments. NaN if there are no values.
 double pooled_quantile(const Segments& segments, double share);
 
-/// pooled_quantile() of `b` over that of `a`. The interval is that of a bootstrap which draws whole
-/// segments, with replacement, for what disturbs a machine lasts longer than a value: the middle
-/// 95 % of 2000 draws. NaN where either has fewer than five segments: too few to draw from.
+/// Returns pooled_quantile() of `b`, divided by that of `a`. The interval is the middle 95 % of
+/// 2000 bootstrap samples. They draw whole segments with replacement, because disturbances of a
+/// machine last longer than a value. NaN if either has fewer than five segments.
 QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share);
 
 }  // namespace vat::bench

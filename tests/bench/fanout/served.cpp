@@ -30,10 +30,10 @@ std::uint16_t port_in(const std::string& url) {
 
 struct Times {
   std::string name;
-  double seconds = 0;  ///< of processors, in the program and the system
+  double seconds = 0;  ///< processor time of program and system
 };
 
-/// Of a process or thread; proc(5) describes the line.
+/// Reads the times of a process or thread; proc(5) describes the line.
 Times read_served_times(const std::filesystem::path& folder) {
   std::ifstream file(folder / "stat");
   std::string text;

@@ -8,19 +8,19 @@
 
 namespace vat::bench {
 
-/// A tick, as the log tells of it.
+/// A tick in the server's log.
 struct TickTimes {
-  double seconds = 0;   ///< that its steps took
-  double publish = 0;   ///< [s] that publishing its state took
+  double seconds = 0;   ///< duration of its steps
+  double publish = 0;   ///< [s] duration of publishing its state
   double lateness = 0;  ///< [s]
 };
 
-/// A running `vat serve`, and what the system and its metrics tell of it.
+/// A running `vat serve`, with figures of the system and of its metrics.
 class Served {
  public:
   /// Starts `program` with `arguments` after "serve", and waits for its URL. Throws
-  /// std::runtime_error where that does not come. The server's log goes to the file `log`, if there
-  /// is one, to standard error otherwise.
+  /// std::runtime_error if there is no URL. The server writes its log to the file `log` if it is
+  /// given, otherwise to standard error.
   Served(const std::string& program, const std::vector<std::string>& arguments,
          const std::string& log = {});
   ~Served();
@@ -28,15 +28,16 @@ class Served {
   Served& operator=(const Served&) = delete;
 
   std::uint16_t port() const { return port_; }
-  /// Spent since the start by all threads, and by those alone that make and send frames.
+  /// Returns the processor time since the start: of all threads, and of the threads that make and
+  /// send frames.
   double processor_seconds() const;
   double delivery_seconds() const;
   std::uint64_t resident_bytes() const;
-  /// The samples of /metrics by name and labels, as they are written there.
+  /// Returns the samples of /metrics by name and labels, as they are written there.
   std::map<std::string, double> metrics() const;
-  /// [bytes] of the log so far.
+  /// Returns the size of the log [bytes].
   std::size_t log_size() const;
-  /// The ticks that the log, of level debug, tells of after its first `begin` bytes.
+  /// Returns the ticks in the log after its first `begin` bytes. Its level must be debug.
   std::vector<TickTimes> ticks_since(std::size_t begin) const;
 
  private:

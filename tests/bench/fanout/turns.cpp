@@ -14,8 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr auto kStart = std::chrono::seconds(12);  // in which the water comes to its usual motion
-constexpr auto kChange = milliseconds(1500);       // after viewers have come or gone
+constexpr auto kStart = std::chrono::seconds(12);  // until the water reaches its periodic motion
+constexpr auto kChange = milliseconds(1500);       // after viewers have joined or left
 constexpr auto kSegment = std::chrono::seconds(6);
 constexpr std::size_t kPairs = 10;
 constexpr std::size_t kQuickPairs = 2;
@@ -24,7 +24,7 @@ std::size_t count_all_turns(const ViewerCounts& viewers) {
   return std::accumulate(viewers.begin(), viewers.end(), std::size_t{0});
 }
 
-/// What was measured in one segment.
+/// Measurements of one segment.
 struct Segment {
   std::vector<float> ticks;      // [s]
   std::vector<float> publishes;  // [s]
@@ -59,7 +59,7 @@ std::unique_ptr<LoadProcess> start(const LoadSettings& settings, const ViewerCou
   return load;
 }
 
-/// Of each kind of segment what `read` finds in one.
+/// Returns the values of `read` for the segments of each kind.
 template <class Read>
 TurnsResult gather(const TurnsCase& one, const char* quantity,
                    const std::array<std::vector<Segment>, 2>& segments, Read&& read) {
@@ -70,7 +70,7 @@ TurnsResult gather(const TurnsCase& one, const char* quantity,
   return result;
 }
 
-/// The same in milliseconds.
+/// Returns the same result in milliseconds.
 TurnsResult gather_times(const TurnsCase& one, const char* quantity,
                          const std::array<std::vector<Segment>, 2>& segments,
                          std::vector<float> Segment::*seconds) {

@@ -9,30 +9,30 @@
 
 namespace vat::bench {
 
-/// Segments of time with and without some viewers, in turns, in one server: what those who come do
-/// to its ticks and to those who stay.
+/// Alternating time segments with and without additional viewers in one server. They show the
+/// effect of these viewers on ticks and on the other viewers.
 struct TurnsCase {
   std::string name;
   ViewerCounts staying{};
   ViewerCounts coming{};
 };
 
-/// One quantity in the segments of either kind.
+/// One quantity in the segments of both kinds.
 struct TurnsResult {
   std::string name;
-  std::string quantity;     ///< and its unit
-  std::size_t staying = 0;  ///< viewers
-  std::size_t coming = 0;   ///< the same
+  std::string quantity;     ///< with its unit
+  std::size_t staying = 0;  ///< permanent viewers
+  std::size_t coming = 0;   ///< additional viewers
   Segments without;
   Segments with;
 };
 
 const std::vector<TurnsCase>& turns_cases();
 
-/// The segments are as long as three periods of the scene's vat, so that each sees the same motion,
-/// and follow one another as A B B A, so that what changes slowly counts for both alike. Viewers
-/// give way to the server. The settings' time says how many segments there are. Throws
-/// std::runtime_error where the server or the viewers fail.
+/// Runs a case. A segment takes three periods of the scene's vat, so that all segments contain the
+/// same motion. They alternate as A B B A, so that slow changes affect both kinds equally. Viewers
+/// have a lower priority than the server. The settings' time determines the number of segments.
+/// Throws std::runtime_error if the server or the viewers fail.
 std::vector<TurnsResult> run_turns(const TurnsCase& one, const FanoutSettings& settings);
 
 }  // namespace vat::bench

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kStallAfter = 10;  // frames
 constexpr int kSmallReceiveBuffer = 64 * 1024;
-constexpr std::size_t kLook = 2048;      // bytes that are looked at, at most
-constexpr std::size_t kThrow = 1 << 20;  // that are thrown away at once
+constexpr std::size_t kLook = 2048;      // maximum of examined bytes
+constexpr std::size_t kThrow = 1 << 20;  // maximum of bytes discarded at once
 constexpr double kGrain = 0.01;          // [s] of a half-speed reader
 
 std::string masked_text(const std::string& text) {
@@ -154,7 +154,8 @@ void Viewer::send_text(const std::string& text) {
   send_all(masked_text(text));
 }
 
-/// So little always fits into the socket's buffer, unless the server has gone: then reading tells.
+/// Such a short message always fits into the socket's buffer unless the server has closed. Reading
+/// then reports that.
 void Viewer::send_all(const std::string& bytes) {
   [[maybe_unused]] const ssize_t sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
@@ -196,7 +197,7 @@ std::size_t Viewer::take_reply(const char* bytes, std::size_t size) {
   return size;
 }
 
-/// Of a WebSocket message. Those of the server are whole and not masked.
+/// Parses the head of a WebSocket message. The server's messages are unfragmented and not masked.
 std::size_t Viewer::take_head(const char* bytes, std::size_t size) {
   for (std::size_t used = 1; used <= size; ++used) {
     head_[head_size_++] = static_cast<unsigned char>(bytes[used - 1]);

@@ -14,34 +14,34 @@ using LoadClock = std::chrono::steady_clock;
 
 enum class ViewerKind : std::uint8_t {
   plain,     ///< reads all and acknowledges every frame
-  half,      ///< reads half of what frames at the full rate need
+  half,      ///< reads half of the full rate
   stalled,   ///< stops reading after some frames
-  restless,  ///< leaves after a second or so, and comes again
+  restless,  ///< leaves after about a second, and returns
 };
 inline constexpr std::size_t kViewerKinds = 4;
 const char* name_of(ViewerKind kind);
 
-/// What viewers of a kind have seen in the measured time.
+/// Measurements of the viewers of a kind.
 struct Sightings {
   std::uint64_t frames = 0;
   std::uint64_t bytes = 0;
   std::uint64_t joins = 0;
-  std::uint64_t closed = 0;         ///< by the server
+  std::uint64_t closed = 0;         ///< closed by the server
   std::vector<float> ages;          ///< [s] of each frame when its last byte was read
   std::vector<float> first_frames;  ///< [s] from subscription to first frame
 };
 
-/// What all viewers of a process share.
+/// Settings of all viewers of a process.
 struct LoadSettings {
   std::uint16_t port = 0;
-  double max_error = 0;              ///< [m] that each asks for
-  double half_bytes_per_second = 0;  ///< that `half` reads
+  double max_error = 0;              ///< [m] maximum error that each viewer requests
+  double half_bytes_per_second = 0;  ///< rate at which `half` reads
   std::string session = "s1";
-  int niceness = 0;  ///< of the process: 0 to 19, which gives way to all others
+  int niceness = 0;  ///< of the process, 0 to 19; 19 is the lowest priority
 };
 
-/// A WebSocket of a viewer, as cheap as can be: it looks at the first bytes of frames only, throws
-/// the rest away in the system, and never waits.
+/// A WebSocket of a viewer with minimal cost: it reads only the first bytes of frames, discards the
+/// others in the kernel, and never waits.
 class Viewer {
  public:
   Viewer(ViewerKind kind, const LoadSettings& settings, std::uint32_t seed);
@@ -49,15 +49,16 @@ class Viewer {
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  /// Connects and asks for the upgrade, anew if it was connected. Throws std::runtime_error where
-  /// the system refuses.
+  /// Connects, or reconnects, and requests the upgrade. Throws std::runtime_error if the system
+  /// refuses.
   void connect();
   int socket() const { return socket_; }
-  /// Reads what has come. False where it wants no more for now.
+  /// Reads the available data. Returns false if the viewer pauses reading.
   bool read(Sightings& sightings);
-  /// Called often. True where it has a new socket or may read again.
+  /// Handles timeouts, called frequently. Returns true if the viewer has a new socket or may read
+  /// again.
   bool look_at_clock(LoadClock::time_point now, Sightings& sightings);
-  /// Whether it has got a frame since it has connected.
+  /// Returns whether a frame has arrived since the last connect.
   bool has_frame() const { return has_frame_; }
   ViewerKind kind() const { return kind_; }
 
@@ -80,20 +81,20 @@ class Viewer {
   int socket_ = -1;
   Stage stage_ = Stage::closed;
   bool has_frame_ = false;
-  int frames_ = 0;  // since it has connected
+  int frames_ = 0;  // since the last connect
   LoadClock::time_point subscribed_;
   LoadClock::time_point leaves_;
 
-  std::string reply_;                     // to the upgrade, so far
-  std::array<unsigned char, 14> head_{};  // of the message under way
+  std::string reply_;                     // received part of the reply to the upgrade
+  std::array<unsigned char, 14> head_{};  // head of the current message
   std::size_t head_size_ = 0;
-  std::uint64_t left_ = 0;  // bytes of its payload that have not come
-  std::uint64_t size_ = 0;  // of its payload
+  std::uint64_t left_ = 0;  // bytes of its payload that have not arrived
+  std::uint64_t size_ = 0;  // size of its payload
   int opcode_ = 0;
-  std::array<char, 128> start_{};  // of its payload
+  std::array<char, 128> start_{};  // start of its payload
   std::size_t start_size_ = 0;
 
-  double allowance_ = 0;  // [bytes] that a half-speed reader may read now
+  double allowance_ = 0;  // [bytes] that a half-speed reader may read at present
   LoadClock::time_point allowed_;
 };
 

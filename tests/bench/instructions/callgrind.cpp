@@ -13,8 +13,8 @@ namespace vat::bench {
 
 namespace {
 
-/// The C library has faster memcpy and the like for newer processors: none of them, so that all
-/// machines count the same.
+/// Disables the C library's functions for newer processors, such as memcpy, so that all machines
+/// give the same count.
 constexpr const char* kPlainLibrary =
     "glibc.cpu.hwcaps=-AVX,-AVX2,-AVX512F,-AVX512VL,-AVX512BW,-FMA,-FMA4,-BMI1,-BMI2,-LZCNT,"
     "-MOVBE,-ERMS,-FSRM,-SSSE3,-SSE4_1,-SSE4_2,-POPCNT";

@@ -8,15 +8,15 @@
 
 namespace vat::bench {
 
-/// Instructions that the counted steps of a scene take, by callgrind; its whole output, for
-/// callgrind_annotate, is then FOLDER/SCENE.callgrind. Fails where valgrind does, or is not there.
+/// Returns the instructions of a scene's counted steps, measured by callgrind. Writes its complete
+/// output to FOLDER/SCENE.callgrind, for callgrind_annotate. Fails if valgrind is missing or fails.
 Result<std::uint64_t> count_instructions(const std::string& scene,
                                          const std::filesystem::path& folder);
 
-/// The sub-command of this program that callgrind watches.
+/// The sub-command of this program that runs under callgrind.
 inline constexpr const char* kCountedCommand = "run-counted-scene";
 
-/// The count in callgrind's output.
+/// Returns the count in callgrind's output.
 Result<std::uint64_t> parse_callgrind_total(const std::filesystem::path& file);
 
 }  // namespace vat::bench

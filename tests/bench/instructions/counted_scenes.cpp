@@ -7,7 +7,7 @@
 #include "tests/bench/speed/scenes.h"
 
 extern "C" {
-/// Apart, and with a name as it is written here, so that callgrind finds it.
+/// A separate function with an unmangled name, so that callgrind finds it.
 [[gnu::noinline]] void vat_counted_steps(vat::Simulation* simulation, std::uint32_t steps,
                                          vat::AdvanceReport* report) {
   *report = simulation->advance(steps);

@@ -9,25 +9,25 @@
 
 namespace vat::bench {
 
-/// A small scene whose steps are counted in instructions: in one thread, with the baseline
+/// A small scene for counting the instructions of its steps, in one thread with the baseline
 /// instruction set.
 struct CountedScene {
   std::string name;
   Scene (*make)();
-  Real warm_up = 0;  ///< [s] simulated before
+  Real warm_up = 0;  ///< [s] simulated before the count
   Real counted = 0;  ///< [s] simulated
 };
 
 const std::vector<CountedScene>& counted_scenes();
 
-/// What a run of a scene had in it.
+/// Result of a counted run.
 struct CountedRun {
   std::uint64_t particles = 0;
-  std::uint64_t steps = 0;  ///< those counted
+  std::uint64_t steps = 0;  ///< number of counted steps
 };
 
-/// Runs the scene; what is counted happens in a function that callgrind can be told of by
-/// kCountedFunction. Fails where a step does.
+/// Runs the scene. The counted steps are inside the function kCountedFunction. Fails if a step
+/// fails.
 Result<CountedRun> run_counted(const CountedScene& scene);
 inline constexpr const char* kCountedFunction = "vat_counted_steps";
 

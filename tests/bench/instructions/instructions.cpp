@@ -19,11 +19,11 @@ namespace vat::bench {
 
 namespace {
 
-constexpr int kExitSkipped = 77;  // what ctest is told to look for
+constexpr int kExitSkipped = 77;  // the code for a skipped test in ctest
 
 struct InstructionOptions {
   Options common;
-  std::string stored;  ///< file to compare with; empty: none
+  std::string stored;  ///< file for the comparison; empty: none
 };
 
 std::vector<std::string> names_of_scenes() {
@@ -62,7 +62,7 @@ Result<std::vector<StoredCount>> read_stored(const std::string& name) {
   return read_stored_counts(file.value());
 }
 
-/// Whether there is anything to compare with; if not, says so.
+/// Returns whether counts of this build are stored. Otherwise prints a message.
 bool is_stored_build(const std::vector<StoredCount>& stored) {
   for (const StoredCount& one : stored) {
     if (one.build == this_build()) return true;

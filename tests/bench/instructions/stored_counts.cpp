@@ -16,7 +16,7 @@ constexpr const char* kHowToRenew =
     "; where that is meant, VAT_UPDATE_GOLDEN=1 ./vat test -R bench/instructions renews "
     "tests/golden/instructions.csv";
 
-/// The count as stored; 0 where it is not.
+/// Returns the stored count, or 0 if there is none.
 std::uint64_t find_stored(const std::vector<StoredCount>& stored, const std::string& scene,
                           const std::string& build) {
   const auto found = std::ranges::find_if(stored, [&](const StoredCount& one) {

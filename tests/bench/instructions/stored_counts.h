@@ -8,36 +8,36 @@
 #include "tests/bench/report/csv_file.h"
 #include "tests/bench/report/table.h"
 
-/// Counts of instructions that a check compares with: a CSV file with the columns scene, build and
+/// Stored instruction counts for comparison: a CSV file with the columns scene, build and
 /// instructions.
 namespace vat::bench {
 
-/// How many instructions a run of a scene took.
+/// The number of instructions of a scene's run.
 struct InstructionCount {
   std::string scene;
   std::uint64_t instructions = 0;
 };
 
-/// Compiler and flags of this program: counts of another build say nothing.
+/// Returns compiler and flags of this program. Counts of other builds are not comparable.
 std::string this_build();
 
-/// By how much a count may differ from the stored one [%].
+/// Permitted difference from the stored count [%].
 inline constexpr std::uint64_t kMaxChange = 3;
 
-/// The counts of all builds.
+/// A stored count of one build.
 struct StoredCount {
   std::string build;
   InstructionCount count;
 };
-/// Fails where the file is no such file.
+/// Returns the counts of all builds. Fails if the file has another format.
 Result<std::vector<StoredCount>> read_stored_counts(const CsvFile& file);
 
-/// An error for each count that is not stored for the build, or differs by more than kMaxChange to
-/// either side; it says how to renew the file.
+/// Returns an error for each count that is not stored for this build, or differs by more than
+/// kMaxChange. The error tells how to renew the file.
 Status check_counts(const std::vector<InstructionCount>& counts,
                     const std::vector<StoredCount>& stored, const std::string& build);
 
-/// The file with these counts in place of its own; those of other builds stay.
+/// Returns the stored counts with those of this build replaced.
 Table renewed(const std::vector<InstructionCount>& counts, const std::vector<StoredCount>& stored,
               const std::string& build);
 

@@ -8,7 +8,7 @@
 #include "core/support/result.h"
 #include "protocol/json/json_reader.h"
 
-/// Runs of SPlisHSPlasH, a simulator of liquids, on the scene of peer_dam_break().
+/// Runs of the liquid simulator SPlisHSPlasH on the scene of peer_dam_break().
 namespace vat::bench {
 
 /// Parameters of one run.
@@ -20,7 +20,7 @@ struct PeerRun {
   Real seconds = 1;  ///< [s] simulated
 };
 
-/// The name of the peer's solver and of its kind of walls.
+/// Returns the names of the peer's solver and wall treatment.
 const char* peer_solver(PressureSolver solver);
 
 /// Returns the scene in the peer's format. tests/bench/README.md compares its parameters with

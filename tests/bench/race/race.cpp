@@ -21,7 +21,7 @@ namespace vat::bench {
 
 namespace {
 
-/// A dam break of a size, with a solver of each program.
+/// A dam break of one size, with the solvers of both programs.
 struct RaceCase {
   const char* name;
   int edge;

@@ -8,14 +8,14 @@ namespace vat::bench {
 
 namespace {
 
-/// Takes cells and rows off the front of a text.
+/// Parses cells and rows from the start of a text.
 class CsvParser {
  public:
   explicit CsvParser(std::string_view text) : rest_(text) {}
 
   bool at_end() const { return rest_.empty(); }
 
-  /// The next row; fails where a quote stays open, or more follows its end.
+  /// Returns the next row. Fails if a quote is not closed, or text follows its end.
   Result<std::vector<std::string>> take_row() {
     std::vector<std::string> row;
     do {

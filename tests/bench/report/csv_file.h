@@ -15,9 +15,10 @@ struct CsvFile {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// Fails where the file cannot be read, is empty, has an open quote or rows of unequal length.
+/// Reads a CSV file. Fails if it cannot be read, is empty, has an unclosed quote or rows of
+/// different lengths.
 Result<CsvFile> read_csv_file(const std::filesystem::path& file);
-/// The same of a text.
+/// Parses a text in the same way.
 Result<CsvFile> parse_csv(std::string_view text);
 
 }  // namespace vat::bench

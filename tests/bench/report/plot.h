@@ -8,29 +8,28 @@
 #include "core/support/result.h"
 #include "core/types.h"
 
-/// Pictures by gnuplot. Beside NAME.svg lie NAME.dat and NAME.gnuplot, from which anybody can draw
-/// it again or differently.
+/// Plots by gnuplot. NAME.dat and NAME.gnuplot next to NAME.svg allow drawing it again.
 namespace vat::bench {
 
-/// Points of one line. Points that are not positive and finite are left out.
+/// Points of one line. Points that are not positive and finite are omitted.
 struct Series {
   std::string label;
   std::vector<std::array<Real, 2>> points;
-  std::size_t colour = 0;  ///< of a short list, begun anew where it ends
+  std::size_t colour = 0;  ///< index in a short list, repeated after its end
   std::size_t dash = 0;    ///< 0: solid
-  bool broad = false;      ///< a pale band below the other lines, such as a Pareto front
+  bool broad = false;      ///< a pale band below the other lines, for example a Pareto front
 };
 
-/// Lines with points over two logarithmic axes.
+/// Lines with points on two logarithmic axes.
 struct LogPlot {
   std::string title;
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
-  std::string number_format = "%.0e";  ///< of both axes, as gnuplot has it
+  std::string number_format = "%.0e";  ///< of both axes, in gnuplot's format
 };
 
-/// A number for each pair of two lists of names, as coloured fields.
+/// A number for each pair of two lists of names, drawn as coloured fields.
 struct GridPlot {
   std::string title;
   std::string x_label;
@@ -38,26 +37,26 @@ struct GridPlot {
   std::string value_label;
   std::vector<std::string> x_names;
   std::vector<std::string> y_names;
-  std::vector<std::vector<Real>> values;  ///< by y, then x; fields that are not finite stay empty
-  Real min = 0;                           ///< of the colours
+  std::vector<std::vector<Real>> values;  ///< by y, then x; non-finite fields are empty
+  Real min = 0;                           ///< of the colour scale
   Real max = 1;
 };
 
-/// Fails, and says what to do, where there is no gnuplot.
+/// Fails with advice if gnuplot is missing.
 Status find_gnuplot();
 
-/// True for points that have a place on logarithmic axes.
+/// Returns whether a point can be drawn on logarithmic axes.
 bool can_be_drawn(const std::array<Real, 2>& point);
-/// True where there is at least one.
+/// Returns whether at least one point can be drawn.
 bool can_be_drawn(const LogPlot& plot);
 
-/// Writes FOLDER/NAME.dat, .gnuplot and .svg. Fails where gnuplot does, or nothing can be drawn.
+/// Writes FOLDER/NAME.dat, .gnuplot and .svg. Fails if gnuplot fails or no point can be drawn.
 Status write_plot(const LogPlot& plot, const std::filesystem::path& folder,
                   const std::string& name);
 Status write_plot(const GridPlot& plot, const std::filesystem::path& folder,
                   const std::string& name);
 
-/// The files' contents.
+/// Return the contents of the files.
 std::string plot_data(const LogPlot& plot);
 std::string plot_data(const GridPlot& plot);
 std::string plot_script(const LogPlot& plot, const std::string& name);

@@ -10,11 +10,11 @@ namespace vat::bench {
 
 namespace {
 
-/// Told apart by colour-blind readers too (M. Okabe, K. Ito, Color Universal Design, 2008).
+/// Colours for colour-blind readers too (M. Okabe, K. Ito, Color Universal Design, 2008).
 constexpr std::array<const char*, 7> kColours = {"#d55e00", "#e69f00", "#0072b2", "#009e73",
                                                  "#cc79a7", "#56b4e9", "#000000"};
 
-/// A text of gnuplot.
+/// Returns a gnuplot string.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {
@@ -88,7 +88,7 @@ std::string plot_data(const LogPlot& plot) {
       text += plot_number(point[0]) + ' ' + plot_number(point[1]) + '\n';
       empty = false;
     }
-    if (empty) text += "NaN NaN\n";  // a block of its own for gnuplot
+    if (empty) text += "NaN NaN\n";  // a separate block for gnuplot
   }
   return text;
 }

@@ -8,9 +8,9 @@
 
 namespace vat::bench {
 
-/// Runs a program of the search path with its arguments (`words`) in a folder, with all that it
-/// prints in the file `log` there. Fails where it cannot be started, with the advice, and where it
-/// does not succeed, with what it printed.
+/// Runs a program of the search path with its arguments (`words`) in a folder. Writes its output to
+/// the file `log` there. Fails with the advice if it cannot be started, and with its output if it
+/// fails.
 Status run_program(std::vector<std::string> words, const std::filesystem::path& folder,
                    const std::string& log, const std::string& advice);
 

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-/// A sanitizer's server on a busy machine takes seconds.
+/// A server with a sanitizer on a busy machine takes seconds.
 constexpr std::chrono::seconds kCallerPatience{60};
 constexpr int kInternalError = -32603;
 

@@ -11,30 +11,30 @@
 
 namespace vat::bench {
 
-/// A connection of a client that behaves: acknowledges the frames that come, and has each request
-/// answered. Throws std::runtime_error where an answer does not come, where it is a fault of the
-/// server, and where the connection ends.
+/// A connection of a well-behaved client: it acknowledges frames and waits for the reply to each
+/// request. Throws std::runtime_error if a reply does not arrive, reports a server fault, or the
+/// connection ends.
 class Caller {
  public:
   Caller(std::uint16_t port, Tally& tally);
 
-  /// The whole reply.
+  /// Returns the complete reply.
   Json call(const std::string& method, const Json& params = Json::object());
-  /// The result; throws where it is an error.
+  /// Returns the result. Throws if the reply is an error.
   Json result(const std::string& method, const Json& params = Json::object());
-  /// Sends a request and does not wait for its reply.
+  /// Sends a request without waiting for the reply.
   void send(const std::string& method, const Json& params);
-  /// Reads what comes.
+  /// Reads messages for `time`.
   void read_for(std::chrono::milliseconds time);
   /// See script::Client::read().
   void read(bool wanted) { client_->read(wanted); }
   void close() { client_->close(); }
-  /// The next message; nothing where none has come by the deadline.
+  /// Returns the next message; no value if none arrives by the deadline.
   std::optional<script::Message> next(script::Deadline deadline) { return client_->next(deadline); }
   script::Client& client() { return *client_; }
 
  private:
-  /// Acknowledges it if it is a frame, and gives it if it is text.
+  /// Acknowledges a frame, or returns a text message.
   Json take(const script::Message& message);
 
   Tally& tally_;
@@ -42,9 +42,9 @@ class Caller {
   std::int64_t id_ = 0;
 };
 
-/// An open connection to the server.
+/// Returns an open connection to the server.
 std::unique_ptr<script::Client> connect(std::uint16_t port);
-/// Its answer to GET, as script::fetch_http() tells it. Throws where there is none.
+/// Returns the reply to GET in the format of script::fetch_http(). Throws if there is none.
 Json fetch(std::uint16_t port, const std::string& path);
 
 }  // namespace vat::bench

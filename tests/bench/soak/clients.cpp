@@ -25,7 +25,7 @@ class Client {
   Client(const SoakPlace& place, std::uint32_t seed, Tally& tally)
       : place_(place), chance_(seed), tally_(tally), rubbish_(seed) {}
 
-  /// Joins and reads frames, if it is not there already.
+  /// Joins, unless it has joined already, and reads frames.
   void enter() {
     if (caller_) return;
     caller_.emplace(place_.port, tally_);
@@ -71,7 +71,7 @@ class Client {
       case 2:
         caller_->close();
         break;
-      default:;  // without a word
+      default:;  // leaves without a message
     }
     caller_.reset();
     std::this_thread::sleep_for(milliseconds(below(100)));
@@ -86,7 +86,7 @@ class Client {
     caller_->read(true);
     caller_->call("session.hash");
   }
-  /// Of moves and questions, read now and then.
+  /// Sends moves and queries, and reads only occasionally.
   void flood() {
     enter();
     for (int i = 0; i < 300; ++i) {
@@ -156,7 +156,7 @@ class Client {
         caller_->call("control.play");
     }
   }
-  /// Leaves with a body in its hands, and may come again as who it was.
+  /// Disconnects while it grabs a body. It may later resume as the same participant.
   void break_off() {
     if (below(2) == 0) resume_ = joined_.at("resume");
     caller_.reset();
@@ -178,7 +178,7 @@ class Client {
     }
     ++tally_.recordings;
   }
-  /// Reads what has come, up to the end of the connection.
+  /// Reads all messages up to the end of the connection.
   void drain() {
     while (const auto message = caller_->next(steady_clock::now() + 5ms)) {
       if (message->kind != script::Message::Kind::closed) continue;

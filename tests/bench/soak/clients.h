@@ -8,24 +8,25 @@
 
 namespace vat::bench {
 
-/// Whom the clients of a soak talk to.
+/// The server of the clients.
 struct SoakPlace {
   std::uint16_t port = 0;
   std::string session;
 };
 
-/// Manners of clients. The first four behave: each of their requests has to be answered.
+/// Behaviour of a client. The first four are well-behaved: each of their requests must be answered.
 enum class Manner {
-  steady,    ///< gives commands of all kinds, and looks at the state
-  grabbing,  ///< holds bodies and moves them, lets go, breaks off, and resumes
-  restless,  ///< joins, makes a session of its own at times, and leaves in one of three ways
-  stalling,  ///< stops reading for a while, and goes on or breaks off
-  flooding,  ///< sends faster than is allowed, until it is closed
-  rubbish,   ///< sends what makes no sense
+  steady,    ///< sends commands of all kinds and queries
+  grabbing,  ///< grabs, moves and releases bodies, disconnects, and resumes
+  restless,  ///< joins, sometimes creates a session, and leaves in one of three ways
+  stalling,  ///< stops reading temporarily, then continues or disconnects
+  flooding,  ///< sends faster than permitted until it is closed
+  rubbish,   ///< sends invalid messages
 };
 inline constexpr int kManners = 6;
 
-/// A client until `stop`; what goes wrong for it is in the tally. `seed` makes its choices.
+/// Runs a client until `stop`. Its failures are recorded in the tally. `seed` determines its
+/// choices.
 void run_soak_client(Manner manner, const SoakPlace& place, std::uint32_t seed,
                      const std::atomic<bool>& stop, Tally& tally);
 

@@ -4,14 +4,14 @@
 
 namespace vat::bench {
 
-/// What a process holds of the system.
+/// Resources of a process.
 struct ProcessFigures {
   double resident = 0;  ///< [bytes]
   std::size_t files = 0;
   std::size_t threads = 0;
 };
 
-/// Throws std::runtime_error where the process has gone.
+/// Reads the resources. Throws std::runtime_error if the process has ended.
 ProcessFigures process_figures(int process);
 
 }  // namespace vat::bench

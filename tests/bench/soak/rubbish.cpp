@@ -19,8 +19,8 @@ constexpr std::array kNames{"session", "body",  "particle", "target", "grab",   
                             "number",  "speed", "gravity",  "name",   "bodies",   "resume",
                             "token",   "role",  "position", "every",  "max_error"};
 
-/// What would end in an orderly way what others use, or make sessions without end, or files that
-/// wait for a minute for who fetches them.
+/// Returns whether a method is excluded: methods that end objects of other clients, create sessions
+/// without limit, or create files that are kept for a minute.
 bool is_spared(std::string_view method) {
   constexpr std::array kSpared{"session.create", "scene.load", "replay.open", "recording.export"};
   return std::ranges::find(kSpared, method) != kSpared.end();
@@ -39,7 +39,7 @@ std::string Rubbish::bytes() {
 }
 
 std::string Rubbish::text() {
-  if (below(40) == 0) return bytes();  // seldom UTF-8, which ends the connection
+  if (below(40) == 0) return bytes();  // rarely UTF-8, so it ends the connection
   std::string text = request();
   switch (below(4)) {
     case 0:
@@ -94,7 +94,7 @@ void send_raw(std::uint16_t port, const std::string& bytes) {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const bool is_open =
       connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  if (is_open) send(file, bytes.data(), bytes.size(), MSG_NOSIGNAL);  // it may refuse to listen
+  if (is_open) send(file, bytes.data(), bytes.size(), MSG_NOSIGNAL);  // the server may stop reading
   close(file);
   if (!is_open) throw std::runtime_error("the server's port is closed");
 }

@@ -8,8 +8,7 @@
 
 namespace vat::bench {
 
-/// Messages without sense: bytes of chance, broken JSON, and requests of real methods with values
-/// of chance.
+/// Invalid messages: random bytes, malformed JSON, and requests of real methods with random values.
 class Rubbish {
  public:
   explicit Rubbish(std::uint32_t seed) : chance_(seed) {}
@@ -24,7 +23,7 @@ class Rubbish {
   std::mt19937 chance_;
 };
 
-/// Sends bytes on a connection of their own, which it then ends.
+/// Sends bytes on a separate connection and closes it.
 void send_raw(std::uint16_t port, const std::string& bytes);
 
 }  // namespace vat::bench

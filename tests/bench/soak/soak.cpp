@@ -36,16 +36,16 @@ struct SoakOptions {
   std::string output = "build/bench/soak";
 };
 
-/// A shorter one has not warmed up by its first rest, and has one at its end alone.
+/// A shorter run has not warmed up by its first rest, and has only one rest at its end.
 constexpr double kMinForRests = 300;  // [s]
 constexpr std::size_t kRests = 6;
-/// By then the server has given back what it does not use.
+/// By then the server has released unused memory.
 constexpr std::chrono::milliseconds kRest = MemoryReturn::kInterval + std::chrono::seconds(2);
 constexpr double kMaxHeapGrowth = 0.05;
-/// Where in the heap what is in use lies is chance, and with it which pages are free.
+/// The location of used blocks in the heap is random, and so is the number of free pages.
 constexpr double kMaxResidentGrowth = 0.125;
 constexpr std::size_t kSamples = 600;
-constexpr std::chrono::seconds kReturn{30};  // for connections of clients that broke off
+constexpr std::chrono::seconds kReturn{30};  // for connections of clients that disconnected
 constexpr std::size_t kSoakOtherFiles = 64;
 
 class Soak {
@@ -57,15 +57,16 @@ class Soak {
       const Json made = maker.result("session.create", {{"name", "one"}, {"scene", "pool"}});
       sessions_.push_back(made.at("session"));
     }
-    for (const std::string& session : sessions_) {  // so that all that opens once is open
+    for (const std::string& session : sessions_) {  // everything that opens once is open afterwards
       maker.result("session.join", {{"session", session}});
       maker.result("control.play");
     }
   }
 
-  /// Returns whether all was as it should be, which is printed.
+  /// Runs the soak and prints its failures. Returns whether there were none.
   bool run() {
-    std::this_thread::sleep_for(std::chrono::seconds(2));  // the maker's connection is gone by then
+    std::this_thread::sleep_for(
+        std::chrono::seconds(2));  // the creator's connection has ended by then
     const ProcessFigures before = process_figures(server_.process());
     const std::size_t rests = options_.seconds < kMinForRests ? 1 : kRests;
     while (resting_.size() < rests && faults_ == 0) {
@@ -113,7 +114,7 @@ class Soak {
     std::vector<std::thread> clients;
     for (std::size_t i = 0; i < options_.clients; ++i) {
       const SoakPlace place{server_.port(), sessions_[i % sessions_.size()]};
-      // Every session gets each manner in turn; so the numbers of sessions and manners may be any.
+      // Every session gets each behaviour in turn, for any number of sessions.
       const auto manner = static_cast<Manner>((i + i / sessions_.size()) % kManners);
       const std::size_t seed = (options_.seed * kRests + resting_.size()) * options_.clients + i;
       clients.emplace_back([=, this, &stop] {
@@ -135,7 +136,7 @@ class Soak {
     seconds_ += SoakSeconds(steady_clock::now() - begin).count();
   }
 
-  /// All have left: what they took is given back.
+  /// Checks that the server has released its resources after all clients have left.
   void rest(const ProcessFigures& before, bool settles) {
     after_ = wait_for_return(before);
     expect_alike("open files", before.files, after_.files);
@@ -158,7 +159,7 @@ class Soak {
     if (!is_flat(resting_, kMaxResidentGrowth)) fail("what is resident at rest has grown");
   }
 
-  /// What the server holds once it has noticed that all have gone.
+  /// Returns the resources of the server after it has noticed all disconnections.
   ProcessFigures wait_for_return(const ProcessFigures& before) {
     const auto deadline = steady_clock::now() + kReturn;
     ProcessFigures now = process_figures(server_.process());
@@ -217,9 +218,9 @@ class Soak {
   Tally tally_;
   script::ServerProcess server_;
   std::vector<std::string> sessions_;
-  std::vector<double> resident_;      // while there are clients [bytes]
-  std::vector<double> resting_;       // when they have left [bytes]
-  std::vector<double> resting_heap_;  // in use then [bytes]
+  std::vector<double> resident_;      // while clients are connected [bytes]
+  std::vector<double> resting_;       // after clients have left [bytes]
+  std::vector<double> resting_heap_;  // heap in use then [bytes]
   ProcessFigures after_;              // at the last rest
   double seconds_ = 0;
   std::size_t faults_ = 0;

@@ -8,17 +8,17 @@
 
 namespace vat::bench {
 
-/// What the clients of a soak did, and what went wrong for them.
+/// Actions and failures of the clients of a soak.
 struct Tally {
   std::atomic<std::uint64_t> joins = 0;
-  std::atomic<std::uint64_t> requests = 0;  ///< that were answered, of clients that behave
-  std::atomic<std::uint64_t> refused = 0;   ///< of them
+  std::atomic<std::uint64_t> requests = 0;  ///< answered requests of well-behaved clients
+  std::atomic<std::uint64_t> refused = 0;   ///< refused ones among them
   std::atomic<std::uint64_t> frames = 0;
-  std::atomic<std::uint64_t> garbage = 0;  ///< messages without sense
-  std::atomic<std::uint64_t> flood = 0;    ///< messages of clients that send too many
-  std::atomic<std::uint64_t> closed = 0;   ///< connections that the server ended, of those two
+  std::atomic<std::uint64_t> garbage = 0;  ///< invalid messages
+  std::atomic<std::uint64_t> flood = 0;    ///< messages of clients that exceed the rate
+  std::atomic<std::uint64_t> closed = 0;  ///< connections of these two kinds that the server closed
   std::atomic<std::uint64_t> stalls = 0;
-  std::atomic<std::uint64_t> recordings = 0;  ///< that were fetched
+  std::atomic<std::uint64_t> recordings = 0;  ///< downloaded recordings
 
   void add_fault(const std::string& fault) {
     const std::lock_guard lock(mutex_);
@@ -28,7 +28,7 @@ struct Tally {
     const std::lock_guard lock(mutex_);
     return faults_;
   }
-  /// The longest that an answer took [s].
+  /// Returns the longest response time [s].
   double longest() const {
     const std::lock_guard lock(mutex_);
     return longest_;

@@ -8,8 +8,8 @@ namespace vat::bench {
 double find_growth(const std::vector<double>& values) {
   if (values.size() < 2) throw std::invalid_argument("too few values for a line");
   const double length = static_cast<double>(values.size()) - 1;
-  double spread = 0;  // of the values' numbers
-  double slope = 0;   // from value to value
+  double spread = 0;  // of the indices
+  double slope = 0;   // per value
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double place = static_cast<double>(i) - length / 2;
     spread += place * place;

@@ -4,13 +4,12 @@
 
 namespace vat::bench {
 
-/// What a quantity grew by from the first of its values, at even distances, to the last: by the
-/// straight line through them. Throws std::invalid_argument where they are fewer than two.
+/// Returns the growth from the first to the last value, by linear regression. Throws
+/// std::invalid_argument if there are fewer than two values.
 double find_growth(const std::vector<double>& values);
 
-/// Whether what a server holds at its rests is the same at all but the first, which is its warming
-/// up: it grows by no more than this share. Throws std::invalid_argument where there are fewer
-/// than three.
+/// Returns whether the values at rest grow by at most the fraction `most_growth`, without the first
+/// value, which is the warm-up. Throws std::invalid_argument if there are fewer than three.
 bool is_flat(const std::vector<double>& resting, double most_growth);
 
 }  // namespace vat::bench

@@ -52,7 +52,7 @@ void add_rigid_piles(std::vector<SpeedCase>& cases) {
                    true});
 }
 
-/// A million particles: they must fit, and step.
+/// A million particles: tests that they fit into memory and that a step runs.
 Result<Scene> million() {
   Scene scene = peer_dam_break(100, PressureSolver::tait);
   scene.numerics.tick = scene.numerics.step;

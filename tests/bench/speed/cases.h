@@ -10,18 +10,18 @@
 
 namespace vat::bench {
 
-/// One scene to be timed, and for how long.
+/// A scene to be timed, and the duration.
 struct SpeedCase {
   std::string name;
   std::function<Result<Scene>()> make;
   SpeedSettings settings;
-  bool is_long = false;  ///< left out of quick runs, unless it is named
+  bool is_long = false;  ///< quick runs include it only by name
 };
 
-/// All of them. Scenes of the catalogue are read from `scenes_folder`.
+/// Returns all cases. Catalogue scenes are read from `scenes_folder`.
 std::vector<SpeedCase> all_speed_cases(const std::string& scenes_folder);
 
-/// A scene that a user names; see load_scene().
+/// Returns the case of a scene given by a user; see load_scene().
 SpeedCase case_of_scene(const std::string& argument, const std::string& scenes_folder);
 
 }  // namespace vat::bench

@@ -11,7 +11,7 @@ namespace vat::bench {
 
 namespace {
 
-/// Cells of one row by the names of their columns.
+/// The cells of a row by the names of their columns.
 class RowReader {
  public:
   RowReader(const CsvFile& file, std::size_t row) : file_(file), row_(row) {}
@@ -75,7 +75,7 @@ const TimedRow* find_run(const std::vector<TimedRow>& rows, const TimedRow& want
 Comparison::Pair pair_of(const TimedRow& before, const TimedRow& after, Real tolerance) {
   Comparison::Pair pair{before, after};
   pair.ratio = after.wall_per_simulated / before.wall_per_simulated;
-  // Both times are of the same number of steps as the medians are.
+  // Both times are for the same number of steps as the medians.
   pair.least_ratio = pair.ratio * (after.least_ms_per_step / after.ms_per_step) /
                      (before.least_ms_per_step / before.ms_per_step);
   pair.slower = std::min(pair.ratio, pair.least_ratio) > 1 + tolerance;

@@ -10,9 +10,9 @@
 
 namespace vat::bench {
 
-/// What is compared of a row of `speed.csv`.
+/// The compared columns of a row of `speed.csv`.
 struct TimedRow {
-  std::string name, threads, instruction_set;  ///< which name the row
+  std::string name, threads, instruction_set;  ///< identify the row
   Real wall_per_simulated = 0;
   Real ms_per_step = 0;
   Real least_ms_per_step = 0;
@@ -22,20 +22,21 @@ struct TimedRow {
   std::string commit;
 
   bool is_same_run(const TimedRow& other) const;
-  /// Such as "dam-break-1k-tait, 2 threads, avx2".
+  /// Returns a title such as "dam-break-1k-tait, 2 threads, avx2".
   std::string title() const;
 };
 
-/// Fails where a column is missing, a time is no positive number, or a row comes twice.
+/// Returns the rows. Fails if a column is missing, a time is not a positive number, or a row occurs
+/// twice.
 Result<std::vector<TimedRow>> timed_rows(const CsvFile& file);
 
-/// The rows of two results beside each other.
+/// The rows of two results in pairs.
 struct Comparison {
   struct Pair {
     TimedRow before;
     TimedRow after;
-    Real ratio = 0;        ///< of the wall time of a simulated second
-    Real least_ratio = 0;  ///< the same by the least times: busy machines make medians worse
+    Real ratio = 0;        ///< ratio of wall times per simulated second
+    Real least_ratio = 0;  ///< ratio of minimum times, which are less affected by a busy machine
     bool slower = false;
     bool faster = false;
   };
@@ -44,15 +45,15 @@ struct Comparison {
   std::vector<TimedRow> only_after;
 
   std::size_t slower_count() const;
-  Real mean_ratio() const;  ///< geometric
+  Real mean_ratio() const;  ///< geometric mean
 };
 
-/// A pair is slower, or faster, where both of its ratios are so by more than `tolerance`, a share.
-/// Fails where no row is in both.
+/// Compares rows. A pair is slower (or faster) if both of its ratios are so by more than the
+/// fraction `tolerance`. Fails if no row is in both.
 Result<Comparison> compare_rows(const std::vector<TimedRow>& before,
                                 const std::vector<TimedRow>& after, Real tolerance);
 
-/// A row for each pair.
+/// Returns a row for each pair.
 Table comparison_table(const Comparison& comparison);
 
 }  // namespace vat::bench

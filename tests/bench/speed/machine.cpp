@@ -10,7 +10,7 @@ namespace vat::bench {
 
 namespace {
 
-/// The first line that a command prints, or nothing where it cannot be run.
+/// Returns the first line of a command's output; empty if it cannot be run.
 std::string first_line_of(const char* command) {
   std::FILE* pipe = popen(command, "r");  // NOLINT(cert-env33-c): a constant, no input
   if (pipe == nullptr) return "";

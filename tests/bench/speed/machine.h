@@ -5,17 +5,17 @@
 
 namespace vat::bench {
 
-/// Where figures come from. Texts are empty where the system does not tell.
+/// The machine of the results. Texts are empty if the system does not provide them.
 struct Machine {
-  std::string commit;  ///< of the checkout, with "-dirty" where it was changed since
-  std::string cpu;     ///< the model's name
+  std::string commit;  ///< of the checkout, with "-dirty" if it has changes
+  std::string cpu;     ///< name of the model
   std::size_t cores = 0;
 };
 
 Machine this_machine();
 
-/// Bytes that the program has allocated and not freed, the allocator's own headers included; 0
-/// where the allocator does not tell (as of the address sanitizer).
+/// Returns the bytes that the program has allocated, including the allocator's headers; 0 if the
+/// allocator does not report them, as with the address sanitizer.
 std::size_t heap_in_use();
 
 }  // namespace vat::bench

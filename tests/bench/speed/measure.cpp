@@ -21,13 +21,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kMaxSamples = 256;  // of diagnostics, each as dear as a step
+constexpr std::uint64_t kMaxSamples = 256;  // of diagnostics, each as expensive as a step
 
 Real speed_seconds_since(Clock::time_point begin) {
   return std::chrono::duration<Real>(Clock::now() - begin).count();
 }
 
-/// How many nominal steps, in whole ticks, cover the interval.
+/// Returns the number of nominal steps that cover the interval in whole ticks.
 std::uint64_t speed_steps_of(const Simulation& simulation, Real interval) {
   const std::uint32_t steps_per_tick = simulation.steps_per_tick();
   const Real tick = simulation.step_size() * steps_per_tick;
@@ -35,7 +35,7 @@ std::uint64_t speed_steps_of(const Simulation& simulation, Real interval) {
   return static_cast<std::uint64_t>(std::max(1L, std::lround(interval / tick))) * steps_per_tick;
 }
 
-/// What `steps` nominal steps took, tick by tick like a server.
+/// Advances by `steps` nominal steps, tick by tick like a server. Returns the report.
 Result<AdvanceReport> advance_by(Simulation& simulation, std::uint64_t steps) {
   AdvanceReport total;
   for (std::uint64_t step = 0; step < steps; step += simulation.steps_per_tick()) {
@@ -47,7 +47,7 @@ Result<AdvanceReport> advance_by(Simulation& simulation, std::uint64_t steps) {
   return total;
 }
 
-/// Running means over samples of a flow.
+/// Running means of flow samples.
 class FlowSamples {
  public:
   void add(const Diagnostics& now) {
@@ -76,7 +76,7 @@ class FlowSamples {
   std::uint64_t count_ = 0;
 };
 
-/// A repetition that is not timed, looked at from within.
+/// Runs an untimed repetition with diagnostics.
 Result<FlowFigures> sample_flow(Simulation& simulation, std::uint64_t steps, bool has_liquid) {
   const Real neighbours_before = mean_neighbours(simulation);
   const std::uint64_t stride = (steps + kMaxSamples - 1) / kMaxSamples;
@@ -114,7 +114,7 @@ Real median_of_sorted(const std::vector<Real>& values) {
   return 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// Repeats until there are enough, or the time is up.
+/// Repeats until the number of repetitions or the time is reached.
 template <class Repeat>
 Status repeat_within(const SpeedSettings& settings, Repeat&& repeat) {
   const Clock::time_point begin = Clock::now();
@@ -127,7 +127,7 @@ Status repeat_within(const SpeedSettings& settings, Repeat&& repeat) {
 
 }  // namespace
 
-/// A scene under measurement: a row for each number of threads.
+/// A scene being measured, with a row for each number of threads.
 class TimedScene {
  public:
   static Result<std::unique_ptr<TimedScene>> start(const std::string& name, const Scene& scene,
@@ -148,7 +148,7 @@ class TimedScene {
                                                       setup.threads, settings.measured));
   }
 
-  /// Times it once with each number of threads.
+  /// Times the scene once with each number of threads.
   Status repeat() {
     for (std::size_t n = 0; n < rows_.size(); ++n) {
       runner_->choose(n);
@@ -159,7 +159,7 @@ class TimedScene {
 
   std::size_t bytes_of_snapshot() const { return bytes_of_snapshot_; }
 
-  /// Looks at the steps from within, and gives the rows.
+  /// Adds the results of diagnostics and returns the rows.
   Result<std::vector<SpeedRow>> finish() {
     simulation_.restore(start_);
     const Result<FlowFigures> flow =
@@ -211,7 +211,7 @@ class TimedScene {
     return check_hash("with " + std::to_string(row.threads) + " threads");
   }
 
-  /// All repetitions end in one state.
+  /// Checks that all repetitions end in one state.
   Status check_hash(const std::string& which) {
     const std::uint64_t hash = simulation_.state_hash();
     if (!hash_) hash_ = hash;

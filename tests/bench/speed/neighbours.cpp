@@ -11,10 +11,9 @@ namespace vat::bench {
 
 namespace {
 
-constexpr std::int64_t kCellsPerAxis = 1 << 20;  // of any lattice that a scene may span
+constexpr std::int64_t kCellsPerAxis = 1 << 20;  // maximum of a lattice in a scene
 
-/// Points sorted by the cubic cell they are in: apart from the core's own search, which this
-/// counts for.
+/// Points sorted by cubic cells, independent of the core's search.
 class Cells {
  public:
   Cells(std::vector<Vec3> points, Real size) : points_(std::move(points)), size_(size) {
@@ -56,8 +55,8 @@ class Cells {
   std::vector<std::int64_t> keys_;
 };
 
-/// Adds the images of points within `reach` of the walls across each axis, and of these images in
-/// the next axis' walls.
+/// Adds the images of points within `reach` of the walls of each axis, including images of images
+/// at other axes.
 void add_images(const Simulation& simulation, Real reach, std::vector<Vec3>& points) {
   const Vat& vat = *simulation.scene().vat;
   for (int axis = 0; axis < 3; ++axis) {

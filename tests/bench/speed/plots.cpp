@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kScaledCase = "dam-break-";
 
-/// The series of that label, in a colour and dash of its own where it is new.
+/// Returns the series with this label. Adds it with a new colour and dash if it is missing.
 Series& series_of(LogPlot& plot, const std::string& label, std::size_t colour, std::size_t dash) {
   const auto found = std::ranges::find(plot.series, label, &Series::label);
   if (found != plot.series.end()) return *found;

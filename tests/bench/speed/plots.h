@@ -7,11 +7,11 @@
 
 namespace vat::bench {
 
-/// Wall time of a particle and step against the number of particles: the dam breaks of each solver
-/// by their threads.
+/// Returns a plot of wall time per particle and step against the number of particles, for the dam
+/// breaks of each solver and number of threads.
 LogPlot size_plot(const std::vector<SpeedRow>& rows);
 
-/// How much faster the dam breaks are with more threads than with one.
+/// Returns a plot of the dam breaks' speed-up with several threads.
 LogPlot thread_plot(const std::vector<SpeedRow>& rows);
 
 }  // namespace vat::bench

@@ -15,7 +15,7 @@ namespace vat::bench {
 namespace {
 
 constexpr Real kTick = 0.02;          // [s]
-constexpr Real kLongestStep = 0.005;  // [s] where speeds alone limit steps
+constexpr Real kLongestStep = 0.005;  // [s] if only speeds limit steps
 
 BodyDescription box_of(std::string name, BodyKind kind, std::string material, Real spacing,
                        const Vec3& center, const Vec3& size) {
@@ -36,8 +36,9 @@ Material water(const LiquidConstants& constants) {
   return material;
 }
 
-/// The longest step [s] in which velocity Verlet need not solve for the viscosity of liquids: see
-/// must_solve_damping(). Sound alone would bear a little more, but a solve costs half a step.
+/// Returns the longest step [s] for which velocity Verlet treats the viscosity of liquids
+/// explicitly: see must_solve_damping(). Sound would permit a slightly longer step, but an implicit
+/// solve costs half a step.
 Real longest_explicit_step(const Scene& scene) {
   const std::vector<SampledBody> samples = sample_bodies(scene);
   Real step = kTick;
@@ -48,7 +49,7 @@ Real longest_explicit_step(const Scene& scene) {
   return step;
 }
 
-/// Adds the integrator's part to a scene of liquid.
+/// Sets the integrator and step of a liquid scene.
 void choose_steps(Scene& scene) {
   scene.numerics.tick = kTick;
   if (scene.pressure_solver == PressureSolver::incompressible) {
@@ -68,7 +69,7 @@ Vat closed_vat(const Vec3& min, const Vec3& max) {
   return vat;
 }
 
-/// The same pseudo-random turn for the same `n`: bodies that all stand straight stay so.
+/// Returns a pseudo-random rotation that depends on `n` only. Upright bodies would remain upright.
 Quat turn_of(std::uint32_t n) {
   const auto part = [n](std::uint32_t factor) {
     return static_cast<Real>(n * factor % 1009) / 1009 - 0.5;
@@ -76,7 +77,8 @@ Quat turn_of(std::uint32_t n) {
   return Quat(0.6, part(367), part(521), part(613)).normalized();
 }
 
-/// Bodies in layers of 5 x 5, 0.2 m apart, the lowest at `height` [m].
+/// Returns the position of body n in layers of 5 x 5, 0.2 m apart. The lowest layer is at `height`
+/// [m].
 Vec3 place_of(std::uint32_t n, Real height) {
   const std::uint32_t row = n / 5;
   const std::uint32_t layer = n / 25;
@@ -107,7 +109,8 @@ Scene peer_dam_break(int edge, PressureSolver solver) {
   Scene scene;
   scene.pressure_solver = solver;
   scene.materials = {water(liquid)};
-  // Of changes as the peer has it; of densities what leaves less of an error than it has.
+  // The tolerance of density changes equals that of the peer. That of densities leaves a smaller
+  // error than the peer's.
   scene.incompressible = {.density_tolerance = 1.5e-3, .divergence_tolerance = 1e-3};
   scene.vat = closed_vat({-2, -0.75, 0}, {2, 0.75, 3});
   scene.bodies = {box_of("block", BodyKind::liquid, "water", spacing, {-1.5, 0, 0.5}, {1, 1, 1})};

@@ -4,23 +4,23 @@
 
 #include "core/scene/scene.h"
 
-/// Scenes of the speed bench, by their size. Every one is the same on all machines.
+/// Scenes of the speed benchmark, by size. They are the same on all machines.
 namespace vat::bench {
 
-/// A column of water, 0.4 x 0.4 m and 0.8 m high, is let go at one end of a closed vat of 1.6 x 0.4
-/// x 1 m: the catalogue's dam break, with 2 * `layers`^3 particles. Only the lattice and with it
-/// the step change with `layers`, so that all sizes flow alike.
+/// A column of water, 0.4 x 0.4 m and 0.8 m high, is released at one end of a closed vat of 1.6 x
+/// 0.4 x 1 m. It is the catalogue's dam break with 2 * `layers`^3 particles. Only the lattice and
+/// the step depend on `layers`, so all sizes flow alike.
 Scene dam_break(int layers, PressureSolver solver);
 
-/// The dam break by which SPlisHSPlasH was measured: `edge`^3 particles in a cubic metre at the end
-/// of a closed box of 4 x 1.5 m, 3 m high. tests/bench/README.md says how its settings carry over.
+/// The dam break of SPlisHSPlasH's measurements: `edge`^3 particles in a cubic metre at the end of
+/// a closed box of 4 x 1.5 m, 3 m high. tests/bench/README.md compares its settings.
 Scene peer_dam_break(int edge, PressureSolver solver);
 
 /// About 10 000 particles of water that fill a vat of 1 x 1 m to 0.64 m and come to rest.
 Scene pool(PressureSolver solver);
 
-/// Rigid blocks and balls that fall into a heap: pushed apart by penalties, which let them creep,
-/// or by projection, which lets them rest.
+/// Rigid blocks and balls that fall into a heap, with penalty contacts, in which they creep, or
+/// projection contacts, in which they come to rest.
 Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law);
 
 /// Blocks of jelly that fall on one another.

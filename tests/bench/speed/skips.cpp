@@ -10,7 +10,7 @@ namespace vat::bench {
 
 namespace {
 
-/// Bodies without liquid, and with as little of it as there can be.
+/// Bodies without liquid, and with one liquid particle.
 SkipPair skip_liquid() {
   SkipPair pair{.what = "all stages of liquids, where there is none (without: one particle)",
                 .with = rigid_pile(200, InterfaceLaw::penalty),
@@ -31,9 +31,9 @@ SkipPair skip_liquid() {
   return pair;
 }
 
-/// One stiff block among soft ones.
+/// One stiff block among soft blocks.
 SkipPair skip_short_steps() {
-  constexpr Real kStiffness = 64;  // times that of the others: an eighth of the step
+  constexpr Real kStiffness = 64;  // relative to the others: an eighth of the step
   SkipPair pair{.what = "short steps of what does not need them (without: all take them)",
                 .with = deformable_pile(50),
                 .without = {},
@@ -51,7 +51,7 @@ SkipPair skip_short_steps() {
   return pair;
 }
 
-/// Steps that resolve the liquid's viscosity, and steps a tenth longer that do not.
+/// Steps that resolve the liquid's viscosity, and steps that are a tenth longer and do not.
 SkipPair skip_viscosity_solve() {
   SkipPair pair{.what =
                     "the solve for viscosity, where steps resolve it (without: 1.1 times the "
@@ -66,7 +66,7 @@ SkipPair skip_viscosity_solve() {
   return pair;
 }
 
-/// A scene whose bodies are at rest, and sleep, when the clock starts.
+/// A scene whose bodies sleep when the timing starts.
 SkipPair skip_rest(std::string what, Scene scene, Real warm_up, Real most) {
   SkipPair pair{.what = std::move(what),
                 .with = scene,
@@ -87,7 +87,7 @@ SkipPair skip_resting_solids() {
                    rigid_pile(200, InterfaceLaw::projection), 4, 1.0 / 50);
 }
 
-/// What sleep costs where nothing does.
+/// The cost of sleep detection if no body sleeps.
 SkipPair skip_nothing() {
   SkipPair pair{.what = "nothing, for nothing rests (without: nothing is looked at)",
                 .with = dam_break(17, PressureSolver::tait),

@@ -11,35 +11,34 @@
 
 namespace vat::bench {
 
-/// Work that a step leaves out, timed in turn in a scene that leaves it out and in the same scene
-/// without the skip. To add one, write a function that makes both scenes, and enter it into
-/// kSkips of skips.cpp.
+/// Work that a step can skip, timed in turn in a scene with the skip and in the same scene without
+/// it. To add one, write a function that makes both scenes, and add it to kSkips in skips.cpp.
 struct SkipPair {
   std::string name{};
-  std::string what;  ///< is left out
-  Scene with;        ///< the skip
+  std::string what;  ///< skipped work
+  Scene with;        ///< scene with the skip
   Scene without;
   SpeedSettings settings;
-  /// The most that time with over time without may be, as far as anything is promised.
+  /// Maximum ratio of the time with the skip to that without, if one is promised.
   std::optional<Real> most{};
 };
 
-/// Their names, in order.
+/// Returns the names in order.
 std::vector<std::string> skip_names();
-/// One of them, by its place.
+/// Returns the pair with this index.
 SkipPair make_skip_pair(std::size_t index);
 
-/// A pair and its rows: with the skip, and without, each for all numbers of threads.
+/// A pair and its rows with and without the skip, for all numbers of threads.
 struct SkipResult {
   SkipPair pair;
   std::vector<SpeedRow> with;
   std::vector<SpeedRow> without;
 };
 
-/// Names of the rows are NAME-with and NAME-without.
+/// Measures a pair. The names of its rows are NAME-with and NAME-without.
 Result<SkipResult> measure_skip(SkipPair pair, const SpeedSetup& setup);
 
-/// Wall times of a simulated second, and their ratio.
+/// Returns wall times per simulated second and their ratio.
 Table skip_table(const std::vector<SkipResult>& results);
 
 }  // namespace vat::bench

@@ -29,12 +29,12 @@ namespace {
 struct SpeedOptions {
   Options common;
   SpeedSetup setup{{}, best_instruction_set()};
-  int repetitions = 0;  ///< 0: as many as the case has
+  int repetitions = 0;  ///< 0: the number of the case
   std::vector<std::string> scenes;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
 };
 
-/// 1, 2 and 4 threads, as far as the machine has them.
+/// Returns 1, 2 and 4 threads, up to the number of the machine.
 std::vector<std::size_t> thread_counts() {
   std::vector<std::size_t> counts = {1};
   for (const std::size_t count : {std::size_t{2}, std::size_t{4}}) {
@@ -43,7 +43,7 @@ std::vector<std::size_t> thread_counts() {
   return counts;
 }
 
-/// A tenth of the time, and no repetition.
+/// A tenth of the time, without repetitions.
 SpeedSettings quick(SpeedSettings settings) {
   settings.warm_up *= 0.1;
   settings.measured *= 0.1;
@@ -58,13 +58,13 @@ std::vector<std::string> all_names(const std::vector<SpeedCase>& known) {
   return names;
 }
 
-/// What is to be measured.
+/// The selected cases.
 struct Choice {
   std::vector<SpeedCase> cases;
   std::vector<std::size_t> skips;  ///< see make_skip_pair()
 };
 
-/// The scenes that were named, or cases of the bench, or both.
+/// Returns the named scenes, cases of the benchmark, or both.
 Result<Choice> choose_cases(const SpeedOptions& options, const std::vector<SpeedCase>& known) {
   Choice choice;
   for (const std::string& scene : options.scenes) {
@@ -96,7 +96,7 @@ Result<std::vector<SpeedRow>> time_case(const SpeedCase& one, const SpeedOptions
   return measure(one.name, scene.value(), options.setup, settings_for(one.settings, options));
 }
 
-/// All that was measured.
+/// All results.
 struct SpeedResults {
   std::vector<SpeedRow> rows;
   std::vector<SkipResult> skips;
@@ -109,7 +109,7 @@ struct SpeedResults {
   }
 };
 
-/// The path of every error begins with the case's name.
+/// Prefixes the path of every error with the case's name.
 Errors name_errors(Errors errors, const std::string& name) {
   for (Error& error : errors) {
     if (error.path.empty() || error.path.front() == '/') error.path = name + error.path;
@@ -117,7 +117,7 @@ Errors name_errors(Errors errors, const std::string& name) {
   return errors;
 }
 
-/// Times all in order.
+/// Times all selected cases in order.
 Result<SpeedResults> time_all(const Choice& choice, const SpeedOptions& options) {
   SpeedResults results;
   print_speed_header(std::cout);
@@ -139,14 +139,14 @@ Result<SpeedResults> time_all(const Choice& choice, const SpeedOptions& options)
   return results;
 }
 
-/// Whether there are sizes to be compared.
+/// Returns whether the results include several sizes.
 bool has_pictures(const Choice& choice) {
   return std::ranges::count_if(choice.cases, [](const SpeedCase& one) {
            return one.name.starts_with("dam-break-");
          }) > 1;
 }
 
-/// Writes a table, and prints it where it has rows.
+/// Writes a table, and prints it if it has rows.
 Status write_part(const Table& table, const std::string& folder, const std::string& name,
                   const std::string& heading) {
   if (!table.rows.empty()) std::cout << '\n' << to_markdown(table);

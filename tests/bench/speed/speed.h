@@ -6,7 +6,7 @@ class App;
 
 namespace vat::bench {
 
-/// Adds `vat bench speed`; it runs during the parse and leaves its result in `exit_code`.
+/// Adds `vat bench speed`. It runs during the parse and sets `exit_code`.
 void add_speed_command(CLI::App& app, int& exit_code);
 
 }  // namespace vat::bench

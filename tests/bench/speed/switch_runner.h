@@ -9,11 +9,11 @@
 
 namespace vat::bench {
 
-/// Runs one simulation with different numbers of threads, one after the other, so that they start
-/// from the same bits and are timed in turn.
+/// Runs one simulation with alternating numbers of threads, so that all start from the same bits
+/// and are timed in turn.
 class SwitchRunner final : public TaskRunner {
  public:
-  /// The last of `thread_counts`, which is not empty, comes first.
+  /// Starts with the last of `thread_counts`, which must not be empty.
   explicit SwitchRunner(const std::vector<std::size_t>& thread_counts) {
     for (const std::size_t count : thread_counts) {
       runners_.push_back(std::make_unique<ThreadPoolRunner>(count));
@@ -21,7 +21,7 @@ class SwitchRunner final : public TaskRunner {
     present_ = runners_.back().get();
   }
 
-  /// From now on those of `thread_counts[index]`.
+  /// Uses `thread_counts[index]` threads from now on.
   void choose(std::size_t index) { present_ = runners_.at(index).get(); }
 
   void run(std::size_t block_count, const std::function<void(std::size_t)>& block) override {

@@ -19,7 +19,7 @@ void print_columns(std::ostream& out, const std::array<std::string, kColumnCount
   for (std::size_t i = 0; i < kColumnCount; ++i) {
     out << (i < 1 ? std::left : std::right) << std::setw(kWidths[i]) << texts[i];
   }
-  out << std::endl;  // a row takes seconds: show it at once
+  out << std::endl;  // a row takes seconds, so it is shown immediately
 }
 
 std::string hash_of(const SpeedRow& row) {

@@ -9,13 +9,13 @@
 
 namespace vat::bench {
 
-/// All that was measured, a row for each case and number of threads.
+/// Returns all results, a row for each case and number of threads.
 Table speed_table(const std::vector<SpeedRow>& rows, const Machine& machine);
 
-/// How long each stage of a step takes, in the fastest repetition; "rest" is what no stage has.
+/// Returns the time of each stage in the fastest repetition; "rest" is the time outside stages.
 Table stage_table(const std::vector<SpeedRow>& rows);
 
-/// The most telling columns, for a terminal.
+/// Prints the most important columns for a terminal.
 void print_speed_header(std::ostream& out);
 void print_speed_row(std::ostream& out, const SpeedRow& row);
 

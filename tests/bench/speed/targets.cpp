@@ -10,18 +10,18 @@ namespace vat::bench {
 namespace {
 
 struct Limit {
-  const char* name;  ///< of a case
+  const char* name;  ///< name of a case
   std::size_t threads;
   Real limit;
 };
 
-/// Most wall seconds of a simulated second.
+/// Maximum wall seconds per simulated second.
 constexpr Limit kWallLimits[] = {
     {"peer-dam-break-10k-incompressible", 4, 0.8}, {"peer-dam-break-30k-incompressible", 4, 4},
     {"peer-dam-break-97k-incompressible", 4, 16},  {"peer-dam-break-10k-incompressible", 1, 2},
     {"peer-dam-break-30k-incompressible", 1, 9},   {"peer-dam-break-30k-tait", 4, 8}};
 
-/// Least real-time factors.
+/// Minimum real-time factors.
 constexpr Limit kRealTimeLimits[] = {{"sliding-vat-solids", 1, 4},
                                      {"sliding-vat-liquid", 1, 4},
                                      {"sliding-vat-solids", 4, 10},
@@ -29,7 +29,7 @@ constexpr Limit kRealTimeLimits[] = {{"sliding-vat-solids", 1, 4},
 
 constexpr Real kDensityErrorLimit = 5e-4;
 constexpr Real kBytesLimit = 400;
-constexpr Real kSizeLimit = 1.5;  // of the times per particle at 100k and at 10k
+constexpr Real kSizeLimit = 1.5;  // ratio of the times per particle at 100k and at 10k
 
 Real pair_time_limit(InstructionSet set) {  // [ns]
   switch (set) {
@@ -47,7 +47,7 @@ Real least_seconds_per_particle_step(const SpeedRow& row) {
   return row.seconds.front() / static_cast<Real>(row.steps) / static_cast<Real>(row.particles);
 }
 
-/// The same of density, forces and the search for pairs.
+/// Returns the time of density, forces and the pair search per particle and step.
 Real pair_seconds_per_particle_step(const SpeedRow& row) {
   constexpr std::string_view kStages[] = {"sort_liquid", "find_pairs", "liquid_density",
                                           "liquid_forces"};
@@ -62,7 +62,7 @@ std::string threads_text(std::size_t threads) {
   return std::to_string(threads) + (threads == 1 ? " thread" : " threads");
 }
 
-/// Collects targets of the rows that are there.
+/// Collects the targets of the available rows.
 class TargetList {
  public:
   explicit TargetList(const std::vector<SpeedRow>& rows) : rows_(rows) {}
@@ -129,7 +129,7 @@ void add_wall_times(TargetList& list) {
   }
 }
 
-/// Of each case once, whatever its threads.
+/// Adds each case once, for any number of threads.
 void add_properties(const std::vector<SpeedRow>& rows, TargetList& list) {
   const SpeedRow* last = nullptr;
   for (const SpeedRow& row : rows) {

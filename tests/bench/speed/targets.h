@@ -10,17 +10,17 @@
 
 namespace vat::bench {
 
-/// A figure that is aimed at, and what was measured.
+/// A target and the measured value.
 struct Target {
   std::string what;
   Real limit = 0;
-  bool is_least = false;  ///< the limit is the least that is good, not the most
+  bool is_least = false;  ///< the limit is a minimum, not a maximum
   Real measured = 0;
 
   bool passed() const { return is_least ? measured >= limit : measured <= limit; }
 };
 
-/// The targets of which these rows tell something.
+/// Returns the targets that these rows can decide.
 std::vector<Target> targets_of(const std::vector<SpeedRow>& rows,
                                const std::vector<SkipResult>& skips);
 

@@ -19,9 +19,9 @@ using stability::StepMapPoint;
 constexpr IntegratorId kIntegrators[] = {
     IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::velocity_verlet,
     IntegratorId::heun, IntegratorId::runge_kutta_4};
-constexpr Real kMinPart = 0.95;  // of theory
+constexpr Real kMinPart = 0.95;  // relative to theory
 
-/// Some steps are stable and others are not.
+/// Returns whether some steps are stable and others are not.
 bool has_limit(const StepMapPoint& point) {
   return point.theory > 0 && std::isfinite(point.theory);
 }
@@ -40,7 +40,7 @@ Table map_table(const std::vector<StepMapPoint>& points) {
   return table;
 }
 
-/// Place of `name` in `names`, which it is added to where it is new.
+/// Returns the index of `name` in `names`. Adds it if it is missing.
 std::size_t map_place_of(const std::string& name, std::vector<std::string>& names) {
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
@@ -48,7 +48,7 @@ std::size_t map_place_of(const std::string& name, std::vector<std::string>& name
   return names.size() - 1;
 }
 
-/// A field for each damping ratio and each body; of points that share one, the least.
+/// Returns a field for each damping ratio and body. If points share a field, it shows the minimum.
 GridPlot grid_of(const std::vector<StepMapPoint>& points, IntegratorId integrator) {
   GridPlot plot;
   plot.title = std::string("Largest stable step over theory: ") + to_string(integrator);
@@ -74,7 +74,7 @@ GridPlot grid_of(const std::vector<StepMapPoint>& points, IntegratorId integrato
   return plot;
 }
 
-/// omega dt by damping ratio and integrator, of the oscillator.
+/// Returns omega dt of the oscillator by damping ratio and integrator.
 GridPlot limits_of(const std::vector<StepMapPoint>& points) {
   GridPlot plot;
   plot.title = "Largest stable omega dt of a damped oscillator";
@@ -114,7 +114,7 @@ LogPlot measured_against_theory(const std::vector<StepMapPoint>& points) {
   return plot;
 }
 
-/// The field of these names, which are added where they are new; infinite, so empty, at first.
+/// Returns the field of these names. Missing fields are added as infinite, which shows as empty.
 Real& field_of(const std::string& x_name, const std::string& y_name, GridPlot& plot) {
   const std::size_t x = map_place_of(x_name, plot.x_names);
   const std::size_t y = map_place_of(y_name, plot.y_names);
@@ -124,8 +124,8 @@ Real& field_of(const std::string& x_name, const std::string& y_name, GridPlot& p
   return row[x];
 }
 
-/// The longest stable step of implicit springs over the longest that is tried, by stiffness and
-/// body; of points that share a field the least.
+/// Returns the longest stable step of implicit springs, relative to the longest tried step, by
+/// stiffness and body. If points share a field, it shows the minimum.
 GridPlot implicit_grid_of(const std::vector<StepMapPoint>& points) {
   GridPlot plot{.title = "Longest stable step over the longest tried",
                 .x_label = "stiffness [N/m]",
@@ -143,8 +143,8 @@ GridPlot implicit_grid_of(const std::vector<StepMapPoint>& points) {
   return plot;
 }
 
-/// Digits of the balls' distances that overlaps leave by step, and integrator and mass ratio, from
-/// those that stability needs; none where nothing overlaps.
+/// Returns the number of digits in the balls' distances that overlaps leave, by step, integrator
+/// and mass ratio, for the points that stability needs. Fields without overlap are empty.
 GridPlot projection_grid_of(const std::vector<stability::ProjectionPoint>& points) {
   GridPlot plot{.title = "A stack of balls by projection: overlap, in diameters",
                 .x_label = "step [s]",
@@ -199,7 +199,7 @@ Status write_projections(const std::vector<stability::ProjectionPoint>& points,
   return write_plot(projection_grid_of(points), options.output, "projection-map");
 }
 
-/// Contacts by projection have no largest step: every one must be stable.
+/// Projection contacts have no step limit: every step must be stable.
 std::vector<stability::ProjectionPoint> run_projections(const Options& options,
                                                         StabilityCount& count) {
   std::vector<stability::ProjectionPoint> points;

@@ -1,4 +1,4 @@
-// The parts of the stability run that are about scenes: adversarial, random, closed, long.
+// The parts of the stability run with scenes: adversarial, random, closed, long.
 
 #include <filesystem>
 

@@ -9,24 +9,24 @@
 
 namespace vat::bench {
 
-/// What one part of the stability run counted.
+/// The counts of one part of the stability run.
 struct StabilityCount {
   std::string part;
   std::uint64_t scenes = 0;
-  std::uint64_t non_finite = 0;  ///< scenes in which a value was not finite
-  std::uint64_t aborts = 0;      ///< scenes that threw
+  std::uint64_t non_finite = 0;  ///< scenes with a non-finite value
+  std::uint64_t aborts = 0;      ///< scenes that threw an exception
   std::uint64_t outside = 0;     ///< particles beyond walls: a fault
-  std::uint64_t events = 0;      ///< of the guard, each with a step undone
-  std::uint64_t retries = 0;     ///< steps and parts of steps beyond those asked for
+  std::uint64_t events = 0;      ///< events of the guard, each with an undone step
+  std::uint64_t retries = 0;     ///< steps and parts of steps beyond the requested ones
   std::uint64_t wall_stops = 0;  ///< of particles and rigid bodies, see AdvanceReport
-  std::uint64_t stopped = 0;     ///< scenes that the guard ended, as it may
-  std::uint64_t refused = 0;     ///< scenes that were refused, as they must be
-  std::uint64_t faults = 0;      ///< scenes, or figures, that are not as they must be
+  std::uint64_t stopped = 0;     ///< scenes that the guard ended, as permitted
+  std::uint64_t refused = 0;     ///< scenes that were refused, as required
+  std::uint64_t faults = 0;      ///< scenes or figures that violate a condition
   Real seconds = 0;
 };
 
-/// Each runs one part, writes its tables and plots to the options' folder, and prints what is not
-/// as it must be.
+/// Each function runs one part, writes its tables and plots to the options' folder, and prints
+/// violations.
 Result<StabilityCount> run_adversarial_part(const Options& options);
 Result<StabilityCount> run_random_part(const Options& options);
 Result<StabilityCount> run_vat_part(const Options& options);

@@ -15,7 +15,7 @@ struct Shaken {
   stability::VatReport report;
 };
 
-/// Vats side by side, for each of them is too small for threads of its own.
+/// Runs vats in parallel, since each is too small for several threads.
 std::vector<Shaken> shake_all(std::uint64_t vats, std::size_t threads) {
   std::vector<Shaken> all;
   for (const PressureSolver solver :

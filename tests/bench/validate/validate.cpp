@@ -35,7 +35,7 @@ Outcome run_and_print(const Case& one, const validation::Settings& settings) {
   return outcome;
 }
 
-/// Says how many rows and cases passed; false where one did not.
+/// Prints the number of passed rows and cases. Returns false if one failed.
 bool print_summary(const std::vector<Outcome>& outcomes) {
   std::size_t rows = 0;
   std::size_t good_rows = 0;

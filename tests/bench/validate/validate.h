@@ -7,10 +7,10 @@
 
 namespace vat::bench {
 
-/// Adds `vat bench validate`; it runs during the parse and leaves its result in `exit_code`.
+/// Adds `vat bench validate`. It runs during the parse and sets `exit_code`.
 void add_validate_command(CLI::App& app, int& exit_code);
 
-/// What the command does, with these cases; returns its exit code.
+/// Runs the command with these cases. Returns its exit code.
 int validate(const Options& options, const std::vector<validation::Case>& cases);
 
 }  // namespace vat::bench
