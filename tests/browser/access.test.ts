@@ -7,12 +7,12 @@ import { Server } from './support/server';
 import type { Look } from './support/viewer';
 import { kPhone, unfold, Visits } from './support/visits';
 
-/** Accessibility of each part of the page: axe finds no serious fault, and no text is cut off. */
-const data = mkdtempSync(join(tmpdir(), 'vat-access-')); // for a recording to show
+/** Accessibility of each part of the page: no serious fault by axe, and no truncated text. */
+const data = mkdtempSync(join(tmpdir(), 'vat-access-')); // for a recording
 const visits = new Visits(new Server(['--data', data]));
 afterAll(() => rmSync(data, { recursive: true }));
 
-// Contrast depends on the theme, cut-off text on the size: each value occurs once.
+// Contrast depends on the theme, truncated text on the size. Each value occurs once.
 const kLooks: [string, Look][] = [
   ['light on a desktop', { viewport: { width: 1280, height: 800 }, colorScheme: 'light' }],
   ['dark on a phone', { ...kPhone, colorScheme: 'dark' }],

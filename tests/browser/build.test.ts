@@ -2,7 +2,7 @@ import { expect, it } from 'vitest';
 import type { BodyState, SceneBody } from '../../web/client/index';
 import { kInTime, unfold, Visits } from './support/visits';
 
-/** A scene is built: bodies are added, moved, changed and deleted, and each change is undone. */
+/** Building a scene: bodies are added, moved, changed and deleted, and each change is undone. */
 const visits = new Visits();
 
 async function visit(scene: string, tick = 0): Promise<void> {
@@ -27,7 +27,7 @@ async function choose(kind: string, shape: string, size: number): Promise<void> 
   await page.fill('#add-size', String(size));
 }
 
-/** Presses keys once something is about to be placed. */
+/** Presses keys after placing has started. */
 async function place(...keys: string[]): Promise<void> {
   await visits.viewer.until('#view[data-placing]');
   for (const key of keys) await visits.viewer.page.keyboard.press(key);
@@ -49,7 +49,7 @@ it.each([
   await page.click('#add-place:enabled');
   await place();
   const box = (await page.locator('#view').boundingBox())!;
-  await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.38 * box.height); // where the block was
+  await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.38 * box.height); // the old position
   await expect.poll(count, kInTime).toBe(before.length + 1);
   await visits.viewer.until('#view:not([data-placing])');
   const added = (await bodies()).at(-1)!;
@@ -97,7 +97,7 @@ it.each([
   await page.waitForSelector(`#bodies li[data-body="${added.body}"]`);
   expect(await page.textContent('#add-material option:checked')).toBe(material);
   await visits.observer.request('control.step', { ticks: 25 });
-  // Steps that had to be repeated in parts.
+  // Number of steps that the guard divided.
   expect((await visits.observer.request('session.stats', {})).undone_substeps).toBe(0);
   await page.click('#undo:enabled');
   await expect.poll(count, kInTime).toBe(before);
@@ -111,7 +111,7 @@ it('places by keys, and nothing where there is a body already', async () => {
   const before = await count();
   await choose('rigid', 'sphere', 0.1);
   await page.click('#add-place:enabled');
-  await place(...Array<string>(40).fill('ArrowDown'), 'Escape'); // as far as it goes
+  await place(...Array<string>(40).fill('ArrowDown'), 'Escape'); // moves it as far as possible
   await visits.viewer.until('#view:not([data-placing])');
   expect(await count()).toBe(before);
   await page.click('#add-place');
@@ -146,7 +146,7 @@ it('adds a shape from a file, and refuses a file without one', async () => {
   await place('ArrowLeft', 'Enter');
   await expect.poll(count, kInTime).toBe(before + 1);
   const { positions } = (await bodies()).at(-1)!;
-  // A sixth of the cube around it; particles of its surface count as a whole or not at all.
+  // A sixth of the surrounding cube. Surface particles count completely or not at all.
   const { bodies: made } = await visits.scene();
   const expected = 0.3 ** 3 / 6 / made.at(-1)!.spacing! ** 3;
   expect(positions.length / expected).toBeGreaterThan(0.5);
@@ -237,7 +237,7 @@ it('moves a body to where it has room and not into others, and undoes it', async
   );
   await viewer.until('#view:not([data-placing])');
   await viewer.page.click(move);
-  // 7 or 8 steps of 4 % of 1.2 m: into the ball.
+  // 7 or 8 steps of 4 % of 1.2 m, into the ball.
   await place(...Array<string>(7).fill('ArrowDown'), 'Enter');
   await viewer.page.waitForSelector('#notices li:has-text("The position is occupied")');
   expect(await height()).toBeGreaterThan(1.1);

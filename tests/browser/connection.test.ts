@@ -8,7 +8,9 @@ import { openPage } from './support/shared';
 import type { Look, Viewer } from './support/viewer';
 import { says } from './support/visits';
 
-/** Servers that are full, older, stuck, stopped or closed to strangers: the page says so. */
+/**
+ * Messages of the page about servers that are full, older, stuck, stopped or closed to strangers.
+ */
 let server: Server;
 let proxy: Proxy | undefined;
 const pages: Viewer[] = [];
@@ -101,7 +103,7 @@ it('says that it was removed, or continues in another window, and comes back', a
 
   const token = await first.page.evaluate(() => sessionStorage.getItem('vat.resume'));
   const second = await open();
-  await second.untilTick(0); // it has a separate token, which no longer arrives
+  await second.untilTick(0); // its separate token no longer arrives
   await second.page.evaluate((value) => sessionStorage.setItem('vat.resume', value ?? ''), token);
   await second.page.reload();
   await says(first, 'connection-text', 'continues in another window');
@@ -118,7 +120,7 @@ it('works with an older server, and says what that cannot do', async () => {
   await page.untilTick(0);
   await page.page.click('#play');
   await page.until('#play[data-playing="false"]');
-  expect(await page.page.isVisible('#pour-row')).toBe(false); // only the scene tells of liquids
+  expect(await page.page.isVisible('#pour-row')).toBe(false); // only the scene contains the liquids
   await page.page.click('#kept-details > summary');
   await says(page, 'notices', 'This server is older than the page');
   await says(page, 'notices', 'session.saves');
@@ -135,7 +137,9 @@ it('tells a server that refuses it from one that is stopped', async () => {
   expect(await page.page.isDisabled('#play')).toBe(true);
 });
 
-/** Runs in the page's worker: its timers fire at once when another page of the server says so. */
+/**
+ * Runs in the page's worker: its timers fire immediately if another page of the server requests it.
+ */
 const kTimers = `{
   const begin = self.setTimeout, waiting = new Map();
   self.setTimeout = (act, ms) => {
@@ -153,12 +157,12 @@ const kTimers = `{
 
 declare global {
   interface Window {
-    /** Sets the page's clock forward by so much [ms]. */
+    /** Sets the page's clock forward by `time` [ms]. */
     skip(time: number): void;
   }
 }
 
-/** The page's clock goes on as `skip` tells. */
+/** Makes the page's clock advance by `skip`. */
 async function controlClock(page: Page): Promise<void> {
   await page.addInitScript(() => {
     const now = performance.now.bind(performance);
@@ -181,7 +185,7 @@ it('says that no picture comes while the connection is stuck, and goes on after 
   between.freeze(true);
   await page.page.evaluate(() => window.skip(4000));
   await says(page, 'summary', 'No new frame');
-  // The clock is to be measured; that is not answered in time; and so on.
+  // The page measures the clock, and the reply is late.
   const reason = async (): Promise<string> => {
     await fireTimers(page);
     return (await page.page.textContent('#connection-text')) ?? '';

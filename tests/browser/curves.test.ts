@@ -5,7 +5,7 @@ import { openPage } from './support/shared';
 import type { Viewer } from './support/viewer';
 import { kInTime } from './support/visits';
 
-/** Curves over time, and what a tick is spent on. */
+/** Curves over time, and the times of a tick's stages. */
 const server = new Server();
 let viewer: Viewer;
 let observer: Observer;
@@ -22,7 +22,7 @@ afterAll(async () => {
   await server.kill();
 });
 
-/** How many pixels of a chart's line there are: those in a strong colour. */
+/** Returns the number of pixels of a chart's line, which have a strong colour. */
 async function inked(chart: number): Promise<number> {
   return viewer.page
     .locator('#curves-place .chart canvas')

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 import { expect, it } from 'vitest';
 
-/** `vat bench codec` judges the speed of the decoders; here it has to run all of them. */
+/** `vat bench codec` compares the decoders' speed. This test only runs all of them. */
 it('decodes the frames of the bench in C++, in Node and in a worker of the browser', async () => {
   const program = process.env.VAT_BENCH_PROGRAM;
   if (!program) throw new Error('VAT_BENCH_PROGRAM must be the path of the built program');

@@ -22,7 +22,7 @@ async function save(list: string, name: string): Promise<void> {
   await visits.viewer.page.waitForSelector(`#${list} li[data-name="${name}"]`);
 }
 
-/** Presses the second time, and the first time if that is some seconds ago. */
+/** Presses the button to confirm, and a first time before if the first press has expired. */
 async function pressTwice(remove: Locator): Promise<void> {
   await remove.evaluate((button: HTMLButtonElement) => {
     if (button.dataset.armed !== 'true') button.click();
@@ -62,7 +62,7 @@ it('saves a scene for all, shows it among the scenes, and deletes it', async () 
   expect(scenes.map(({ name }) => name)).not.toContain('my stack');
 });
 
-/** A session with a past of ten seconds, in which Ann held a body. */
+/** A session with a past of ten seconds, in which Ann grabbed a body. */
 async function live(): Promise<void> {
   await visits.observer.request('participant.rename', { name: 'Ann' });
   const { bodies } = await visits.observer.request('state.query', {});
@@ -103,7 +103,7 @@ it('shows what happened again: seeks, plays, tells who was there, and comes back
   expect(end).toBeGreaterThanOrEqual(500);
   await seek(0);
   await expect.poll(position, kInTime).toBeLessThan(10);
-  await seek(1 - 350 / end); // Ann holds a body there
+  await seek(1 - 350 / end); // Ann grabs a body there
   await visits.viewer.page.waitForSelector('#replay-people li:has-text("Ann holds")');
   const before = await position();
   await visits.viewer.page.click('#replay-play');

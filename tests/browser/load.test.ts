@@ -7,7 +7,7 @@ import { Visits } from './support/visits';
 
 /**
  * The work of the page's thread for many particles, by counts: the number of times that V8 ran each
- * block of the page's scripts. Times depend on what else the machine does.
+ * block of the page's scripts. Times would depend on the load of the machine.
  */
 const visits = new Visits(new Server(['--max-particle-steps-per-tick', '10000000']));
 
@@ -15,10 +15,13 @@ const kSpacing = 0.02;
 const kParticles = 16_000;
 const kPictures = 6;
 
-/** Runs of one block for one picture: of bodies, meshes and uniforms, but not of particles. */
+/**
+ * Maximum runs of one block per picture. Loops over bodies, meshes and uniforms are below it, loops
+ * over particles are not.
+ */
 const kMostRuns = kParticles / 16;
 
-/** Three coordinates and a value of each particle, as they came, and as much again. */
+/** Three coordinates and a value per particle, twice. */
 const kMostBytes = 2 * 12;
 
 /** The dam break with more particles. */
@@ -36,7 +39,9 @@ function damBreak(): Scene {
 
 declare global {
   interface Window {
-    /** Of each picture: the many instances that calls drew, and the bytes given to the graphics. */
+    /**
+     * For each picture: the large instance counts of draw calls, and the bytes uploaded to the GPU.
+     */
     pictures: { instances: number[]; bytes: number }[];
   }
 }
@@ -46,7 +51,7 @@ function watchPictures(): void {
   window.pictures = [];
   let picture = { instances: [] as number[], bytes: 0 };
   const { prototype } = WebGL2RenderingContext;
-  /** Calls `note` with the arguments of each call of a method, before it. */
+  /** Calls `note` with the arguments of each call of a method, before the call. */
   const watch = (method: keyof WebGL2RenderingContext, note: (args: unknown[]) => void): void => {
     const call = prototype[method] as (...args: unknown[]) => void;
     const watched = function (this: WebGL2RenderingContext, ...args: unknown[]): void {
@@ -74,7 +79,7 @@ function watchPictures(): void {
 
 it('does nothing once per particle on the page thread, and uploads no more than it must', async () => {
   await visits.visit('dam-break', {
-    viewport: { width: 400, height: 300 }, // small: what is drawn is not the subject
+    viewport: { width: 400, height: 300 }, // small, because drawing is not the subject
     view: 'liquid:particles,smooth:on,colour:speed',
     before: (page) => page.addInitScript(watchPictures),
   });
@@ -93,7 +98,8 @@ it('does nothing once per particle on the page thread, and uploads no more than 
   await viewer.untilTick(tick + 1);
   await drawn(1);
   const [first] = await page.evaluate(() => window.pictures);
-  // A page that draws too slowly is sent fewer particles: the solver leaves it the processor.
+  // If a page draws too slowly, the server sends fewer particles. A slow session leaves the
+  // processor to the page.
   await observer.request('control.set_speed', { speed: 0.1 });
   await observer.request('control.play', {});
   await drawn(kPictures);

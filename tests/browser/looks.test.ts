@@ -4,24 +4,26 @@ import type { Region } from './support/pixels';
 import type { Look } from './support/viewer';
 import { kInTime, Visits } from './support/visits';
 
-/** How the view draws the session: pictures of states that stand still. */
+/** Rendering of the session: pictures of states at rest. */
 const visits = new Visits();
 
-/** Pictures of one state on two machines differ by rounding at edges alone: some pixels in 100. */
+/**
+ * Pictures of one state on two machines differ only by rounding at edges, in some pixels of 100.
+ */
 const kAlike = 2;
 
-/** The least number of pixels that a mark takes. */
+/** Minimum number of pixels of a mark. */
 const kMark = 250;
 
-/** Pixels that differ though nothing has changed. */
+/** Maximum number of pixels that differ without a change. */
 const kSame = 20;
 
-/** Of the view of the dam break at its start: in the column of water, and beside it. */
+/** Regions of the dam break's view at its start: in the column of water, and next to it. */
 const kWater = { left: 0.14, top: 0.4, right: 0.22, bottom: 0.55 };
 const kAir = { left: 0.5, top: 0.3, right: 0.7, bottom: 0.5 };
 const kStyles = ['fluid', 'surface', 'splats', 'particles'];
 
-/** Where the page is, if the last test left it there. */
+/** The page's scene and tick after the last test. */
 let place = '';
 
 async function visit(scene: string, tick: number, view = '', look: Look = {}): Promise<void> {
@@ -29,7 +31,7 @@ async function visit(scene: string, tick: number, view = '', look: Look = {}): P
   await visits.visit(scene, { tick, view, ...look });
 }
 
-/** Before each test of a group: the scene at this tick, which the tests may step once. */
+/** Shows the scene at this tick before each test of a group. A test may step it once. */
 function stayAt(scene: string, tick: number, look: Look = {}): void {
   beforeEach(async () => {
     const there = JSON.stringify([scene, tick, look]);
@@ -45,10 +47,10 @@ const textOf = async (id: string): Promise<string> =>
 const most = async (): Promise<number> =>
   Number(await visits.viewer.page.getAttribute('#colour-legend', 'data-max'));
 
-/** Surfaces around particles that were made so far, beside the page. */
+/** Returns the number of surfaces around particles that the worker has made so far. */
 const surfaces = async (): Promise<number> => Number((await visits.viewer.said('surfaces')) ?? 0);
 
-/** Changes the view by `act`; resolves once `count` more surfaces were made. */
+/** Changes the view by `act`. Resolves after `count` more surfaces were made. */
 async function untilSurfaces(count: number, act: () => Promise<unknown>): Promise<void> {
   const before = await surfaces();
   await act();
@@ -60,7 +62,7 @@ const setStyle = (style: string): Promise<unknown> =>
     ? untilSurfaces(1, () => visits.set(`liquid:${style}`))
     : visits.set(`liquid:${style}`);
 
-/** The number of pixels that differ from a picture. */
+/** Returns the number of pixels that differ from a picture. */
 const changeFrom = async (picture: string): Promise<number> =>
   visits.viewer.difference(picture, await visits.viewer.picture());
 
@@ -121,11 +123,11 @@ describe('the dam break in motion', () => {
     expect(back.blue - back.red).toBeGreaterThan(5); // slow
     await visits.set('colour:speed,map:cividis,from:0,to:100');
     await visits.viewer.until('#colour-legend[data-max="100"]');
-    await expect.poll(yellow, kInTime).toBeLessThan(0); // the least of cividis
+    await expect.poll(yellow, kInTime).toBeLessThan(0); // the minimum of cividis
   });
 
   it.each([
-    ['pressure', 'Pa', [980, 40_000]], // of water 0.1 m and 4 m deep
+    ['pressure', 'Pa', [980, 40_000]], // of water at depths of 0.1 m and 4 m
     ['density', 'kg/m³', [1000, 1100]],
   ] as const)('is coloured by %s', async (name, unit, [low, high]) => {
     await visits.set(`colour:${name}`);
@@ -133,8 +135,8 @@ describe('the dam break in motion', () => {
     await expect.poll(() => textOf('colour-legend'), kInTime).toContain(unit);
     await expect.poll(most, kInTime).toBeGreaterThan(low);
     expect(await most()).toBeLessThan(high);
-    // Liquid deep within the column of water, and at its surface, which is under no pressure.
-    // Greater numbers are greener.
+    // Liquid deep in the column of water, and at its surface, where the pressure is zero. Larger
+    // values are greener.
     const deeper = async (): Promise<number> =>
       (await statistics({ left: 0.16, top: 0.6, right: 0.26, bottom: 0.66 })).green -
       (await statistics({ left: 0.2, top: 0.36, right: 0.28, bottom: 0.4 })).green;
@@ -146,7 +148,7 @@ describe('the dam break in motion', () => {
     await visits.observer.request('control.step', { ticks: 1 });
     await visits.viewer.untilTick(13, 13);
     await expect.poll(() => textOf('colour-legend'), kInTime).toContain('m/s²');
-    await expect.poll(most, kInTime).toBeGreaterThan(5); // what falls has 9.81
+    await expect.poll(most, kInTime).toBeGreaterThan(5); // particles in free fall have 9.81
   });
 });
 
@@ -171,7 +173,7 @@ describe('marks over a scene, at full resolution', () => {
     ['cells', 'cm wide'],
   ] as const)('shows and hides %s', async (mark, words) => {
     let without = '';
-    // Two frames of different ticks give velocities: a frame that is sent again gives none.
+    // Two frames of different ticks are needed for velocities. A repeated frame has none.
     const shown = async (): Promise<number> => {
       const { tick } = await visits.observer.request('control.step', { ticks: 1 });
       await visits.set('liquid:splats');
@@ -181,7 +183,7 @@ describe('marks over a scene, at full resolution', () => {
       return changeFrom(without);
     };
     await expect.poll(shown, kInTime).toBeGreaterThan(4 * kMark);
-    expect(await changeFrom(without)).toBeLessThan(160 * kMark); // lines, and not the picture
+    expect(await changeFrom(without)).toBeLessThan(160 * kMark); // only the lines change
     expect(await textOf('view-options')).toContain(words);
     await visits.set('liquid:splats');
     await expect.poll(() => changeFrom(without), kInTime).toBeLessThan(kSame);
@@ -218,7 +220,9 @@ it('gives bodies smooth skins', async () => {
   await expect.poll(() => changeFrom(skins), kInTime).toBeGreaterThan(750);
 });
 
-/** Of the picture's strong colours: how many hues, in twelfths of the circle. */
+/**
+ * Returns the number of hues among the strong colours of the picture, in twelfths of the circle.
+ */
 async function hues(): Promise<number> {
   const { data } = await pixelsOf(visits.viewer);
   const seen = new Map<number, number>();

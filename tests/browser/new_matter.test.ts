@@ -5,7 +5,7 @@ import { newInterfaces, withNewMaterials } from '../../web/viewer/build/new_mate
 import { Observer } from './support/observer';
 import { sharedServer } from './support/shared';
 
-/** Materials that the page adds to a scene, on the real server, in all scenes that ship. */
+/** Materials that the page adds to a scene, on the real server, in all catalogue scenes. */
 let observer: Observer;
 
 beforeAll(async () => {
@@ -13,7 +13,7 @@ beforeAll(async () => {
 });
 afterAll(() => observer.leave());
 
-/** A place for a ball of this radius, as high as can be; undefined where there is no room. */
+/** Returns the highest position for a ball of this radius; undefined if there is no space. */
 function roomFor(scene: Scene, there: readonly BodyState[], radius: number): Vector | undefined {
   const { min, max } = scene.vat!;
   const shares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8];

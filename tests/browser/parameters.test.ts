@@ -2,7 +2,7 @@ import { expect, it } from 'vitest';
 import type { Scene } from '../../web/client/index';
 import { kInTime, unfold, Visits } from './support/visits';
 
-/** Constants of a scene, gravity and the vat: changed within their ranges, and restored. */
+/** Constants of a scene, gravity and the vat: changes within their ranges, and undo. */
 const visits = new Visits();
 
 async function visit(scene: string): Promise<void> {
@@ -50,7 +50,7 @@ it('changes what happens where two materials meet, and restores it', async () =>
   await enter('#contact-friction', '11');
   await page.waitForSelector('.parameter:has(#contact-friction) .fault:has-text("from 0 to 10")');
   await expect.poll(() => page.inputValue('#contact-friction'), kInTime).toBe('0.7');
-  // The page shows errors that only the server detects beside the field as well.
+  // Errors that only the server detects are also shown next to the field.
   await enter('#contact-threshold', '5');
   await page.waitForSelector('.parameter:has(#contact-threshold) .fault:has-text("0.4")');
   await page.selectOption('#contact-law', 'projection');
@@ -91,7 +91,7 @@ it('says why an integrator is refused', async () => {
   expect(await page.inputValue('#integrator')).toBe('velocity_verlet');
 });
 
-/** Drags from the middle of a pad to the right, by a share of its width. */
+/** Drags from the middle of a pad to the right by a fraction of its width. */
 async function drag(pad: string, share: number): Promise<void> {
   const { page } = visits.viewer;
   await page.locator(pad).scrollIntoViewIfNeeded();
@@ -109,7 +109,7 @@ it('tilts gravity with the ball, and restores it', async () => {
     (await visits.observer.request('session.join', {})).description.gravity;
   await drag('#tilt', 0.25);
   await page.mouse.up();
-  // Half of the way is half of 60 degrees, within the two that a pixel is.
+  // Half of the distance is half of 60 degrees. A pixel is two degrees.
   await expect.poll(async () => (await gravity())[0], kInTime).toBeGreaterThan(4.6);
   expect((await gravity())[0]).toBeLessThan(5.2);
   await page.click('#gravity-reset');
@@ -120,7 +120,7 @@ it('slides the vat by hand; released, it goes back', async () => {
   await visit('dam-break');
   const { vat } = (await visits.observer.request('session.join', {})).description;
   await drag('#slide', 0.48);
-  /** How far the liquid is beyond the place of the vat. */
+  /** Returns the displacement of the liquid relative to the vat. */
   const offset = async (): Promise<number> => {
     await visits.observer.request('control.step', { ticks: 50 });
     const { bodies } = await visits.observer.request('state.query', {});

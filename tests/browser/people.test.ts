@@ -4,7 +4,7 @@ import { Server } from './support/server';
 import { openPage } from './support/shared';
 import { kInTime, unfold, Visits } from './support/visits';
 
-/** Other people in the session, the scenes they choose together, and links. */
+/** Other participants of the session, their choice of scenes, and links. */
 const visits = new Visits(new Server(['--scene', 'rigid-stack']));
 
 it('loads a scene that is chosen by its picture', async () => {
@@ -65,7 +65,7 @@ it('shows who is here by name, where they point, and what they hold', async () =
   });
   await viewer.page.waitForSelector(`#people li:has-text("Ann"):has-text("holds ${held.name}")`);
   await observer.request('grab.end', { grab });
-  // Others are told where the pointer is, until it leaves the picture.
+  // Other participants see the pointer until it leaves the picture.
   const isPointing = async (): Promise<boolean> =>
     (await observer.request('presence.list', {})).participants.some(
       ({ name, pointer }) => name !== 'Ann' && pointer,
@@ -135,5 +135,5 @@ it('switches between light and dark', async () => {
   const first = await colour();
   await page.keyboard.press('t');
   expect(await colour()).not.toBe(first);
-  await page.keyboard.press('t'); // as the system
+  await page.keyboard.press('t'); // the system's theme
 });

@@ -20,7 +20,7 @@ it('leaves room for the picture beside the sheet, whose forms are as wide as the
     expect(box.x + box.width).toBeLessThanOrEqual(kPhone.viewport!.width);
   }
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390);
-  // The button that closes the sheet stays in sight.
+  // The button that closes the sheet stays visible.
   const panel = page.locator('#panel');
   await panel.evaluate((sheet) => sheet.scrollTo(0, sheet.scrollHeight));
   const top = (await panel.boundingBox())!.y;
@@ -34,9 +34,9 @@ it('tilts gravity as the device is tilted, relative to how it was held first', a
   const { page } = visits.viewer;
   await unfold(visits.viewer, 'parameters-details');
   await page.click('#gravity-device');
-  // This machine has no sensor.
+  // This machine has no orientation sensor.
   await says(visits.viewer, 'notices', 'does not report its orientation');
-  // At once, before the page gives up waiting for a sensor.
+  // Immediately, before the page's timeout for a sensor.
   await page.evaluate(async () => {
     const button = document.getElementById('gravity-device') as HTMLButtonElement;
     button.click();
@@ -47,13 +47,13 @@ it('tilts gravity as the device is tilted, relative to how it was held first', a
   });
   const gravity = async (): Promise<number[]> =>
     (await visits.observer.request('session.join', {})).description.gravity;
-  // 30 degrees to the right of the picture: half of gravity goes there.
+  // 30 degrees to the right of the picture, so half of gravity acts to the right.
   await expect
     .poll(async () => Math.hypot(...(await gravity()).slice(0, 2)), kInTime)
     .toBeGreaterThan(4.5);
   const [x, y, z] = await gravity();
   expect(Math.hypot(x!, y!, z!)).toBeCloseTo(9.81, 1);
-  expect(x!).toBeGreaterThan(Math.abs(y!)); // the first view has x to the right
+  expect(x!).toBeGreaterThan(Math.abs(y!)); // the initial view has x to the right
   await page.click('#gravity-device');
   await page.evaluate(() => {
     window.dispatchEvent(new DeviceOrientationEvent('deviceorientation', { beta: 40, gamma: -30 }));

@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest';
 import { kInTime, Visits } from './support/visits';
 
-/** Liquid that is poured: drops, and taps of a scene. */
+/** Pouring liquid: drops, and taps of a scene. */
 const visits = new Visits();
 
 it('pours drops below the top, each where there is room', async () => {
@@ -14,7 +14,7 @@ it('pours drops below the top, each where there is room', async () => {
   await expect.poll(drops, kInTime).toBe(1);
   for (const [, , speed] of (await bodies()).at(-1)!.velocities) expect(speed).toBeLessThan(0);
   await page.focus('#view');
-  // As a key repeats that is held: none comes before the last one is seen.
+  // The key repeats. No drop is added before the last one is visible.
   const poured = async (): Promise<number> => {
     await page.keyboard.press('p');
     await page.keyboard.press('p');

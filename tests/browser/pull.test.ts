@@ -4,7 +4,7 @@ import { formatCount } from '../../web/viewer/panel/format';
 import type { Viewer } from './support/viewer';
 import { kInTime, Visits } from './support/visits';
 
-/** Input to the picture itself: mouse, pen, fingers and keys. */
+/** Input on the picture: mouse, pen, fingers and keys. */
 const visits = new Visits();
 
 interface Point {
@@ -12,7 +12,7 @@ interface Point {
   y: number;
 }
 
-/** What presses, drags and lifts as a device of that kind does. */
+/** An input device that presses, drags and releases. */
 interface Hand {
   press(at: Point): Promise<void>;
   drag(to: Point): Promise<void>;
@@ -90,7 +90,7 @@ it.each<[Device, string, string]>([
   await expect.poll(grabs, kInTime).toEqual([]);
 });
 
-/** Waits until the picture differs from another one, and returns it once it stands still. */
+/** Waits until the picture differs from another one, and returns it after it is stable. */
 async function changedFrom(picture: string): Promise<string> {
   const { viewer } = visits;
   await expect
@@ -151,7 +151,7 @@ it('holds a body by keys, pulls it, and releases it', async () => {
     return (await height()) - low;
   };
   await expect.poll(lifted, kInTime).toBeGreaterThan(0.02);
-  await page.keyboard.press('b'); // the next one
+  await page.keyboard.press('b'); // the next body
   await expect.poll(async () => (await grabs())[0] !== held, kInTime).toBe(true);
   await page.keyboard.press('Escape');
   await viewer.until('#view:not([data-held-body])');

@@ -15,7 +15,8 @@ it('gets few frames while it does not draw, also of a new scene, and the newest 
   await viewer.untilTick(1);
   await viewer.brake(true);
   const [tick, droppedBefore] = [await viewer.tick(), await dropped()];
-  // At most three of every fourth frame come before the server waits: the gap is 48 ticks or more.
+  // At most three of every fourth frame arrive before the server waits, so the gap is at least 48
+  // ticks.
   await expect.poll(() => observer.tick(), kInTime).toBeGreaterThan(tick + 60);
   await viewer.until('#byte-rate[data-value="0"]'); // the server waits for acknowledgements
   await viewer.brake(false);
@@ -71,7 +72,7 @@ it('leaves keys to the picker while a scene is picked, and takes them elsewhere'
   await viewer.page.focus('#speed');
   await viewer.page.keyboard.press('ArrowRight');
   await expect.poll(async () => (await observer.nextStatus()).speed, kInTime).toBeGreaterThan(1);
-  expect(await observer.tick()).toBe(tick); // the keys before would have come first
+  expect(await observer.tick()).toBe(tick); // earlier keys would have arrived first
   await viewer.page.keyboard.press('S');
   await viewer.untilTick(tick + 1);
 });

@@ -6,7 +6,7 @@ import { openPage } from './support/shared';
 import type { Viewer } from './support/viewer';
 import { kInTime } from './support/visits';
 
-/** One user's visit to the real server: each test continues the one before. */
+/** A user's visit to the real server. Each test continues the previous one. */
 const server = new Server();
 let viewer: Viewer;
 let observer: Observer;
@@ -23,10 +23,10 @@ afterAll(async () => {
   await server.kill();
 });
 
-/** Fewer changed pixels could be a single particle. */
+/** A change of fewer pixels could be a single particle. */
 const kMovement = 250;
 
-/** Waits until the picture shows the session's present, paused state. */
+/** Waits until the picture shows the session's present paused state. */
 async function untilPaused(): Promise<number> {
   await viewer.until('#play[data-playing="false"]');
   const tick = await observer.tick();
@@ -34,7 +34,7 @@ async function untilPaused(): Promise<number> {
   return tick;
 }
 
-/** Pauses if the session plays: a change of scene may have started it. */
+/** Pauses the session if it plays. A change of scene may have started it. */
 async function pause(): Promise<void> {
   const { playing } = await observer.nextStatus();
   if (playing) await viewer.page.click('#play');

@@ -9,7 +9,7 @@ import { openPage, sharedServer } from './support/shared';
 import type { Look, Viewer } from './support/viewer';
 import { says } from './support/visits';
 
-/** What the page says where it, the browser or the server's files are not as they should be. */
+/** Messages of the page about faults of itself, the browser or the server's files. */
 const pages: Viewer[] = [];
 
 afterEach(async () => {
@@ -40,7 +40,7 @@ it('says that a part of the page was not loaded', async () => {
   await says(page, 'obstacle', 'Reload the page');
 });
 
-/** A recording whose hash at position 12 differs from that of the simulation. */
+/** A recording whose hash at position 12 differs from the simulation's. */
 function differingRecording(): Buffer {
   const script = new URL('../protocol/scripts/replays.jsonl', import.meta.url);
   const calls = readFileSync(script, 'utf8')
@@ -86,7 +86,7 @@ it('says that it is slow while it plays, and shows all once it stands still', as
   const page = await open({
     before: (page) =>
       page.addInitScript(() => {
-        // One animation frame of fifteen is the page's.
+        // The page gets one of fifteen animation frames.
         const next = window.requestAnimationFrame.bind(window);
         const after = (frames: number, callback: FrameRequestCallback): number =>
           next(frames === 0 ? callback : () => after(frames - 1, callback));
@@ -102,7 +102,7 @@ it('says that it is slow while it plays, and shows all once it stands still', as
   observer.leave();
 });
 
-/** Changes a file of the server, as another version of it could have. */
+/** Changes a file of the server, as another version could have. */
 function alter(file: string, command: string): void {
   const program =
     'import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute(sys.argv[2]); c.commit()';

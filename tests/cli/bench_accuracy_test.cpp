@@ -29,7 +29,7 @@ std::vector<Solution> some_solutions() {
   Solution failed = solution(kVerlet, 1, std::numeric_limits<Real>::quiet_NaN(), 0, 0);
   failed.failure = "the guard undid a step";
   return {failed,
-          solution(kVerlet, 0.5, 1e-3, 10, 5),  // by chance
+          solution(kVerlet, 0.5, 1e-3, 10, 5),  // low error by chance
           solution(kVerlet, 0.25, 1e-2, 20, 9),
           solution(kVerlet, 0.125, 1e-4, 40, 18),
           solution(kHeun, 0.5, 1e-2, 30, 4),
@@ -60,7 +60,8 @@ TEST(BenchAccuracy, CheapestDoesNotTrustLuck) {
   EXPECT_FALSE(cheapest(some_solutions(), 1e-5, evaluations_of));
 }
 
-// Between 20 evaluations at 1e-2 and 40 at 1e-4; those at 10 were luck.
+// Interpolated between 20 evaluations at 1e-2 and 40 at 1e-4. The error at 10 evaluations is low by
+// chance.
 TEST(BenchAccuracy, PriceIsReadBetweenSolutions) {
   const auto price = [](StepControl control, Real error) {
     return least_price(some_solutions(), control, error, evaluations_of);

@@ -55,7 +55,7 @@ TEST(BenchCompare, MalformedCsvIsRefused) {
   }
 }
 
-// Beyond the tolerance, and by the least times too: a busy machine makes medians worse.
+// Both the median and the minimum exceed the tolerance, since a busy machine increases medians.
 TEST(BenchCompare, SlowerIsWhatMedianAndLeastSay) {
   const std::vector<TimedRow> before = {row("a", 1), row("b", 1), row("c", 1), row("d", 1)};
   const std::vector<TimedRow> after = {row("a", 1.2), row("b", 1.2, 0.9 / 1.2), row("c", 1.09),
@@ -93,7 +93,7 @@ TEST(BenchCompare, RowsAreMatchedByCaseThreadsAndInstructionSet) {
   EXPECT_FALSE(compare_rows({two}, {baseline}, 0.1));
 }
 
-// A result of the bench, and the same made slower by hand.
+// Compares a result of the benchmark with a copy that the test made slower.
 TEST(BenchCompare, ExitCodeTellsWhatGotSlower) {
   const TemporaryFolder folder;
   const ProgramResult measured = run_bench({"speed", "--quick", "--threads", "1", "--output",

@@ -57,7 +57,7 @@ TEST(BenchDocument, FindsEachPictureOnce) {
       testing::ElementsAre("figures/a.svg", "figures/d.svg"));
 }
 
-/// What the commands would have written.
+/// Result files as the commands write them.
 class Results {
  public:
   Results() {

@@ -18,7 +18,7 @@ constexpr const char* kTimes =
     "INFO: Time sum: SimStep: 2500.5 ms\n"
     "INFO: Total number: Time step size: 0.5\n";
 
-/// A program that prints `text` and has its arguments in the file "arguments".
+/// A program that prints `text` and writes its arguments to the file "arguments".
 fs::path make_program(const test::TemporaryFolder& folder, const std::string& text, int exit_code) {
   const fs::path program = fs::path(folder.path()) / "SPHSimulator";
   std::ofstream(program) << "#!/bin/sh\nprintf '%s' \"" << text << "\"\n"
@@ -30,7 +30,7 @@ fs::path make_program(const test::TemporaryFolder& folder, const std::string& te
 TEST(BenchRace, SceneFillsACubicMetreByItsParticles) {
   const Json scene = peer_scene({.program = "bin/SPHSimulator", .edge = 22});
   const Json& block = scene["FluidBlocks"][0];
-  // The outer particles are one spacing from the walls: the block has 23 spacings.
+  // The outer particles are one spacing from the walls, so the block has 23 spacings.
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(block["end"][axis].get<Real>() - block["start"][axis].get<Real>(), 23.0 / 22,
                 1e-12);

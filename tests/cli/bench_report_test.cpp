@@ -119,7 +119,7 @@ TEST(BenchPlot, NothingToDrawIsAnError) {
   EXPECT_EQ(done.errors()[0].message, "there are no points to draw");
 }
 
-/// Hides the programs of the machine while it lives.
+/// Hides the programs of the machine during its lifetime.
 class EmptyPath {
  public:
   EmptyPath() {
@@ -214,7 +214,7 @@ TEST(BenchOrder, OrderAndFrequencyOfKnownData) {
     samples.push_back(std::sin(12.5 * 1e-3 * i + 0.3));
   }
   EXPECT_NEAR(validation::fitted_frequency(samples, 1e-3), 12.5, 1e-6);
-  // A second frequency that is ten periods of the record away hardly moves the peak.
+  // A second frequency at a distance of ten periods of the record hardly moves the peak.
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i] += 0.1 * std::sin(40 * 1e-3 * static_cast<Real>(i));
   }

@@ -20,7 +20,7 @@ std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Beside the decoder: the load reads the header by itself.
+// Compares with the decoder, because the load parses the header independently.
 TEST(BenchFanout, ReadsWhatTheHeaderSays) {
   GridFrame frame;
   frame.header.number = 77;
@@ -34,8 +34,8 @@ TEST(BenchFanout, ReadsWhatTheHeaderSays) {
   EXPECT_THROW(bench::frame_facts("VATF"), std::runtime_error);
 }
 
-// Where all segments are alike, every draw gives the same. An odd one is missing in 0.9^10, a
-// third, of the draws: the interval has both ratios.
+// If all segments are equal, every bootstrap sample gives the same ratio. A different segment is
+// missing in 0.9^10, a third, of the samples, so the interval contains both ratios.
 TEST(BenchFanout, RatiosOfQuantilesHaveAnIntervalByWholeSegments) {
   const bench::Segments ones(10, {1, 2, 3, 4, 5});
   bench::Segments twos(10, {2, 4, 6, 8, 10});
@@ -52,7 +52,7 @@ TEST(BenchFanout, RatiosOfQuantilesHaveAnIntervalByWholeSegments) {
   EXPECT_TRUE(std::isnan(bench::quantile_ratio(bench::Segments(4, {1}), ones, 0.5).low));
 }
 
-// One viewer at the scene's rate: what the machine does beside that only makes it less.
+// One viewer at the scene's rate. Other work on the machine can only reduce the rate.
 TEST(BenchFanout, CountsTheFramesOfAViewer) {
   const TemporaryFolder folder;
   const ProgramResult result =
@@ -62,7 +62,7 @@ TEST(BenchFanout, CountsTheFramesOfAViewer) {
   ASSERT_EQ(table.rows.size(), 1U);
   const double rate = table.number(0, "frames per second");
   EXPECT_GT(rate, 0);
-  EXPECT_LE(rate, 31) << "30 ticks a second, and one that may lie on the edge of each second";
+  EXPECT_LE(rate, 31) << "30 ticks per second, and one at the edge of each second";
   EXPECT_GT(table.number(0, "frame bytes"), 0);
   EXPECT_GT(table.number(0, "age 99 % [ms]"), 0);
 }
@@ -91,23 +91,23 @@ TEST(BenchSeeks, SaysWhatTheServerRefuses) {
   EXPECT_THAT(result.err, testing::HasSubstr("gone"));
 }
 
-// A line's growth is found as it is; of values beside one, by least squares: with the places -1.5,
-// -0.5, 0.5 and 1.5 it is (6 * -0.5 + 6 * 1.5) / 5 a step.
+// The growth of a line is exact. For other values it is a least-squares fit: at the positions -1.5,
+// -0.5, 0.5 and 1.5 it is (6 * -0.5 + 6 * 1.5) / 5 per step.
 TEST(BenchSoak, FindsTheGrowthOfALine) {
   EXPECT_NEAR(bench::find_growth({5, 5.5, 6, 6.5, 7}), 2, 1e-12);
   EXPECT_NEAR(bench::find_growth({0, 6, 0, 6}), 3 * 6.0 / 5, 1e-12);
   EXPECT_THROW(bench::find_growth({1}), std::invalid_argument);
 }
 
-// What is beyond a twentieth is a leak; the first rest does not count.
+// Growth of more than a twentieth is a leak. The first rest does not count.
 TEST(BenchSoak, TellsLeaksFromSwings) {
   EXPECT_TRUE(bench::is_flat({10, 40, 41, 40, 41, 40}, 0.05));
-  EXPECT_TRUE(bench::is_flat({10, 40, 40.4, 40.8, 41.2, 41.6}, 0.05)) << "less than matters";
+  EXPECT_TRUE(bench::is_flat({10, 40, 40.4, 40.8, 41.2, 41.6}, 0.05)) << "growth below the limit";
   EXPECT_FALSE(bench::is_flat({10, 40, 40.6, 41.2, 41.8, 42.4}, 0.05));
   EXPECT_THROW(bench::is_flat({40, 40}, 0.05), std::invalid_argument);
 }
 
-// What takes ten minutes by hand, see tests/bench/README.md, for a little while.
+// A short version of the ten-minute run in tests/bench/README.md.
 TEST(BenchSoak, ServerOutlivesClientsOfAllManners) {
   const TemporaryFolder folder;
   const ProgramResult result =
@@ -119,8 +119,8 @@ TEST(BenchSoak, ServerOutlivesClientsOfAllManners) {
   }
 }
 
-// On smaller and shorter runs than those for which they are meant: sizes do not depend on what else
-// the machine does, times do.
+// Smaller and shorter runs than those of the targets: sizes do not depend on the load of the
+// machine, but times do.
 TEST(BenchCodec, FramesAreAsSmallAsTheyMustBeAndKeepTheirError) {
   const TemporaryFolder folder;
   const ProgramResult result =
@@ -143,7 +143,7 @@ TEST(BenchCodec, FramesAreAsSmallAsTheyMustBeAndKeepTheirError) {
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     if (table.text(row, "case") != "figure-2") continue;
     ++rows;
-    // Half a quantum, and the rounding of origin + quantum * steps.
+    // Half a quantum, plus the rounding of origin + quantum * steps.
     EXPECT_LE(table.number(row, "greatest error found [allowed]"), 1 + 1e-9);
     EXPECT_GT(table.number(row, "greatest error found [allowed]"), 0.5);
   }

@@ -53,9 +53,9 @@ TEST(BenchSpeedFigures, TimesGoByTheMedian) {
   EXPECT_DOUBLE_EQ(one.particle_steps_per_second(), 1000 * 10 / 0.2);
 }
 
-// A cubic lattice of 4^3 has 6 n^2 (n - 1), 12 n (n - 1)^2 and 8 (n - 1)^3 ordered pairs at 1, sqrt
-// 2 and sqrt 3 spacings; those at exactly two spacings, the support radius, are none. Half a
-// spacing from walls it goes on in them.
+// A cubic lattice of n^3 points has 6 n^2 (n - 1), 12 n (n - 1)^2 and 8 (n - 1)^3 ordered pairs at
+// 1, sqrt 2 and sqrt 3 spacings. Pairs at exactly two spacings, the support radius, do not count.
+// At half a spacing from a wall, the lattice continues in the mirror images.
 TEST(BenchSpeedFigures, NeighboursOfALattice) {
   Scene scene = peer_dam_break(4, PressureSolver::tait);
   scene.vat->min = {-3, -2, -1};
@@ -70,8 +70,8 @@ TEST(BenchSpeedFigures, NeighboursOfALattice) {
 }
 
 #if VAT_HAS_SYSTEM_ALLOCATOR
-// At least positions and velocities, and what diagnostics keep beside that; without the snapshot,
-// of which a second simulation of the same size tells the size.
+// At least positions and velocities, plus the memory of diagnostics, without the snapshot. A second
+// simulation of the same size gives the size of the snapshot.
 TEST(BenchSpeedFigures, MemoryIsThatOfTheSimulation) {
   const Scene scene = dam_break(12, PressureSolver::tait);
   const SpeedSettings settings{.warm_up = 0, .measured = 0.02, .repetitions = 1};
@@ -86,7 +86,7 @@ TEST(BenchSpeedFigures, MemoryIsThatOfTheSimulation) {
 }
 #endif
 
-// The scene of all sizes is one scene, and the peer's has the peer's numbers of particles.
+// All sizes are one scene, and the peer's scene has the peer's numbers of particles.
 TEST(BenchSpeedScenes, SizesAreThoseOfTheirNames) {
   for (const SpeedCase& one : all_speed_cases(VAT_SOURCE_DIR "/protocol/scenes")) {
     const Result<Scene> scene = one.make();
@@ -118,7 +118,7 @@ TEST(BenchSpeedTables, TargetsAreHeldAgainstWhatWasMeasured) {
                     {"kick", 10, 9ms},
                     {"liquid_forces", 10, 10ms}};
   const Table table = target_table(targets_of(rows, {}));
-  // 25 ms for 10 steps of 10 000 particles with 25 neighbours; the rest by ratios.
+  // 25 ms for 10 steps of 10 000 particles with 25 neighbours. The other values follow by ratios.
   EXPECT_THAT(lines_with(table, "ns per neighbour"),
               testing::HasSubstr("avx2\",at most 11,10,true"));
   EXPECT_THAT(lines_with(table, "100k-tait over"), testing::HasSubstr("at most 1.5,1.6,false"));
@@ -158,7 +158,7 @@ TEST(BenchSpeedPlots, SizesAndThreads) {
   EXPECT_DOUBLE_EQ(threads.series[1].points[1][1], 4);
 }
 
-// Both scenes of every pair run, and both know all numbers of threads.
+// Both scenes of every pair run with all numbers of threads.
 TEST(BenchSpeedSkips, PairsRun) {
   for (std::size_t i = 0; i < skip_names().size(); ++i) {
     SkipPair pair = make_skip_pair(i);

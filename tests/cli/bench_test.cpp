@@ -116,7 +116,7 @@ TEST(BenchValidate, TableIsWrittenThreeTimes) {
                 testing::ContainsRegex(std::string("^[0-9a-f]+ ") +
                                        to_string(best_instruction_set()) + "$"));
   }
-  // A heading, an empty line, the columns and a rule before the rows.
+  // A heading, an empty line, the columns and a separator precede the rows.
   EXPECT_EQ(lines_of(read_file(folder.file("results/validation.md"))).size(),
             table.rows.size() + 4);
   EXPECT_THAT(read_file(folder.file("results/validation.json")), testing::StartsWith("[\n"));

@@ -1,4 +1,4 @@
-// Every number that the program writes is, bit by bit, the one of a simulation in this process.
+// Every number in the program's output has the same bits as in a simulation in this process.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,10 +14,11 @@
 namespace vat::test::exact_output_test {
 namespace {
 
-constexpr std::uint32_t kStepsPerOutput = 30;  // not the tick's 20: the program stops more often
+constexpr std::uint32_t kStepsPerOutput =
+    30;  // differs from the tick's 20, so the program stops more often
 constexpr std::size_t kOutputs = 5;
 
-/// The simulation that the program is to repeat; 0.12 s in four intervals of 0.03 s.
+/// The simulation of the program: 0.12 s in four intervals of 0.03 s.
 Simulation reference() {
   return Simulation::create(read_scene_file(test_scene("mixed")).value()).value();
 }
@@ -40,7 +41,7 @@ void at_each_output(Check check) {
   }
 }
 
-/// Position and velocity, x to vz.
+/// Returns position and velocity, x to vz.
 std::array<double, 6> motion_of(const BodyView& body, std::size_t i) {
   const Vec3& x = body.positions[i];
   const Vec3& v = body.velocities[i];

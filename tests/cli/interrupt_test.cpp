@@ -1,4 +1,4 @@
-// What a run that is stopped from outside leaves behind.
+// Files of a run that a signal interrupts.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Waits until the file holds more than `size` bytes.
+/// Waits until the file is larger than `size` bytes.
 bool wait_for_size(const std::string& path, std::uintmax_t size) {
   return wait_until([&] {
     std::error_code missing;
@@ -54,7 +54,7 @@ TEST_P(Interrupt, LeavesWholeFramesUnderThePartialName) {
   program.send(GetParam());
   const ProgramResult result = program.finish();
   EXPECT_EQ(result.exit_code, 128 + GetParam());
-  EXPECT_THAT(result.out, IsEmpty());  // no hash of a run that did not end
+  EXPECT_THAT(result.out, IsEmpty());  // no hash of an incomplete run
   ASSERT_EQ(lines_of(result.err).size(), 1u);
   EXPECT_THAT(result.err, HasSubstr("mixed.json: interrupted at t = "));
   EXPECT_THAT(result.err, EndsWith(" s; files that are not complete end in .part\n"));

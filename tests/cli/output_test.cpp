@@ -26,8 +26,8 @@ TEST(Output, OneTimeIsOneFile) {
   EXPECT_EQ(vertices[0].values[0], -0.55f);
 }
 
-// No file may grow beyond 512 bytes, which the first flush of each format does; or some frames fit
-// and the last does not.
+// No file may exceed 512 bytes. The first flush of some formats exceeds that, and the last frame of
+// others.
 TEST(Output, FullDiskIsAnErrorAndLeavesNoResult) {
   struct Case {
     int blocks;
@@ -117,8 +117,8 @@ TEST(Output, MissingFolderIsAnError) {
   }
 }
 
-// A pipe of the test's own stands for all that is neither file nor folder: a test that named
-// /dev/null would replace that device of the machine, were the program wrong and the user root.
+// A pipe of the test represents all outputs that are neither file nor folder. A test with /dev/null
+// could replace that device if the program had a fault and the user were root.
 TEST(Output, PipesAndDevicesAreWrittenAndNotReplaced) {
   const TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");

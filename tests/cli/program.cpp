@@ -62,7 +62,7 @@ ProgramResult run_bench(const std::vector<std::string>& arguments) {
 }
 
 ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>& arguments) {
-  // Without the trap the system would kill the program, instead of failing its writes.
+  // Without the trap, the system would kill the program instead of failing its writes.
   const std::string script = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec \"$@\"";
   std::vector<std::string> words = {"/bin/sh", "-c", script, "sh"};
   const std::vector<std::string> vat = vat_words(arguments);
@@ -72,7 +72,7 @@ ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>
   return {exit_code, read_file(folder.file("out")), read_file(folder.file("err"))};
 }
 
-// Open for writing too, so that neither this nor the program waits for the other end.
+// Opened for writing too, so that neither the test nor the program waits for the other end.
 Pipe::Pipe(const std::string& path) {
   if (mkfifo(path.c_str(), 0600) == 0) descriptor_ = open(path.c_str(), O_RDWR | O_NONBLOCK);
   if (descriptor_ < 0) throw std::runtime_error("no pipe at " + path);

@@ -15,22 +15,22 @@ struct ProgramResult {
 
 /// Runs the built program to its end.
 ProgramResult run_vat(const std::vector<std::string>& arguments);
-/// The same for `vat bench`.
+/// Runs `vat bench`.
 ProgramResult run_bench(const std::vector<std::string>& arguments);
 
-/// The same where no file, standard output and error included, may grow beyond `blocks` of
-/// 512 bytes, as on a disk that fills up.
+/// Runs the program with all files, including standard output and error, limited to `blocks` of 512
+/// bytes, as on a full disk.
 ProgramResult run_vat_with_file_limit(int blocks, const std::vector<std::string>& arguments);
 
-/// Path of one of the scenes beside these tests.
+/// Returns the path of a scene in tests/cli/scenes.
 std::string test_scene(const std::string& name);
 
-/// The whole content of a file; fails the test where it cannot be read.
+/// Returns the content of a file. Fails the test if it cannot be read.
 std::string read_file(const std::string& path);
 
 std::vector<std::string> lines_of(const std::string& text);
 
-/// A named pipe, made in a folder of the test's own and held open for reading.
+/// A named pipe, opened for reading.
 class Pipe {
  public:
   explicit Pipe(const std::string& path);
@@ -38,14 +38,14 @@ class Pipe {
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
 
-  /// What was written to it and not yet read; at most the 64 KiB that a pipe holds.
+  /// Returns the written data that was not read yet; at most 64 KiB, the capacity of a pipe.
   std::string content() const;
 
  private:
   int descriptor_ = -1;
 };
 
-/// The built program at work; ended by force if it still is when this goes.
+/// The running program. The destructor kills it if it is still running.
 class RunningProgram {
  public:
   explicit RunningProgram(const std::vector<std::string>& arguments);

@@ -16,7 +16,7 @@ void require(bool condition, const std::string& what) {
   if (!condition) throw std::runtime_error(what);
 }
 
-// One record of RFC 4180; no field of ours holds a line break.
+// Splits a record of RFC 4180. Its fields contain no line breaks.
 std::vector<std::string> split_record(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;

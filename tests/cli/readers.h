@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-/// Readers of the program's output files, written from the formats' descriptions. They throw where
-/// a file does not keep to its format.
+/// Readers of the program's output files, written from the descriptions of the formats. They throw
+/// if a file violates its format.
 namespace vat::test {
 
 /// A CSV file with a header row.
@@ -42,7 +42,7 @@ struct VtkFile {
 };
 VtkFile read_vtk(const std::string& path);
 
-/// The number that the whole text is.
+/// Parses the complete text as a number.
 double parse_number(std::string_view text);
 
 }  // namespace vat::test

@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 class VatReplay : public testing::Test {
  protected:
-  /// A scene that runs for five ticks, then with another gravity for five more.
+  /// A scene that runs for five ticks, and for five more with another gravity.
   static Recording make_recording() {
     const Scene scene = read_scene_file(test_scene("pair")).value();
     Recording recording;

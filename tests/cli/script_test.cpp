@@ -14,7 +14,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Scripts in a folder of their own, played by the built program.
+/// Scripts in a separate folder, played by the built program.
 class VatScript : public testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& lines) {
@@ -108,9 +108,9 @@ TEST_F(VatScript, ATranscriptHasEveryMessage) {
   EXPECT_THAT(lines[1], HasSubstr(R"({"connection":"a#1","received":"{\"error\":)"));
 }
 
-// `vat script` over TLS: whom it believes.
+// `vat script` over TLS: trusted certificates.
 
-/// A server with TLS, and a script that it meets.
+/// A server with TLS, and a script for it.
 class VatScriptTls : public testing::Test {
  protected:
   explicit VatScriptTls(const std::string& names = "DNS:localhost,IP:127.0.0.1") {
@@ -122,7 +122,7 @@ class VatScriptTls : public testing::Test {
                                              "--log-level", "error", "--tls-certificate",
                                              certificate_, "--tls-key", folder_.file("key.pem")});
   }
-  /// Plays the script at this host, with these options.
+  /// Plays the script against this host with these options.
   ProgramResult play(const std::string& host, std::vector<std::string> options) const {
     const std::string port = std::to_string(server_->port());
     options.insert(options.begin(), {"script", "--server", host + ':' + port});

@@ -1,4 +1,4 @@
-// Settings of the server as the built program takes them.
+// Server settings of the built program.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A variable of the environment while it lives.
+/// An environment variable that is set during the object's lifetime.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {

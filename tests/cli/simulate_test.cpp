@@ -35,7 +35,7 @@ std::string hash_of(const std::vector<std::string>& options) {
   return hash_of(test_scene("mixed"), options);
 }
 
-// The first moments of the scenes as they are shipped.
+// The start of each catalogue scene.
 TEST(Simulate, CatalogueScenesAreTheSameForAnyThreadCount) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(VAT_SOURCE_DIR "/protocol/scenes")) {
@@ -214,8 +214,8 @@ TEST(Schedule, TickStaysWhereItIsAWholeNumberOfSteps) {
   EXPECT_DOUBLE_EQ(shortest.tick, kMinStep * kMaxStepsPerTick);
 }
 
-// The plan of every catalogue scene against tests/golden/plans: a change that adds work to a scene
-// that does not need it is seen in review. VAT_UPDATE_GOLDEN=1 rewrites the files.
+// Compares the plan of every catalogue scene with tests/golden/plans. A change that adds
+// unnecessary work to a scene is then visible in review. VAT_UPDATE_GOLDEN=1 rewrites the files.
 
 namespace fs = std::filesystem;
 

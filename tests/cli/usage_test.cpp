@@ -19,10 +19,10 @@ using testing::StartsWith;
 
 struct WrongUse {
   std::vector<std::string> arguments;
-  std::string named;  ///< what the message must name
+  std::string named;  ///< text in the message
 };
 
-/// The arguments, for the test's name; scenes by their file names.
+/// Prints the arguments in the test's name, with scenes as file names.
 void PrintTo(const WrongUse& use, std::ostream* out) {
   *out << "vat";
   for (const std::string& argument : use.arguments) {
@@ -108,7 +108,7 @@ TEST(Usage, AllIntegratorsAreAccepted) {
   }
 }
 
-// The wish is within the options' ranges, and the step that follows from it is not.
+// The request is within the options' ranges, but the resulting step is not.
 TEST(Usage, StepThatIsTooShortIsExplained) {
   const ProgramResult result = run_vat(
       {"simulate", test_scene("pair"), "--dt", "1e-7", "--every", "1.5e-7", "--until", "1.5e-6"});

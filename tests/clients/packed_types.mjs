@@ -1,5 +1,5 @@
-// The package as `npm pack` makes it, and a program of TypeScript that uses it, in each way by which
-// TypeScript finds the parts of packages.
+// Compiles a TypeScript program that uses the package of `npm pack`, with each module resolution of
+// TypeScript.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,5 +1,8 @@
-"""run_example.py PROGRAM EXPECTED COMMAND...: runs COMMAND with the address of a server of its own
-as the last argument; it must end well and print what the file EXPECTED has."""
+"""run_example.py PROGRAM EXPECTED COMMAND...: runs COMMAND with a server.
+
+The address of a separate server is the last argument of COMMAND. It must succeed and print the
+content of the file EXPECTED.
+"""
 
 import difflib
 import re

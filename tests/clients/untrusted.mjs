@@ -1,4 +1,7 @@
-/** untrusted.mjs URL: why the client waits, at a server whose certificate nobody vouches for. */
+/**
+ * untrusted.mjs URL: prints the reason why the client waits, at a server with an untrusted
+ * certificate.
+ */
 import { createRequire } from 'node:module';
 import { Connection } from '../../web/client/dist/index.js';
 

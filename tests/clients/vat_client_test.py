@@ -1,5 +1,7 @@
-"""vat_client_test.py PROGRAM CERTIFICATE KEY: the Python client against servers, where the example
-does not go; those with TLS have this certificate, which is its own authority."""
+"""vat_client_test.py PROGRAM CERTIFICATE KEY: tests the Python client.
+
+The tests cover functions beyond the example. Servers with TLS use this self-signed certificate.
+"""
 
 import re
 import ssl
@@ -18,7 +20,7 @@ PROGRAM, CERTIFICATE, KEY = (sys.argv.pop(1) for _ in range(3))
 
 
 class ServerTest(unittest.TestCase):
-    """Tests that share a server."""
+    """Base class of tests that share a server."""
 
     arguments = ()
 
@@ -55,7 +57,7 @@ class VatClient(ServerTest):
         with Client(self.url) as client:
             client.call("session.join")
             client.call("frames.subscribe")
-            ticks = [client.next_frame().header.tick for _ in range(10)]  # the window is three
+            ticks = [client.next_frame().header.tick for _ in range(10)]  # a window is 3 frames
             self.assertEqual(ticks, sorted(ticks))
             self.assertGreater(ticks[-1], ticks[0])
 

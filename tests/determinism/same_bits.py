@@ -1,7 +1,7 @@
-"""same_bits.py SCENE.json SECONDS PROGRAM HASHES.json: the state has the stored hash.
+"""same_bits.py SCENE.json SECONDS PROGRAM HASHES.json: compares the state hash with the stored one.
 
 Each instruction set of this machine runs with another number of threads. The hashes were stored
-with two threads. Hashes of a set that this machine lacks are not compared.
+with two threads. Hashes of unavailable instruction sets are not compared.
 """
 
 import json
@@ -15,7 +15,7 @@ THREADS = {"baseline": "4", "avx2": "2", "avx512": "1"}
 
 
 def state_hash(program, scene, seconds, instruction_set, threads):
-    """The hash of the last state, or None if this machine lacks the instruction set."""
+    """Returns the hash of the last state, or None if this machine lacks the instruction set."""
     run = subprocess.run(
         [program, "simulate", scene, "--until", seconds, "--threads", threads,
          "--isa", instruction_set, "--hash"], capture_output=True, text=True)

@@ -1,5 +1,8 @@
-"""corpus_of_transcripts.py TRANSCRIPTS FOLDER: what the clients of each transcript sent, as inputs
-of the target `messages`. Long transcripts are cut, and what does not fit on a line is left out."""
+"""corpus_of_transcripts.py TRANSCRIPTS FOLDER: converts transcripts to inputs.
+
+The clients' messages of each transcript become an input of the target `messages`. Long transcripts
+are truncated. Messages that do not fit on a line are omitted.
+"""
 
 import json
 import sys
@@ -10,7 +13,7 @@ CLIENTS = "1", "2", "3"
 
 
 def input_of(path):
-    """The lines, with each connection's client in front and tokens by their name."""
+    """Returns the lines, prefixed by the connection's client, with tokens replaced by their name."""
     lines, clients, tokens = [], {}, set()
     with open(path, encoding="utf-8") as file:
         for entry in map(json.loads, file):

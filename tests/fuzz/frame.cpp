@@ -5,8 +5,8 @@
 
 namespace {
 
-/// Whatever is taken is a frame that an encoder could have been given: coded again, alone and on
-/// the frame before it, it comes back.
+/// Every accepted frame is one that an encoder accepts. Encoded again, alone and relative to the
+/// previous frame, it is unchanged.
 void check_round_trip(const vat::GridFrame& frame, const vat::GridFrame* before) {
   using namespace vat;
   const Result<GridFrame> again = decode_key_frame(encode_key_frame(frame));
@@ -21,8 +21,7 @@ void check_round_trip(const vat::GridFrame& frame, const vat::GridFrame* before)
 
 }  // namespace
 
-/// The bytes of frames one after the other, each behind two bytes that tell how long it is; or of
-/// one frame.
+/// The input contains frames, each preceded by two bytes with its length, or one frame.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
   std::span<const std::uint8_t> left(data, size);

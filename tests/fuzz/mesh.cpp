@@ -2,7 +2,7 @@
 #include "protocol/scene/obj_mesh.h"
 #include "tests/fuzz/target.h"
 
-/// An `.obj` text. A mesh that is taken has vertices in range and triangles of its own vertices.
+/// The input is an `.obj` text. An accepted mesh has vertices in range and valid vertex indices.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
   const Result<MeshShape> mesh = read_obj(std::string(fuzz::to_text(data, size)), "fuzz.obj", 0.5);

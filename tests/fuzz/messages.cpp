@@ -19,10 +19,10 @@ namespace {
 using namespace vat;
 
 constexpr std::string_view kAdminToken = "admin";
-/// Of a client's last message: what came before it has been carried out when it is answered.
+/// The id of a client's last message. The server executes the earlier messages before it replies.
 constexpr std::string_view kLastId = "the last";
 
-/// The newest token that a client was told, for messages that show one: chance finds none.
+/// The newest token that a client received. Random messages can then use a valid token.
 class NewestToken {
  public:
   void keep(const Json& result) {
@@ -41,7 +41,7 @@ class NewestToken {
   std::string token_;
 };
 
-/// A client that checks what it is sent.
+/// A client that checks the received messages.
 class CheckingConnection final : public Connection {
  public:
   CheckingConnection(ConnectionId id, NewestToken& token) : id_(id), token_(token) {}
@@ -66,7 +66,7 @@ class CheckingConnection final : public Connection {
   std::size_t queued_bytes() const override { return 0; }
   void close(std::uint16_t, std::string_view) override { finish(); }
 
-  /// Waits for the reply to kLastId, or not so long: what takes longer is cut short.
+  /// Waits for the reply to kLastId for a limited time.
   void wait_for_last() {
     std::unique_lock lock(mutex_);
     finished_.wait_for(lock, kPatience, [&] { return is_finished_; });
@@ -91,7 +91,7 @@ class CheckingConnection final : public Connection {
   const std::string address_ = "127.0.0.1";
 };
 
-/// A small scene, so that an input takes no longer than its messages.
+/// A small scene, so that messages dominate the time of an input.
 Scene first_scene() {
   const Result<Scene> scene = read_scene_text(
       R"({"format": "vat.scene/1", "numerics": {"step": 0.01, "tick": 0.01},
@@ -117,17 +117,17 @@ ServerSettings small_settings(bool needs_token) {
   settings.access.mode = needs_token ? AccessMode::token : AccessMode::open;
   settings.access.admin = hash_of_token(kAdminToken);
   settings.access.refusal_delay = std::chrono::milliseconds(0);
-  settings.limits.burst_seconds = 1e9;  // an input is never too fast
+  settings.limits.burst_seconds = 1e9;  // disables rate limits
   return settings;
 }
 
-/// Three clients of a server, each of which may go and come again.
+/// Three clients of a server. Each may disconnect and reconnect.
 class Clients {
  public:
   Clients(SessionServer& server, NewestToken& token) : server_(server), token_(token) {
     for (auto& client : clients_) open(client);
   }
-  /// Lets the server carry out all that was sent.
+  /// Lets the server execute all sent messages.
   ~Clients() {
     const Json last{{"jsonrpc", "2.0"}, {"id", kLastId}, {"method", "session.hash"}};
     for (const auto& client : clients_) server_.text_received(client->id(), last.dump());
@@ -137,8 +137,8 @@ class Clients {
   Clients(const Clients&) = delete;
   Clients& operator=(const Clients&) = delete;
 
-  /// '2' and '3' at the begin of a line name the client; "~" ends its connection and opens another,
-  /// "!" sends the rest as a binary message. "@token" is the newest token that was told.
+  /// Plays a line. '2' and '3' at its start select the client. "~" reconnects it, "!" sends the
+  /// rest as a binary message. "@token" is the newest token.
   void play(std::string_view line) {
     auto& client = clients_[take(line, '2') ? 1 : take(line, '3') ? 2 : 0];
     if (take(line, '~')) {
@@ -176,9 +176,9 @@ class Clients {
 
 }  // namespace
 
-/// The messages of three clients to a server of their own, one a line; the first line may be
-/// "token", so that clients have to enter. Every answer is well formed, none is a fault of the
-/// server, every frame can be decoded, and the server can be stopped.
+/// The input contains messages of three clients to a separate server, one per line. If the first
+/// line is "token", clients have to enter. Every reply is well-formed and reports no server fault,
+/// every frame can be decoded, and the server can be stopped.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Catalogue catalogue = Catalogue::open(VAT_FUZZ_SCENES).value();
   static const Scene scene = first_scene();

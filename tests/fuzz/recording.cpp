@@ -4,8 +4,8 @@
 #include "server/history/recording.h"
 #include "tests/fuzz/target.h"
 
-// The content of a recording, sealed anew: a checksum finds what happens to bytes, and keeps nobody
-// from writing others. Whatever is taken is a recording that a server could have written.
+// The input is the content of a recording. The target adds the checksum, since an attacker can do
+// that too. An accepted recording is one that a server could have written.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
   VAT_CHECK(!read_recording({data, size}).ok() || size > kSealSize);

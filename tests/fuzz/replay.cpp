@@ -7,8 +7,8 @@
 
 #include "tests/fuzz/target.h"
 
-// Plays every file of the folders that are named, in the order of their names: what a fuzzer once
-// found or began with stays a test where there is no fuzzer.
+// Plays every file of the given folders in the order of their names, so that inputs of the fuzzer
+// are tests in builds without it.
 int main(int argc, char** argv) {
   std::vector<std::filesystem::path> files;
   for (int i = 1; i < argc; ++i) {
@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   }
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path& path : files) {
-    std::cout << path.filename().string() << std::endl;  // before it: the last one named ended it
+    std::cout << path.filename().string()
+              << std::endl;  // printed before the run, so that it names the failing file
     std::ifstream file(path, std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());

@@ -4,8 +4,8 @@
 #include "core/simulation/simulation.h"
 #include "tests/fuzz/target.h"
 
-// The content of a saved simulation, sealed anew: a checksum finds what happens to bytes, and keeps
-// nobody from writing others. What is taken can be gone on with.
+// The input is the content of a saved simulation. The target adds the checksum, since an attacker
+// can do that too. An accepted simulation can continue.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
   VAT_CHECK(!Simulation::load({data, size}).ok() || size > kSealSize);

@@ -14,8 +14,8 @@ vat::Result<std::string> one_mesh(const std::string& name) {
 
 }  // namespace
 
-/// A scene's text. One that is taken is written and read again without a change; one that is
-/// refused has errors with messages.
+/// The input is a scene text. An accepted scene is written and read again without a change. A
+/// rejected one has errors with messages.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
   const Result<Scene> scene = read_scene_text(fuzz::to_text(data, size), one_mesh);

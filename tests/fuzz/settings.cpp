@@ -5,8 +5,8 @@
 #include "tests/fuzz/target.h"
 #include "tests/support/temporary_folder.h"
 
-// A configuration file. One that is refused has changed nothing; what a taken one has set is, as it
-// would be printed, a file that sets the same.
+// The input is a configuration file. A rejected file changes nothing. The settings of an accepted
+// file, printed as a file, give the same settings.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
   static const test::TemporaryFolder kFolder;

@@ -7,7 +7,8 @@
 
 #include "core/support/check.h"
 
-/// What a fuzzer calls with each input; it must return 0, and anything it finds ends the process.
+/// The function that the fuzzer calls with each input. It returns 0. A detected fault ends the
+/// process.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace vat::fuzz {

@@ -5,7 +5,7 @@
 
 #include "tests/support/mixed_scenes.h"
 
-// What a scene gets that asks for an accuracy.
+// Scenes that request an accuracy.
 
 namespace vat::accuracy_test {
 namespace {
@@ -29,7 +29,7 @@ Simulation run(const Scene& scene, Real time) {
   return simulation;
 }
 
-/// A particle on a spring from the origin, fixed there.
+/// A particle on a spring that is attached to the origin.
 Scene make_swing(const Vec3& start, Real stiffness) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.materials = {make_material("steel")};
@@ -52,7 +52,7 @@ TEST(Accuracy, IsMetByAnOscillator) {
   EXPECT_TRUE(used.contains(IntegratorId::runge_kutta_4));
 }
 
-/// DEF-5: 11 x 3 x 3 masses on axial and diagonal springs, held at x = 0.
+/// DEF-5: 11 x 3 x 3 masses on axial and diagonal springs, fixed at x = 0.
 Scene make_cantilever() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.gravity = {0, 0, -9.81};
@@ -88,7 +88,7 @@ TEST(Accuracy, IsMetByACantilever) {
   }
 }
 
-// RIG-4: contacts are not smooth, so that steps are adaptive.
+// RIG-4: contacts are not smooth, so steps are adaptive.
 TEST(Accuracy, OfBodiesThatMayTouchNeedsAdaptiveSteps) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.gravity = {0, 0, -9.81};

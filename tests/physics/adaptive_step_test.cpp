@@ -5,7 +5,7 @@
 
 #include "tests/support/scenes.h"
 
-// What adaptive step control reaches, and at what cost.
+// Errors and costs of adaptive step control.
 
 namespace vat::adaptive_step_test {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 using namespace test;
 
 constexpr Real kGravity = 9.81;
-constexpr Real kReach = 0.1;       // threshold of the walls' interface [m]
-constexpr Real kTolerance = 1e-5;  // of bounces
+constexpr Real kReach = 0.1;       // contact distance of the walls [m]
+constexpr Real kTolerance = 1e-5;  // error of bounces
 
 Scene make_adaptive(Scene scene, Real tolerance) {
   scene.numerics.control = StepControl::adaptive;
@@ -39,8 +39,8 @@ struct Outcome {
   std::uint64_t evaluations = 0;
 };
 
-/// The greatest error of the height after three bounces, over some heights of fall, so that no step
-/// is lucky with where in it the contacts begin and end.
+/// Returns the largest error of the height after three bounces, over several initial heights, so
+/// that the phase of the step at a contact does not matter.
 Outcome run_bounces(Real stiffness, Real step, StepControl control) {
   constexpr Real kTime = 2.8;
   Outcome outcome;
@@ -65,8 +65,8 @@ Outcome run_bounces(Real stiffness, Real step, StepControl control) {
   return outcome;
 }
 
-// A contact takes a thirtieth of the time, or a three-hundredth: that much is to be won, less the
-// short steps that come before and after it.
+// A contact takes a thirtieth or a three-hundredth of the time. The saving is that ratio, minus the
+// short steps before and after a contact.
 TEST(AdaptiveStep, ReachesTheErrorOfFixedStepsAtAFractionOfTheCost) {
   constexpr Real kSaved = 10;
   for (const Real stiffness : {1e4, 1e6}) {
@@ -90,7 +90,7 @@ TEST(AdaptiveStep, IsTheNominalOneWhereNothingAsksForLess) {
   const Scene scene = make_bounce(1e4, 0.02);
   Simulation fixed = make_simulation(scene);
   Simulation adaptive = make_simulation(make_adaptive(scene, 1e-3));
-  fixed.advance(10);  // from the 13th on, travel would ask for less: 0.05 m
+  fixed.advance(10);  // from the 13th step on, the travel limit of 0.05 m would apply
   const AdvanceReport report = adaptive.advance(10);
   EXPECT_EQ(report.steps, 10U);
   EXPECT_EQ(report.least_step, 0.02);
@@ -98,19 +98,19 @@ TEST(AdaptiveStep, IsTheNominalOneWhereNothingAsksForLess) {
   EXPECT_EQ(position_of(adaptive, 0), position_of(fixed, 0));
 }
 
-// A pile at rest must be stable, but has nothing to resolve.
+// A pile at rest needs stable steps only.
 TEST(AdaptiveStep, OfABodyAtRestIsOnlyStable) {
   constexpr Real kStiffness = 1e4;
   Scene scene = make_adaptive(make_bounce(kStiffness, 0.1), 1e-5);
   std::get<ParticleShape>(scene.bodies[0].shape).positions[0].z() = kReach - kGravity / kStiffness;
   Simulation simulation = make_simulation(scene);
   const AdvanceReport report = simulation.advance(20);
-  EXPECT_EQ(report.least_step, 0.1 / 6);  // 2 / omega = 0.02, less a margin of a tenth
+  EXPECT_EQ(report.least_step, 0.1 / 6);  // 2 / omega = 0.02, with a margin of a tenth
   EXPECT_NEAR(position_of(simulation, 0).z(), kReach - kGravity / kStiffness, 1e-12);
 }
 
-// An oscillator that starts at its turning point, of 100 radians, with a nominal step of one: the
-// tolerance is an error per radian.
+// An oscillator that starts at its turning point, for 100 radians, with a nominal step of one
+// radian. The tolerance is an error per radian.
 TEST(AdaptiveStep, KeepsTheToleranceFromTheFirstStepOn) {
   for (const IntegratorId integrator :
        {IntegratorId::velocity_verlet, IntegratorId::heun, IntegratorId::runge_kutta_4}) {
@@ -131,7 +131,7 @@ TEST(AdaptiveStep, KeepsTheToleranceFromTheFirstStepOn) {
   }
 }
 
-/// A lattice of h / 2 in a periodic box, compressed by a ninth and a little out of order.
+/// A lattice of spacing h / 2 in a periodic box, compressed by a ninth and slightly disturbed.
 Scene make_compressed_liquid(int dimensions) {
   constexpr Real kSpacing = 0.05;
   const bool is_plane = dimensions == 2;
@@ -151,7 +151,8 @@ Scene make_compressed_liquid(int dimensions) {
   return make_adaptive(scene, 1);
 }
 
-// Such sound grows by orders of magnitude with steps of 0.8 h / c, which are stable at rest.
+// Such sound waves grow by orders of magnitude with steps of 0.8 h / c, which are stable at rest
+// density.
 TEST(AdaptiveStep, OfACompressedLiquidIsStable) {
   for (const int dimensions : {2, 3}) {
     Simulation simulation = make_simulation(make_compressed_liquid(dimensions));
@@ -162,8 +163,8 @@ TEST(AdaptiveStep, OfACompressedLiquidIsStable) {
   }
 }
 
-// INT: nothing tunnels, and nothing is left to the guard, where a step at the nominal length would
-// carry a particle ten walls far.
+// INT: no particle passes a wall and the guard does not act, although a nominal step would move a
+// particle by ten wall thicknesses.
 TEST(AdaptiveStep, LetsNoProjectilePassAThinWall) {
   for (const IntegratorId integrator : kIntegrators) {
     Scene scene = make_scene(integrator, 0.01);
@@ -212,13 +213,13 @@ TEST(AdaptiveStep, LimitsTheTravelOfALiquid) {
   EXPECT_GT(report.greatest_step, 0.2 * kSupport / kSpeed);
 }
 
-// The stiff spring of this body needs resolving only where it swings.
+// The stiff spring of this body needs short steps only if it oscillates.
 TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
   scene.materials = {make_material("rubber")};
   BodyDescription body = make_body("pair", BodyKind::deformable, "rubber",
                                    make_particles({{0, 0, 0}, {1, 0, 0}, {1.1, 0, 0}}, 1), 0.01);
-  // The soft spring pulls with 0.1 N, and half of it goes on to the third particle.
+  // The soft spring pulls with 0.1 N, half of which acts on the third particle.
   body.springs = {{0, 1, {1, 0}, 0.9}, {1, 2, {1e4, 0}, 0.1 - 0.05 / 1e4}};
   scene.bodies = {body};
   const auto steps_of = [](const Scene& s) {
@@ -228,7 +229,7 @@ TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
   scene.bodies[0].springs[1].rest_length = 0.09;
   const std::uint64_t excited = steps_of(scene);
   EXPECT_LT(calm, 110U);  // 1.4 rad/s; omega_max = 141 rad/s is stable
-  const double steps = std::sqrt(2e4) / std::sqrt(24e-4);  // omega / z of 1 s
+  const double steps = std::sqrt(2e4) / std::sqrt(24e-4);  // omega / z for 1 s
   EXPECT_NEAR(static_cast<double>(excited), steps, 0.02 * steps);
 }
 

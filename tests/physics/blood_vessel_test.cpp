@@ -7,7 +7,7 @@
 #include "protocol/scene/scene_json.h"
 #include "tests/support/scenes.h"
 
-// The scene of the catalogue in which liquid presses on soft tissue.
+// The catalogue scene in which liquid presses on soft tissue.
 
 namespace vat::blood_vessel_test {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 using namespace test;
 
 constexpr Real kSpacing = 0.025;
-constexpr std::size_t kLayers = 3;  // of a wall
+constexpr std::size_t kLayers = 3;  // layers of a wall
 
-/// Height of the wall's layer, the first of which is the lowest, where it is nearest to x.
+/// Returns the height of a wall's layer near x. Layer 0 is the lowest.
 Real height_at(const BodyView& wall, std::size_t layer, Real x) {
   const std::size_t length = wall.positions.size() / kLayers;
   const auto row = wall.positions.subspan(layer * length, length);
@@ -44,7 +44,7 @@ TEST_F(BloodVessel, HoldsItsBlood) {
     const BodyView lower = body("lower wall");
     for (const Vec3& place : body("blood").positions) {
       if (place.x() < 0.1 || place.x() > 2.2) continue;  // between pump and outlet
-      // Beyond the middle layer it would be on its way out.
+      // Particles beyond the middle layer would be leaking.
       ASSERT_LT(place.z(), height_at(upper, 1, place.x())) << simulation_.time() << " s";
       ASSERT_GT(place.z(), height_at(lower, 1, place.x())) << simulation_.time() << " s";
     }

@@ -9,7 +9,7 @@
 #include "protocol/scene/scene_json.h"
 #include "tests/support/scenes.h"
 
-// Each scene of the catalogue, for the twenty seconds that it is made for.
+// Each catalogue scene, for its intended duration of twenty seconds.
 
 namespace vat::catalogue_scenes_test {
 namespace {
@@ -24,9 +24,9 @@ constexpr int kSeconds = 1;  // a hundred times slower
 constexpr int kSeconds = 20;
 #endif
 
-// The column of 0.8 m weighs 7850 Pa on its floor, which the gas equation of state answers at
-// rho / rho0 - 1 = p / (c^2 rho0) = 3.5 % with c = 15 m/s. On the average over the liquid that
-// leaves as much again for the impact of what falls.
+// The column of 0.8 m exerts 7850 Pa on its floor. The gas equation of state gives rho / rho0 - 1 =
+// p / (c^2 rho0) = 3.5 % with c = 15 m/s. The mean over the liquid is half of that, which leaves as
+// much again for impacts.
 constexpr Real kMaxCompression = 0.035;
 
 class CatalogueScene : public testing::TestWithParam<std::string> {};
@@ -49,11 +49,11 @@ TEST_P(CatalogueScene, RunsWithoutTheGuardAndStaysInItsVat) {
   }
   EXPECT_DOUBLE_EQ(simulation.time(), kSeconds);
   EXPECT_LT(mean_error, kMaxCompression);
-  // What has a rest to come to has come to it.
+  // Scenes that come to rest are at rest.
   if (scene.value().sleeping && kSeconds >= 20) {
     EXPECT_EQ(simulation.sleeping_body_count(), simulation.bodies().size());
   }
-  // A vat that stands still takes energy only, where nothing flows in.
+  // A vat at rest only dissipates energy if no liquid flows in.
   if (!scene.value().vat->motion && scene.value().emitters.empty()) {
     const Diagnostics end = simulation.diagnostics();
     EXPECT_LT(end.kinetic_energy + end.gravitational_energy,
@@ -70,7 +70,7 @@ std::vector<std::string> catalogue() {
   return names;
 }
 
-/// Names of tests have no hyphens.
+/// Returns the name of a test, which must not contain hyphens.
 std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
   std::string name = parameter.param;
   std::ranges::replace(name, '-', '_');

@@ -27,7 +27,7 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const IntegratorId integrator : kIntegrators) all.push_back({.integrator = integrator});
-  for (const Real damping : {0.0, 40.0, 100.0}) {  // the last is solved for
+  for (const Real damping : {0.0, 40.0, 100.0}) {  // the last is solved implicitly
     all.push_back({.law = {5000, damping, 0.5}});
   }
   for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
@@ -43,8 +43,8 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// Kicks along the line of centres at fixed positions, and drifts along the velocity at fixed
-/// velocities, conserve x x v. Friction between free particles has a couple.
+/// Forces along the line of centres at fixed positions, and drifts along the velocity at fixed
+/// velocities, conserve x x v. Friction between free particles exerts a couple.
 bool keeps_angular_momentum(const Case& c, BodyKind first, BodyKind second) {
   const bool can_spin = first == BodyKind::rigid || second == BodyKind::rigid;
   return (c.integrator == IntegratorId::velocity_verlet ||
@@ -80,7 +80,7 @@ struct MovingMass {
   Real mass;
   Vec3 velocity;
 };
-/// Free particles, and rigid bodies as a whole.
+/// Returns the free particles, and rigid bodies as a whole.
 std::vector<MovingMass> moving_masses(const Simulation& simulation) {
   std::vector<MovingMass> result;
   for (const BodyView& body : simulation.bodies()) {
@@ -96,8 +96,8 @@ std::vector<MovingMass> moving_masses(const Simulation& simulation) {
   return result;
 }
 
-// With x' = x + dt v and v' = v + dt a, x' x v' - x x v = dt x x a + dt v x v': the first terms
-// cancel in the sum over all, the second are what explicit Euler adds to the angular momentum.
+// With x' = x + dt v and v' = v + dt a, x' x v' - x x v = dt x x a + dt v x v'. The first terms
+// cancel in the sum over all bodies. The second terms are the error of explicit Euler.
 TEST(Conservation, ExplicitEulerGainsAngularMomentumAsTheorySays) {
   for (const BodyKind kind : kKinds) {
     SCOPED_TRACE(to_string(kind));

@@ -8,7 +8,7 @@
 #include "tests/support/momentum_watch.h"
 #include "tests/support/same_bits.h"
 
-// Liquids whose density includes walls and solids: weakly compressible and incompressible.
+// Liquids in which walls and solids take part: weakly compressible and incompressible.
 
 namespace vat::coupled_liquids_test {
 namespace {
@@ -17,7 +17,7 @@ using namespace test;
 
 constexpr Real kGravity = 9.81;
 
-/// Adaptive steps within a tick of `tick` seconds.
+/// A scene with adaptive steps within a tick of `tick` seconds.
 Scene make_liquid_scene(Real tick, Real spacing) {
   Scene scene = make_scene(IntegratorId::symplectic_euler, tick);
   scene.numerics.control = StepControl::adaptive;
@@ -27,8 +27,8 @@ Scene make_liquid_scene(Real tick, Real spacing) {
   return scene;
 }
 
-/// A column in the plane, `height` and `width` in spacings, in a vat that is `gap` spacings wider
-/// than it on each side, and lower by it.
+/// A two-dimensional column, `height` and `width` in spacings. The vat is wider by `gap` spacings
+/// on each side, and lower by `gap` spacings.
 Scene make_column(int width, int height, Real spacing, Real gap = 0) {
   Scene scene = make_liquid_scene(0.01, spacing);
   scene.dimensions = 2;
@@ -43,10 +43,10 @@ Scene make_column(int width, int height, Real spacing, Real gap = 0) {
   return scene;
 }
 
-/// Over `ticks`, watching after each.
+/// Maxima over the ticks of a run.
 struct Watched {
   Real mean_density_error = 0;  ///< mean over the ticks
-  Real top = 0;                 ///< the highest particle [m]
+  Real top = 0;                 ///< height of the highest particle [m]
   Real speed = 0;
   std::uint64_t undone_steps = 0;
 };
@@ -66,14 +66,15 @@ Watched watch(Simulation& simulation, int ticks) {
   return watched;
 }
 
-// Too close to the walls, by up to a third of a spacing: the liquid makes room and gets no speed.
+// The liquid is up to a third of a spacing too close to the walls. It expands without gaining
+// speed.
 TEST(Incompressible, StartsOverDenseWithoutAnExplosion) {
   constexpr Real kSpacing = 0.025;
   for (const Real gap : {-0.15, -0.3}) {
     Scene scene = make_column(12, 20, kSpacing, gap);
     Simulation simulation = make_simulation(scene);
     const Watched watched = watch(simulation, 100);
-    const Real height = 20.0 * 12 / (12 + 2 * gap) * kSpacing;  // of as much volume
+    const Real height = 20.0 * 12 / (12 + 2 * gap) * kSpacing;  // height with the same volume
     EXPECT_LT(watched.top, height + kSpacing) << gap;
     EXPECT_LT(watched.speed, 0.35 * std::sqrt(kGravity * height)) << gap;
     EXPECT_LT(simulation.diagnostics().mean_density_error, 1e-3) << gap;
@@ -93,8 +94,8 @@ class CoupledLiquids : public testing::TestWithParam<PressureSolver> {
   }
 };
 
-// Forces and shifts are opposite in every pair, so momentum is conserved to round-off. Shifts of
-// incompressible liquids conserve angular momentum as well as the density.
+// Forces and shifts of a pair are opposite, so momentum is conserved to round-off. Shifts of
+// incompressible liquids also conserve angular momentum, like the density.
 TEST_P(CoupledLiquids, KeepTheMomentumOfLiquidsAndSolids) {
   Simulation simulation = make_simulation(make_mixture());
   const MomentumWatch watch(simulation);
@@ -129,8 +130,8 @@ INSTANTIATE_TEST_SUITE_P(Solvers, CoupledLiquids,
                          testing::Values(PressureSolver::tait, PressureSolver::incompressible),
                          [](const auto& solver) { return std::string(to_string(solver.param)); });
 
-// The images of a particle alone do not push it: it bounces as at a face, in any phase of its
-// steps.
+// The images of a single particle exert no force on it. It rebounds from an edge as from a face, at
+// any phase of its steps.
 TEST(WeaklyCompressible, ParticleLeavesEdgesAndCornersAsFastAsItCame) {
   constexpr Real kSpacing = 0.1;
   constexpr Real kSound = 10;
@@ -165,7 +166,7 @@ TEST(Incompressible, GoesOnWithItsPressureWhereABodyIsAdded) {
   EXPECT_EQ(simulation.liquid_fields(water).value().pressure, before);
 }
 
-/// A ball of `density` over or in a pool of water as wide as three diameters.
+/// A ball of `density` above or in a pool of water that is three diameters wide.
 Scene make_ball_in_pool(Real density, Real height) {
   constexpr Real kSpacing = 0.05;
   Scene scene = make_liquid_scene(0.01, kSpacing);
@@ -184,7 +185,7 @@ Scene make_ball_in_pool(Real density, Real height) {
   return scene;
 }
 
-// Pressure and body are solved for together: however light, they do not fight.
+// Pressure and body motion are solved together, so bodies of any density are stable.
 TEST(Incompressible, IsStableWithBodiesOfAnyDensity) {
   for (const Real density : {10.0, 3000.0}) {
     const Scene scene = make_ball_in_pool(density, 0.3);
@@ -201,7 +202,7 @@ TEST(Incompressible, IsStableWithBodiesOfAnyDensity) {
   }
 }
 
-/// Notes whether damping was solved for.
+/// Records whether damping was solved implicitly.
 class SolveWatch final : public StageObserver {
  public:
   void stage_begins(std::string_view stage) override {
@@ -211,8 +212,8 @@ class SolveWatch final : public StageObserver {
   bool has_solved = false;
 };
 
-// A solve costs about a step: as the liquid gets thicker steps get shorter, down to half, and from
-// there on it is solved for.
+// An implicit solve costs about a step. With increasing viscosity, steps become shorter down to
+// half. Beyond that, damping is solved implicitly.
 TEST(Incompressible, SolvesForViscosityWhereStepsWouldBeLessThanHalf) {
   Real thin = 0;
   Real shortest_unsolved = 1;
@@ -235,7 +236,7 @@ TEST(Incompressible, SolvesForViscosityWhereStepsWouldBeLessThanHalf) {
   EXPECT_GT(shortest_solved, 0.9);
 }
 
-// A thrown drop, in 2 and 3 dimensions, against walls that move.
+// A drop thrown into a moving vat, in two and three dimensions.
 TEST(Incompressible, DropThrownIntoAMovingVatStaysInIt) {
   for (const int dimensions : {2, 3}) {
     constexpr Real kSpacing = 0.05;
@@ -252,7 +253,7 @@ TEST(Incompressible, DropThrownIntoAMovingVatStaysInIt) {
       EXPECT_EQ(simulation.advance(1).undone_steps, 0U);
       const Diagnostics now = simulation.diagnostics();
       EXPECT_EQ(now.particles_outside, 0U);
-      // The corrected places are the last ones: nothing moves the liquid after that.
+      // The corrected positions are final: nothing moves the liquid afterwards.
       ASSERT_NEAR(now.max_density_error, now.volume->places.greatest, 1e-9);
       ASSERT_LE(now.mean_density_error, scene.incompressible.density_tolerance + 1e-9);
       ASSERT_LE(now.max_density_error, 36 * scene.incompressible.density_tolerance + 1e-9);
@@ -260,7 +261,7 @@ TEST(Incompressible, DropThrownIntoAMovingVatStaysInIt) {
   }
 }
 
-// What is in a nozzle keeps the flow's velocity, whatever the pressure.
+// Liquid in a nozzle keeps the nozzle's velocity at any pressure.
 TEST(Incompressible, FlowsFromANozzleAndOutThroughADrain) {
   constexpr Real kSpacing = 0.025;
   constexpr Real kSpeed = 1;
@@ -294,7 +295,7 @@ TEST(Incompressible, FlowsFromANozzleAndOutThroughADrain) {
   EXPECT_GE(in_nozzle, 4U);
 }
 
-// What it solved is told.
+// The report contains the iterations and residuals of the solves.
 TEST(Incompressible, TellsWhatItsSolvesTookAndLeft) {
   Scene scene = make_column(12, 20, 0.025);
   scene.incompressible.divergence_tolerance = 1e-6;

@@ -6,7 +6,7 @@
 #include "tests/support/momentum_watch.h"
 #include "tests/support/same_bits.h"
 
-// Drops with both models of surface tension; LIQ-8 has periods and pressures of theory.
+// Drops with both models of surface tension. LIQ-8 compares periods and pressures with theory.
 
 namespace vat::drops_test {
 namespace {
@@ -20,7 +20,8 @@ constexpr Real kDensity = 1000;  // [kg/m^3]
 /// Speed of surface waves as long as the drop [m/s].
 const Real kCapillarySpeed = std::sqrt(kSigma / (kDensity * kRadius));
 
-/// The radius is `layers` spacings. Sound is 20 times as fast as surface waves.
+/// A scene whose drop has a radius of `layers` spacings. Sound is 20 times faster than surface
+/// waves.
 Scene make_wet_scene(SurfaceModel model, int dimensions, int layers, Real viscosity) {
   const Real sound = 20 * kCapillarySpeed;
   const Real support = (dimensions == 3 ? 2.5 : 3) * kRadius / layers;
@@ -46,7 +47,7 @@ BodyDescription make_drop(const char* name, Shape shape, Real spacing = kSpacing
   return {name, BodyKind::liquid, "water", std::move(shape), spacing};
 }
 
-/// Expects a run without guard events for this many times in which a wave crosses the radius.
+/// Runs for `crossings` times in which a wave crosses the radius. Expects no guard events.
 void advance_for(Simulation& simulation, Real crossings) {
   const Real steps = crossings * kRadius / kCapillarySpeed / simulation.step_size();
   EXPECT_TRUE(simulation.advance(static_cast<std::uint32_t>(std::lround(steps))).events.empty());
@@ -56,7 +57,7 @@ void set_angle(Scene& scene, const char* other, Real angle) {
   scene.interfaces = {{{"water", other}, {}, {}, angle}};
 }
 
-/// The half of a disc above z = 0, or below it.
+/// The half of a disc above or below z = 0.
 BodyDescription make_half_drop(bool above) {
   std::vector<Vec3> points;
   for (Vec3 p : make_lattice(2 * kLayers, 1, 2 * kLayers, kSpacing)) {
@@ -66,7 +67,7 @@ BodyDescription make_half_drop(bool above) {
                    make_particles(points, kDensity * kSpacing * kSpacing), kSpacing / 2);
 }
 
-/// Below z = 0, or above it, and fixed.
+/// A fixed slab below or above z = 0.
 BodyDescription make_slab(bool below) {
   BodyDescription slab{"slab", BodyKind::rigid, "stone",
                        BoxShape{{0, 0, below ? -0.025 : 0.025}, {0.4, kSpacing, 0.05}}, kSpacing};
@@ -74,14 +75,14 @@ BodyDescription make_slab(bool below) {
   return slab;
 }
 
-/// Height of the centre of mass over the root of the area, of a part of a disc that meets the floor
-/// at this angle.
+/// Returns the height of the centre of mass, divided by the square root of the area, of a part of a
+/// disc that meets the floor at this angle.
 Real cap_height(Real angle) {
-  const Real area = angle - std::sin(angle) * std::cos(angle);  // of radius 1
+  const Real area = angle - std::sin(angle) * std::cos(angle);  // for radius 1
   return (2 * std::pow(std::sin(angle), 3) / (3 * area) - std::cos(angle)) / std::sqrt(area);
 }
 
-/// The angle [degrees] of the drop of a scene, which rests on z = 0, by its shape.
+/// Returns the angle [degrees] of the scene's drop, which rests on z = 0, from its shape.
 Real rested_angle(const Scene& scene) {
   Simulation simulation = make_simulation(scene);
   advance_for(simulation, 30);
@@ -97,9 +98,9 @@ Real rested_angle(const Scene& scene) {
   return low * 180 / std::numbers::pi;
 }
 
-// With curvature the line of contact is spread over a support radius, a quarter of the drop's
-// radius, and half of that is 7 degrees of it. With cohesion it is an eighth of the radius, over
-// which the wall's pull changes: 1/8 of a radian at 60 degrees, and 9 degrees at 120.
+// With curvature, the contact line extends over a support radius, a quarter of the drop's radius.
+// Half of that is 7 degrees. With cohesion it is an eighth of the radius, over which the wall's
+// attraction changes: 1/8 of a radian at 60 degrees, and 9 degrees at 120.
 TEST(Drops, RestAtTheContactAngleOfAWall) {
   struct Case {
     SurfaceModel model;
@@ -127,7 +128,7 @@ TEST(Drops, RestAtTheContactAngleOfABody) {
   }
 }
 
-/// Whether a drop under a body falls off it.
+/// Returns whether a drop below a body falls off.
 bool falls(Real angle, Real gravity) {
   Scene scene = make_plane_scene(SurfaceModel::cohesion);
   scene.gravity = {0, 0, -gravity};
@@ -141,7 +142,7 @@ bool falls(Real angle, Real gravity) {
   return false;
 }
 
-// The drop weighs rho g pi R^2 / 2 and hangs from 2 sigma at most.
+// The drop weighs rho g pi R^2 / 2. At most 2 sigma hold it.
 TEST(Drops, HangUnderABodyThatTheyWet) {
   const Real greatest = 4 * kSigma / (kDensity * std::numbers::pi * kRadius * kRadius);
   EXPECT_FALSE(falls(45, 0.5 * greatest));
@@ -149,7 +150,7 @@ TEST(Drops, HangUnderABodyThatTheyWet) {
   EXPECT_TRUE(falls(135, 1.5 * greatest));
 }
 
-/// A drop that flies and turns.
+/// A drop that translates and rotates.
 BodyDescription make_turning_drop() {
   BodyDescription drop = make_drop("drop", SphereShape{Vec3::Zero(), kRadius});
   drop.velocity = {0.5 * kCapillarySpeed, 0, 0};

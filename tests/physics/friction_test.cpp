@@ -5,7 +5,8 @@
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/same_bits.h"
 
-// Friction in motion with every integrator and step control; RIG-7 has closed forms.
+// Friction during motion with every integrator and step control. RIG-7 compares it with closed
+// forms.
 
 namespace vat::friction_test {
 namespace {
@@ -14,10 +15,10 @@ using namespace test;
 
 constexpr Real kFriction = 0.3;
 constexpr Real kGravity = 9.81;   // [m/s^2]
-constexpr Real kStiffness = 1e5;  // [N/m], on a block of 1 kg
+constexpr Real kStiffness = 1e5;  // [N/m] for a block of 1 kg
 const Real kRate = std::sqrt(kStiffness);
 
-/// A block that slides on a rough floor: a free particle, for a rigid one rolls.
+/// A sliding block on a rough floor. It is a free particle, because a rigid particle would roll.
 Scene make_block_scene(IntegratorId integrator) {
   Scene scene = make_scene(integrator, 1e-4);
   scene.gravity = {0, 0, -kGravity};
@@ -40,8 +41,8 @@ TEST(Friction, StopsABlockAfterTheWayOfCoulomb) {
       scene.numerics.control = control;
       Simulation simulation = make_simulation(scene);
       advance_to(simulation, 1);
-      // The speed falls evenly to mu g / rate, then as exp(-rate t); Euler's methods are half a
-      // step off, 2 m/s * 5e-5 s.
+      // The speed decreases linearly to mu g / rate, then as exp(-rate t). The Euler methods differ
+      // by half a step, 2 m/s * 5e-5 s.
       const Real way =
           2.0 * 2.0 / (2 * kFriction * kGravity) + kFriction * kGravity / (2 * kRate * kRate);
       EXPECT_NEAR(position_of(simulation, 0).x(), way, 1.1e-4)
@@ -51,7 +52,7 @@ TEST(Friction, StopsABlockAfterTheWayOfCoulomb) {
   }
 }
 
-/// Velocity of the first of two balls of 1 kg after they have met, off their centres.
+/// Returns the velocity of the first of two balls of 1 kg after an off-centre collision.
 Vec3 glance_off(StepControl control, Real step) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
   scene.numerics.control = control;
@@ -69,9 +70,9 @@ Vec3 glance_off(StepControl control, Real step) {
 
 TEST(Friction, BetweenBodiesIsTheSameWithEveryStepControl) {
   const Vec3 exact = glance_off(StepControl::fixed, 1e-5);
-  EXPECT_LT(exact.z(), 0.95);  // of 1 m/s: what friction takes is not small
+  EXPECT_LT(exact.z(), 0.95);  // relative to 1 m/s: the effect of friction is not small
   for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
-    // The tolerance of varied steps, 1 %, of what friction takes.
+    // Variable steps have a tolerance of 1 % of the effect of friction.
     EXPECT_NEAR(glance_off(control, 1e-3).z(), exact.z(), 0.01 * (1 - exact.z()))
         << to_string(control);
   }

@@ -5,7 +5,7 @@
 
 #include "tests/support/scenes.h"
 
-// A grabbed body takes its energy from the spring that holds it, and from nothing else.
+// A grabbed body receives energy from the grab's spring only.
 
 namespace vat::grab_test {
 namespace {
@@ -15,32 +15,34 @@ using namespace test;
 constexpr Real kStep = 1e-3;
 constexpr std::uint64_t kHand = 1;
 constexpr Real kFrequency = 4 * std::numbers::pi;  // [rad/s] of the spring
-constexpr Real kMaxDampingRatio = 0.5;             // of the momentum of what is held, in a step
+constexpr Real kMaxDampingRatio = 0.5;  // momentum change of the grabbed particles per step
 
 Vec3 center_of(const Simulation& simulation) {
   return simulation.diagnostics().bodies[0].center_of_mass;
 }
 
-/// What a grab does to a body that starts at rest.
+/// The effect of a grab on a body at rest.
 struct Pull {
   Index particle;
-  Vec3 offset;     ///< of the target from the particle [m]
-  Real felt_mass;  ///< that the held particles show to a force on them [kg]
+  Vec3 offset;     ///< target relative to the particle [m]
+  Real felt_mass;  ///< effective mass of the grabbed particles [kg]
 };
 
-/// The spring is critically damped for the body's mass, or for a lower one where its damper would
-/// turn round what it holds. It starts with k |offset|^2 / 2 and its damper only takes: the body
-/// never has more energy, and its centre is never faster than the spring's 2 Hz times the offset.
-/// The spring's limit of force, a dozen times what it gives here, plays no part.
+/// Returns the initial energy of the spring, k
+/// offset
+/// ^2 / 2. The spring is critically damped for the body's mass, or for a smaller mass if its damper
+/// would reverse the particles' velocity. The damper only dissipates, so the body never has more
+/// energy. Its centre is never faster than 2 Hz times the offset. The limit of the grab's force is
+/// a dozen times the force here.
 Real first_energy(const Simulation& simulation, const Pull& pull) {
   const Real most = kMaxDampingRatio * pull.felt_mass / (2 * kFrequency * kStep);
   const Real mass = std::min(simulation.diagnostics().bodies[0].mass, most);
   return 0.5 * mass * kFrequency * kFrequency * pull.offset.squaredNorm();
 }
 
-/// Until `time`; the energy is looked at every ten steps. Velocity Verlet conserves an energy that
-/// differs from the true one by (omega dt)^2 / 8 at most: under 1 % here, where omega dt < 0.3 for
-/// all that moves.
+/// Expects the bound of energy until `time`, every ten steps. Velocity Verlet conserves an energy
+/// that differs from the true one by at most (omega dt)^2 / 8. This is below 1 %, since omega dt <
+/// 0.3.
 void expect_no_more_than_first_energy(Simulation& simulation, const Pull& pull, Real time) {
   const Vec3 target = position_of(simulation, 0, pull.particle) + pull.offset;
   const Real most = 1.01 * first_energy(simulation, pull);
@@ -53,7 +55,7 @@ void expect_no_more_than_first_energy(Simulation& simulation, const Pull& pull, 
   }
 }
 
-/// The held particle; a rigid body may go on turning about it.
+/// Expects that the grabbed particle is at rest. A rigid body may continue to rotate about it.
 void expect_rest_at(const Simulation& simulation, Index particle, const Vec3& target,
                     Real tolerance) {
   EXPECT_LT((position_of(simulation, 0, particle) - target).norm(), tolerance);
@@ -67,8 +69,8 @@ Scene make_scene_of(BodyDescription body) {
   return scene;
 }
 
-/// n^3 particles of 0.1 kg, 5 cm apart, each with springs to the 26 around it. The fastest wave
-/// turns at sqrt(2 * 26 / 3 * k / m) = 260 rad/s at most.
+/// n^3 particles of 0.1 kg, 5 cm apart, joined by springs to their 26 neighbours. The highest
+/// frequency is at most sqrt(2 * 26 / 3 * k / m) = 260 rad/s.
 Scene make_cube(int n) {
   const std::vector<Vec3> points = make_lattice(n, n, n, 0.05);
   BodyDescription body =
@@ -77,7 +79,7 @@ Scene make_cube(int n) {
   return make_scene_of(body);
 }
 
-/// Of the particles within three diameters, 0.15 m.
+/// Returns the mass of the particles within three diameters, 0.15 m.
 Real held_mass(const BodyView& body, Index particle) {
   Real mass = 0;
   for (std::size_t i = 0; i < body.positions.size(); ++i) {
@@ -87,14 +89,14 @@ Real held_mass(const BodyView& body, Index particle) {
   return mass;
 }
 
-/// Of a cube of side^3 particles by its middle, 10 cm along x.
+/// Returns a grab of the middle of a cube of side^3 particles, 10 cm along x.
 Pull pull_of_middle(const Simulation& cube, Index side) {
   const Index middle = side / 2 * (1 + side + side * side);
   return {middle, {0.1, 0, 0}, held_mass(cube.bodies()[0], middle)};
 }
 
-// 1382 kg on 12 kg that are held: a damper for the whole would turn their velocity round threefold
-// in a step.
+// The cube has 1382 kg, of which 12 kg are grabbed. A damper for the whole mass would reverse their
+// velocity threefold in a step.
 TEST(GrabbedBody, ALargeBlockIsNotThrown) {
   Simulation simulation = make_simulation(make_cube(24));
   const Pull pull = pull_of_middle(simulation, 24);
@@ -103,7 +105,7 @@ TEST(GrabbedBody, ALargeBlockIsNotThrown) {
   EXPECT_GT((center_of(simulation) - start).x(), 0.05);
 }
 
-// An odd side has a particle in the very middle, so that nothing turns the block.
+// A cube with an odd side has a particle at its centre, so the block does not rotate.
 TEST(GrabbedBody, ABlockComesToRestAtTheTarget) {
   Simulation simulation = make_simulation(make_cube(15));
   const Pull pull = pull_of_middle(simulation, 15);
@@ -114,13 +116,14 @@ TEST(GrabbedBody, ABlockComesToRestAtTheTarget) {
   EXPECT_LT((center_of(simulation) - center).norm(), 1e-3);
 }
 
-/// Eleven particles along x, 1 m.
+/// Eleven particles along x, 1 m long.
 BodyDescription make_rod() {
   return make_body("rod", BodyKind::rigid, "m", make_particles(make_lattice(11, 1, 1, 0.1), 0.2),
                    1e-3);
 }
 
-// A blow across the end of a uniform rod meets about a quarter of its mass: 1 / (1 / M + l^2 / I).
+// A transverse force at the end of a uniform rod acts on about a quarter of its mass: 1 / (1 / M +
+// l^2 / I).
 TEST(GrabbedBody, ARodIsPulledByItsEnd) {
   for (const Vec3& offset : {Vec3(0, 0.1, 0), Vec3(0.06, 0, -0.08)}) {
     Simulation simulation = make_simulation(make_scene_of(make_rod()));
@@ -132,7 +135,8 @@ TEST(GrabbedBody, ARodIsPulledByItsEnd) {
   }
 }
 
-// A lump of 1 kg with a particle of 1 g on an arm of 0.5 m, that meets a force with 5 g.
+// A body of 1 kg with a particle of 1 g on an arm of 0.5 m. The effective mass at the particle is 5
+// g.
 TEST(GrabbedBody, ALightParticleBesideAHeavyOneIsHeldGently) {
   ParticleShape shape = make_particles({{0, 0, 0}, {0.5, 0, 0}}, 1);
   shape.masses = {1, 1e-3};

@@ -9,8 +9,8 @@ namespace {
 
 constexpr Real kSpacing = 0.05;
 
-/// A block as stiff as steel falls into a pool, beside a soft one with explicit springs: its
-/// springs would bear steps of 7 microseconds.
+/// A block as stiff as steel falls into a pool, next to a soft block with explicit springs. Its
+/// springs would need steps of 7 microseconds.
 Scene make_pool(PressureSolver solver, StepControl control) {
   Scene scene = test::make_scene(IntegratorId::velocity_verlet, 5e-4);
   scene.numerics.tick = 0.01;

@@ -12,7 +12,7 @@ namespace {
 using namespace test;
 
 constexpr Real kSpacing = 0.02;
-constexpr Real kHalf = 0.16;  // of the whole tank's length
+constexpr Real kHalf = 0.16;  // half of the tank's length
 
 BodyDescription make_ball(const char* name, Real x) {
   BodyDescription ball{name, BodyKind::rigid, "wood", SphereShape{Vec3::Zero(), 0.04}, kSpacing};
@@ -21,7 +21,7 @@ BodyDescription make_ball(const char* name, Real x) {
   return ball;
 }
 
-/// The liquid of a tank from `low` to kHalf along x, without what a ball at +-0.05 m fills.
+/// The liquid of a tank from `low` to kHalf along x, without the volume of a ball at +-0.05 m.
 BodyDescription make_water(Real low) {
   std::vector<Vec3> points;
   for (Real x = low + kSpacing / 2; x < kHalf; x += kSpacing) {
@@ -43,14 +43,14 @@ Scene make_tank(Real low) {
   scene.gravity = {0, 0, -9.81};
   scene.default_interface = {0, 0};
   scene.materials = {make_liquid("water", 1000, {100, 0, 2.5 * kSpacing}), make_material("wood")};
-  scene.materials[0].liquid->artificial_viscosity = 0;  // liquid slips along walls
+  scene.materials[0].liquid->artificial_viscosity = 0;  // the liquid slips along walls
   scene.vat = Vat{{low, 0, 0}, {kHalf, kHalf, 0.4}, false, {}};
   scene.bodies = {make_water(low), make_ball("right", 0.05)};
   return scene;
 }
 
-// A wall of the vat is a mirror for liquid and solids: half a tank with a wall in the middle does
-// what a tank does that is the same on both sides.
+// A vat wall mirrors liquid and solids. Half a tank with a wall in the middle behaves like a
+// symmetric tank.
 TEST(LiquidSolids, MoveAtAWallAsBesideTheirMirrorImages) {
   Scene whole = make_tank(-kHalf);
   whole.bodies.push_back(make_ball("left", -0.05));

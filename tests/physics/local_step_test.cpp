@@ -10,7 +10,7 @@
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/same_bits.h"
 
-// Local step control: what it keeps, how exact it is, and what it saves.
+// Local step control: conservation, accuracy and savings.
 
 namespace vat::local_step_test {
 namespace {
@@ -22,7 +22,7 @@ Scene make_local(Scene scene) {
   return scene;
 }
 
-/// A block of liquid, a stiff deformable and a rigid body that collide in free space.
+/// A liquid block, a stiff deformable body and a rigid body that collide in free space.
 Scene make_collision(Real damping, Real viscosity) {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, 2e-3, viscosity);
   scene.default_interface = {5000, damping};
@@ -41,7 +41,7 @@ TEST(LocalStep, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
   expect_same_bits(make_collision(2, 1), 60, 40);
 }
 
-// With one level for all, local steps are velocity Verlet's but for rounding.
+// With one level, local steps equal velocity Verlet, except for rounding.
 TEST(LocalStep, OfOneLevelIsVelocityVerlet) {
   Scene scene = make_collision(0, 0);
   scene.numerics.step = 1e-4;
@@ -53,12 +53,12 @@ TEST(LocalStep, OfOneLevelIsVelocityVerlet) {
   const AdvanceReport report = local.advance(300);
   EXPECT_EQ(report.least_step, 1e-4);
   for (std::size_t b = 0; b < 3; ++b) {
-    // The viscosity, damping of the liquid, is taken at another moment.
+    // The viscous damping of the liquid is evaluated at another time.
     EXPECT_LT((position_of(local, b) - position_of(fixed, b)).norm(), b == 0 ? 1e-5 : 1e-6);
   }
 }
 
-/// A chain of four masses, undamped, with springs of 1, 30 and 1000 N/m.
+/// An undamped chain of four masses, with springs of 1, 30 and 1000 N/m.
 Scene make_chain(Real step) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
   scene.materials = {make_material("m")};
@@ -70,7 +70,8 @@ Scene make_chain(Real step) {
   return make_local(scene);
 }
 
-/// Where the chain's particles are after 1 s of steps of which particles 0 to 3 take 1, 1, 2 and 8.
+/// Returns the positions of the chain's particles after 1 s. Particles 0 to 3 take 1, 1, 2 and 8
+/// parts of a step.
 std::vector<Vec3> run_chain(int steps) {
   const Real dt = Real{1} / steps;
   const Scene scene = make_chain(0.01);
@@ -121,7 +122,7 @@ Real energy_of(const Simulation& simulation) {
   return d.kinetic_energy + d.gravitational_energy + d.elastic_energy + d.contact_energy;
 }
 
-/// Two masses on a swinging spring fall onto a stiff floor.
+/// Two masses on an oscillating spring that fall onto a stiff floor.
 Scene make_dumbbell_above_floor() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
   scene.numerics.tolerance = 1e-3;
@@ -135,8 +136,8 @@ Scene make_dumbbell_above_floor() {
   return make_local(scene);
 }
 
-// The floor's steps are a hundredth of the spring's. Each time that levels change, the spring's
-// kick that opens a step must be of the level that the step has.
+// The floor's steps are a hundredth of the spring's. If levels change, the kick at the start of a
+// step must belong to the level of the step.
 TEST(LocalStep, KeepsEnergyWhereLevelsChange) {
   Simulation simulation = make_simulation(make_dumbbell_above_floor());
   const Real before = energy_of(simulation);
@@ -147,7 +148,7 @@ TEST(LocalStep, KeepsEnergyWhereLevelsChange) {
   EXPECT_NEAR(energy_of(simulation), before, 2e-2 * 9.81);
 }
 
-// Bodies that pass their skins within a step meet what they could not have met at its start.
+// Bodies that leave their skins within a step interact with bodies beyond their reach at its start.
 TEST(LocalStep, LetsNoProjectilePassAThinWall) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
   scene.materials = {make_material("steel")};
@@ -163,12 +164,12 @@ TEST(LocalStep, LetsNoProjectilePassAThinWall) {
     const AdvanceReport report =
         simulation.advance(static_cast<std::uint32_t>(std::lround(250 / speed)));
     EXPECT_EQ(report.undone_steps, 0U);
-    // The wall weighs 810 000 times as much.
+    // The wall's mass is 810 000 times that of the projectile.
     EXPECT_NEAR(velocity_of(simulation, 1).x(), -3 * speed, 2e-3 * speed);
   }
 }
 
-/// A soft cube hangs on a stiff small one, held by a corner: 1000 and 8 particles.
+/// A soft cube hangs on a stiff small cube, which is fixed at a corner: 1000 and 8 particles.
 Scene make_soft_and_stiff(Real step) {
   constexpr Real kSpacing = 0.1;
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
@@ -197,9 +198,9 @@ Scene make_soft_and_stiff(Real step) {
   return scene;
 }
 
-// The stiff part would be unstable at steps above 5e-5, the soft part at such above 1e-3. Where
-// fine and coarse springs balance one another, here with some 2000 m/s^2 for the particles that
-// carry the soft cube, they do so over a coarse step: between kicks it moves by a dt^2 / 12.
+// The stiff part is unstable with steps above 5e-5, the soft part above 1e-3. The fine and coarse
+// springs balance over a coarse step. The particles that carry the soft cube accelerate with about
+// 2000 m/s^2, so they move by a dt^2 / 12 between kicks.
 TEST(LocalStep, SavesTheEvaluationsThatOnlyAStiffPartNeeds) {
   constexpr Real kTime = 0.2;
   const auto run = [](const Scene& scene, AdvanceReport& report) {

@@ -5,7 +5,7 @@
 
 #include "tests/support/scenes.h"
 
-// The exact discrete solution of each integrator; DEF-1 has orders, damping and energy.
+// The exact discrete solution of each integrator. DEF-1 covers orders, damping and energy.
 
 namespace vat::oscillator_test {
 namespace {
@@ -15,9 +15,9 @@ using namespace test;
 using Complex = std::complex<Real>;
 
 constexpr Real kOmega = 10;     // sqrt(100 / 1) [rad/s]
-constexpr Real kStretch = 0.2;  // at the start [m]
+constexpr Real kStretch = 0.2;  // initial extension [m]
 
-/// Mass 1 at x = 1.2 on a spring of stiffness 100 and length 1 to the origin.
+/// A mass of 1 at x = 1.2 on a spring of stiffness 100 and length 1 to the origin.
 Scene make_oscillator(IntegratorId integrator, Real step) {
   Scene scene = make_scene(integrator, step);
   scene.materials = {make_material("rubber")};
@@ -28,12 +28,12 @@ Scene make_oscillator(IntegratorId integrator, Real step) {
   return scene;
 }
 
-/// x - l + i v / omega, which turns as exp(-i omega t).
+/// Returns x - l + i v / omega, which rotates as exp(-i omega t).
 Complex phase_point(const Simulation& simulation) {
   return {position_of(simulation, 0, 1).x() - 1, velocity_of(simulation, 0, 1).x() / kOmega};
 }
 
-/// The Runge-Kutta methods' polynomials: a step multiplies the phase point by R(-i z).
+/// Returns the polynomial R(-i z) of a Runge-Kutta method. A step multiplies the phase point by it.
 Complex stability(IntegratorId integrator, Complex z) {
   switch (integrator) {
     case IntegratorId::explicit_euler:
@@ -47,7 +47,8 @@ Complex stability(IntegratorId integrator, Complex z) {
 
 TEST(Oscillator, RungeKuttaMethodsFollowTheirStabilityPolynomials) {
   constexpr Real kStep = 0.01;
-  constexpr int kSteps = 150;  // explicit Euler has grown to 0.42 by then, still short of the pivot
+  constexpr int kSteps =
+      150;  // explicit Euler reaches 0.42, which is less than the distance to the pivot
   for (const IntegratorId integrator :
        {IntegratorId::explicit_euler, IntegratorId::heun, IntegratorId::runge_kutta_4}) {
     Simulation simulation = make_simulation(make_oscillator(integrator, kStep));
@@ -59,8 +60,8 @@ TEST(Oscillator, RungeKuttaMethodsFollowTheirStabilityPolynomials) {
   }
 }
 
-// x(n+1) - 2 x(n) + x(n-1) = -z^2 x(n) for both, so sin(theta/2) = z/2 a step; their first steps
-// differ: x(1) = (1 - z^2/2) x(0) and (1 - z^2) x(0).
+// For both methods, x(n+1) - 2 x(n) + x(n-1) = -z^2 x(n), so sin(theta/2) = z/2 per step. Their
+// first steps differ: x(1) = (1 - z^2/2) x(0) and (1 - z^2) x(0).
 TEST(Oscillator, SymplecticMethodsTurnByTheirKnownAngle) {
   for (const Real step : {0.001, 0.01, 0.05, 0.1}) {
     const Real z = kOmega * step;
@@ -81,8 +82,8 @@ TEST(Oscillator, SymplecticMethodsTurnByTheirKnownAngle) {
   }
 }
 
-// x'' = g has a solution of second degree: exact for every method of order 2 or more, and Verlet;
-// the Euler methods miss by g dt t / 2, one on either side.
+// x'' = g has a quadratic solution, which is exact for every method of order 2 or more. The Euler
+// methods differ by g dt t / 2, one to either side.
 TEST(Oscillator, FreeFallIsExact) {
   Scene scene = make_scene(IntegratorId::heun, 0.01);
   scene.gravity = {0, 0, -9.81};

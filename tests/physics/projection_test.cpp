@@ -5,7 +5,7 @@
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/same_bits.h"
 
-// Contacts by projection in steps of 1/60 s and longer; RIG-9 has closed forms.
+// Projection contacts in steps of 1/60 s and longer. RIG-9 compares them with closed forms.
 
 namespace vat::projection_test {
 namespace {
@@ -135,7 +135,7 @@ TEST(Projection, DoesNotLimitAdaptiveSteps) {
   EXPECT_EQ(simulation.advance(60).steps, 60U);
 }
 
-// Where no contact is by a force, the solve for damping has none to ask for.
+// If no contact exerts a force, the damping solve has no contact terms.
 TEST(Projection, GoesWithDashpotsThatStepsDoNotResolve) {
   Scene scene = make_floor_scene(kFrame);
   scene.default_interface = projection();

@@ -6,7 +6,7 @@
 
 #include "tests/support/scenes.h"
 
-// What the walls of a sliding vat give to what they hold.
+// Forces of the walls of a sliding vat on its contents.
 
 namespace vat::sliding_vat_test {
 namespace {
@@ -19,7 +19,7 @@ constexpr Real kPeriod = 0.8;
 constexpr Real kRate = 2 * std::numbers::pi / kPeriod;
 constexpr InterfaceConstants kWall{400, 3};
 
-/// One particle that both end walls press from the start to the end.
+/// One particle that both end walls press all the time.
 Scene make_pressed_particle(BodyKind kind, IntegratorId integrator) {
   Scene scene = make_scene(integrator, 5e-4);
   scene.materials = {make_liquid("m", 1000, {100, 0, 0.1})};
@@ -29,8 +29,8 @@ Scene make_pressed_particle(BodyKind kind, IntegratorId integrator) {
   return scene;
 }
 
-/// Exact motion: y = x - u of m y'' + 2 c y' + 2 k y = -m u'' with u = A (1 - cos(W t)) / 2 starts
-/// at rest; two walls, so twice the constants.
+/// The exact motion: y = x - u of m y'' + 2 c y' + 2 k y = -m u'' with u = A (1 - cos(W t)) / 2
+/// starts at rest. There are two walls, so the constants are doubled.
 struct Motion {
   Real position;
   Real velocity;
@@ -43,7 +43,7 @@ Motion exact_motion(Real time) {
   const Complex forced =
       -kStroke / 2 * kRate * kRate / (omega2 - kRate * kRate + 2.0 * i * damping * kRate);
   const Complex root = -damping + i * std::sqrt(omega2 - damping * damping);
-  // The free part b e^(root t) cancels value and rate of the forced one at the start.
+  // The free part b e^(root t) cancels value and rate of the forced part at the start.
   const Real value = -forced.real();
   const Real rate = -(i * kRate * forced).real();
   const Complex free(value, -(rate - root.real() * value) / root.imag());
@@ -74,8 +74,8 @@ TEST(SlidingVat, GivesEveryKindTheMomentumOfTheClosedForm) {
   }
 }
 
-// The error of a method of order p falls by 2^p where the step is halved, though the forces depend
-// on time: each stage sees the vat at its own time.
+// The error of a method of order p decreases by 2^p if the step is halved, although the forces
+// depend on time. Each stage uses the vat's position at its time.
 TEST(SlidingVat, ObservedOrderIsThatOfEachMethod) {
   for (const auto& [integrator, order] :
        {std::pair(IntegratorId::explicit_euler, 1), std::pair(IntegratorId::symplectic_euler, 1),

@@ -5,16 +5,18 @@
 
 #include "tests/support/scenes.h"
 
-// Free rotation of bodies with equal and with very different moments; RIG-1 to RIG-3 have theory.
+// Free rotation of bodies with equal and very different moments. RIG-1 to RIG-3 compare it with
+// theory.
 
 namespace vat::top_test {
 namespace {
 
 using namespace test;
 
-/// Six points of 0.5 kg on the axes; their own radius of 1e-6 adds 1e-12 to the moments.
+/// Six points of 0.5 kg on the axes. Their radius of 1e-6 adds 1e-12 to the moments.
 Scene make_top(Real step, const Vec3& angular_velocity, const Vec3& inertia) {
-  // I_x = y^2 + z^2 with the squares of the three arms, as the two points on an axis weigh 1.
+  // I_x = y^2 + z^2 with the squares of the three arms, since the two points on an axis have a mass
+  // of 1.
   const Vec3 square = Vec3::Constant(inertia.sum() / 2) - inertia;
   std::vector<Vec3> points;
   for (int axis = 0; axis < 3; ++axis) {
@@ -28,9 +30,11 @@ Scene make_top(Real step, const Vec3& angular_velocity, const Vec3& inertia) {
   return scene;
 }
 
-/// Of a body with moments `equal` about two axes and `other` about the third, from its first rate:
-/// the rate turns in the body at (other - equal) / equal times its part along the third axis, and
-/// the body about L at |L| / equal.
+/// Returns the orientation of a body with moments `equal` about two axes and `other` about the
+/// third. In the body, the rate vector rotates at (other - equal) / equal times its component along
+/// the third axis. The body rotates about L at
+/// L
+/// / equal.
 Quat symmetric_top_at(Real time, const Vec3& rate, int axis, Real equal, Real other) {
   const Vec3 third = Vec3::Unit(axis);
   const Real excess = (other - equal) / equal * rate[axis];
@@ -39,8 +43,8 @@ Quat symmetric_top_at(Real time, const Vec3& rate, int axis, Real equal, Real ot
          Quat(Eigen::AngleAxis<Real>(-excess * time, third));
 }
 
-// Turns about L and about the third axis are all that there is: no step is too long. The points'
-// own radius changes the moments by 1e-12, and the phases by as much of some 50 rad.
+// The motion consists of rotations about L and about the third axis, so every step is exact. The
+// points' radius changes the moments by 1e-12, and the phases by the same fraction of about 50 rad.
 TEST(Top, SymmetricTopIsExactWithAnyStep) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const Real other : {0.3, 1.9}) {  // long and flat bodies
@@ -60,8 +64,8 @@ TEST(Top, SymmetricTopIsExactWithAnyStep) {
   }
 }
 
-/// Eleven particles of 1 mm along x, 0.1 m from one to the next, and one beside the middle. With no
-/// arm that one is left out.
+/// Eleven particles of 1 mm along x at intervals of 0.1 m, and one next to the middle at a distance
+/// of `arm`. With arm 0 the last is omitted.
 Scene make_thin_rod(Real arm, const Vec3& angular_velocity) {
   std::vector<Vec3> points = make_lattice(11, 1, 1, 0.1);
   if (arm > 0) points.push_back({0, arm, 0});
@@ -72,8 +76,8 @@ Scene make_thin_rod(Real arm, const Vec3& angular_velocity) {
   return scene;
 }
 
-// The moment about the rod is 4e-6 of the others: about it the least momentum turns it fast, and a
-// method that lets the energy drift speeds that up without end.
+// The moment about the rod is 4e-6 of the others. A small momentum about it causes a fast rotation.
+// If a method lets the energy drift, that rotation accelerates without limit.
 TEST(Top, ThinRodKeepsItsEnergy) {
   for (const Real arm : {0.0, 2e-3, 0.02}) {
     for (const Vec3& rate : {Vec3(0, 10, 0), Vec3(0, 6, 8), Vec3(20, 10, 0)}) {
@@ -84,7 +88,7 @@ TEST(Top, ThinRodKeepsItsEnergy) {
         const Diagnostics now = simulation.diagnostics();
         EXPECT_NEAR(now.kinetic_energy / start.kinetic_energy, 1, 1e-9)
             << "arm " << arm << ", rate " << rate.transpose() << ", time " << second;
-        // About the origin, from which rounding sets the centre of mass 1e-17 m apart.
+        // About the origin. Rounding moves the centre of mass 1e-17 m away from it.
         const Vec3 momentum = start.bodies[0].angular_momentum;
         EXPECT_LT((now.bodies[0].angular_momentum - momentum).norm(), 1e-16 * momentum.norm());
       }

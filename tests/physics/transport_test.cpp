@@ -6,7 +6,7 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/same_bits.h"
 
-// Liquids that fill their world, in which particles are moved with a transport velocity.
+// Liquids that fill their world. Their particles move with a transport velocity.
 
 namespace vat::transport_test {
 namespace {
@@ -53,8 +53,8 @@ TEST(Transport, KeepsMomentumAndBits) {
   expect_same_bits(scene, 20, 10);
 }
 
-// One vortex between four walls does what it does among its mirror images. Walls are slippery, so
-// without viscosity.
+// One vortex between four walls behaves like one of a lattice of mirror images. Walls are
+// frictionless, so there is no viscosity.
 TEST(Transport, WallsAreMirrors) {
   Scene periodic = make_vortices(0.05, 0, 0);
   periodic.pair_precision = PairPrecision::double_precision;
@@ -78,7 +78,7 @@ std::vector<std::string_view> stages_of(const Scene& scene) {
   return names;
 }
 
-// It costs nothing where there may be a free surface.
+// Scenes that may have a free surface have no transport stage.
 TEST(Transport, IsOfLiquidsThatFillTheirWorld) {
   using testing::Contains;
   using testing::Not;

@@ -7,8 +7,8 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
-// Solids and walls in a liquid so viscous that steps do not resolve it; LIQ-7 and LIQ-19 have
-// theory.
+// Solids and walls in a liquid whose viscosity the steps do not resolve. LIQ-7 and LIQ-19 compare
+// with theory.
 
 namespace vat::viscous_liquid_test {
 namespace {
@@ -20,7 +20,7 @@ constexpr Real kSpacing = 0.1;
 constexpr Real kSupport = 0.3;
 constexpr Real kViscosity = 2e4;
 
-/// A cube of honey, seven particles wide, with a stone of three in its middle.
+/// A cube of honey, seven particles wide, with a stone three particles wide in its middle.
 Scene make_honey(PressureSolver solver, bool fixed) {
   const bool is_tait = solver == PressureSolver::tait;
   Scene scene =
@@ -41,15 +41,15 @@ Scene make_honey(PressureSolver solver, bool fixed) {
   return scene;
 }
 
-/// 2 / 0.028 nu / h^2: steps of at most 2 over it are stable where viscosity is not solved for.
+/// The rate is 2 / 0.028 nu / h^2. Steps of at most 2 / rate are stable with explicit viscosity.
 TEST(ThickLiquids, StepsOfTheseTestsDoNotResolveIt) {
   EXPECT_GT(kStep * 2 / 0.028 * (kViscosity / 1000) / (kSupport * kSupport), 10);
 }
 
 class ThickLiquid : public testing::TestWithParam<PressureSolver> {};
 
-/// Runs a scene at rest but for the liquid. Expects that its energy never grows, and returns the
-/// share that is left.
+/// Runs a scene in which only the liquid moves. Expects that its energy never increases. Returns
+/// the remaining fraction.
 Real energy_left(const Scene& scene, int steps) {
   Simulation simulation = make_simulation(scene);
   const Real start = simulation.diagnostics().kinetic_energy;
@@ -67,7 +67,7 @@ TEST_P(ThickLiquid, AFixedStoneOnlyTakesItsEnergy) {
   EXPECT_LT(energy_left(make_honey(GetParam(), true), 100), 1e-2);
 }
 
-/// A closed box of no-slip walls around the honey.
+/// Adds a closed box of no-slip walls around the honey.
 Scene make_sticky_box(Scene scene) {
   scene.bodies.resize(1);
   scene.bodies[0].velocity.setZero();
@@ -76,7 +76,7 @@ Scene make_sticky_box(Scene scene) {
   return scene;
 }
 
-// In a box of the width L velocities decay with at least 3 pi^2 nu / L^2.
+// In a box of width L, velocities decay at a rate of at least 3 pi^2 nu / L^2.
 TEST(ThickLiquids, NoSlipWallsOnlyTakeEnergy) {
   Scene scene = make_sticky_box(make_honey(PressureSolver::tait, true));
   scene.materials[0].liquid->viscosity = 50;
@@ -104,7 +104,7 @@ TEST_P(ThickLiquid, AFreeStoneMovesWithItAndMomentumIsKept) {
   EXPECT_LT((of_stone - of_honey).norm(), 0.01 * of_honey.norm());
 }
 
-// Slip walls bear what presses against them, and nothing has to be put back behind them.
+// Slip walls carry the load, so no particle has to be moved back inside.
 TEST_P(ThickLiquid, SinksOntoASlipFloorAndStaysAboveIt) {
   Scene scene = make_honey(GetParam(), true);
   scene.gravity = {0, 0, -9.81};

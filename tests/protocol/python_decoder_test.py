@@ -1,4 +1,6 @@
-"""The frames of tests/golden decode to what stands beside them, damaged ones to their reasons."""
+"""Compares the decoded frames of tests/golden with their stored values, and damaged frames with
+their errors.
+"""
 
 import functools
 import json
@@ -32,7 +34,7 @@ def decoder_after(names: list[str]) -> Decoder:
 
 
 class Trace:
-    """Lists the outermost symbols that decoders read: (the symbol as FRAMES.md writes it, value)."""
+    """Lists the outermost symbols that a decoder reads, as (symbol in FRAMES.md, value)."""
 
     NAMES = {"residual_class": "class"}
 

@@ -1,4 +1,6 @@
-"""simulated_hash.py SCENES SCENE PROGRAM: a session and `vat simulate` reach the same bits."""
+"""simulated_hash.py SCENES SCENE PROGRAM: checks that a session and `vat simulate` give the same
+bits.
+"""
 
 import re
 import subprocess

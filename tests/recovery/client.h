@@ -15,15 +15,15 @@
 
 namespace vat::test {
 
-/// The server has gone.
+/// Reports that the server has closed the connection.
 class Gone : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A client that waits, ten seconds at most and longer under a sanitizer, for what it is asked for;
-/// throws std::runtime_error where that does not come, and where a session has not come back as it
-/// was; Gone where the connection ends before a reply.
+/// A client that waits up to ten seconds (longer with a sanitizer) for replies. Throws
+/// std::runtime_error if one does not arrive or a session differs after recovery. Throws Gone if
+/// the connection ends before a reply.
 class WaitingClient {
  public:
   explicit WaitingClient(std::uint16_t port) {
@@ -33,7 +33,7 @@ class WaitingClient {
   bool is_connected() const { return client_ != nullptr; }
   void close() { client_->close(); }
 
-  /// The whole reply.
+  /// Returns the complete reply.
   Json call(const std::string& method, const Json& params = Json::object()) {
     const Json request{{"jsonrpc", "2.0"}, {"id", ++id_}, {"method", method}, {"params", params}};
     const std::string text = request.dump();
@@ -48,8 +48,8 @@ class WaitingClient {
     if (!reply.contains("result")) throw std::runtime_error(method + ": " + reply.dump());
     return reply.at("result");
   }
-  /// The next message that has this id or event, or the event of that kind that came while another
-  /// message was waited for; {"closed": code} once the connection has ended.
+  /// Returns the next message with this id or event, or the event of this kind that arrived during
+  /// another wait; {"closed": code} after the end of the connection.
   Json wait(const Json& id_or_event) {
     if (id_or_event.is_string()) {
       if (auto passed = passed_.extract(id_or_event.get<std::string>()))
@@ -75,7 +75,7 @@ class WaitingClient {
   static script::Deadline deadline() {
     return std::chrono::steady_clock::now() + std::chrono::seconds(10 * kSlowdown);
   }
-  /// Of the first messages alone: a load sends the same again and again.
+  /// Returns the transcript of the first messages only, because a load repeats the same messages.
   script::Transcript* next_record() {
     return ++messages_ <= kMaxRecorded ? message_record() : nullptr;
   }
@@ -85,7 +85,7 @@ class WaitingClient {
     static std::atomic<int> last = 0;
     return std::to_string(++last);
   }
-  const std::string name_ = next_name();  ///< in the record
+  const std::string name_ = next_name();  ///< name in the transcript
   std::unique_ptr<script::Client> client_;
   std::map<std::string, Json> passed_;  ///< the last event of each kind
   int id_ = 0;

@@ -1,4 +1,4 @@
-// Data folders that cannot be used, and disks that fill up.
+// Unusable data folders, and disks that become full.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Ended {
   std::string output;
 };
 
-/// Runs a server that must not come up.
+/// Runs a server that must fail to start.
 Ended run_server(const std::string& data) {
   const std::string command =
       "'" VAT_PROGRAM "' serve --port 0 --scene rigid-stack --data '" + data + "' 2>&1";
@@ -45,7 +45,7 @@ TEST(Disk, DataThatCannotBeUsedEndsTheServerAtItsStart) {
   EXPECT_EQ(locked.status, 1);
   EXPECT_THAT(locked.output, HasSubstr("used is used by another server"));
 
-  const Ended read_only = run_server("/proc/vat");  // where nobody may write, root neither
+  const Ended read_only = run_server("/proc/vat");  // not writable, even for root
   EXPECT_EQ(read_only.status, 1);
   EXPECT_THAT(read_only.output, HasSubstr("/proc/vat cannot be written"));
 }
@@ -57,7 +57,7 @@ TEST(Disk, OneThatFillsUpRefusesCommandsAndLosesNothing) {
                             folder.file("data") + "'";
   std::string hash;
   {
-    // No file may grow beyond 600 kB; without the trap the system would end the program.
+    // No file may exceed 600 kB. Without the trap, the system would end the program.
     script::ServerProcess server("/bin/sh", {"-c", "trap '' XFSZ; ulimit -f 1200; " + serve});
     WaitingClient client(server.port());
     client.result("session.join");
@@ -67,11 +67,11 @@ TEST(Disk, OneThatFillsUpRefusesCommandsAndLosesNothing) {
       hash = client.result("session.hash").at("hash");
       reply = client.call("world.apply_force",
                           {{"body", 1}, {"force", {0, 0, 1e-6 * i}}, {"duration", 1e-3}});
-      if (i % 50 == 49) client.result("control.reset");  // so many forces at once are too many
+      if (i % 50 == 49) client.result("control.reset");  // too many simultaneous forces are refused
     }
     ASSERT_TRUE(reply.contains("error"));
     EXPECT_EQ(reply.at("error").at("data").at("kind"), "storage_failed") << reply;
-    EXPECT_EQ(client.result("session.hash").at("hash"), hash) << "it was carried out";
+    EXPECT_EQ(client.result("session.hash").at("hash"), hash) << "the command was executed";
   }
   script::ServerProcess server("/bin/sh", {"-c", serve});
   WaitingClient client(server.port());

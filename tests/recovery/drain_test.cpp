@@ -1,4 +1,4 @@
-// What SIGTERM does to a server that is in use.
+// The effect of SIGTERM on a server in use.
 
 #include <gtest/gtest.h>
 
@@ -40,10 +40,10 @@ TEST_F(Drain, ClientsAreToldAndNobodyNewComesAndItEndsWhenTheLastHasGone) {
     EXPECT_EQ(refused.at("error").at("data").at("kind"), "not_allowed");
     WaitingClient late(server.port());
     EXPECT_TRUE(!late.is_connected() || late.wait(0).at("closed") == 1013);
-    client.result("control.step", {{"ticks", 3}});  // who is there goes on
+    client.result("control.step", {{"ticks", 3}});  // connected clients continue
     hash = client.result("session.hash").at("hash");
     client.close();
-    EXPECT_EQ(status.get(), 0);  // long before the time is over
+    EXPECT_EQ(status.get(), 0);  // long before the time limit
   }
   script::ServerProcess server = start("0");
   WaitingClient client(server.port());

@@ -37,7 +37,7 @@ class Kill : public testing::Test {
          data, "--checkpoint-seconds", "0.005", "--log-level", "warn", "--threads", "2"}};
   }
 
-  /// A server under load, killed after a random number of answers.
+  /// Runs a server under load and kills it after a random number of replies.
   void live(int life, Told& told) {
     script::ServerProcess server = start();
     const auto listed = list_sessions(server.port());
@@ -49,7 +49,7 @@ class Kill : public testing::Test {
       }
     } else {
       const std::map<std::string, std::string> back(listed.begin(), listed.end());
-      EXPECT_EQ(back, names) << "in life " << life;
+      EXPECT_EQ(back, names) << "after kill " << life;
     }
     std::vector<std::thread> clients;
     for (const auto& [session, name] : names) {
@@ -97,12 +97,12 @@ TEST_F(Kill, AtAnyMomentLosesNothingThatWasAnswered) {
           << answered.method << " " << answered.params << " is lost from " << answered.session;
     }
     commands += told.answered().size();
-    // What was seen later than the session comes back to is not its history any more.
+    // States seen after the recovered position are no longer part of the history.
     for (const Seen& state : told.seen()) {
       if (state.position <= past.at(state.session).position) seen.push_back(state);
     }
   }
-  // The histories of all lives are one: each state that anybody saw is where it was seen.
+  // The histories after all kills are consistent: each state that a client saw is at its position.
   const Catalogue catalogue = Catalogue::open(scenes.path().string()).value();
   for (const auto& [session, past] : read_past(data)) {
     const auto hashes = hashes_of(past, catalogue);

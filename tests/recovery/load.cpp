@@ -10,14 +10,14 @@
 namespace vat::test {
 namespace {
 
-/// Throws Gone where there is no connection.
+/// Connects. Throws Gone if the connection fails.
 WaitingClient connect(std::uint16_t port) {
   WaitingClient client(port);
   if (!client.is_connected()) throw Gone("no connection");
   return client;
 }
 
-/// One client at work.
+/// The load of one client.
 class Load {
  public:
   Load(std::uint16_t port, std::string session, std::uint64_t name, Told& told)
@@ -33,7 +33,7 @@ class Load {
   }
 
  private:
-  /// A number that nobody has used before.
+  /// Returns a unique number.
   double mark(std::uint64_t round) const {
     return static_cast<double>(name_) + static_cast<double>(round) / 1048576;
   }
@@ -138,7 +138,7 @@ void load_session(std::uint16_t port, const std::string& session, std::uint64_t 
   try {
     Load(port, session, name, told).run();
   } catch (const Gone&) {
-    // as it must, once the server is killed
+    // expected when the server is killed
   } catch (const std::exception& fault) {
     told.add_fault(session + ": " + fault.what());
   }

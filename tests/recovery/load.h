@@ -8,21 +8,21 @@
 
 namespace vat::test {
 
-/// A state that a client was told of: its hash at a position of a session's history.
+/// A state that a client received: its hash at a position of a session's history.
 struct Seen {
   std::string session;
   std::uint64_t position = 0;
   std::string hash;
 };
 
-/// A command that was answered with success, and so must be in the log.
+/// A successful command, which must be in the log.
 struct Answered {
   std::string session;
   std::string method;
-  std::string params;  ///< as the log has them
+  std::string params;  ///< as in the log
 };
 
-/// What clients were told in one life of a server.
+/// Results that clients received from one server process.
 class Told {
  public:
   void add(Seen seen);
@@ -40,14 +40,13 @@ class Told {
   std::vector<std::string> faults_;
 };
 
-/// Joins a session of the server at a port and gives commands all the time, one after the other's
-/// answer, until the connection breaks. What it sends differs from what anybody else sends: `name`
-/// is its own.
+/// Joins a session of the server at `port` and sends commands, each after the reply to the previous
+/// one, until the connection ends. `name` is unique and makes the sent values unique.
 void load_session(std::uint16_t port, const std::string& session, std::uint64_t name, Told& told);
 
-/// Creates a session; its id. Throws where that fails.
+/// Creates a session and returns its id. Throws if that fails.
 std::string create_session(std::uint16_t port, const std::string& name, const std::string& scene);
-/// {id: name} of the sessions that run, once all have come back.
+/// Returns {id: name} of the running sessions after all are recovered.
 std::vector<std::pair<std::string, std::string>> list_sessions(std::uint16_t port);
 
 }  // namespace vat::test

@@ -12,18 +12,18 @@
 
 namespace vat::test {
 
-/// What is stored of a session whose server has been killed.
+/// The stored history of a session whose server was killed.
 struct StoredPast {
   std::string name;
   std::vector<LogEntry> log;
-  std::uint64_t position = 0;  ///< where it will come back
+  std::uint64_t position = 0;  ///< position after recovery
 };
 
-/// By the sessions' ids.
+/// Returns the stored histories by session id.
 std::map<std::string, StoredPast> read_past(const std::string& data_folder);
 
-/// All hashes that a session had at each position, from its first entry to its last position, by
-/// carrying out its whole log again, without a checkpoint.
+/// Returns all hashes of a session at each position, from its first entry to its last position.
+/// Executes its complete log without checkpoints.
 std::map<std::uint64_t, std::set<std::string>> hashes_of(const StoredPast& past,
                                                          const Catalogue& catalogue);
 

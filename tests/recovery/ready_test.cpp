@@ -1,4 +1,4 @@
-// What /readyz says of a server whose sessions are still to come back.
+// The reply of /readyz while sessions are being recovered.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ TEST(Readiness, IsToldOnceAllSessionsAreBack) {
     client.result("session.join");
     client.result("control.pause");
     for (int i = 0; i < 20; ++i) client.result("control.step", {{"ticks", 50}});
-    server.kill();  // without a checkpoint at its end
+    server.kill();  // without a final checkpoint
   }
   script::ServerProcess server = start();
   int waited = 0;
@@ -50,7 +50,7 @@ TEST(Readiness, IsToldOnceAllSessionsAreBack) {
     return false;
   };
   ASSERT_TRUE(wait_until(is_ready, 120s));
-  std::cout << "ready after it was asked " << waited << " times\n";
+  std::cout << "ready after " << waited << " refusals\n";
   WaitingClient client(server.port());
   const Json listed = client.result("session.list").at("sessions");
   ASSERT_EQ(listed.size(), 1U);

@@ -1,5 +1,7 @@
-"""check_tree.py ROOT: checks the checkout at ROOT by all rules. Lists the faults and exits 1 if
-there are any."""
+"""check_tree.py ROOT: checks the checkout at ROOT by all rules.
+
+Lists the faults, and exits with 1 if there are any.
+"""
 
 import sys
 

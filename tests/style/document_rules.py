@@ -1,4 +1,4 @@
-"""Rules that hold documents to what they describe. A rule is a function: Tree -> list of faults."""
+"""Rules that compare documents with their subjects. A rule is a function: Tree -> list of faults."""
 
 import posixpath
 import re
@@ -20,7 +20,7 @@ CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 
 
 def equations_in(text):
-    """Equations and definitions cited: "Boldt eqs. 5 and 6" gives "Boldt eq. 5", "Boldt eq. 6"."""
+    """Returns the cited equations: "Boldt eqs. 5 and 6" gives "Boldt eq. 5", "Boldt eq. 6"."""
     joined = COMMENT_BREAK.sub(" ", text)
     return {
         f"{source} {kind}. {number}"
@@ -30,7 +30,7 @@ def equations_in(text):
 
 
 def cited_in_core(tree):
-    """{(equation, file)} of the code."""
+    """Returns {(equation, file)} of the code."""
     return {
         (equation, path)
         for path, text in tree.matching(["core/"], [".h", ".cpp"])
@@ -39,7 +39,9 @@ def cited_in_core(tree):
 
 
 def listed_in_references(text):
-    """{(equation, file)} of the table: its rows start with an equation, then files in backquotes."""
+    """Returns {(equation, file)} of the table. Its rows start with an equation, then files in
+    backquotes.
+    """
     rows = [match.groups() for line in text.splitlines() if (match := ROW.match(line))]
     return {
         (equation, path)
@@ -89,7 +91,9 @@ def listed_groups(tree):
 
 
 def packages(tree):
-    """Script, image and list name the same groups, and the image installs in no other way."""
+    """The script, the image and the list name the same groups. The image uses no other
+    installation.
+    """
     dockerfile = tree.files.get("docker/Dockerfile", "")
     used = {
         group
@@ -114,7 +118,7 @@ def commands(tree):
 
 
 def rows_with_tests(text):
-    """The rows of the tables that have a column of tests: [(first cell, cell of tests)]."""
+    """Returns [(first cell, cell of tests)] for the rows of tables with a column of tests."""
     rows, has_tests = [], False
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")] if line[:1] == "|" else []
@@ -128,7 +132,7 @@ def rows_with_tests(text):
 
 
 def named_tests(tree):
-    """The tests that a table says hold a row are there, and each row has one, or "the build"."""
+    """The tests in a table exist, and each row has a test or "the build"."""
     tests = {
         f"{suite}.{name}"
         for _, text in tree.matching(["tests/"], [".cpp"])

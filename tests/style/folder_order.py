@@ -9,11 +9,11 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 FOLDER_ORDER = (
     # constants, containers, kernels
     "core", "core/support", "core/kernels",
-    # the values that a user describes, and the formulas of forces
+    # scene values, and formulas of forces
     "core/scene", "core/laws",
-    # from shapes to particles; which step and integrator suit a scene; checks
+    # sampling of shapes; step and integrator for a scene; checks
     "core/neighbours", "core/sampling", "core/numerics", "core/validation",
-    # the stages of a step without physics; the compiled scene; what is integrated
+    # stages of a step without physics; the compiled scene; integrated state
     "core/stage", "core/model", "core/state", "core/evaluation", "core/guard",
     # the methods
     "core/liquid/pairs", "core/liquid/gas", "core/liquid/tait",
@@ -25,10 +25,10 @@ FOLDER_ORDER = (
     # files, sockets and measurements, without sessions
     "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
-    # what a session consists of
+    # the parts of a session
     "server/clients", "server/frames", "server/people", "server/history", "server/session/ticks",
     "server/session/core", "server/session", "server/replay", "server/directory",
-    # what clients call
+    # the interface of clients
     "server/methods", "server/rpc",
     # the programs
     "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli",

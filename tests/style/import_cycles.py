@@ -1,4 +1,4 @@
-"""Files and folders of the client and the viewer import each other in one direction."""
+"""The rule that files and folders of client and viewer import each other in one direction."""
 
 import graphlib
 import posixpath
@@ -8,7 +8,7 @@ IMPORT = re.compile(r"^(?:import|export)\b[^;]*?\bfrom '(\.[^']+)'", re.MULTILIN
 
 
 def imports(tree):
-    """(importing file, imported file) of all relative imports."""
+    """Returns (importing file, imported file) of all relative imports."""
     for path, text in tree.matching(["web/"], (".ts",)):
         for target in IMPORT.findall(text):
             target = posixpath.normpath(posixpath.join(posixpath.dirname(path), target))

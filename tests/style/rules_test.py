@@ -1,4 +1,4 @@
-"""Each rule accepts a tree that keeps it and refuses each way to break it."""
+"""Tests that each rule accepts a valid tree and rejects each violation."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""shown_scene.py DOCUMENT PROGRAM: the one scene that a document shows is valid and runs."""
+"""shown_scene.py DOCUMENT PROGRAM: checks that the only scene in a document is valid and runs."""
 
 import re
 import subprocess

@@ -10,8 +10,8 @@ MAX_LINES = 400
 MAX_SOURCES = 25  # in one folder
 GENERATED = re.compile(r"// Written from .*; not to be edited\.\n")  # the first line of such files
 
-# What each layer may include: prefixes of "quoted" headers and of <angled> ones with a folder or
-# an ending of their own. Headers of the standard library have neither.
+# The includes that each layer permits: prefixes of "quoted" headers, and of <angled> headers with a
+# folder or an extension. Headers of the standard library have neither.
 LAYERS = {
     "core/": (("core/",), ("Eigen/", "hwy/")),
     "protocol/": (("core/", "protocol/"), ("nlohmann/", "tiny_obj_loader.h")),
@@ -26,7 +26,7 @@ ONLY_IN = {
     "websocketpp/": "server/transport/", "sqlite3.h": "server/storage/", "zstd.h": "server/storage/",
 }
 
-# Whatever lets the order of operations depend on threads, addresses or chance.
+# Constructs that make the order of operations depend on threads, addresses or randomness.
 NOT_DETERMINISTIC = re.compile(
     r"\bunordered_|\bstd::(?:reduce|transform_reduce|execution|async)\b|\brand\(|ffast-math"
     r"|\batomic<\s*(?:float|double|Real)\b"
@@ -41,7 +41,7 @@ SYSTEM_TIME = re.compile(r"\b(?:steady_clock|system_clock|SteadyClock)::now\b|\b
 WAITING = re.compile(r"\bsleep_(?:for|until)\b|\bGTEST_SKIP\b")
 MAY_WAIT = ("tests/bench/", "tests/support/wait.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
-# Spelt so that no pattern matches itself.
+# The spelling avoids that a pattern matches itself.
 DENIED = re.compile(
     r"\b(?:TO[D]O|FIX[M]E|X{3})\b|\bha[c]k(?:s|y|ish)?\b|(?<![\w./*-])/(?:work|root|home|tmp)/",
     re.IGNORECASE

@@ -1,10 +1,10 @@
-"""The text of a checkout, as the rules see it."""
+"""The text of a checkout, as used by the rules."""
 
 import os
 import subprocess
 from dataclasses import dataclass, field
 
-# Without git's list: what is ours in the checkout, apart from what is built or fetched there.
+# The project's entries in the checkout if git is unavailable, without built or downloaded ones.
 OUR_ENTRIES = {
     "core", "docker", "protocol", "server", "tests", "web", "vat", "CMakeLists.txt",
     "CMakePresets.json", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "README.md", ".ci",
@@ -15,7 +15,7 @@ TEXT_ENDINGS = (
     ".cpp", ".h", ".ts", ".js", ".css", ".html", ".py", ".sh", ".cmake", ".md", ".json", ".jsonl",
     ".yaml", ".txt",
 )
-RAW_FOLDER = "tests/fuzz/corpus/"  # bytes as a fuzzer gives them, whatever they are called
+RAW_FOLDER = "tests/fuzz/corpus/"  # arbitrary bytes of a fuzzer with any extension
 TEXT_NAMES = {
     "vat", "run", "Dockerfile", "LICENSE", ".clang-format", ".clang-tidy", ".editorconfig",
     ".gitignore", ".dockerignore", ".npmrc",
@@ -24,7 +24,7 @@ TEXT_NAMES = {
 
 @dataclass
 class Tree:
-    """Files by path, relative to the root, with `/`. `paths` has those too that are not text."""
+    """Files by path, relative to the root, with `/`. `paths` also contains binary files."""
 
     files: dict[str, str]
     paths: set[str] = field(default_factory=set)
@@ -33,31 +33,31 @@ class Tree:
         self.paths = self.paths | set(self.files)
 
     def matching(self, folders, endings):
-        """(path, text) of the files below one of `folders` that end in one of `endings`."""
+        """Returns (path, text) of the files in one of `folders` with one of `endings`."""
         for path, text in sorted(self.files.items()):
             if path.endswith(tuple(endings)) and path.startswith(tuple(folders)):
                 yield path, text
 
     def has(self, path):
-        """Whether there is a file or a folder of that name."""
+        """Returns whether there is a file or folder with this path."""
         return path in self.paths or any(p.startswith(path.rstrip("/") + "/") for p in self.paths)
 
 
 def tracked_paths(root):
-    """What git tracks and the folder has; None where git cannot tell."""
+    """Returns the existing files that git tracks, or None if git cannot list them."""
     if not os.path.exists(os.path.join(root, ".git")):
         return None
     command = ["git", "-C", root, "ls-files", "-z"]
     try:
         listed = subprocess.run(command, check=True, capture_output=True).stdout
-    except (OSError, subprocess.CalledProcessError):  # no git, or the folder is another user's
+    except (OSError, subprocess.CalledProcessError):  # no git, or another user's folder
         return None
     paths = os.fsdecode(listed).split("\0")
     return [path for path in paths if os.path.isfile(os.path.join(root, path))]
 
 
 def our_paths(root):
-    """The files below OUR_ENTRIES."""
+    """Returns the files below OUR_ENTRIES."""
     paths = []
     for folder, folders, names in os.walk(root):
         folders[:] = set(folders) - SKIPPED_FOLDERS
@@ -74,7 +74,7 @@ def is_text(path):
 
 
 def read_tree(root):
-    """The project's own files below `root`: a user may keep others beside them."""
+    """Reads the project's files below `root`. Other files of a user are excluded."""
     paths = tracked_paths(root)
     if paths is None:
         paths = our_paths(root)

@@ -22,8 +22,8 @@ inline void expect_written(bool is_written) {
   if (!is_written) throw std::runtime_error("no certificate");
 }
 
-/// Writes a key and a certificate of its own for it, which is good for an hour, for these names as
-/// OpenSSL writes them.
+/// Writes a key and a self-signed certificate that is valid for an hour. `names` are the
+/// alternative names in OpenSSL's format.
 inline void write_certificate(const std::string& certificate_file, const std::string& key_file,
                               const std::string& names = "DNS:localhost,IP:127.0.0.1") {
   const Owned<EVP_PKEY> key(EVP_EC_gen("P-256"), free_key);

@@ -6,7 +6,7 @@
 
 #include "core/simulation/simulation.h"
 
-/// Commands of users as values. Bodies are given by name; an unknown name stands for an unused id.
+/// User commands as values. Bodies are given by name. An unknown name becomes an unused id.
 namespace vat::test {
 
 using Command = std::function<Status(Simulation&)>;
@@ -43,7 +43,7 @@ inline Command move_grab(std::uint64_t hand, const Vec3& target) {
 inline Command end_grab(std::uint64_t hand) {
   return [=](Simulation& s) { return s.grab_end(hand); };
 }
-/// One command after the other; the first must succeed.
+/// Combines two commands. The first must succeed.
 inline Command operator+(const Command& first, const Command& second) {
   return [=](Simulation& s) {
     const Status status = first(s);

@@ -7,7 +7,7 @@
 
 namespace vat::test {
 
-/// A body of each kind in a vat, sampled from shapes that are not about their origins.
+/// A body of each kind in a vat, sampled from shapes that are not centred at their origins.
 inline Scene sampled_scene() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.pressure_solver = PressureSolver::tait;
@@ -24,7 +24,7 @@ inline Scene sampled_scene() {
     body.kind = kind;
     body.material = material;
     body.spacing = 0.05;
-    body.shape = BoxShape{{0.01, 0.02, 0.03}, Vec3::Constant(size)};  // not about the origin
+    body.shape = BoxShape{{0.01, 0.02, 0.03}, Vec3::Constant(size)};  // not centred at the origin
     body.position = center;
     scene.bodies.push_back(body);
   };
@@ -36,7 +36,7 @@ inline Scene sampled_scene() {
   return scene;
 }
 
-/// The same with a tap above, by which the pool grows.
+/// Adds a tap above, from which the pool grows.
 inline Scene scene_with_tap(Scene scene = sampled_scene()) {
   scene.emitters = {{.name = "tap",
                      .body = "pool",

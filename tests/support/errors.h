@@ -8,7 +8,7 @@
 
 namespace vat::test {
 
-/// "code path" of every error, one a line. Expects a message in each.
+/// Returns "code path" of every error, one per line. Expects a message in each.
 inline std::string errors_of(const Errors& errors) {
   std::string text;
   for (const Error& error : errors) {
@@ -17,7 +17,7 @@ inline std::string errors_of(const Errors& errors) {
   }
   return text;
 }
-/// The same of a result or status; empty if it has no error.
+/// Returns the same for a result or status; empty if it has no error.
 template <class Outcome>
 std::string errors_of(const Outcome& outcome) {
   return outcome.ok() ? "" : errors_of(outcome.errors());

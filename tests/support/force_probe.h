@@ -11,7 +11,7 @@
 
 namespace vat::test {
 
-/// The forces of one configuration: a scene compiled and its plan run, with nothing integrated.
+/// The forces of one configuration: compiles a scene and runs its plan without integration.
 class ForceProbe {
  public:
   explicit ForceProbe(const Scene& scene, TaskRunner* runner = nullptr) : runner_(runner) {
@@ -29,7 +29,7 @@ class ForceProbe {
   State& state() { return state_; }
   const State& state() const { return state_; }
   const Workspace& work() const { return work_; }
-  /// Of particle `i` of the body with this place in the scene [N].
+  /// Returns the force [N] on particle `i` of the body with index `body` in the scene.
   const Vec3& force(std::size_t body, Index i = 0) const {
     return state_.forces.particle[model_->bodies[body].particles.begin + i];
   }

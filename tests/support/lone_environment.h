@@ -10,13 +10,13 @@
 
 namespace vat::test {
 
-/// What a session needs that is run without a server. Its limits may change while it is in use.
+/// The environment of a session without a server. Its limits may change during use.
 class LoneEnvironment {
  public:
   explicit LoneEnvironment(Catalogue catalogue = {}, std::size_t threads = 1)
       : catalogue_(std::move(catalogue)), runner_(threads) {}
 
-  /// The same with another budget.
+  /// Returns the environment with another budget.
   SessionEnvironment with(ResourceBudget& resources) {
     return {catalogue_, limits,           best_instruction_set(), runner_,
             metrics_,   resources,        frame_threads_,         tokens_,

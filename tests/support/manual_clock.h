@@ -19,7 +19,7 @@
 
 namespace vat::test {
 
-/// A clock whose time passes only by calls of a test.
+/// A clock that only tests advance.
 class ManualClock final : public Clock {
  public:
   using Duration = SteadyClock::duration;
@@ -35,8 +35,8 @@ class ManualClock final : public Clock {
     return std::make_unique<ManualTimer>(*this, std::move(executor));
   }
 
-  /// Lets `time` pass. Runs the tasks that become due, one after the other, each at its own time.
-  /// Before and after, executors of timers finish the work that is queued.
+  /// Advances the time by `time`. Runs the due tasks in order, each at its time. Before and after,
+  /// the timers' executors finish their queued work.
   void advance(Duration time) {
     const SteadyClock::time_point end = now() + time;
     settle();
@@ -44,7 +44,7 @@ class ManualClock final : public Clock {
     const std::lock_guard lock(mutex_);
     now_ = std::max(now_, end);
   }
-  /// Lets time pass until the next task is due, and runs it. Throws if no task waits.
+  /// Advances to the next due task and runs it. Throws if no task is waiting.
   void advance_to_next() {
     settle();
     if (!run_next(SteadyClock::time_point::max())) {
@@ -52,19 +52,19 @@ class ManualClock final : public Clock {
     }
     settle();
   }
-  /// Lets `time` pass and queues the tasks that become due, without waiting for them.
+  /// Advances the time by `time` and queues the due tasks without waiting for them.
   void expire(Duration time) {
     const SteadyClock::time_point end = now() + time;
     while (const auto due = take_next(end)) boost::asio::post(due->executor, due->task);
     const std::lock_guard lock(mutex_);
     now_ = std::max(now_, end);
   }
-  /// Number of tasks that have become due.
+  /// Returns the number of tasks that have become due.
   std::size_t tasks_run() const {
     const std::lock_guard lock(mutex_);
     return tasks_run_;
   }
-  /// Number of tasks that wait for their time.
+  /// Returns the number of waiting tasks.
   std::size_t waiting() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::size_t>(std::ranges::count_if(
@@ -78,7 +78,7 @@ class ManualClock final : public Clock {
   struct Entry {
     boost::asio::any_io_executor executor;
     SteadyClock::time_point time{};
-    std::uint64_t order = 0;  // of tasks that are due at the same time
+    std::uint64_t order = 0;  // order of tasks that are due at the same time
     std::function<void()> task;
   };
 
@@ -106,7 +106,7 @@ class ManualClock final : public Clock {
       entry.task = std::move(task);
     }
     void cancel() override {
-      std::function<void()> dropped;  // ends without the mutex: it may own other timers
+      std::function<void()> dropped;  // destroyed without the mutex, since it may own other timers
       const std::lock_guard lock(clock_.mutex_);
       dropped.swap(clock_.timers_.at(this).task);
     }
@@ -115,7 +115,7 @@ class ManualClock final : public Clock {
     ManualClock& clock_;
   };
 
-  /// Takes out the first task due at `end` or before. Time passes until then.
+  /// Removes the first task due at `end` or before, and advances to its time.
   std::optional<Entry> take_next(SteadyClock::time_point end) {
     const std::lock_guard lock(mutex_);
     Entry* next = nullptr;
@@ -150,7 +150,7 @@ class ManualClock final : public Clock {
       throw std::runtime_error("an executor of a timer does not finish its work");
     }
   }
-  /// Twice: work of one executor may queue work of another.
+  /// Runs twice, because work of one executor may queue work of another.
   void settle() {
     for (int pass = 0; pass < 2; ++pass) {
       for (const auto& executor : executors()) run_on(executor, [] {});

@@ -8,8 +8,9 @@ namespace vat::test {
 
 inline constexpr Real kBlockSpacing = 0.05;  // [m]
 
-/// Two materials, "a" and "b", of which any body kind can be made. All springs and contacts have a
-/// ratio of damping to stiffness of 2 ms: explicit Euler is stable for steps below that ratio.
+/// Returns a scene with two materials, "a" and "b", that suit any body kind. All springs and
+/// contacts have a ratio of damping to stiffness of 2 ms. Explicit Euler is stable for steps below
+/// that ratio.
 inline Scene make_two_material_scene(IntegratorId integrator, Real step, Real viscosity = 0) {
   Scene scene = make_scene(integrator, step);
   for (const char* name : {"a", "b"}) {
@@ -20,7 +21,8 @@ inline Scene make_two_material_scene(IntegratorId integrator, Real step, Real vi
   return scene;
 }
 
-/// n^3 particles of 0.125 kg about `center`; a deformable one has springs to its near neighbours.
+/// n^3 particles of 0.125 kg around `center`. If the body is deformable, springs join near
+/// neighbours.
 inline BodyDescription make_block(std::string name, BodyKind kind, std::string material, int n,
                                   const Vec3& center, const Vec3& velocity) {
   std::vector<Vec3> points = make_lattice(n, n, n, kBlockSpacing);
@@ -35,7 +37,7 @@ inline BodyDescription make_block(std::string name, BodyKind kind, std::string m
   return body;
 }
 
-/// Two blocks of 27 particles that fly towards each other, off centre, and turn.
+/// Two rotating blocks of 27 particles that approach each other off-centre.
 inline Scene make_collision(BodyKind first, BodyKind second, IntegratorId integrator, Real step) {
   Scene scene = make_two_material_scene(integrator, step);
   scene.bodies = {make_block("first", first, "a", 3, {-0.09, 0.01, 0.02}, {1, 0.4, 0}),
@@ -43,8 +45,8 @@ inline Scene make_collision(BodyKind first, BodyKind second, IntegratorId integr
   return scene;
 }
 
-/// A body of each kind, 343 particles each, in contact with the floor of a sliding vat and with one
-/// another.
+/// A body of each kind with 343 particles, in contact with one another and the floor of a sliding
+/// vat.
 inline Scene make_crowd(IntegratorId integrator, Real step) {
   Scene scene = make_two_material_scene(integrator, step, 1);
   scene.gravity = {0, 0, -9.81};

@@ -6,7 +6,7 @@
 
 namespace vat::test {
 
-/// The momenta of a simulation when the object was made.
+/// The momenta of a simulation at construction.
 class MomentumWatch {
  public:
   explicit MomentumWatch(const Simulation& simulation)
@@ -14,8 +14,8 @@ class MomentumWatch {
         before_(totals_of(simulation.diagnostics())),
         motion_(motion_of(simulation)) {}
 
-  /// Expects that the simulation still has these momenta. Tolerances are relative to the sums over
-  /// all particles.
+  /// Expects that the momenta are unchanged. Tolerances are relative to the sums over all
+  /// particles.
   void expect_momentum(Real tolerance = 1e-12) const {
     const Vec3 now = totals_of(simulation_.diagnostics()).momentum;
     EXPECT_LT((now - before_.momentum).norm(), tolerance * motion_.momentum);

@@ -2,8 +2,8 @@
 
 namespace vat::test {
 
-/// How many times as long as in an ordinary build what is done may take here: more than once only
-/// under a sanitizer, which makes programs so much slower. tests/CMakeLists.txt has the values.
+/// Factor of time limits in this build, relative to an ordinary build. It exceeds 1 only with a
+/// sanitizer. tests/CMakeLists.txt sets it.
 inline constexpr int kSlowdown = VAT_SLOWDOWN;
 
 }  // namespace vat::test

@@ -2,8 +2,8 @@
 
 namespace vat::test {
 
-/// The scene file "pool": a little water (body 1), a ball (2) and a cube (3). A session of it costs
-/// little, so that the clients are the load. The space above the middle is free for further bodies.
+/// The scene file "pool": some water (body 1), a ball (2) and a cube (3). A session of it is cheap,
+/// so the clients dominate the load. The space above the middle is free for more bodies.
 inline constexpr const char* kPoolScene = R"({
   "format": "vat.scene/1", "name": "pool", "title": "Pool",
   "materials": [

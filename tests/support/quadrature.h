@@ -6,8 +6,8 @@
 
 namespace vat::test {
 
-/// Integral of f over [from, to] by composite Gauss-Legendre quadrature of three points in the root
-/// of r - from. The substitution removes logarithms and roots at `from`.
+/// Returns the integral of f over [from, to] by composite three-point Gauss-Legendre quadrature in
+/// sqrt(r - from). The substitution removes logarithms and roots at `from`.
 template <class F>
 Real integrate(Real from, Real to, F&& f) {
   constexpr int kPieces = 2000;

@@ -8,7 +8,7 @@
 
 namespace vat::test {
 
-/// What of a process is in memory. Throws std::runtime_error where there is none of this number.
+/// Returns the resident memory of a process. Throws std::runtime_error if there is no such process.
 inline double resident_bytes(const std::string& process = "self") {
   std::ifstream file("/proc/" + process + "/statm");
   double size = 0;

@@ -6,14 +6,14 @@
 
 #include "tests/support/scenes.h"
 
-/// Bodies that come to rest on a floor, and sleep there.
+/// Bodies that come to rest on a floor and sleep there.
 namespace vat::test {
 
 inline constexpr Real kRestRadius = 0.05;  ///< of particles [m]
-inline constexpr Real kCrateRest = 0.15;   ///< height of a crate's centre on the floor [m]
+inline constexpr Real kCrateRest = 0.15;   ///< height of a resting crate's centre [m]
 inline constexpr Real kCrateEdge = 0.3;    ///< [m]
 
-/// A floor on which contacts are projections, so that what rests does so to rounding.
+/// A floor with projection contacts, on which bodies come to rest to rounding.
 inline Scene make_resting_scene(Real step = 1.0 / 240) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, step);
   scene.numerics.tick = 4 * step;
@@ -25,7 +25,7 @@ inline Scene make_resting_scene(Real step = 1.0 / 240) {
   return scene;
 }
 
-/// A cube of 27 particles and 2.7 kg about `center`.
+/// A cube of 27 particles and 2.7 kg around `center`.
 inline BodyDescription make_crate(std::string name, const Vec3& center) {
   BodyDescription crate = make_body(std::move(name), BodyKind::rigid, "wood",
                                     make_particles(make_lattice(3, 3, 3, 0.1), 0.1), kRestRadius);
@@ -44,7 +44,7 @@ inline BodyDescription make_marble(std::string name, const Vec3& center) {
   return marble;
 }
 
-/// A stack that sleeps until a marble falls on it after 1.06 s, and another crate that sleeps on.
+/// A sleeping stack on which a marble falls after 1.06 s, and another crate that remains asleep.
 inline Scene make_struck_stack() {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("low", 0.0), make_marble("marble", {0.03, 0.02, 6}),
@@ -52,12 +52,12 @@ inline Scene make_struck_stack() {
   return scene;
 }
 
-inline constexpr Real kPoolSupport = 0.2;    ///< radius of the liquid's kernel [m]
+inline constexpr Real kPoolSupport = 0.2;    ///< support radius of the liquid [m]
 inline constexpr Real kPebbleRelease = 5;    ///< [s]
-inline constexpr Real kPebbleSplash = 5.75;  ///< the pebble is in the liquid [s]
+inline constexpr Real kPebbleSplash = 5.75;  ///< [s] the pebble is in the liquid
 
-/// A pool of two blocks of particles that carries a cork, and a pebble that falls from 3 m above
-/// the floor once both sleep.
+/// A pool of two blocks of particles that carries a cork. A pebble falls from 3 m above the floor
+/// after both sleep.
 inline Scene make_resting_pool(PressureSolver solver) {
   Scene scene = make_resting_scene(4e-3);
   scene.pressure_solver = solver;
@@ -80,14 +80,14 @@ inline bool is_asleep(const Simulation& simulation, const std::string& name) {
   return simulation.find_body(simulation.find_body(name).value())->is_asleep;
 }
 
-/// Goes on, tick by tick, until the body sleeps or `time` is reached.
+/// Advances tick by tick until the body sleeps or `time` is reached.
 inline void advance_to_sleep(Simulation& simulation, const std::string& name, Real time) {
   while (simulation.time() < time && !is_asleep(simulation, name)) {
     simulation.advance(simulation.steps_per_tick());
   }
 }
 
-/// The least distance of two bodies' particles [m].
+/// Returns the minimum distance between the particles of two bodies [m].
 inline Real distance_of(const BodyView& a, const BodyView& b) {
   Real least = 1e9;
   for (const Vec3& p : a.positions) {

@@ -7,8 +7,8 @@
 
 namespace vat::test {
 
-/// Expects the same bits from any number of threads after `before` steps, and from a snapshot then
-/// taken and restored, however the `after` steps that follow are asked for.
+/// Expects the same bits for any number of threads after `before` steps, and after restoring a
+/// snapshot from then. The following `after` steps are requested in different portions.
 inline void expect_same_bits(const Scene& scene, std::uint32_t before, std::uint32_t after) {
   Simulation serial = make_simulation(scene);
   serial.advance(before);

@@ -9,9 +9,8 @@
 
 namespace vat::test {
 
-/// Expects that the simulation goes on from the bytes of a snapshot as if nothing had been: the
-/// same hashes for `ticks` ticks, whatever `each` does to both before each one, and at the end the
-/// same bytes.
+/// Expects that a simulation restored from the bytes of a snapshot continues identically: the same
+/// hashes for `ticks` ticks, and the same bytes at the end. `each` acts on both before each tick.
 template <class Each>
 void expect_goes_on(Simulation& simulation, int ticks, Each&& each) {
   const std::vector<std::uint8_t> bytes = simulation.snapshot().to_bytes();

@@ -10,15 +10,15 @@
 
 #include "core/simulation/simulation.h"
 
-/// Small scenes as values. Bodies are given particle by particle, so that no test of the core
-/// depends on the sampler.
+/// Small scenes as values. Bodies consist of explicit particles, so that tests of the core do not
+/// depend on the sampler.
 namespace vat::test {
 
 inline constexpr std::array kIntegrators = {
     IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::velocity_verlet,
     IntegratorId::heun, IntegratorId::runge_kutta_4};
 
-/// No bodies, no gravity, no vat, and a tick of one step.
+/// A scene without bodies, gravity and vat. A tick has one step.
 inline Scene make_scene(IntegratorId integrator, Real step) {
   Scene scene;
   scene.name = "test";
@@ -60,7 +60,7 @@ inline BodyDescription make_body(std::string name, BodyKind kind, std::string ma
   return body;
 }
 
-/// Simple cubic lattice about the origin, x fastest.
+/// Returns a simple cubic lattice centred at the origin. x varies fastest.
 inline std::vector<Vec3> make_lattice(int nx, int ny, int nz, Real spacing) {
   std::vector<Vec3> points;
   for (int z = 0; z < nz; ++z) {
@@ -74,7 +74,7 @@ inline std::vector<Vec3> make_lattice(int nx, int ny, int nz, Real spacing) {
   return points;
 }
 
-/// Springs at rest between all particles nearer than `reach`.
+/// Returns springs at rest length between all particles closer than `reach`.
 inline std::vector<SpringDescription> join_near(const std::vector<Vec3>& points, Real reach,
                                                 const SpringConstants& constants) {
   std::vector<SpringDescription> springs;
@@ -86,7 +86,7 @@ inline std::vector<SpringDescription> join_near(const std::vector<Vec3>& points,
   return springs;
 }
 
-/// The scene must be valid.
+/// Creates a simulation. Throws if the scene is invalid.
 inline Simulation make_simulation(const Scene& scene, TaskRunner* runner = nullptr) {
   Result<Simulation> result = Simulation::create(scene, runner);
   if (!result) {
@@ -97,15 +97,15 @@ inline Simulation make_simulation(const Scene& scene, TaskRunner* runner = nullp
   return std::move(result).value();
 }
 
-/// Advances to `time`; throws where the guard had to step in, which no scene of a test that uses
-/// this may need.
+/// Advances to `time`. Throws if the guard acts, which must not happen in a scene that uses this
+/// function.
 inline void advance_to(Simulation& simulation, Real time) {
   const Real steps = (time - simulation.time()) / simulation.step_size();
   const AdvanceReport report = simulation.advance(static_cast<std::uint32_t>(std::lround(steps)));
   if (!report.events.empty()) throw std::runtime_error("the guard stopped a step");
 }
 
-/// State of one particle of the body with this place in the scene.
+/// Returns the position of a particle of the body with this index in the scene.
 inline Vec3 position_of(const Simulation& simulation, std::size_t body, std::size_t particle = 0) {
   return simulation.bodies().at(body).positions[particle];
 }

@@ -4,8 +4,8 @@
 
 namespace vat::test {
 
-/// Every kind of body in contact in a sliding vat, with gravity and viscosity: nothing that a step
-/// can compute is absent.
+/// Every kind of body in contact in a sliding vat, with gravity and viscosity, so that a step
+/// computes all its parts.
 inline Scene make_shaken_vat(IntegratorId integrator, Real step = 1e-3) {
   Scene scene = make_two_material_scene(integrator, step, 2);
   scene.gravity = {0, 0, -9.81};

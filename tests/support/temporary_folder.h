@@ -10,11 +10,11 @@
 
 namespace vat::test {
 
-/// A folder of its own for one test, removed with all it holds.
+/// A separate folder for one test. The destructor removes it with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const std::string pattern = "vat-test-" + std::string(6, 'X');  // as mkdtemp wants it
+    const std::string pattern = "vat-test-" + std::string(6, 'X');  // mkdtemp's pattern
     std::string name = (std::filesystem::temp_directory_path() / pattern).string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = name;
@@ -27,9 +27,9 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Path of a file in the folder.
+  /// Returns the path of a file in the folder.
   std::string file(const std::string& name) const { return (path_ / name).string(); }
-  /// Names of what is in the folder, sorted.
+  /// Returns the sorted names of the folder's entries.
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

@@ -1,7 +1,7 @@
-"""test_targets.py BUILD_FOLDER < chosen.json: the ninja targets that the chosen tests need.
+"""test_targets.py BUILD_FOLDER < chosen.json: prints the ninja targets of the chosen tests.
 
-Reads the output of `ctest --show-only=json-v1`. Prints one target a line. Prints nothing if no test
-is chosen or if the tests of a chosen program are unknown, so that everything must be built.
+Reads the output of `ctest --show-only=json-v1`. Prints one target per line. Prints nothing if no
+test is chosen or if the tests of a chosen program are unknown, so that everything must be built.
 """
 
 import json
@@ -20,7 +20,8 @@ def main():
     programs = {line.split(": ")[0] for line in listed.stdout.splitlines()
                 if "CXX_EXECUTABLE_LINKER" in line}
     paths = re.findall(re.escape(folder) + r"/([\w./-]+)", json.dumps(tests))
-    print("\n".join(sorted(programs.intersection(paths)) or ["vat"]))  # without any, ninja builds all
+    # Without targets, ninja builds all.
+    print("\n".join(sorted(programs.intersection(paths)) or ["vat"]))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@
 
 namespace vat::test {
 
-/// Runs blocks on `count` threads in whatever order they come to them, the last block first.
+/// Runs blocks on `count` threads in a varying order, starting with the last block.
 class ThreadRunner : public TaskRunner {
  public:
   explicit ThreadRunner(std::size_t count) : count_(count) {}

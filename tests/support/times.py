@@ -1,4 +1,4 @@
-"""times.py BUILD_FOLDER JUNIT.xml: which sources and tests take longest, and sums per suite.
+"""times.py BUILD_FOLDER JUNIT.xml: prints the slowest sources and tests, and sums per suite.
 
 Reads the times of ninja's log and of ctest's report. All times are wall seconds.
 """
@@ -13,7 +13,7 @@ LONGEST = 10
 
 
 def edges(folder):
-    """Seconds by output file; the log's last line about a file counts."""
+    """Returns seconds by output file. The last line about a file counts."""
     seconds = {}
     for line in (folder / ".ninja_log").read_text().splitlines()[1:]:
         start, end, _, output, _ = line.split("\t")
@@ -22,7 +22,7 @@ def edges(folder):
 
 
 def sources(folder, output):
-    """The sources that were compiled together, as one text."""
+    """Returns the sources that were compiled together, as one text."""
     unity = folder / output.removesuffix(".o")
     if "/Unity/" not in output or not unity.exists():
         return re.sub(r"CMakeFiles/[^/]*\.dir/|\.o$", "", output)
@@ -32,7 +32,7 @@ def sources(folder, output):
 
 
 def program(output):
-    """The library or program that an object belongs to, or nothing."""
+    """Returns the library or program of an object, or None."""
     found = re.search(r"CMakeFiles/(\w+)\.dir/", output)
     return found.group(1) if found else None
 

@@ -19,7 +19,7 @@ inline Totals totals_of(const Diagnostics& diagnostics) {
   return totals;
 }
 
-/// What drifts of the totals are measured against: sums over all particles.
+/// Reference values for drifts of the totals: sums over all particles.
 struct Motion {
   Real momentum = 0;          ///< of m |v| [kg m/s]
   Real angular_momentum = 0;  ///< of m |v| |x| [kg m^2/s]

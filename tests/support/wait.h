@@ -7,8 +7,8 @@
 
 namespace vat::test {
 
-/// Waits for a condition that no event announces: the state of another process, of a socket or of
-/// a thread without a notification. False if the condition is still false after `limit`.
+/// Waits for a condition without an event: the state of another process, of a socket, or of a
+/// thread without a notification. Returns false if the condition is still false after `limit`.
 template <class Condition>
 bool wait_until(const Condition& condition,
                 std::chrono::seconds limit = std::chrono::seconds(60 * kSlowdown)) {
@@ -21,8 +21,8 @@ bool wait_until(const Condition& condition,
   return true;
 }
 
-/// Lets real time pass. Only for tests whose subject is real time: peers of the transport, whose
-/// timers are those of its library, and the processor time of threads that wait.
+/// Waits for real time. Only for tests of real time: peers of the transport, whose library sets the
+/// timers, and the processor time of waiting threads.
 inline void pause(std::chrono::milliseconds time) {
   std::this_thread::sleep_for(time);
 }

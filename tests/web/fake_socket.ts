@@ -8,8 +8,8 @@ interface Sent {
 }
 
 /**
- * Writes what a client sends to the folder that $VAT_TRANSCRIPT names, where what all tests send is
- * checked against the schemas. What comes back is the tests' own, and not checked.
+ * Writes the client's messages to the folder of $VAT_TRANSCRIPT. A later test checks them against
+ * the schemas. Replies come from the tests and are not recorded.
  */
 function record(connection: number, sent: string): void {
   const folder = process.env.VAT_TRANSCRIPT;
@@ -21,9 +21,9 @@ function record(connection: number, sent: string): void {
 
 let sockets = 0;
 
-/** A WebSocket whose other end is the test. */
+/** A WebSocket whose peer is the test. */
 export class FakeSocket {
-  /** All that were made since `forget`, the newest last. */
+  /** All sockets since `forget`, the newest last. */
   static made: FakeSocket[] = [];
   static forget(): void {
     FakeSocket.made = [];
@@ -63,7 +63,7 @@ export class FakeSocket {
     this.onopen?.({} as never);
   }
 
-  /** The line breaks; 1006 is what a browser says where no close frame came. */
+  /** Breaks the connection; 1006 is the browser's code if there was no close frame. */
   break(close: SocketClose = { code: 1006, reason: '' }): void {
     this.onclose?.(close as never);
   }
@@ -76,12 +76,12 @@ export class FakeSocket {
     this.receive(JSON.stringify({ jsonrpc: '2.0', ...message }));
   }
 
-  /** Methods asked for so far, in order. */
+  /** The requested methods in order. */
   get methods(): string[] {
     return this.sent.map(({ method }) => method);
   }
 
-  /** Answers the newest request of this method, and lets what waits for it run. */
+  /** Replies to the newest request of this method, and runs the code that waits for it. */
   async answer(method: string, reply: { result: object } | { error: object }): Promise<void> {
     const request = this.sent.filter((sent) => sent.method === method).at(-1);
     if (request?.id === undefined) throw new Error(`nothing asked for ${method}`);

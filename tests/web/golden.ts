@@ -15,14 +15,14 @@ export interface GoldenBlock {
   orientation_bits?: number;
 }
 
-/** What a frame's bytes stand for once those before it are decoded, as the `.json` says. */
+/** The expected content of a frame after earlier frames are decoded, from the `.json` file. */
 export interface GoldenFrame {
   after: string[];
   header: Record<string, number | boolean | number[]>;
   blocks: GoldenBlock[];
 }
 
-/** One entry of bad.json: a good frame, the damage done to it, the reason to refuse it. */
+/** An entry of bad.json: a valid frame, its damage, and the expected error. */
 export interface BadFrame {
   name: string;
   after: string[];
@@ -33,7 +33,7 @@ export interface BadFrame {
   error: string;
 }
 
-/** Names of the good frames, without ending. */
+/** Names of the valid frames without extension. */
 export function goldenNames(): string[] {
   return readdirSync(kFolder)
     .filter((file) => file.endsWith('.bin'))
@@ -48,7 +48,7 @@ export function goldenFrame(name: string): GoldenFrame {
   return JSON.parse(readFileSync(`${kFolder}/${name}.json`, 'utf8')) as GoldenFrame;
 }
 
-/** One that has decoded these frames. */
+/** Returns a decoder that has decoded these frames. */
 export function decoderAfter(names: string[]): FrameDecoder {
   const decoder = new FrameDecoder();
   for (const name of names) decoder.decode(goldenBytes(name));

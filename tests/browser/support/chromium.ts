@@ -15,15 +15,15 @@ const kFlags = [
   '--enable-unsafe-swiftshader',
 ];
 
-/** Limit of every wait [ms]: reached only where something is wrong, also on a slow, busy machine. */
+/** Limit of every wait [ms]. Only a fault reaches it, also on a slow, busy machine. */
 export const kDeadlineMs = 120_000;
 
-/** Where the browser is, or should be. */
+/** Returns the path of the browser. */
 export function chromiumPath(): string {
   return process.env.CHROMIUM ?? '/usr/bin/chromium';
 }
 
-/** How Chromium is started. */
+/** Returns the launch options of Chromium. */
 export function launchOptions(): LaunchOptions {
   const executablePath = chromiumPath();
   if (!existsSync(executablePath)) throw new Error(`no browser at ${executablePath}; set CHROMIUM`);

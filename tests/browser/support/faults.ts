@@ -7,7 +7,7 @@ const kAxe = readFileSync(
   'utf8',
 );
 
-/** What axe finds in the page that is serious. */
+/** Returns the serious faults that axe finds in the page. */
 export async function faults({ page }: Viewer): Promise<string[]> {
   await page.evaluate(kAxe);
   return page.evaluate(async () => {
@@ -22,7 +22,7 @@ export async function faults({ page }: Viewer): Promise<string[]> {
   });
 }
 
-/** Words that are cut off at the side, or that stick out of the page. */
+/** Returns words that are truncated or extend beyond the page. */
 export async function cutOff({ page }: Viewer): Promise<string[]> {
   return page.evaluate(() => {
     const isShown = (element: Element): boolean =>

@@ -11,7 +11,7 @@ import type {
 } from '../../../web/client/index';
 import { RecordedSocket } from './transcript';
 
-/** A second client in the session, which sees what the page's commands do. */
+/** A second client in the session that observes the effects of the page's commands. */
 export class Observer {
   private readonly session: Session;
   private readonly waiting: ((event: Event) => void)[] = [];
@@ -61,7 +61,7 @@ export class Observer {
     return bodies[0];
   }
 
-  /** The next status that the session sends by itself, twice a second. */
+  /** Returns the next periodic status of the session, sent twice per second. */
   async nextStatus(): Promise<SessionStatus> {
     for (;;) {
       const event = await new Promise<Event>((resolve) => this.waiting.push(resolve));

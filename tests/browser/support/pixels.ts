@@ -2,16 +2,16 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Viewer } from './viewer';
 
-/** A small picture: red, green, blue of each pixel, 0 to 255. */
+/** A small picture: red, green and blue of each pixel, 0 to 255. */
 export interface Pixels {
   width: number;
   height: number;
   data: number[];
-  /** The same as a file, in base64. */
+  /** The picture as a file, in base64. */
   png: string;
 }
 
-/** A part of a picture, each from 0 to 1 from its upper left corner. */
+/** A part of a picture, in coordinates from 0 to 1 from the upper left corner. */
 export interface Region {
   left: number;
   top: number;
@@ -19,10 +19,10 @@ export interface Region {
   bottom: number;
 }
 
-/** Small enough that single pixels, which drivers round differently, average out. */
+/** Small, so that rounding differences of single pixels average out. */
 const kWidth = 96;
 
-/** The canvas as it is seen, scaled down. */
+/** Returns the visible canvas, scaled down. */
 export async function pixelsOf(viewer: Viewer): Promise<Pixels> {
   return scaledDown(viewer, await viewer.picture());
 }
@@ -32,7 +32,7 @@ async function scaledDown(viewer: Viewer, address: string): Promise<Pixels> {
   return page.evaluate(readPixels, [address, kWidth] as const);
 }
 
-/** Mean red, green and blue of a region, and the standard deviation of their sum. */
+/** Returns the mean red, green and blue of a region, and the standard deviation of their sum. */
 export function statisticsOf(
   { width, height, data }: Omit<Pixels, 'png'>,
   { left, top, right, bottom }: Region,
@@ -55,8 +55,8 @@ export function statisticsOf(
 }
 
 /**
- * Mean difference of a channel, in steps of 255, from the reference picture of this name. With
- * VAT_WRITE_PICTURES set, the picture becomes the reference.
+ * Returns the mean difference of a channel, in steps of 255, from the reference picture of this
+ * name. If VAT_WRITE_PICTURES is set, the picture becomes the reference.
  */
 export async function differenceFromReference(viewer: Viewer, name: string): Promise<number> {
   const path = fileURLToPath(new URL(`../pictures/${name}.png`, import.meta.url));

@@ -3,13 +3,13 @@ import type { AddressInfo } from 'node:net';
 import { once } from 'node:events';
 import WebSocket, { WebSocketServer } from 'ws';
 
-/** How a server differs from the real one. */
+/** Differences of a server from the real one. */
 export interface Ways {
-  /** It refuses every WebSocket. */
+  /** Refuses every WebSocket. */
   refuses?: boolean;
   /** Runs before the script of the page's worker. */
   worker?: string;
-  /** Methods that it does not know, as one that is older. */
+  /** Methods that it does not know, as an older server. */
   unknown?: readonly string[];
 }
 
@@ -19,7 +19,7 @@ interface Message {
   result?: { methods?: string[] };
 }
 
-/** Stands between a page and its server: hands out the page, and passes on messages, or does not. */
+/** A proxy between a page and its server. It serves the page, and forwards or holds messages. */
 export class Proxy {
   private isFrozen = false;
   private readonly pages = new Set<WebSocket>();
@@ -58,7 +58,7 @@ export class Proxy {
     this.http.close();
   }
 
-  /** Lines stay open, and nothing comes through any more; new ones are as dead. */
+  /** Keeps connections open without forwarding messages, including new connections. */
   freeze(frozen: boolean): void {
     this.isFrozen = frozen;
   }
@@ -89,7 +89,7 @@ export class Proxy {
     line.on('error', () => page.close());
   }
 
-  /** What the server would answer if it did not know the method. */
+  /** Returns the reply of a server that does not know the method. */
   private refusalOf(text: string): string | undefined {
     const { id, method } = JSON.parse(text) as Message;
     if (method === undefined || !this.ways.unknown?.includes(method)) return undefined;
@@ -99,7 +99,7 @@ export class Proxy {
     return JSON.stringify({ jsonrpc: '2.0', id, error });
   }
 
-  /** `server.info` does not name what is unknown either. */
+  /** Removes the unknown methods from `server.info`. */
   private lessened(text: string): string {
     const message = JSON.parse(text) as Message;
     const { unknown } = this.ways;

@@ -11,7 +11,7 @@ function program(): string {
   return path;
 }
 
-/** The environment without variables of the tests, which are no settings of a server. */
+/** Returns the environment without the tests' variables, which are not server settings. */
 function foreignEnvironment(): NodeJS.ProcessEnv {
   const all = Object.entries(process.env);
   return Object.fromEntries(all.filter(([name]) => !name.startsWith('VAT_')));
@@ -20,7 +20,7 @@ function foreignEnvironment(): NodeJS.ProcessEnv {
 /** The admin token of every server of the tests. */
 export const kAdminToken = 'the admin token of the browser tests';
 
-/** What serves the pages of a test file. */
+/** A server of the pages of a test file. */
 export interface Host {
   readonly url: string;
   start(): Promise<void>;
@@ -32,14 +32,14 @@ export class Server implements Host {
   private process: ChildProcess | undefined;
   private port = 0;
 
-  /** With these flags of `vat serve`. */
+  /** Uses these flags of `vat serve`. */
   constructor(private readonly flags: readonly string[] = []) {}
 
   get url(): string {
     return `http://127.0.0.1:${this.port}/`;
   }
 
-  /** Resolves once it listens: on any free port at first, later on the same again. */
+  /** Resolves after it listens: on any free port at first, later on the same port. */
   async start(): Promise<void> {
     const child = spawn(program(), ['serve', '--port', String(this.port), ...this.flags], {
       stdio: ['ignore', 'pipe', 'inherit'],
@@ -49,13 +49,13 @@ export class Server implements Host {
     this.port = await announcedPort(child);
   }
 
-  /** Resolves once it has ended by itself. */
+  /** Resolves after it has ended by itself. */
   async ended(): Promise<void> {
     const child = this.process;
     if (child && child.exitCode === null && child.signalCode === null) await once(child, 'exit');
   }
 
-  /** Ends it as a crash would: nobody is told. */
+  /** Kills it without notice, as a crash. */
   async kill(): Promise<void> {
     const child = this.process;
     if (!child || child.exitCode !== null || child.signalCode !== null) return;
@@ -76,7 +76,7 @@ async function announcedPort(child: ChildProcess): Promise<number> {
     }
   } finally {
     clearTimeout(timer);
-    child.stdout.resume(); // later output is read and forgotten
+    child.stdout.resume(); // discards later output
   }
   throw new Error('the server ended without saying where it is');
 }

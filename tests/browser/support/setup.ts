@@ -16,7 +16,7 @@ declare module 'vitest' {
 
 const kPage = fileURLToPath(new URL('../../../web/dist/index.html', import.meta.url));
 
-/** Starts the browser and the server of the whole suite. Returns what ends both. */
+/** Starts the browser and the server of the whole suite. Returns the function that ends both. */
 export default async function start({ provide }: TestProject): Promise<() => Promise<void>> {
   if (!existsSync(kPage)) throw new Error(`no ${kPage}: type npm --prefix web run build`);
   const server = new Server(['--max-scenes-per-second', '1000']);

@@ -13,14 +13,14 @@ export function sharedBrowser(): Promise<Browser> {
   return browser;
 }
 
-/** The server of the whole suite, which no test ends. */
+/** The server of the whole suite. Tests do not end it. */
 export const sharedServer: Host = {
   url: inject('server'),
   start: () => Promise.resolve(),
   kill: () => Promise.resolve(),
 };
 
-/** A new page, with an own profile. */
+/** A new page with a separate profile. */
 export async function openPage(url: string, look: Look = {}): Promise<Viewer> {
   return Viewer.open(url, look, await sharedBrowser());
 }

@@ -3,8 +3,8 @@ import { join } from 'node:path';
 import WebSocket from 'ws';
 import type { Page } from 'playwright-core';
 
-// What the pages and the observers say and hear is checked against the schemas, where
-// VAT_TRANSCRIPT names a folder.
+// Records the messages of pages and observers in the folder VAT_TRANSCRIPT. A later test checks
+// them against the schemas.
 
 const folder = process.env.VAT_TRANSCRIPT;
 const file = join(folder ?? '', `browser-${process.pid}.jsonl`);
@@ -15,7 +15,7 @@ if (folder) {
   rmSync(file, { force: true });
 }
 
-/** Of one connection: binary messages are frames, and no part of it. */
+/** The transcript of one connection. Binary messages are frames and are not recorded. */
 class Record {
   private readonly connection = `${++connections}`;
 
@@ -34,7 +34,7 @@ export function recordPage(page: Page): void {
   });
 }
 
-/** A socket of Node that records. */
+/** A Node socket that records its messages. */
 export class RecordedSocket extends WebSocket {
   private readonly record = new Record();
 

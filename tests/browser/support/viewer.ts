@@ -8,28 +8,28 @@ import type {
 import { kDeadlineMs, launchChromium } from './chromium';
 import { recordPage } from './transcript';
 
-/** A step of one colour channel below this may come from rounding. */
+/** Smaller differences of a colour channel may result from rounding. */
 const kSeenStep = 12;
 
-/** How the browser shows the page. */
+/** Display settings of the browser. */
 export type Look = Pick<
   BrowserContextOptions,
   'viewport' | 'colorScheme' | 'hasTouch' | 'isMobile' | 'deviceScaleFactor'
 > & {
   /** Runs before the page is loaded. */
   before?: (page: Page) => Promise<unknown>;
-  /** What the page hears is not all the server's own, and no transcript of it. */
+  /** Omits the transcript, because not all messages are the server's. */
   isUnrecorded?: boolean;
 };
 
-/** Of each browser, a page of no server: outside of the viewer's content policy. */
+/** A blank page per browser, outside the viewer's content policy. */
 const blankPages = new WeakMap<Browser, Promise<Page>>();
 
-/** The viewer's page with an own profile, as a user sees and operates it. */
+/** The viewer's page with a separate profile, as a user sees and operates it. */
 export class Viewer {
-  /** Faults of the page: errors on its console, requests that failed or went to another host. */
+  /** Faults of the page: console errors, failed requests, and requests to other hosts. */
   readonly problems: string[] = [];
-  /** While the server is stopped by a test, connections may fail. */
+  /** Permits failed connections while a test has stopped the server. */
   serverIsAway = false;
 
   private constructor(
@@ -50,7 +50,7 @@ export class Viewer {
     });
   }
 
-  /** In `shared`, or in a new browser that ends with the page. */
+  /** Opens the page in `shared`, or in a new browser that ends with the page. */
   static async open(
     url: string,
     { before, isUnrecorded, ...look }: Look = {},
@@ -71,12 +71,12 @@ export class Viewer {
     else await this.page.context().close();
   }
 
-  /** Keeps the page from drawing, as browsers do with a tab in the background, or lets it again. */
+  /** Stops the page from drawing, as browsers do with background tabs, or resumes it. */
   async brake(on: boolean): Promise<void> {
     await this.page.evaluate((value) => window.brake(value), on);
   }
 
-  /** Waits for an element that matches; the page says its state in data attributes. */
+  /** Waits for a matching element. The page publishes its state in data attributes. */
   async until(selector: string): Promise<void> {
     await this.page.waitForSelector(selector, { state: 'attached' });
   }
@@ -97,18 +97,21 @@ export class Viewer {
     await this.until(`#view[data-joined="true"][data-scene="${scene}"]`);
   }
 
-  /** A value that the canvas says about itself. */
+  /** Returns a data attribute of the canvas. */
   async said(name: string): Promise<string | undefined> {
     return this.page.locator('#view').evaluate((view, key) => view.dataset[key], name);
   }
 
-  /** The tick that the picture shows; waits for the first picture of a scene. */
+  /** Returns the tick of the picture. Waits for the first picture of a scene. */
   async tick(): Promise<number> {
     await this.until('#view[data-tick]');
     return Number(await this.said('tick'));
   }
 
-  /** A picture of the canvas as a data URL, without the hint and the pointers of others. */
+  /**
+   * Returns a picture of the canvas as a data URL, without the hint and other participants'
+   * pointers.
+   */
   async picture(): Promise<string> {
     await this.page.evaluate(() => {
       for (const id of ['hint', 'cursors']) document.getElementById(id)!.style.display = 'none';
@@ -120,7 +123,7 @@ export class Viewer {
     return `data:image/png;base64,${png.toString('base64')}`;
   }
 
-  /** A picture of the canvas once two that follow each other are the same. */
+  /** Returns a picture of the canvas after two successive pictures are equal. */
   async stillPicture(): Promise<string> {
     for (let last = ''; ;) {
       const picture = await this.picture();
@@ -129,7 +132,7 @@ export class Viewer {
     }
   }
 
-  /** A page of no server; it is for short uses and stays open. */
+  /** Returns a page without a server. It stays open for later uses. */
   blankPage(): Promise<Page> {
     const { browser } = this;
     const page = blankPages.get(browser) ?? browser.newPage();
@@ -137,13 +140,13 @@ export class Viewer {
     return page;
   }
 
-  /** The number of pixels that differ visibly between two pictures. */
+  /** Returns the number of pixels that differ visibly between two pictures. */
   async difference(first: string, second: string): Promise<number> {
     const page = await this.blankPage();
     return page.evaluate(countDifferences, [first, second, kSeenStep] as const);
   }
 
-  /** Puts the pointer over a particle: the first that a search from the top finds. */
+  /** Moves the pointer to a particle, the first in a search from the top. */
   async findParticle(): Promise<{ x: number; y: number }> {
     await this.until('#view[data-tick]');
     const point = await this.page.evaluate(searchParticle);
@@ -152,7 +155,7 @@ export class Viewer {
     return point;
   }
 
-  /** Clicks a particle until its numbers are shown: a click that takes long is a pull. */
+  /** Clicks a particle until its values are shown. A slow click would be a pull. */
   async clickParticle(): Promise<string> {
     const { x, y } = await this.findParticle();
     const card = this.page.locator('#inspector');

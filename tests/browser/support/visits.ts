@@ -8,17 +8,17 @@ import type { Look, Viewer } from './viewer';
 /** Limit and period of polls. */
 export const kInTime = { timeout: 120_000, interval: 50 };
 
-/** A phone, held upright. */
+/** A phone in portrait orientation. */
 export const kPhone: Look = {
   viewport: { width: 390, height: 800 },
   hasTouch: true,
   isMobile: true,
 };
 
-/** Layout as with one pixel per point, and a quarter of the pixels to draw. */
+/** The layout of one pixel per point, with a quarter of the pixels. */
 const kCoarse: Look = { deviceScaleFactor: 0.5 };
 
-/** Between two visits the session runs this scene, so that the page begins anew with the next. */
+/** The scene between two visits, so that the page restarts with the next. */
 const kNothing: Scene = { format: 'vat.scene/1', name: 'nothing', materials: [], bodies: [] };
 
 type Visit = Look & {
@@ -28,9 +28,9 @@ type Visit = Look & {
 };
 
 /**
- * A server for the tests of a file, a second client in its first session, and one page, which
- * `visit` takes from scene to scene. A page is replaced where a visit needs another kind of device,
- * and after a test that failed. A test fails if the page had a problem.
+ * A server for the tests of a file, a second client in its first session, and one page. `visit`
+ * loads scenes in the page. The page is replaced if a visit needs another kind of device, and after
+ * a failed test. A test fails if the page had a problem.
  */
 export class Visits {
   private client: Observer | undefined;
@@ -69,10 +69,10 @@ export class Visits {
     return this.page;
   }
 
-  /** Shows a scene that stands still at this tick. */
+  /** Shows a scene that is paused at this tick. */
   async visit(scene: string, { tick = 0, view = '', ...look }: Visit = {}): Promise<void> {
     const { observer } = this;
-    await observer.request('control.pause', {}); // also for the scenes to come
+    await observer.request('control.pause', {}); // also for later scenes
     await observer.request('scene.load', { scene: kNothing });
     await this.open(look);
     await this.viewer.untilScene('nothing');
@@ -85,12 +85,12 @@ export class Visits {
     await this.viewer.untilTick(tick, tick);
   }
 
-  /** Gives the view these settings, and the others their defaults. */
+  /** Sets these view settings and resets the others to their defaults. */
   async set(view: string): Promise<void> {
     await this.viewer.page.evaluate(changeView, view);
   }
 
-  /** The scene as it is now. */
+  /** Returns the present scene. */
   async scene(): Promise<Scene> {
     return (await this.observer.request('scene.get', { current: true })).scene;
   }
@@ -111,7 +111,7 @@ export class Visits {
   }
 }
 
-/** Opens one section of the panel alone; on a phone the sheet that has the sections opens first. */
+/** Opens only one section of the panel. On a phone, opens the sheet with the sections first. */
 export async function unfold({ page }: Viewer, id: string): Promise<void> {
   await page.evaluate((open) => {
     const sheet = document.getElementById('sheet')!;
@@ -123,7 +123,7 @@ export async function unfold({ page }: Viewer, id: string): Promise<void> {
   }, id);
 }
 
-/** Waits until the element with this id is shown and has these words. */
+/** Waits until the element with this id is visible and contains these words. */
 export async function says({ page }: Viewer, id: string, words: string): Promise<void> {
   await page.waitForFunction(
     ([where, what]) => {
@@ -134,7 +134,7 @@ export async function says({ page }: Viewer, id: string, words: string): Promise
   );
 }
 
-/** Runs in the browser: the page as after it was loaded. */
+/** Runs in the browser: restores the initial state of the page. */
 function closeAll(): void {
   for (const dialog of document.querySelectorAll('dialog')) dialog.close();
   document.getElementById('notices')!.replaceChildren();

@@ -10,10 +10,10 @@
 
 #include "protocol/frame/frame_codec.h"
 
-/// Frames that tests encode, and where the golden files are. Web tests read the same files.
+/// Frames that tests encode, and the golden files. Web tests read the same files.
 namespace vat::frame_cases {
 
-/// The same numbers everywhere, in [0, 1).
+/// A random generator with numbers in [0, 1) that are the same on all machines.
 class Chance {
  public:
   explicit Chance(std::uint32_t seed) : state_(seed) {}
@@ -26,7 +26,7 @@ class Chance {
   std::uint32_t state_;
 };
 
-/// A world of all kinds of bodies that moves, pours and drains.
+/// A world of all kinds of bodies that moves, emits and drains.
 class World {
  public:
   explicit World(std::uint32_t particles = 64, std::uint32_t seed = 1) : chance_(seed) {
@@ -43,7 +43,7 @@ class World {
     }
   }
 
-  /// So many thirtieths of a second: what lies together moves alike.
+  /// Advances by `frames` thirtieths of a second. Nearby particles move similarly.
   void advance(int frames) {
     for (int f = 0; f < frames; ++f, ++frame_) {
       for (Drop& drop : drops_) {
@@ -55,15 +55,15 @@ class World {
       turn_ += 0.05;
     }
   }
-  /// New drops at the tap.
+  /// Adds drops at the tap.
   void pour(std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) add_drop({0.1 + 0.05 * (i % 4), 0.9, 1.5});
   }
-  /// Drops within reach of the drain go.
+  /// Removes drops within `reach` of the drain.
   void drain(double reach) {
     std::erase_if(drops_, [&](const Drop& drop) { return drop.position.x() < reach; });
   }
-  /// Nothing but time goes on.
+  /// Advances the time only.
   void wait(int frames) { frame_ += frames; }
   std::size_t drop_count() const { return drops_.size(); }
 
@@ -152,7 +152,7 @@ inline GridFrame part_of(const GridFrame& all, const FrameSelection& selection) 
   return part;
 }
 
-/// A frame of a stream, and the earlier ones of it that it refers to.
+/// A frame of a stream, and the earlier frames that it refers to.
 struct Step {
   std::string name;
   GridFrame frame;
@@ -172,7 +172,7 @@ inline std::vector<std::uint8_t> encode(const Stream& stream, std::size_t index)
   return {bytes.begin(), bytes.end()};
 }
 
-/// Of one client: everything that may come to it.
+/// A stream of one client that contains everything a client can receive.
 inline Stream moving_stream() {
   World world;
   const FrameScale scale = plain_scale();
@@ -204,7 +204,7 @@ inline Stream moving_stream() {
   return stream;
 }
 
-/// Frames "v2-NAME", "v2-NAME-one" and "v2-NAME-two".
+/// Returns the frames "v2-NAME", "v2-NAME-one" and "v2-NAME-two".
 inline Stream attribute_stream(const std::string& name, const FrameScale& scale) {
   World world(40, 5);
   Stream stream;
@@ -222,7 +222,8 @@ inline Stream attribute_stream(const std::string& name, const FrameScale& scale)
   return stream;
 }
 
-/// No blocks; and every field at its greatest, the grid's last positions and ones outside it.
+/// Returns frames without blocks, with every field at its maximum, with positions at the ends of
+/// the grid and outside it.
 inline Stream edge_stream() {
   PublishedState empty;
   empty.header.number = 1;
@@ -231,7 +232,7 @@ inline Stream edge_stream() {
   FrameHeader& header = state.header;
   header.playing = header.slow = true;
   header.epoch = header.number = 0xffffffffU;
-  header.tick = (std::uint64_t{1} << 53) - 1;  // the greatest that JSON readers keep exactly
+  header.tick = (std::uint64_t{1} << 53) - 1;  // the largest integer that JSON readers keep exactly
   header.time = 1e12;
   header.published = 4e9;
   header.real_time_factor = 3.0e38F;
@@ -257,7 +258,7 @@ inline std::string golden_path(const std::string& file) {
   return std::string(VAT_SOURCE_DIR) + "/tests/golden/frames/" + file;
 }
 
-/// Empty where the file cannot be read.
+/// Returns the content of a file; empty if it cannot be read.
 inline std::string read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

@@ -11,7 +11,7 @@ namespace {
 
 using namespace frame_cases;
 
-/// The first three, and accelerations where frames have them.
+/// Returns the first three values, and the accelerations if frames have them.
 template <class T>
 std::vector<T> told(const FrameScale& scale, const ByAttribute<T>& values) {
   return {values.begin(), scale.attribute_quanta[3] > 0 ? values.end() : values.end() - 1};
@@ -59,7 +59,7 @@ Json blocks_to_json(const GridFrame& frame) {
   return blocks;
 }
 
-/// What a decoder must give, and what it must have decoded before.
+/// Returns the expected output of a decoder, and the frames that it must decode before.
 Json description_of(const Stream& stream, std::size_t index) {
   Json before = Json::array();
   for (std::size_t i = 0; i < index; ++i) before.push_back(stream[i].name);
@@ -117,7 +117,7 @@ std::vector<std::uint8_t> from_hex(const std::string& hex) {
   return bytes;
 }
 
-/// A good frame with the damage that an entry of bad.json describes.
+/// Returns a valid frame with the damage of an entry of bad.json.
 std::vector<std::uint8_t> damaged(const Json& entry) {
   std::vector<std::uint8_t> bytes = golden_bytes(entry.at("base").get<std::string>());
   if (entry.contains("keep")) bytes.resize(entry.at("keep").get<std::size_t>());

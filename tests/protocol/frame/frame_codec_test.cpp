@@ -20,7 +20,7 @@ std::string code_of(const Result<T>& frame) {
   return frame.ok() ? "" : frame.errors().front().code;
 }
 
-/// One that has decoded the first frames of a stream.
+/// Returns a decoder that has decoded the first frames of a stream.
 FrameDecoder decoder_after(const Stream& stream, std::size_t count) {
   FrameDecoder decoder;
   for (std::size_t i = 0; i < count; ++i) EXPECT_TRUE(decoder.decode(encode(stream, i)).ok());
@@ -54,13 +54,14 @@ TEST(Rans, GivesBackWhatWasPut) {
   EXPECT_TRUE(decoder.is_at_start());
   EXPECT_EQ(decoder.bytes_left(), 0U);
   EXPECT_FALSE(decoder.ended_early());
-  // States hold at most 31 bits, of which a whole word is not spent; 0.1 % for whole frequencies.
+  // States hold at most 31 bits, and a partial word remains. 0.1 % accounts for integer
+  // frequencies.
   EXPECT_NEAR(8.0 * static_cast<double>(bytes.size()), bits, 3 * 31 + bits / 1000);
 }
 
-// The tables are those of a logistic distribution around the middle of the place: no part of it is
-// off by more than its symbol's own 4096th, what these take from all, and the rounding of the
-// table's steps.
+// The tables are those of a logistic distribution around the middle of the symbol. Each frequency
+// may differ by the 4096th reserved for its symbol, by the total of these reserves, and by rounding
+// of the table's steps.
 TEST(ResidualTables, AreLogistic) {
   for (std::uint32_t t = 0; t < residuals::kTables; ++t) {
     const double scale = 0.045 * std::pow(2, static_cast<double>(t) / 4);
@@ -77,7 +78,7 @@ TEST(ResidualTables, AreLogistic) {
         ASSERT_EQ(range & 0xffff, start);
         ASSERT_GE(frequency, 1U);
         start += frequency;
-        if (r > radius) continue;  // the escape has what is left
+        if (r > radius) continue;  // the escape symbol has the remainder
         const auto below = [&](double x) { return 1 / (1 + std::exp((middle - x) / scale)); };
         const double cases = 4096 * (below(r + 0.5) - below(r - 0.5));
         const double taken = cases * (2 * radius + 2) / 4096;
@@ -97,7 +98,7 @@ TEST(FrameCodec, EveryPrefixIsTruncated) {
         ASSERT_EQ(code_of(decoder.decode(std::span(bytes).first(size))), "truncated")
             << stream[i].name << " cut to " << size;
       }
-      EXPECT_TRUE(decoder.decode(bytes).ok()) << "what was refused has changed nothing";
+      EXPECT_TRUE(decoder.decode(bytes).ok()) << "a rejected frame must not change the decoder";
     }
   }
 }
@@ -115,8 +116,8 @@ TEST(FrameCodec, EveryExtraByteIsRefused) {
   }
 }
 
-// A bit of the header may say something else. One of the blocks may only choose another way to say
-// the same, as the strides of three particles do.
+// A flipped bit of the header may change the meaning. A flipped bit of the blocks may only select
+// another encoding of the same values, such as the strides of three particles.
 TEST(FrameCodec, NoFlippedBitOfTheBlocksChangesThem) {
   const std::set<std::string> codes{"bad_block", "bad_check", "truncated", "extra_bytes"};
   for (const Stream& stream : all_streams()) {
@@ -144,7 +145,7 @@ TEST(FrameCodec, AWrongBaseIsRefused) {
   EXPECT_EQ(code_of(FrameDecoder().decode(encode(stream, 1))), "missing_reference");
   FrameDecoder one = decoder_after(stream, 1);
   EXPECT_EQ(code_of(one.decode(encode(stream, 2))), "missing_reference");
-  // The same number and epoch, but of another session.
+  // The same number and epoch in another session.
   World other(64, 77);
   other.advance(5);
   PublishedState state = other.state();
@@ -195,7 +196,7 @@ TEST(FrameCodec, WhatHasNotMovedCostsNothing) {
   EXPECT_LE(encoder.encode(second, {&first, nullptr}).size(), 52U + 12U + 4U);
 }
 
-/// One client of a random walk: what it has got, and its decoder.
+/// One client of a random walk: the received frames and its decoder.
 struct Viewer {
   std::deque<GridFrame> got;
   FrameDecoder decoder;
@@ -207,7 +208,7 @@ class Walk : public testing::TestWithParam<int> {
   double chance() { return std::uniform_real_distribution<double>(0, 1)(random_); }
   std::size_t below(std::size_t end) { return random_() % end; }
 
-  /// Any two frames of the ring, the newest first; or none.
+  /// Returns any two frames of the ring, the newest first; or none.
   FrameReferences any_references(const Viewer& viewer) {
     FrameReferences references;
     if (viewer.got.empty() || chance() < 0.02) return references;
@@ -243,8 +244,8 @@ class Walk : public testing::TestWithParam<int> {
   FrameEncoder encoder_;
 };
 
-// Whatever was dropped, whoever came late and whatever each of them sees: every path through the
-// stream ends in the server's own integers.
+// With dropped frames, late clients and different views, every path through the stream gives the
+// server's integers.
 TEST_P(Walk, EndsInTheServersIntegers) {
   World world(300, static_cast<std::uint32_t>(GetParam()));
   const FrameScale scale = GetParam() % 2 == 0 ? plain_scale() : scale_with_attributes();
@@ -267,7 +268,7 @@ TEST_P(Walk, EndsInTheServersIntegers) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Walk, testing::Range(0, 8));
 
-// Once every frame that is kept, on both sides, has the size that the stream needs.
+// Allocations end once every stored frame on both sides has the size that the stream needs.
 TEST(FrameCodec, ASteadyStreamAllocatesNothing) {
   World world(500);
   std::array<GridFrame, 3> frames;
@@ -304,8 +305,8 @@ TEST(FrameCodec, SmoothMotionCostsLittle) {
     bits += 8.0 * static_cast<double>(encoder.encode(got[0], {&got[1], &got[2]}).size());
     ++frames;
   }
-  // A quantum of 1 mm; each axis is off at random by up to 0.3 mm, twice over, and rounded three
-  // times: an entropy of about 1.6 bits. Positions alone are 48 bits.
+  // The quantum is 1 mm. Each axis has a random error of up to 0.3 mm, twice, and three roundings,
+  // so the entropy is about 1.6 bits. Positions alone would be 48 bits.
   EXPECT_LE(bits / frames / 4000, 3 * 2.0);
 }
 

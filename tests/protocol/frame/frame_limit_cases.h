@@ -4,14 +4,14 @@
 
 #include "tests/protocol/frame/frame_codec_cases.h"
 
-/// Streams at the limits of PROTOCOL.md, "Frames", each of which ends elsewhere in a decoder that
-/// has the limit one off.
+/// Streams at the limits of PROTOCOL.md, "Frames". A decoder with any limit off by one gives a
+/// different result.
 namespace vat::frame_cases {
 
 inline constexpr std::int32_t kLastPlace = 1 << 28;
 inline constexpr std::int32_t kLastAttribute = 1 << 20;
 
-/// A frame of a thirtieth of a second each, without blocks.
+/// A frame without blocks, a thirtieth of a second after the previous one.
 inline GridFrame empty_frame(std::uint32_t number, const FrameScale& scale = plain_scale()) {
   GridFrame frame;
   frame.header.epoch = 4;
@@ -29,8 +29,8 @@ inline GridFrame frame_of(std::uint32_t number, std::vector<std::uint16_t> posit
   return frame;
 }
 
-/// A cell of more particles than are counted: 96 in one place, of which the first 63 came from
-/// elsewhere than the others; then some of either go, and all move on as those did.
+/// A cell with more particles than are counted: 96 in one position, of which the first 63 came from
+/// elsewhere. Then some of both groups disappear, and all others continue their motion.
 inline Stream crowded_stream() {
   constexpr int kParticles = 96;
   constexpr int kCounted = 63;
@@ -57,12 +57,12 @@ inline Stream crowded_stream() {
   return stream;
 }
 
-/// Steps, residuals, sizes and attributes beyond what sums take of them: half of the particles
-/// drift by 9000 steps a frame, the others are anywhere, and the grid's corners are among them.
+/// Steps, residuals, sizes and attributes beyond the ranges of sums. Half of the particles drift by
+/// 9000 steps per frame, and the others are random and include the grid's corners.
 inline Stream wild_stream() {
   constexpr int kParticles = 48;
   constexpr int kDrift = 9000;
-  // With these the greatest sizes decide on classes, which they rarely do.
+  // With these seeds, the maximum sizes determine classes, which is rare.
   constexpr std::array<std::uint32_t, 3> kSeeds{1281, 19, 20};
   FrameScale scale = plain_scale();
   scale.attribute_quanta = {1, 1, 1};
@@ -96,7 +96,7 @@ inline Stream wild_stream() {
   return stream;
 }
 
-/// Poses that would leave the greatest places and end on them or just before.
+/// Poses beyond, at or just before the maximum positions.
 inline GridFrame pose_frame(std::uint32_t number, std::int32_t left) {
   GridFrame frame = empty_frame(number);
   GridBlock& vat = frame.blocks.emplace_back();
@@ -118,7 +118,7 @@ inline Stream pose_stream() {
   return stream;
 }
 
-/// Two frames of one number: on the newer one the next is built.
+/// Two frames with one number. The next frame refers to the newer one.
 inline Stream twice_stream() {
   const std::vector<std::uint16_t> before{100, 200, 300, 5000, 6000, 7000};
   const std::vector<std::uint16_t> one{101, 201, 301, 5001, 6001, 7001};
@@ -130,13 +130,14 @@ inline Stream twice_stream() {
           {"v2-twice-next", frame_of(13, next), 2, {}}};
 }
 
-/// 49 particles in one place and one further along x.
+/// 49 particles at one position, and one further along x.
 inline std::vector<std::uint16_t> line(std::uint16_t apart, std::uint16_t from) {
   std::vector<std::uint16_t> positions(std::size_t{3} * 50, from);
   positions[std::size_t{3} * 49] = static_cast<std::uint16_t>(from + apart);
   return positions;
 }
-/// With 541 steps between them, cells of a step are 3 * 3 * 544 = 4096 + 16 * 50.
+/// The largest distance: with 541 steps between them, cells of a step are 3 * 3 * 544 = 4096 + 16 *
+/// 50.
 inline constexpr std::uint16_t kLongestLine = 541;
 inline Stream box_stream() {
   return {{"v2-box", frame_of(1, line(kLongestLine, 7)), {}, {}},
@@ -147,7 +148,7 @@ inline Stream wider_box_stream() {
           {"v2-wider-box-one", frame_of(2, line(kLongestLine + 1, 8)), 0, {}}};
 }
 
-/// One particle at the grid's corners, its attributes at their greatest.
+/// One particle at the grid's corners, with maximum attributes.
 inline Stream corner_stream() {
   FrameScale scale = plain_scale();
   scale.attribute_quanta = {1, 1, 1};

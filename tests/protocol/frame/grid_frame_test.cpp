@@ -43,7 +43,7 @@ GridFrame on_grid(const PublishedState& state, const FrameGrid& grid) {
   return frame;
 }
 
-/// Half a quantum, and the rounding of origin + quantum * integer in double precision.
+/// Returns half a quantum, plus the rounding of origin + quantum * integer in double precision.
 double allowed_error(const FrameGrid& grid, const Vec3& min, const Vec3& max) {
   const double greatest = std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff());
   return grid.quantum / 2 + 4 * std::numeric_limits<double>::epsilon() * greatest;
@@ -83,7 +83,8 @@ TEST(GridFrame, PutsWhatIsOutsideTheGridToItsEdge) {
             (std::vector<std::uint16_t>{0, 65535, 0, 0, 65535, 65535}));
 }
 
-// Every particle of a rigid body is where its pose says, within the error that a liquid's has.
+// Every particle of a rigid body is at the position given by its pose, within the error of liquid
+// particles.
 TEST(GridFrame, HasPosesThatKeepEveryParticleWithinTheError) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);

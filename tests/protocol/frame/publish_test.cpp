@@ -4,15 +4,15 @@
 #include <string>
 
 #include "protocol/frame/grid_frame.h"
-#include "tests/support/scenes.h"
 #include "tests/core/simulation/allocation_counter.h"
+#include "tests/support/scenes.h"
 
 namespace vat::publish_test {
 namespace {
 
 using namespace test;
 
-/// A block of water that falls, and a ball.
+/// A falling block of water and a ball.
 Simulation make_falling() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.001);
   scene.materials = {make_liquid("water", 1000, {.stiffness = 100, .support_radius = 0.2}),
@@ -34,10 +34,10 @@ TEST(Publish, CopiesAttributesOnlyWhereTheyAreWanted) {
   const PublishedState pressures = publish(simulation, {false, false, true});
   EXPECT_TRUE(pressures.bodies[0].attributes[0].empty());
   EXPECT_EQ(pressures.bodies[0].attributes[2].size(), 64U);
-  EXPECT_TRUE(pressures.bodies[1].attributes[2].empty()) << "a ball has none";
+  EXPECT_TRUE(pressures.bodies[1].attributes[2].empty()) << "a ball has no pressure";
 }
 
-// Half a quantum, and the rounding of a float32.
+// Half a quantum, plus the rounding of a float32.
 TEST(Publish, AttributesAreWithinTheirErrors) {
   const Simulation simulation = make_falling();
   const ByAttribute<double> errors{0.003, 0.5, 20, 0.1};
@@ -49,16 +49,16 @@ TEST(Publish, AttributesAreWithinTheirErrors) {
   const auto& columns = frame.blocks[0].attributes;
   for (std::size_t i = 0; i < 64; ++i) {
     const ByAttribute<double> exact{simulation.bodies()[0].velocities[i].norm(), fields.density[i],
-                                    fields.pressure[i], 0};  // no tick was run
+                                    fields.pressure[i], 0};  // no tick has run
     for (std::size_t a = 0; a < kFrameAttributes; ++a) {
       const double sent = scale.attribute_quanta[a] * columns[a][i];
       EXPECT_NEAR(sent, exact[a], errors[a] + std::abs(exact[a]) * 1e-7);
     }
   }
-  EXPECT_EQ(columns[0][0], std::lround(5 / 0.006)) << "it begins with 5 m/s";
+  EXPECT_EQ(columns[0][0], std::lround(5 / 0.006)) << "the initial speed is 5 m/s";
 }
 
-/// Liquid that nothing but gravity acts on, half of it in a drain, and a cube that is pushed.
+/// Liquid under gravity only, half of it in a drain, and a cube with an applied force.
 Simulation make_pushed() {
   Scene scene = make_scene(IntegratorId::velocity_verlet, 0.001);
   scene.numerics.tick = 0.02;
@@ -82,12 +82,12 @@ TEST(Publish, AccelerationsAreWhatVelocitiesHaveChangedBy) {
     publisher.publish(simulation, {false, false, false, true}, state);
     return state.bodies[body].attributes[3];
   };
-  EXPECT_EQ(accelerations(1), std::vector<float>(8, 0)) << "before a tick";
+  EXPECT_EQ(accelerations(1), std::vector<float>(8, 0)) << "before the first tick";
   ASSERT_TRUE(simulation.apply_force(simulation.bodies()[1].id, {4 * 3, 0, 4 * 9.81}, 1).ok());
   for (int tick = 0; tick < 3; ++tick) {
     publisher.remember(simulation, 0.02);
     simulation.advance(20);
-    ASSERT_EQ(accelerations(0).size(), 32U) << "the drain has taken the others";
+    ASSERT_EQ(accelerations(0).size(), 32U) << "the drain has removed the others";
     for (const float a : accelerations(0)) EXPECT_NEAR(a, 9.81, 1e-6);
     for (const float a : accelerations(1)) EXPECT_NEAR(a, 3, 1e-6);
   }

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Reads `text` as one object and keeps what was wrong with it.
+/// Reads `text` as an object and stores the errors.
 class ObjectReaderTest : public testing::Test {
  protected:
   ObjectReader& read(const std::string& text) {
@@ -19,7 +19,7 @@ class ObjectReaderTest : public testing::Test {
     reader.emplace(document, "/at", errors);
     return *reader;
   }
-  /// "code path" of the only error; "" where there is none.
+  /// Returns "code path" of the only error; "" if there is none.
   std::string error() const {
     EXPECT_LE(errors.size(), 1U);
     return errors.empty() ? "" : errors[0].code + ' ' + errors[0].path;

@@ -14,7 +14,7 @@ std::string repeat(const std::string& text, std::size_t times) {
   return result;
 }
 
-/// The error's code, or "" where the text parses.
+/// Returns the error's code, or "" if the text is valid.
 std::string code_of(const std::string& text, const JsonLimits& limits = {}) {
   const Result<Json> document = parse_json(text, limits);
   if (document) return "";
@@ -89,7 +89,7 @@ TEST(ParseJson, RefusesNumbersThatAreNotFinite) {
   EXPECT_EQ(code_of("[-1e999999999]"), "parse_error");
   EXPECT_EQ(code_of("9" + repeat("0", 400)), "parse_error");
   EXPECT_EQ(code_of("1e308"), "");
-  EXPECT_EQ(code_of("1e-400"), "");  // rounds to 0, as every reader does
+  EXPECT_EQ(code_of("1e-400"), "");  // rounds to 0, as in every reader
 }
 
 TEST(ParseJson, BoundsTheBytes) {
@@ -106,7 +106,7 @@ TEST(ParseJson, BoundsTheDepth) {
   EXPECT_EQ(code_of("[{\"a\":[1]}]", limits), "");
   EXPECT_EQ(code_of("[[[[]]]]", limits), "too_deep");
   EXPECT_EQ(code_of("[{\"a\":[{}]}]", limits), "too_deep");
-  EXPECT_EQ(code_of("[[],[],[],[[]]]", limits), "");  // closed ones do not count
+  EXPECT_EQ(code_of("[[],[],[],[[]]]", limits), "");  // closed arrays do not count
 }
 
 TEST(ParseJson, SurvivesABombOfBrackets) {
@@ -139,7 +139,7 @@ TEST(ParseJson, NamesThePlaceOfTheFault) {
   EXPECT_THAT(document.errors().front().message, HasSubstr("line 3, column 7"));
 }
 
-/// A message goes back to clients as JSON text, which must be UTF-8.
+/// The server sends messages to clients as JSON text, which must be UTF-8.
 TEST(ParseJson, MessagesAreShortPlainText) {
   const std::string junk = repeat("\xff\x01\x1b[31m", 1000);
   for (const std::string& text : {"\"" + junk, junk, "1" + repeat("0", 5000) + "x"}) {

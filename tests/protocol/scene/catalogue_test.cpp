@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr const char* kScenesFolder = VAT_SOURCE_DIR "/protocol/scenes";
 
-/// A folder that goes away with the test.
+/// A temporary folder of scene files.
 class SceneFiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -51,7 +51,8 @@ TEST(WriteScene, EveryCatalogueSceneComesBackBitByBit) {
 
 TEST(WriteScene, TheFullSceneComesBackBitByBit) {
   Scene scene = full_scene();
-  scene.bodies[0].position = {0.1 + 0.2, -0.0, 1.0 / 3.0};  // bits that short texts lose
+  scene.bodies[0].position = {0.1 + 0.2, -0.0,
+                              1.0 / 3.0};  // values that short decimal texts do not represent
   const Result<Scene> back = read_scene_text(write_scene(scene).dump(), no_meshes);
   ASSERT_EQ(lines(back), "");
   EXPECT_EQ(bits_of(back.value()), bits_of(scene));

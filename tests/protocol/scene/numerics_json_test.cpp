@@ -2,12 +2,12 @@
 
 #include "protocol/scene/scene_json.h"
 
-// The numerics of a scene file: what may stand together, and what comes back.
+// The numerics of a scene file: valid combinations, and the derived values.
 
 namespace vat::numerics_json_test {
 namespace {
 
-/// An oscillator with these numerics.
+/// Reads an oscillator scene with these numerics.
 Result<Scene> read(const std::string& numerics) {
   const std::string text = R"({"format": "vat.scene/1",
     "materials": [{"name": "steel"}],
@@ -26,7 +26,7 @@ TEST(NumericsJson, AccuracyChoosesTheRest) {
   EXPECT_EQ(numerics.accuracy, 1e-3);
   EXPECT_EQ(numerics.tick, 0.05);
   EXPECT_EQ(numerics.integrator, IntegratorId::runge_kutta_4);
-  // z^4 / 120 = 1e-5 and omega^2 <= 2 * 100: 0.186 / 14.1 s.
+  // z^4 / 120 = 1e-5 and omega^2 <= 2 * 100 give 0.186 / 14.1 s.
   EXPECT_NEAR(numerics.step, 0.05 / 4, 1e-12);
 }
 

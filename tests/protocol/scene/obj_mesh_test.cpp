@@ -51,7 +51,7 @@ TEST(ReadObj, RefusesBrokenMeshesWithTheirName) {
   }
 }
 
-/// The library would take 0 for each.
+/// The library would read missing numbers as 0.
 TEST(ReadObj, VerticesNeedThreeNumbers) {
   for (const char* vertex : {"v 1 0", "v", "v x 0 0", "v 0 1,5 0", "v 0 0 1e999", "v 0 inf 0"}) {
     const std::string text = "v 0 0 0\n\t v 1 +1 -.5e1\r\n" + std::string(vertex) + "\nf 1 2 3\n";

@@ -9,22 +9,22 @@
 /// scenes by their bits.
 namespace vat::scene_cases {
 
-/// Every member is given, none with its default.
+/// A document with every member. No value equals its default.
 extern const char* const kFullDocument;
 
-/// What kFullDocument stands for, written down without the reader.
+/// The scene of kFullDocument, written without the reader.
 Scene full_scene();
 
-/// The mesh files that kFullDocument names.
+/// The mesh files of kFullDocument.
 Result<std::string> full_meshes(const std::string& name);
 
 /// A source without files.
 Result<std::string> no_meshes(const std::string& name);
 
-/// All fields of the scene as they are saved: equal bytes, equal scenes.
+/// Returns all saved fields of the scene. Equal bytes mean equal scenes.
 std::vector<std::uint8_t> bits_of(const Scene& scene);
 
-/// "code path" of every error, one a line; "" where there is none.
+/// Returns "code path" of every error, one per line; "" if there is none.
 std::string lines(const Errors& errors);
 template <class T>
 std::string lines(const Result<T>& result) {

@@ -19,7 +19,7 @@ Json golden(const std::string& name) {
   return Json::parse(file);
 }
 
-/// What is wrong in thirty-mistakes.json.
+/// Returns the errors of thirty-mistakes.json.
 Mistakes all_mistakes() {
   Mistakes mistakes;
   for (const Json& error : golden("thirty-mistakes.errors.json")) {
@@ -35,7 +35,7 @@ Mistakes mistakes_of(const Result<Scene>& scene) {
   return mistakes;
 }
 
-/// Those of `mistakes` that are at or below `part`, as they are where that part is at `place`.
+/// Returns the errors at or below `part`, with their paths moved to `place`.
 Mistakes moved(const Mistakes& mistakes, const std::string& part, const std::string& place) {
   Mistakes found;
   for (const auto& [code, path] : mistakes) {
@@ -46,7 +46,7 @@ Mistakes moved(const Mistakes& mistakes, const std::string& part, const std::str
   return found;
 }
 
-/// A scene without a mistake, with a liquid and a solid material of `document`.
+/// Returns a valid scene with a liquid and a solid material of `document`.
 Json fine_scene(const Json& document) {
   return {
       {"format", "vat.scene/1"},
@@ -67,7 +67,7 @@ TEST(SceneMistakes, OneFileTellsAllOfThemAtOnceAndNothingElse) {
   EXPECT_EQ(mistakes_of(scene), expected);
 }
 
-/// Each mistake is refused on its own account: with the others gone, it is still there, and alone.
+/// Each error is detected independently: it remains if all others are removed.
 class SceneMistakesAlone : public testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(read(fine_scene(document_)).ok()); }
@@ -76,7 +76,7 @@ class SceneMistakesAlone : public testing::Test {
     return read_scene(scene, meshes_in_folder(kFolder));
   }
 
-  /// Puts the part with the mistake into a fine scene, at `place`.
+  /// Inserts the invalid part into a valid scene at `place`.
   void expect_refused(const std::string& part, const std::string& place) const {
     Json scene = fine_scene(document_);
     scene[Pointer(place)] = document_[Pointer(part)];
@@ -97,7 +97,7 @@ TEST_F(SceneMistakesAlone, OutsideOfLists) {
 }
 
 TEST_F(SceneMistakesAlone, InLists) {
-  // These repeat what stands before them in their list.
+  // These repeat earlier elements of their list.
   const std::set<std::string> need_a_neighbour{"/interfaces/5", "/bodies/34"};
   std::size_t tried = 0;
   for (const std::string list : {"/materials", "/interfaces", "/bodies"}) {

@@ -17,7 +17,7 @@ using testing::StartsWith;
 
 using Pointer = Json::json_pointer;
 
-/// Pointers of all values in `value` below the root.
+/// Collects the pointers of all values below the root of `value`.
 void collect(const Json& value, const Pointer& at, std::vector<Pointer>& pointers) {
   if (!at.empty()) pointers.push_back(at);
   if (value.is_object()) {
@@ -43,7 +43,7 @@ TEST(SceneJson, ReadsEveryMember) {
   EXPECT_EQ(bits_of(scene.value()), bits_of(full_scene()));
 }
 
-// The comparison by saved bytes leaves no member out.
+// The comparison by saved bytes covers every member.
 TEST(SceneJson, SavedBytesHoldEveryMember) {
   const std::vector<std::uint8_t> bytes = bits_of(full_scene());
   LoadingArchive archive(bytes);
@@ -97,7 +97,7 @@ TEST(SceneJson, DefaultsOfTheParts) {
 TEST(SceneJson, EveryMemberIsInTheDocument) {
   std::ifstream file(VAT_SOURCE_DIR "/protocol/SCENE.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::set<std::string> members{"file", "scale"};  // the full scene may hold either form of a mesh
+  std::set<std::string> members{"file", "scale"};  // a mesh has one of these members
   for (const Pointer& pointer : pointers_in(full_document())) {
     if (full_document()[pointer.parent_pointer()].is_object()) members.insert(pointer.back());
   }
@@ -107,8 +107,8 @@ TEST(SceneJson, EveryMemberIsInTheDocument) {
   }
 }
 
-/// The members without which a part of the full scene cannot be read; all others may be left out.
-/// "N" stands for each of the numbers that follow in parentheses.
+/// Members that a part of the full scene needs. All others are optional. "N" represents each of the
+/// numbers in parentheses.
 constexpr const char* kRequired = R"(
   /format /materials /bodies /default_interface/stiffness
   /vat/min /vat/max /vat/motion/type /vat/motion/stroke
@@ -152,7 +152,7 @@ TEST(SceneJson, NamesEveryMissingMember) {
   std::set<std::string> required;
   for (const Pointer& pointer : pointers_in(document)) {
     if (!document[pointer.parent_pointer()].is_object()) continue;
-    if (pointer.back() == "law") continue;  // another law, with other members
+    if (pointer.back() == "law") continue;  // another law has other members
     Json damaged = document;
     damaged[pointer.parent_pointer()].erase(pointer.back());
     const Result<Scene> scene = read_scene(damaged, full_meshes);
@@ -182,7 +182,7 @@ TEST(SceneJson, NamesUnknownMembersWhereverTheyAre) {
   }
 }
 
-/// Whether a value of this JSON type can stand where `original` stands.
+/// Returns whether a value of this JSON type can replace `original`.
 bool same_type(const Json& original, const Json& value) {
   return original.type() == value.type() || (original.is_number() && value.is_number());
 }
@@ -215,7 +215,7 @@ TEST(SceneJson, KnowsEveryIntegrator) {
     const auto integrator = static_cast<IntegratorId>(id);
     Json document = full_document();
     document["numerics"]["integrator"] = to_string(integrator);
-    document.erase("interfaces");  // a projection is not for all of them
+    document.erase("interfaces");  // not all interfaces support projection
     const Result<Scene> scene = read_scene(document, full_meshes);
     ASSERT_EQ(lines(scene), "");
     EXPECT_EQ(scene.value().numerics.integrator, integrator);

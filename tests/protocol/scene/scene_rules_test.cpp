@@ -9,7 +9,7 @@ namespace {
 
 using namespace scene_cases;
 
-/// A scene that is fine, and changes that each break one rule.
+/// A valid scene, and changes that each violate one rule.
 class SceneRules : public testing::TestWithParam<const char*> {
  protected:
   const Json golden_ = [] {
@@ -18,7 +18,7 @@ class SceneRules : public testing::TestWithParam<const char*> {
   }();
 };
 
-/// `changes` has the new values by their JSON pointers.
+/// Applies changes. `changes` contains the new values by JSON pointer.
 Json with_changes(Json scene, const Json& changes) {
   for (const auto& [pointer, value] : changes.items()) {
     scene[Json::json_pointer(pointer)] = value;

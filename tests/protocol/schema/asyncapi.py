@@ -1,4 +1,4 @@
-"""protocol/asyncapi.json from the schemas: who sends what on the channel, and what answers it."""
+"""Writes protocol/asyncapi.json from the schemas: messages of client and server, and replies."""
 
 import json
 

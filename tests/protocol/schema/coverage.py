@@ -1,6 +1,8 @@
-"""coverage.py SCRIPTS TRANSCRIPTS: the scripts show every method, event, kind of error and limit.
+"""coverage.py SCRIPTS TRANSCRIPTS: checks the coverage of the scripts.
 
-SCRIPTS is the folder of the scripts, TRANSCRIPTS that of what they sent and received."""
+The scripts must show every method, event, error kind and limit. SCRIPTS is the folder of the
+scripts, TRANSCRIPTS that of their recorded messages.
+"""
 
 import json
 import sys
@@ -9,15 +11,15 @@ from pathlib import Path
 import schemas
 
 LEAST_SCRIPTS = 40
-# Kinds of errors and events that no client can bring about, and what ends the server.
+# Error kinds and events that a client cannot cause, and the end of the server.
 NOT_SHOWN = {
     "internal_error", "storage_failed", "not_recovered", "session.diverged", "server.draining",
     "server.drain",
 }
-# Limits of what comes before a WebSocket, or below its messages.
+# Limits that apply before a WebSocket is open or below its messages.
 BELOW_MESSAGES = {"handshake_seconds", "ping_seconds"}
-# What shows each limit of server.info. A path: invalid parameters there; a reason: of a parse
-# error; a number: the code that a connection is closed with; a script: it is all about that.
+# Evidence for each limit of server.info. A path: invalid parameters there. A reason: a parse error.
+# A number: the close code of a connection. A script: its only subject.
 LIMITS = {
     "burst_seconds": ("script", "too-often"), "connections_per_address": ("script", "sharing"),
     "controls_per_second": "limit", "expire_after_seconds": ("script", "empty-sessions"),
@@ -50,7 +52,7 @@ LIMITS = {
 
 
 class Seen:
-    """What the transcripts of the scripts have."""
+    """Contents of the scripts' transcripts."""
 
     def __init__(self, scripts, transcripts):
         self.results, self.events, self.kinds = set(), set(), set()
@@ -89,7 +91,7 @@ class Seen:
         self.shown |= {("path", error["path"]) for error in data.get("errors", ())}
 
     def lacks(self):
-        """What no script shows, in words."""
+        """Returns a description of everything that no script shows."""
         yield from (f"no result of {m}" for m in sorted(set(schemas.methods()) - NOT_SHOWN - self.results))
         events = set(schemas.definitions("events"))
         yield from (f"no event {name}" for name in sorted(events - NOT_SHOWN - self.events))
@@ -107,7 +109,7 @@ def kinds():
 
 
 def uncommented(path):
-    """Whether no comment says what the script shows, at its begin."""
+    """Returns whether the script lacks a comment at its start."""
     with open(path, encoding="utf-8") as file:
         first = [json.loads(line) for line in file if line.strip()][:2]
     return not any("comment" in line for line in first)

@@ -1,6 +1,7 @@
-"""The schemas and the AsyncAPI document themselves: valid, whole, and of what is there.
+"""Checks the schemas and the AsyncAPI document: valid, complete and without unused parts.
 
-VAT_UPDATE_GOLDEN=1 writes protocol/asyncapi.json anew."""
+VAT_UPDATE_GOLDEN=1 rewrites protocol/asyncapi.json.
+"""
 
 import json
 import os

@@ -1,8 +1,9 @@
-"""messages.py FOLDER: every message of the transcripts in FOLDER is as the schemas say.
+"""messages.py FOLDER: checks every message of the transcripts in FOLDER against the schemas.
 
-What a client sends is right where the schemas say so, and wrong where the server refuses its form;
-both must agree as far as a schema can tell. A wrong message that the server does not answer must be
-marked as such in the transcript."""
+The schemas must accept a client's message if the server accepts its form, and reject it if the
+server does, as far as a schema can decide. If the server does not reply to an invalid message, the
+transcript must mark it.
+"""
 
 import json
 import sys
@@ -12,9 +13,9 @@ from pathlib import Path
 import schemas
 
 FORM_ERRORS = {-32700, -32600, -32601, -32602}
-# What the server says of parameters that a schema must refuse too: no state is needed to see it.
+# Errors that a schema must find too, since they need no state.
 PLAIN_FAULTS = {"missing", "unknown_member", "wrong_type"}
-# Errors that are found before the parameters are read, or before the bodies and scenes in them.
+# Errors that the server finds before it reads the parameters, or the bodies and scenes in them.
 BEFORE_PARAMETERS = {
     "limit_reached", "internal_error", "not_joined", "not_authenticated", "not_allowed",
     "rate_limited",
@@ -45,7 +46,7 @@ def whole(text):
 
 
 def size(value):
-    """(depth, number of values)"""
+    """Returns (depth, number of values)."""
     if isinstance(value, dict):
         value = list(value.values())
     if not isinstance(value, list):
@@ -60,7 +61,7 @@ def is_too_much(message):
 
 
 def parse(text):
-    """The message, or None for what the protocol does not take as JSON."""
+    """Returns the message, or None if the protocol does not accept it as JSON."""
     try:
         message = json.loads(
             text, object_pairs_hook=unique, parse_float=finite, parse_int=whole,
@@ -71,7 +72,7 @@ def parse(text):
 
 
 def request_fault(message):
-    """Why this is no right message of a client; None where it is."""
+    """Returns the reason why a client's message is invalid, or None."""
     if message is None:
         return "not JSON"
     reason = schemas.fault(message, "message", "request")
@@ -85,16 +86,16 @@ def request_fault(message):
 
 
 class Transcript:
-    """Goes through one transcript and collects faults."""
+    """Processes one transcript and collects faults."""
 
     def __init__(self, path, seen):
         self.path = path
         self.seen = seen
         self.faults = []
         self.asked = defaultdict(list)  # {(connection, id): [(method, fault, line)]}
-        self.marked = set()  # lines of those that are wrong on purpose
-        self.unanswerable = defaultdict(list)  # {connection: lines with wrong messages}
-        self.null_errors = Counter()  # {connection: errors that were answered to no id}
+        self.marked = set()  # lines of intentionally invalid messages
+        self.unanswerable = defaultdict(list)  # {connection: lines with invalid messages}
+        self.null_errors = Counter()  # {connection: error replies with the id null}
 
     def fail(self, line, text):
         self.faults.append(f"{self.path.name}:{line}: {text}")
@@ -103,7 +104,7 @@ class Transcript:
         with open(self.path, encoding="utf-8") as file:
             for number, text in enumerate(file, start=1):
                 if not text.endswith("\n"):
-                    break  # the test was killed as it wrote this
+                    break  # the test was killed while it wrote this line
                 entry = json.loads(text)
                 if "sent" in entry:
                     self.sent(entry, number)

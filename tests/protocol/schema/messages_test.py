@@ -1,4 +1,4 @@
-"""What the check of messages finds: a transcript with each fault, and one without."""
+"""Tests the check of messages: a transcript with each fault, and one without faults."""
 
 import json
 import tempfile

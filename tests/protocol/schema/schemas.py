@@ -1,4 +1,4 @@
-"""The schemas in protocol/schemas/ as one document, and validators for what they define."""
+"""The schemas in protocol/schemas/ as one document, and validators of their definitions."""
 
 import copy
 import functools
@@ -10,13 +10,13 @@ from jsonschema.exceptions import best_match
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "protocol" / "schemas"
-# Files of the folder that hold no methods.
+# Files without methods.
 SHARED = {"common", "errors", "events", "message", "scene_format"}
 
 
 @functools.cache
 def files():
-    """The files by their names without ending."""
+    """Returns the files by name without extension."""
     return {path.stem: json.loads(path.read_text("utf-8")) for path in sorted(FOLDER.glob("*.json"))}
 
 
@@ -26,7 +26,7 @@ def definitions(name):
 
 @functools.cache
 def methods():
-    """{method: name of its file}, from the definitions METHOD.params and METHOD.result."""
+    """Returns {method: name of its file} from the definitions METHOD.params and METHOD.result."""
     return {
         definition.removesuffix(".params"): name
         for name in files() if name not in SHARED
@@ -35,13 +35,13 @@ def methods():
 
 
 def resolve(reference, name):
-    """What a reference in the file `name` points to: (file, definition)."""
+    """Returns the target of a reference in the file `name`: (file, definition)."""
     file, _, definition = reference.partition("#/$defs/")
     return file.removesuffix(".json") or name, definition
 
 
 def references(node):
-    """All values of $ref in a document."""
+    """Returns all values of $ref in a document."""
     if isinstance(node, dict):
         if isinstance(node.get("$ref"), str):
             yield node["$ref"]
@@ -52,8 +52,9 @@ def references(node):
 
 
 def localised(node, name, closed):
-    """The schema with its references into the one document; `closed`: objects have no members but
-    those that the schema knows."""
+    """Returns the schema with references within the one document. If `closed`, objects have only
+    members of the schema.
+    """
     if isinstance(node, list):
         return [localised(child, name, closed) for child in node]
     if not isinstance(node, dict):
@@ -69,7 +70,7 @@ def localised(node, name, closed):
 
 @functools.cache
 def bundle(closed):
-    """All files in one document, as its definitions, so that nothing has to be looked up."""
+    """Returns all files as definitions of one document, so that references are local."""
     return {name: localised(copy.deepcopy(file), name, closed) for name, file in files().items()}
 
 
@@ -80,7 +81,7 @@ def validator(name, definition, closed=False):
 
 
 def fault(value, name, definition, closed=False):
-    """Why the value is not as the definition says; None where it is."""
+    """Returns the reason why the value does not match the definition, or None."""
     error = best_match(validator(name, definition, closed).iter_errors(value))
     if error is None:
         return None

@@ -13,13 +13,16 @@ import type { GoldenBlock, GoldenFrame } from '../golden';
 
 const kKindNames = ['liquid', 'deformable', 'rigid', 'vat'] as const;
 
-/** A header in the words of the golden files, which know of accelerations where there are some. */
+/**
+ * Converts a header to the members of the golden files, which contain accelerations if there are
+ * any.
+ */
 function toGolden({ realTimeFactor, attributeQuanta, ...others }: FrameHeader): object {
   const attribute_quanta = attributeQuanta.slice(0, attributeQuanta[3] > 0 ? 4 : 3);
   return { ...others, real_time_factor: realTimeFactor, attribute_quanta };
 }
 
-/** What the golden file's whole steps stand for. */
+/** Converts the integers of the golden file to numbers. */
 function expectedBlock(block: GoldenBlock, { origin, quantum }: FrameHeader): object {
   const { body, place = [], orientation = [] } = block;
   const kind = kKindNames.indexOf(block.kind);
@@ -124,12 +127,12 @@ it('uses its memory again, and that of the frame which it is given', () => {
   const frame = emptyFrame();
   const bytes = ['v2-key', 'v2-delta-one', 'v2-delta-two'].map(goldenBytes);
   const cycle = () => bytes.forEach((buffer) => decoder.decode(buffer, frame));
-  for (let i = 0; i < 17; ++i) cycle(); // each place of the ring has had each frame
+  for (let i = 0; i < 17; ++i) cycle(); // each position of the ring has held each frame
   const { storage, blocks } = frame;
   let made = 0;
   for (const type of [ArrayBuffer, Uint16Array, Uint32Array, Int32Array]) {
     const construct = (target: typeof type, given: unknown[]): object => {
-      if (typeof given[0] === 'number') ++made; // what is not a view of memory that is there
+      if (typeof given[0] === 'number') ++made; // a new object, not a view of existing memory
       return Reflect.construct(target, given) as object;
     };
     vi.stubGlobal(type.name, new Proxy(type, { construct }));

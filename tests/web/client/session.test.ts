@@ -57,7 +57,7 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** Lets the newest socket open and answers all that a session asks to get in. */
+/** Opens the newest socket and replies to all requests of a session's start. */
 async function enter(): Promise<FakeSocket> {
   const socket = FakeSocket.newest;
   socket.accept();
@@ -254,7 +254,7 @@ describe('while it is in', () => {
     expect(faults).toEqual([expect.stringMatching(/missing_reference.*frame 10 is not stored/)]);
     socket.receive(goldenBytes('v2-delta-two'));
     expect(faults).toHaveLength(1);
-    const acknowledged = { method: 'frames.ack' }; // or the server's window would stay full
+    const acknowledged = { method: 'frames.ack' }; // frees the server's window
     expect(socket.sent.slice(3)).toMatchObject([
       { ...acknowledged, params: { number: 12 } },
       { method: 'frames.subscribe' },
@@ -263,7 +263,7 @@ describe('while it is in', () => {
     socket.receive(goldenBytes('v2-key'));
     socket.receive(goldenBytes('v2-delta-one'));
     expect(frames.map(({ frame }) => frame.header.number)).toEqual([10, 12]);
-    socket.receive(goldenBytes('v2-dropped')); // builds on others than these
+    socket.receive(goldenBytes('v2-dropped')); // refers to other frames
     expect(faults).toHaveLength(2);
   });
 
@@ -365,7 +365,7 @@ describe('going to another session', () => {
     const requests = socket.sent.filter(({ params }) => params?.session !== undefined);
     for (const [n, name] of ['r1', 'r2'].entries()) {
       socket.receiveJson({ id: requests[n]?.id, ...joined(name) });
-      await socket.answer('server.info', { result: { time: 1050 } }); // lets it be read
+      await socket.answer('server.info', { result: { time: 1050 } }); // the session reads the reply
     }
     expect(descriptions.map(({ session: name }) => name)).toEqual(['s1', 'r2']);
   });

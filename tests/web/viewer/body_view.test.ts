@@ -9,7 +9,7 @@ import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms'
 
 const header = { origin: [0, 0, 0], quantum: 1 } as unknown as FrameHeader;
 
-/** Particles along x, ten apart. */
+/** Particles along x, ten units apart. */
 function block(count: number): GridBlock {
   const positions = new Uint16Array(3 * count);
   for (let i = 0; i < count; ++i) positions[3 * i] = 10 * i;
@@ -28,12 +28,12 @@ function liquid(particles: number): BodyView {
   return new BodyView(description, 0, sharedUniforms(), new Workshop(), () => undefined);
 }
 
-/** The particle at 10 i, seen from above. */
+/** Returns the particle at 10 i, seen from above. */
 function pickAt(view: BodyView, i: number): number | undefined {
   return view.pick(new Ray(new Vector3(10 * i, 0, 50), new Vector3(0, 0, -1)))?.particle;
 }
 
-/** What the graphics know particles by. */
+/** Returns the particle numbers in the attributes of the graphics. */
 function numbersOf(view: BodyView): { shown: number[]; version: number } {
   const { geometry } = view.group.children[0] as Mesh;
   const column = geometry.getAttribute('number') as BufferAttribute;

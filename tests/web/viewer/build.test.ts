@@ -15,7 +15,7 @@ import { leanOf } from '../../../web/viewer/panel/gravity/device_tilt';
 
 describe('volumes', () => {
   const corners = [0, 1].flatMap((x) => [0, 1].flatMap((y) => [0, 1].map((z) => [x, y, z])));
-  /** Two triangles a side, outwards. */
+  /** A cube with two triangles per side, oriented outwards. */
   const cube: SceneShape = {
     type: 'mesh',
     vertices: corners.map(([x, y, z]) => [2 * x! + 5, y!, z!]),
@@ -161,7 +161,7 @@ describe('what is added', () => {
   });
 });
 
-/** Node 18 has none of its own accord. */
+/** Node 18 has no global File. */
 const fileOf = (name: string, content: string | DataView): File =>
   new NodeFile([content], name) as unknown as File;
 
@@ -175,7 +175,7 @@ describe('meshes from files', () => {
     const mesh = await readMesh(fileOf('a.obj', tetrahedron));
     if ('fault' in mesh) throw new Error(mesh.fault);
     expect(mesh.vertices[0]).toEqual([-0.25, -0.5, -0.25]);
-    expect(mesh.vertices[1]).toEqual([-0.25, 0.5, -0.25]); // they are numbered as faces come
+    expect(mesh.vertices[1]).toEqual([-0.25, 0.5, -0.25]); // numbered in the order of the faces
     expect(mesh.triangles).toEqual([
       [0, 1, 2],
       [0, 2, 3],

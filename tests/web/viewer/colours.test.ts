@@ -5,7 +5,7 @@ import { mapColour } from '../../../web/viewer/view/colour/maps';
 import { formatQuantity, quantityError } from '../../../web/viewer/view/colour/quantity';
 import { AutoRange } from '../../../web/viewer/view/colour/range';
 
-/** Lightness L* of CIE 1976 of a colour, 0 to 100. */
+/** Returns the lightness L* (CIE 1976) of a colour, 0 to 100. */
 function lightness(colour: readonly number[]): number {
   const [r, g, b] = colour.map((part) => {
     const value = part / 255;

@@ -5,7 +5,7 @@ import type { Seen } from '../../../web/viewer/view/base/fit';
 const kSide = 0.5;
 const kRise = 0.3;
 
-/** Of the half picture, how far out the outermost point lies to each side. */
+/** Returns the position of the outermost point on each side, relative to half the picture. */
 function margins(points: Seen[], eye: Seen): Record<'right' | 'left' | 'up' | 'down', number> {
   const most = (value: (point: Seen, distance: number) => number): number =>
     Math.max(...points.map((point) => value(point, eye.back - point.back)));

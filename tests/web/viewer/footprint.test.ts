@@ -18,7 +18,7 @@ describe('the room that something takes', () => {
     expect(block.touches(new Vector3(0.61, 0, 0), 0.1)).toBe(false);
   });
 
-  /** A rod of 2 m along x, of 21 particles. */
+  /** A rod of 2 m along x with 21 particles. */
   const rod = cloudOf(
     Array.from({ length: 21 }, (_, n) => new Vector3(n / 10 - 1, 0, 0)),
     0.05,
@@ -28,7 +28,7 @@ describe('the room that something takes', () => {
     expect(rod.touches(new Vector3(0.95, 0.05, 0), 0.05)).toBe(true);
     expect(rod.touches(new Vector3(0.32, 0, 0.12), 0.05)).toBe(false);
     expect(rod.touches(new Vector3(1.2, 0, 0), 0.05)).toBe(false);
-    expect(rod.touches(new Vector3(1.2, 0, 0), 0.3)).toBe(true); // a larger one
+    expect(rod.touches(new Vector3(1.2, 0, 0), 0.3)).toBe(true); // a larger particle
     expect(rod.box.getSize(new Vector3()).toArray()).toEqual([2.1, 0.1, 0.1]);
   });
 

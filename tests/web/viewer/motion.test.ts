@@ -8,7 +8,7 @@ import { RigidMotion } from '../../../web/viewer/view/particles/rigid_motion';
 
 const kGrid = { origin: [0, 0, 0] as [number, number, number], quantum: 1 };
 
-/** Particles at these x, with these numbers. */
+/** Particles at these x with these numbers. */
 function block(x: number[], numbers?: number[]): GridBlock {
   const positions = new Uint16Array(3 * x.length);
   x.forEach((value, i) => (positions[3 * i] = value));
@@ -21,7 +21,7 @@ function block(x: number[], numbers?: number[]): GridBlock {
   };
 }
 
-/** The x that are shown at a phase. */
+/** Returns the displayed x at a phase. */
 function shown(columns: ParticleColumns, phase: number): number[] {
   const all = columns.coordinates(phase);
   return Array.from({ length: columns.count }, (_, i) => all[3 * i]!);

@@ -41,7 +41,7 @@ describe('materials that a scene lacks', () => {
     expect(radii[0]! / spacingFor(scene, 'liquid', 'water')).toBeCloseTo(2, 2);
   });
 
-  /** What the stability of a step depends on: as in the model, or less. */
+  /** The quantities that determine the stability of a step must not exceed those of the model. */
   it.each(names)('are followed by the steps of the scene: %s', (name) => {
     const before = shipped(name);
     const scene = withNewMaterials(before);
@@ -52,7 +52,7 @@ describe('materials that a scene lacks', () => {
       const spacing = spacingFor(scene, 'deformable', 'jelly');
       const mass = jelly.density! * spacing ** (scene.dimensions ?? 3);
       const { stiffness, damping = 0 } = jelly.springs!.structural!;
-      // Of the model: 600 N/m, 1 N s/m, 2 ms, and 500 kg/m³ at 5 cm; constants have three digits.
+      // The model has 600 N/m, 1 N s/m, 2 ms, and 500 kg/m³ at 5 cm. Constants have three digits.
       expect((stiffness * step ** 2) / mass).toBeLessThan(1.01 * ((600 * 0.002 ** 2) / 0.0625));
       expect((damping * step) / mass).toBeLessThan(1.01 * ((1 * 0.002) / 0.0625));
       expect(stiffness).toBeGreaterThan(0);
@@ -67,7 +67,7 @@ describe('materials that a scene lacks', () => {
   it('meet others no more stiffly than their steps follow', () => {
     const stack = shipped('rigid-stack.json');
     const scene = withNewMaterials(stack);
-    // 3000 N/m in the model for 62.5 g and 2 ms; here as much, and 1 ms.
+    // The model has 3000 N/m for 62.5 g and 2 ms. Here the mass is equal and the step is 1 ms.
     expect(newInterfaces(stack, material(scene, 'jelly'))).toEqual(
       ['wood', 'stone', 'jelly', 'vat'].map((other) => ({
         materials: ['jelly', other],
@@ -75,7 +75,7 @@ describe('materials that a scene lacks', () => {
         damping: 8,
       })),
     );
-    expect(newInterfaces(stack, material(scene, 'water'))).toEqual([]); // by its pressure
+    expect(newInterfaces(stack, material(scene, 'water'))).toEqual([]); // interacts by its pressure
     const gas: Scene = { ...stack, pressure_solver: 'gas' };
     const met = newInterfaces(gas, material(scene, 'water')).map(({ materials }) => materials[1]);
     expect(met).toEqual(['wood', 'stone', 'vat']);

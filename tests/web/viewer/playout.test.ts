@@ -15,7 +15,7 @@ beforeEach(() => {
   });
 });
 
-/** The n-th of a session that publishes 50 a second, by a clock 1000 s ahead of ours. */
+/** The n-th frame of a session that publishes 50 per second. Its clock is 1000 s ahead. */
 function frame(number: number, playing = true): Frame {
   return { header: { number, published: publishedAt(number) + 1000, playing } } as Frame;
 }
@@ -69,7 +69,7 @@ describe('frames that are shown as they come', () => {
   });
 });
 
-/** How far the picture has come, in frames, at times a tenth of a frame apart. */
+/** Returns the displayed position, in frames, at intervals of a tenth of a frame. */
 function watch(arrivals: Map<number, number>, from: number, to: number): number[] {
   const places: number[] = [];
   for (let tenth = 10 * from; tenth < 10 * to; ++tenth) {
@@ -101,11 +101,11 @@ describe('smooth motion', () => {
       Array.from({ length: 200 }, (_, n) => [n, publishedAt(n) + 0.005 + late[n % 5]!]),
     );
     const places = watch(arrivals, 0, 190).slice(600);
-    expect(largestStep(places)).toBeLessThan(0.12); // a tenth, and what the delay changes by
+    expect(largestStep(places)).toBeLessThan(0.12); // a tenth, plus the change of the delay
     expect(Math.min(...places.slice(1).map((place, i) => place - places[i]!))).toBeGreaterThan(
       0.08,
     );
-    // As late as the frames come, and the 20 ms between two of them.
+    // At least the lateness of the frames and the 20 ms between two of them.
     expect(playout.delaySeconds).toBeGreaterThan(0.02);
     expect(playout.delaySeconds).toBeLessThan(0.02 + 0.016);
   });

@@ -3,7 +3,10 @@ import { fieldAround } from '../../../web/viewer/view/surface/field';
 import { marchingCubes } from '../../../web/viewer/view/surface/marching_cubes';
 import type { Surface } from '../../../web/viewer/view/surface/marching_cubes';
 
-/** Whether each edge of each triangle is that of one other, the other way round. */
+/**
+ * Returns whether each edge of each triangle belongs to one other triangle in the opposite
+ * direction.
+ */
 function isClosed({ indices }: Surface): boolean {
   const edges = new Map<string, number>();
   for (let t = 0; t < indices.length; t += 3) {
@@ -18,7 +21,10 @@ function isClosed({ indices }: Surface): boolean {
   });
 }
 
-/** By the divergence theorem; above 0 where triangles turn left as seen from outside. */
+/**
+ * Returns the volume by the divergence theorem; positive if triangles are counter-clockwise from
+ * outside.
+ */
 function volumeOf({ positions: p, indices }: Surface): number {
   let six = 0;
   for (let t = 0; t < indices.length; t += 3) {
@@ -30,7 +36,7 @@ function volumeOf({ positions: p, indices }: Surface): number {
   return six / 6;
 }
 
-/** The same numbers from 0 to 1 in every run. */
+/** Returns a generator of numbers from 0 to 1 that is the same in every run. */
 function numbers(seed: number): () => number {
   let state = seed;
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
@@ -67,7 +73,8 @@ describe('fieldAround', () => {
       if (i % 3 === 0) all.push(Math.hypot(p[i]! - 100, p[i + 1]! - 200, p[i + 2]! - 300));
       return all;
     }, []);
-    // Between two nodes a radius apart, a distance is straight within 1/8 of that squared over it.
+    // Linear interpolation between two nodes at a distance h has an error of at most h^2/8 over the
+    // radius.
     for (const distance of distances) expect(Math.abs(distance - 5)).toBeLessThan(5 / 8);
   });
 
@@ -78,7 +85,7 @@ describe('fieldAround', () => {
     const surface = marchingCubes(fieldAround(places, radius, values));
     expect(isClosed(surface)).toBe(true);
     const volume = volumeOf(surface);
-    // Corners and edges are rounded, and sides sink in by the mean of inner neighbours.
+    // Corners and edges are rounded, and sides move inwards by the mean of inner neighbours.
     expect(volume).toBeGreaterThan(0.6 * 512);
     expect(volume).toBeLessThan(512);
     const { positions, normals } = surface;
@@ -91,7 +98,7 @@ describe('fieldAround', () => {
       ++count;
     }
     expect(count).toBeGreaterThan(20);
-    expect(top / count).toBeGreaterThan(0.98); // out, and nearly flat
+    expect(top / count).toBeGreaterThan(0.98); // outwards and nearly flat
     expect(Math.min(...surface.values!)).toBeGreaterThanOrEqual(1);
     expect(Math.max(...surface.values!)).toBeLessThanOrEqual(3.001);
   });

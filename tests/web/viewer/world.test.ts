@@ -33,7 +33,7 @@ function described(epoch: number, bodies: number[], scene = 'pool'): SessionDesc
   };
 }
 
-/** One particle of each body, at this place along x. */
+/** A frame with one particle per body at this x. */
 function frame(epoch: number, places: Record<number, number>): Frame {
   return {
     header: { epoch, time: 0, origin: [0, 0, 0], quantum: 0.1, attributeQuanta: [] },
@@ -59,7 +59,7 @@ it('keeps bodies in sight while others come and go, until the next frame moves t
   expect([at(world, 2), at(world, 4)]).toEqual([1, undefined]);
   expect(world.show(frame(1, { 1: 6 }))).toBe(false);
   world.show(frame(2, { 1: 6, 3: 8 }));
-  world.phase = 0; // no motion leads from what was shown before
+  world.phase = 0; // no motion from the previously displayed state
   expect([at(world, 2), at(world, 6), at(world, 8)]).toEqual([undefined, 1, 3]);
 });
 
