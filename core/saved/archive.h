@@ -8,25 +8,36 @@
 #include <variant>
 #include <vector>
 
+#include "core/saved/members.h"
 #include "core/support/byte_io.h"
 #include "core/support/names.h"
 #include "core/support/result.h"
 #include "core/types.h"
 
-/// Conversion of values to little-endian bytes and back. The fields of a struct are listed once, by
-/// a function
+/// Conversion of values to little-endian bytes and back. A struct takes the bytes of its members in
+/// the order of declaration. If some members are not saved, or others come first, a function
 ///
 ///     template <class Archive>
 ///     void describe(Archive& archive, Of<Archive, Struct>& value);
 ///
-/// that passes its fields to the archive in order. Numbers take their size; bools and enumerations
-/// take one byte. Texts and lists are prefixed by their length in four bytes, an optional by a
-/// bool, and a variant by its index in one byte.
+/// passes the saved members to the archive. Numbers take their size; bools and enumerations take
+/// one byte. Texts and lists are prefixed by their length in four bytes, an optional by a bool, and
+/// a variant by its index in one byte.
 namespace vat {
 
 /// The type of the argument of describe(). Saving does not change the value.
 template <class Archive, class T>
 using Of = std::conditional_t<Archive::kLoads, T, const T>;
+
+/// Passes the members of a struct to an archive.
+template <class Archive, class T>
+void describe_struct(Archive& archive, T& value) {
+  if constexpr (requires { describe(archive, value); }) {
+    describe(archive, value);
+  } else {
+    visit_members(value, archive);
+  }
+}
 
 /// The last value of an enumeration. Values begin with 0 and have no gaps.
 template <class Enumeration>
@@ -54,7 +65,7 @@ class SavingArchive {
     } else if constexpr (std::is_arithmetic_v<T>) {
       writer_.put(value);
     } else {
-      describe(*this, value);
+      describe_struct(*this, value);
     }
   }
   void put(const Vec3& value) {
@@ -134,7 +145,7 @@ class LoadingArchive {
     } else if constexpr (std::is_arithmetic_v<T>) {
       value = reader_.get<T>();
     } else {
-      describe(*this, value);
+      describe_struct(*this, value);
     }
   }
   void get(bool& value) {

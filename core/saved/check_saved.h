@@ -21,11 +21,6 @@ struct SavedBody {
   Oscillation damping;                ///< see ModelDamping
   std::optional<SampledBody> sample;  ///< if it does not follow from the description
 };
-template <class Archive>
-void describe(Archive& archive, Of<Archive, SavedBody>& v) {
-  auto& [id, damping, sample] = v;
-  archive(id, damping, sample);
-}
 
 /// Checks that the scene can be compiled with these bodies, and their ids.
 Status check_saved_scene(const Scene& scene, const std::vector<SavedBody>& bodies, BodyId next_id);

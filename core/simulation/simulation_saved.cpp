@@ -4,9 +4,8 @@
 
 #include "core/model/compile.h"
 #include "core/saved/check_saved.h"
-#include "core/saved/scene_fields.h"
+#include "core/saved/saved_fields.h"
 #include "core/saved/sealed_bytes.h"
-#include "core/saved/state_fields.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_impl.h"
 #include "core/state/body_state.h"

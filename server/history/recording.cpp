@@ -13,22 +13,6 @@ namespace vat {
 template <>
 inline constexpr InstructionSet kLastOf<InstructionSet> = InstructionSet::avx512;
 
-template <class Archive>
-void describe(Archive& archive, Of<Archive, LogEntry>& v) {
-  auto& [sequence, position, tick, participant, method, params, refused] = v;
-  archive(sequence, position, tick, participant, method, params, refused);
-}
-template <class Archive>
-void describe(Archive& archive, Of<Archive, RecordedMoment>& v) {
-  auto& [position, sequence, fields, state] = v;
-  archive(position, sequence, fields, state);
-}
-template <class Archive>
-void describe(Archive& archive, Of<Archive, RecordedHash>& v) {
-  auto& [position, sequence, hash] = v;
-  archive(position, sequence, hash);
-}
-
 namespace {
 
 constexpr Seal kSeal{"vat.rec\n", 1, "a recording"};

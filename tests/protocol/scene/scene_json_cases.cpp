@@ -1,6 +1,6 @@
 #include "tests/protocol/scene/scene_json_cases.h"
 
-#include "core/saved/scene_fields.h"
+#include "core/saved/saved_fields.h"
 
 namespace vat::scene_cases {
 

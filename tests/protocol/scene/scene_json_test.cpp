@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/saved/scene_fields.h"
+#include "core/saved/saved_fields.h"
 #include "core/simulation/simulation.h"
 #include "tests/protocol/scene/scene_json_cases.h"
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/sampling/sampling.h"
+#include "core/saved/archive.h"
+#include "core/state/state.h"
+
+/// Structs that are not saved as a whole.
+namespace vat {
+
+/// Without `hand`, which is no part of a scene.
+template <class Archive>
+void describe(Archive& archive, Of<Archive, Vat>& v) {
+  auto& [min, max, lid, motion, walls, hand] = v;
+  archive(min, max, lid, motion, walls);
+}
+/// Fields of a liquid, which has no springs, cells and fixed particles.
+template <class Archive>
+void describe(Archive& archive, Of<Archive, SampledBody>& v) {
+  auto& [positions, velocities, masses, radii, fixed, springs, cells, in_nozzles, numbers,
+         next_number] = v;
+  archive(positions, velocities, masses, radii, in_nozzles, numbers, next_number);
+}
+/// Without `friction_torque`, which is read only during an evaluation.
+template <class Archive>
+void describe(Archive& archive, Of<Archive, Forces>& v) {
+  auto& [particle, rigid_force, rigid_torque, friction_torque, transport] = v;
+  archive(particle, rigid_force, rigid_torque, transport);
+}
+/// Forces that are not current, and their levels, are never read.
+template <class Archive>
+void describe(Archive& archive, Of<Archive, State>& v) {
+  auto& [now, step_count, forces, bound, forces_current, history, volume, levels, emitted, drained,
+         slow_looks] = v;
+  archive(now, step_count, bound, history, volume, emitted, drained, slow_looks, forces_current);
+  if (forces_current) archive(forces, levels);
+}
+
+}  // namespace vat
