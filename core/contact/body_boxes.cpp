@@ -1,7 +1,6 @@
 #include "core/contact/body_boxes.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "core/support/check.h"
 

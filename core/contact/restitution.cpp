@@ -1,8 +1,6 @@
 #include "core/contact/restitution.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "core/contact/scratch.h"
 #include "core/laws/contact_damping.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 
 #include "core/limits.h"
 #include "core/state/rigid_motion.h"

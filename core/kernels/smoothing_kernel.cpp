@@ -1,6 +1,5 @@
 #include "core/kernels/smoothing_kernel.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "core/kernels/lattice_sum.h"

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <span>
 #include <utility>
 
 #include "core/laws/cohesion.h"

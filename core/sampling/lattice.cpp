@@ -4,7 +4,6 @@
 #include <cmath>
 #include <type_traits>
 
-#include "core/limits.h"
 #include "core/sampling/mesh.h"
 #include "core/support/check.h"
 

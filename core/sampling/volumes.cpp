@@ -1,6 +1,5 @@
 #include "core/sampling/volumes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

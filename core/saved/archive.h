@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <concepts>
 #include <optional>
 #include <string>
 #include <type_traits>

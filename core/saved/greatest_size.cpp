@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/limits.h"
-#include "core/state/state.h"
 
 namespace vat {
 namespace {

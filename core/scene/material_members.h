@@ -2,7 +2,6 @@
 
 #include <array>
 #include <optional>
-#include <type_traits>
 #include <variant>
 
 #include "core/limits.h"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
 #include "core/evaluation/force_model.h"
 #include "core/simulation/simulation.h"
 

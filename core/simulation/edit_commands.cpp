@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/laws/vat_motion.h"
 #include "core/limits.h"
-#include "core/model/compile.h"
 #include "core/scene/range_check.h"
 #include "core/simulation/connections.h"
 #include "core/simulation/simulation.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/limits.h"
-#include "core/model/compile.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/range_check.h"
 #include "core/simulation/simulation.h"

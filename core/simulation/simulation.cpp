@@ -2,7 +2,6 @@
 #include "core/liquid/pairs/scratch.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/laws/vat_motion.h"
 #include "core/model/compile.h"

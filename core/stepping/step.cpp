@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "core/solid/spring_changes.h"
 #include "core/stepping/step_parts.h"

@@ -5,9 +5,7 @@
 #include "core/numerics/step_limits.h"
 #include "core/solid/elongation_limit.h"
 #include "core/solid/spring_changes.h"
-#include "core/state/controls.h"
 #include "core/state/kick_drift.h"
-#include "core/state/rigid_motion.h"
 #include "core/stepping/liquid_solver.h"
 #include "core/support/check.h"
 

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <vector>
 
 #include "core/types.h"
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "core/limits.h"
-#include "core/sampling/lattice.h"
 #include "core/sampling/mesh.h"
 #include "core/validation/validate_parts.h"
 

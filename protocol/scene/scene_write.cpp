@@ -1,4 +1,3 @@
-#include <type_traits>
 
 #include "core/scene/material_members.h"
 #include "protocol/scene/scene_json.h"

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "core/support/check.h"

@@ -1,7 +1,5 @@
 #include "server/directory/admission.h"
 
-#include <utility>
-
 #include "core/support/check.h"
 
 namespace vat {

@@ -1,7 +1,6 @@
 #include "server/frames/frame_source.h"
 
 #include <algorithm>
-#include <chrono>
 #include "core/support/check.h"
 
 namespace vat {

@@ -5,8 +5,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include "protocol/frame/frame_codec.h"
 #include "server/clients/client_outbox.h"

@@ -1,6 +1,5 @@
 #include "server/history/session_moment.h"
 
-#include <algorithm>
 #include <limits>
 #include <string_view>
 #include <utility>

@@ -1,6 +1,5 @@
 #include "server/http/static_files.h"
 
-#include <cstdint>
 #include <fstream>
 #include <string>
 #include <system_error>

@@ -6,7 +6,6 @@
 #include "protocol/scene/scene_parts.h"
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
-#include "server/session/core/scene_loading.h"
 
 namespace vat {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "core/limits.h"
 #include "server/methods/handlers.h"
 #include "server/people/person_name.h"
 

@@ -2,11 +2,9 @@
 
 #include <stdexcept>
 
-#include "core/limits.h"
 #include "server/messages/describe.h"
 #include "server/methods/handlers.h"
 #include "server/people/person_name.h"
-#include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
 #include "server/storage/saved_scenes.h"
 

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "core/support/check.h"
 #include "server/messages/describe.h"
 #include "server/replay/log_replay.h"
-#include "server/session/core/scene_loading.h"
 #include "server/session/core/session_restore.h"
 
 namespace vat {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>

@@ -4,7 +4,6 @@
 #include <concepts>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "protocol/json/json_reader.h"

@@ -1,10 +1,8 @@
 #include "server/settings/setting_sources.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <fstream>
 #include <numeric>
-#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,8 +12,8 @@
 #include "server/storage/saved_scenes.h"
 #include "server/storage/saved_states.h"
 #include "server/storage/session_store.h"
-#include "server/storage/storage_counts.h"
 #include "server/storage/sqlite/storage_limits.h"
+#include "server/storage/storage_counts.h"
 #include "server/storage/token_store.h"
 #include "server/support/clock.h"
 

@@ -4,7 +4,6 @@
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/scratch.h"
 #include "core/stage/context.h"
-#include "core/state/state.h"
 #include "core/support/check.h"
 
 namespace vat {

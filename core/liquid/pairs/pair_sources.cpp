@@ -7,7 +7,6 @@
 #include "core/liquid/pairs/scratch.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/stage/context.h"
-#include "core/state/state.h"
 #include "core/support/check.h"
 
 namespace vat {

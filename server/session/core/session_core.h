@@ -1,9 +1,7 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "server/session/core/session_command.h"
