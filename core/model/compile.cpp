@@ -6,11 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/laws/cohesion.h"
+#include "core/laws/surface_tension.h"
 #include "core/laws/vat_motion.h"
-#include "core/model/contacts.h"
-#include "core/model/springs.h"
-#include "core/model/surface_tension.h"
+#include "core/model/compile_parts.h"
 #include "core/numerics/step_limits.h"
 #include "core/sampling/mass_properties.h"
 #include "core/sampling/volumes.h"
@@ -248,7 +246,7 @@ Real central_viscosity_of(const Material& material, int dimensions) {
                                                        liquid.support_radius / 2;
 }
 
-/// The maximum tension of a cohesive liquid; see core/laws/cohesion.h.
+/// The maximum tension of a cohesive liquid; see core/laws/surface_tension.h.
 Real tensile_strength_of(const Scene& scene, const LiquidConstants& liquid) {
   if (scene.surface_model != SurfaceModel::cohesion) return 0;
   return kTensileShare / 2 *

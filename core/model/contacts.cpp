@@ -1,4 +1,4 @@
-#include "core/model/contacts.h"
+#include "core/model/compile_parts.h"
 
 #include <algorithm>
 #include <span>

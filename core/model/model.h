@@ -9,10 +9,8 @@
 
 #include "core/kernels/cohesion_kernel.h"
 #include "core/kernels/half_space.h"
-#include "core/kernels/poly6.h"
+#include "core/kernels/mueller_kernels.h"
 #include "core/kernels/smoothing_kernel.h"
-#include "core/kernels/spiky.h"
-#include "core/kernels/viscosity_kernel.h"
 #include "core/neighbours/periodic_box.h"
 #include "core/numerics/stable_step.h"
 #include "core/sampling/nozzle.h"

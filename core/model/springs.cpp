@@ -1,4 +1,4 @@
-#include "core/model/springs.h"
+#include "core/model/compile_parts.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,10 +1,10 @@
-#include "core/model/surface_tension.h"
+#include "core/model/compile_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/laws/cohesion.h"
+#include "core/laws/surface_tension.h"
 #include "core/scene/interface_table.h"
 #include "core/support/check.h"
 

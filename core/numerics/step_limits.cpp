@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "core/laws/cell_volume.h"
-#include "core/laws/cohesion.h"
 #include "core/laws/surface_tension.h"
 #include "core/numerics/contact_limits.h"
 #include "core/sampling/volumes.h"

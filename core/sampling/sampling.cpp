@@ -1,12 +1,12 @@
 #include "core/sampling/sampling.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "core/laws/cell_volume.h"
 #include "core/sampling/jitter.h"
 #include "core/sampling/lattice.h"
 #include "core/sampling/mesh.h"
-#include "core/scene/field.h"
 #include "core/scene/lookup.h"
 #include "core/support/check.h"
 
@@ -52,6 +52,15 @@ class LatticeIndex {
   std::array<Real, 3> size_;
   std::vector<Index> index_;
 };
+
+/// The value of the field at the point `x` of the world.
+Vec3 value_at(const VectorField& field, const Vec3& x) {
+  Vec3 value = field.gradient * (x - field.center);
+  for (const PlaneWave& wave : field.waves) {
+    value += wave.amplitude * std::sin(wave.wave_vector.dot(x) + wave.phase);
+  }
+  return value;
+}
 
 template <std::size_t count>
 void add_lattice_springs(const std::vector<LatticePoint>& points, const LatticeIndex& index,

@@ -4,11 +4,20 @@
 
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_impl.h"
-#include "core/simulation/wrap.h"
 #include "core/support/check.h"
 
 namespace vat {
 namespace {
+
+/// Moves liquid particles that have left a periodic world to the opposite side. Solids stay whole,
+/// and may move any distance.
+void wrap_liquid(const Model& model, TaskRunner* runner, Configuration& configuration) {
+  for_blocks(runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      configuration.position[i] = model.periodic.wrap(configuration.position[i]);
+    }
+  });
+}
 
 /// Tells the observer, if any, that a call has ended, also by an exception.
 class ObservedCall {

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "core/support/check.h"
-#include "core/support/instruction_set_limit.h"
 
 namespace vat {
 namespace {

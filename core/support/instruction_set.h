@@ -31,4 +31,8 @@ InstructionSet best_instruction_set();
 /// Fails with the code "not_available" and a list of the available sets if `set` is not available.
 Status check_available(InstructionSet set);
 
+/// Hides the sets above `greatest` in all threads from now on. For tests of machines with fewer
+/// instructions.
+void limit_instruction_sets(InstructionSet greatest);
+
 }  // namespace vat

@@ -1,4 +1,4 @@
-#include "core/validation/idle_settings.h"
+#include "core/validation/validate_parts.h"
 
 #include <algorithm>
 #include <string>

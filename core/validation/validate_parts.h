@@ -3,12 +3,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/sampling/lattice.h"
 #include "core/sampling/sampling.h"
 #include "core/scene/material_members.h"
 #include "core/scene/range_check.h"
 #include "core/scene/scene.h"
+#include "core/validation/validate.h"
 
 /// Checks of the parts of a scene, for validate.cpp. Paths are JSON pointers.
 namespace vat {
@@ -108,5 +110,8 @@ void check_start(const BodyDescription& body, const SampledBody& sample, const s
 /// Checks the values of a shape, and whether a mesh can be filled. Returns whether the shape can be
 /// sampled.
 bool check_shape(const BodyDescription& body, const std::string& path, RangeCheck& check);
+
+/// Adds a warning, code no_effect, for each setting that has no effect in this scene.
+void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings);
 
 }  // namespace vat

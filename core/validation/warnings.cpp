@@ -13,8 +13,8 @@
 #include "core/sampling/volumes.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/lookup.h"
-#include "core/validation/idle_settings.h"
 #include "core/validation/validate.h"
+#include "core/validation/validate_parts.h"
 
 namespace vat {
 namespace {

@@ -1,5 +1,7 @@
 #include "protocol/frame/rans.h"
 
+#include <bit>
+
 namespace vat::rans {
 namespace {
 

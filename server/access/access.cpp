@@ -18,10 +18,6 @@ Role read_role(const std::string& name) {
 
 }  // namespace
 
-const char* to_string(AccessMode mode) {
-  return mode == AccessMode::open ? "open" : "token";
-}
-
 void AccessTokens::keep_in(TokenStore& store) {
   const auto now = clock_.now();
   const double wall = clock_.wall_time();

@@ -19,7 +19,8 @@ enum class AccessMode {
   open,  ///< every connection becomes a controller
   token  ///< clients must send a token first
 };
-const char* to_string(AccessMode mode);
+template <>
+inline constexpr std::array kNamesOf<AccessMode>{"open", "token"};
 
 struct AccessSettings {
   AccessMode mode = AccessMode::open;

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/support/names.h"
+
 namespace vat {
 
 /// Role of a client. Each role includes the rights of those before it.
@@ -12,6 +14,7 @@ enum class Role : std::uint8_t {
   owner,       ///< of a session: sets roles, and closes it
   admin        ///< of the server: all rights in all sessions
 };
-const char* to_string(Role role);
+template <>
+inline constexpr std::array kNamesOf<Role>{"none", "viewer", "controller", "owner", "admin"};
 
 }  // namespace vat

@@ -3,11 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include "server/cli/common/command.h"
-#include "server/cli/replay.h"
-#include "server/cli/script.h"
-#include "server/cli/serve.h"
-#include "server/cli/simulate/simulate.h"
-#include "server/cli/validate.h"
 
 namespace vat {
 

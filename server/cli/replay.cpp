@@ -1,5 +1,3 @@
-#include "server/cli/replay.h"
-
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,3 @@
-#include "server/cli/script.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>

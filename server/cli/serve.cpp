@@ -1,5 +1,3 @@
-#include "server/cli/serve.h"
-
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 

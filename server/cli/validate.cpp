@@ -1,5 +1,3 @@
-#include "server/cli/validate.h"
-
 #include <CLI/CLI.hpp>
 #include <iomanip>
 #include <iostream>

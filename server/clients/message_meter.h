@@ -39,7 +39,7 @@ class MessageMeter {
   std::optional<RateExcess> take(Limit& limit, double amount, SteadyClock::time_point now);
 
   Limit bytes_;
-  std::array<Limit, kRateClasses> classes_;
+  std::array<Limit, kNamesOf<RateClass>.size()> classes_;
   TokenBucket refusals_;
 };
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/support/check.h"
-#include "server/support/thread_time.h"
+#include "server/support/stage_clock.h"
 
 namespace vat {
 namespace {

@@ -12,18 +12,4 @@ std::optional<RpcError> refuse_role(const MethodRow& row, Role role) {
   return role_too_low(row.name, role, row.least_role);
 }
 
-const char* to_string(RateClass rate_class) {
-  switch (rate_class) {
-    case RateClass::query:
-      return "query";
-    case RateClass::control:
-      return "control";
-    case RateClass::pointer:
-      return "pointer";
-    case RateClass::scene:
-      return "scene";
-  }
-  return "";
-}
-
 }  // namespace vat

@@ -18,8 +18,8 @@ enum class RateClass : std::uint8_t {
   pointer,  ///< follows a pointer; only the latest of one tick is executed
   scene     ///< contains a scene or a body, and may be long
 };
-inline constexpr std::size_t kRateClasses = 4;
-const char* to_string(RateClass rate_class);
+template <>
+inline constexpr std::array kNamesOf<RateClass>{"query", "control", "pointer", "scene"};
 
 /// Whether the calls of a method are logged, so that a recovery or replay repeats them.
 enum class Logging : std::uint8_t {

@@ -3,11 +3,14 @@
 #include <atomic>
 #include <cstdint>
 
+#include "core/support/names.h"
+
 namespace vat {
 
 /// Phase of a server's life, which "/readyz" reports.
 enum class ServerPhase : std::uint8_t { starting, recovering, ready, draining };
-const char* to_string(ServerPhase phase);
+template <>
+inline constexpr std::array kNamesOf<ServerPhase>{"starting", "recovering", "ready", "draining"};
 
 /// The phase, shared by all threads.
 using SharedPhase = std::atomic<ServerPhase>;

@@ -1,4 +1,4 @@
-#include "server/output/csv_writer.h"
+#include "server/output/frame_formats.h"
 
 #include <utility>
 

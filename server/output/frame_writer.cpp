@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "server/output/csv_writer.h"
-#include "server/output/npy_writer.h"
-#include "server/output/ply_writer.h"
-#include "server/output/vtk_writer.h"
+#include "server/output/frame_formats.h"
 
 namespace vat {
 

@@ -1,4 +1,4 @@
-#include "server/output/npy_writer.h"
+#include "server/output/frame_formats.h"
 
 #include <cstdint>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "server/output/ply_writer.h"
+#include "server/output/frame_formats.h"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "server/output/vtk_writer.h"
+#include "server/output/frame_formats.h"
 
 #include <functional>
 #include <vector>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/replay/replay_player.h"
-#include "server/support/thread_time.h"
+#include "server/support/stage_clock.h"
 
 namespace vat {
 namespace {

@@ -10,7 +10,7 @@
 #include "server/session/core/scene_loading.h"
 #include "server/session/core/session_restore.h"
 #include "server/storage/sqlite/compression.h"
-#include "server/support/thread_time.h"
+#include "server/support/stage_clock.h"
 
 namespace vat {
 namespace {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <string_view>
 #include <vector>
 
@@ -44,5 +45,12 @@ class StageClock final : public StageObserver {
   std::size_t running_ = kNone;  // index into stages_
   Clock::time_point since_;      // start of the running stage
 };
+
+/// Returns the processor time of this thread.
+inline std::chrono::duration<double> thread_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
 
 }  // namespace vat

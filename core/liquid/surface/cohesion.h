@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/laws/cohesion.h"
+#include "core/laws/surface_tension.h"
 
 namespace vat {
 

@@ -6,6 +6,10 @@
 #include "core/scene/scene.h"
 #include "core/support/result.h"
 
+namespace CLI {
+class App;
+}
+
 namespace vat {
 
 /// Exit codes of the program.
@@ -22,5 +26,17 @@ void print_warnings(const std::string& input, const Scene& scene);
 
 /// Prints the errors to stderr; returns kExitFailed.
 int fail(const std::string& input, const Errors& errors);
+
+/// Adds `vat serve`. Each command runs during the parse and leaves its result in `exit_code`; this
+/// one runs until SIGINT or SIGTERM.
+void add_serve_command(CLI::App& app, int& exit_code);
+/// Adds `vat simulate`.
+void add_simulate_command(CLI::App& app, int& exit_code);
+/// Adds `vat validate`.
+void add_validate_command(CLI::App& app, int& exit_code);
+/// Adds `vat script`: plays scripts of the protocol against a server.
+void add_script_command(CLI::App& app, int& exit_code);
+/// Adds `vat replay`.
+void add_replay_command(CLI::App& app, int& exit_code);
 
 }  // namespace vat

@@ -1,5 +1,3 @@
-#include "server/cli/simulate/simulate.h"
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iomanip>

@@ -6,10 +6,8 @@
 #include <numbers>
 
 #include "core/kernels/lattice_sum.h"
-#include "core/kernels/poly6.h"
+#include "core/kernels/mueller_kernels.h"
 #include "core/kernels/smoothing_kernel.h"
-#include "core/kernels/spiky.h"
-#include "core/kernels/viscosity_kernel.h"
 #include "core/scene/scene.h"
 #include "tests/support/quadrature.h"
 

@@ -7,8 +7,7 @@
 #include <numbers>
 
 #include "core/kernels/half_space.h"
-#include "core/kernels/poly6.h"
-#include "core/kernels/viscosity_kernel.h"
+#include "core/kernels/mueller_kernels.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/scenes.h"

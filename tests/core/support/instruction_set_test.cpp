@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "core/simulation/simulation.h"
-#include "core/support/instruction_set_limit.h"
 #include "tests/support/shaken_vat.h"
 
 namespace vat::instruction_set_test {

@@ -12,7 +12,6 @@
 #include "server/support/clock.h"
 #include "server/support/deferred_tasks.h"
 #include "server/support/stage_clock.h"
-#include "server/support/thread_time.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/shaken_vat.h"
 
