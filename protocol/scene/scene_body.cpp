@@ -187,9 +187,7 @@ Melting to_melting(const Json& value, std::string path, Errors& errors) {
 
 void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors) {
   body.position = reader.vector("position", -kMaxLength, kMaxLength, body.position);
-  if (const Json* orientation = reader.member("orientation")) {
-    body.orientation = to_orientation(*orientation, reader.path_of("orientation"), errors);
-  }
+  read_member(reader, "orientation", body.orientation, errors, to_orientation);
   body.velocity = reader.vector("velocity", -kMaxSpeed, kMaxSpeed, body.velocity);
   body.angular_velocity =
       reader.vector("angular_velocity", kAnyMin, kAnyMax, body.angular_velocity);
@@ -200,9 +198,7 @@ void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors)
       reader.count("seed", 0, std::numeric_limits<std::uint32_t>::max(), body.seed));
   body.fixed = reader.boolean("fixed", body.fixed);
   body.release = reader.real("release", 0, kMaxRelease, body.release);
-  if (const Json* melting = reader.member("melting")) {
-    body.melting = to_melting(*melting, reader.path_of("melting"), errors);
-  }
+  read_member(reader, "melting", body.melting, errors, to_melting);
 }
 
 }  // namespace

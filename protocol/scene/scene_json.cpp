@@ -34,15 +34,15 @@ bool can_be_checked(const PartialScene& partial, const std::string& material) {
   return partial.material_names_known && partial.broken_materials.count(material) == 0;
 }
 
-/// Calls `read(element, path)` for each element of the list `key`, and then
+/// Calls `read(element, path, errors)` for each element of the list `key`, and then
 /// `keep(value, index, intact)` with its result.
 template <class Read, class Keep>
-void for_elements(ObjectReader& reader, const Json* list, std::string_view key,
-                  const Errors& errors, Read&& read, Keep&& keep) {
+void for_elements(ObjectReader& reader, const Json* list, std::string_view key, Errors& errors,
+                  Read&& read, Keep&& keep) {
   if (list == nullptr) return;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const std::size_t errors_before = errors.size();
-    auto value = read((*list)[i], pointer_to(reader.path_of(key), i));
+    auto value = read((*list)[i], pointer_to(reader.path_of(key), i), errors);
     const bool intact = errors.size() == errors_before && errors.size() < kMaxReadErrors;
     keep(std::move(value), i, intact);
   }
@@ -51,37 +51,30 @@ void for_elements(ObjectReader& reader, const Json* list, std::string_view key,
 void read_materials(ObjectReader& reader, PartialScene& partial, Errors& errors) {
   const Json* list = reader.array("materials", kMaxMaterials, true);
   partial.material_names_known = list != nullptr;
-  for_elements(
-      reader, list, "materials", errors,
-      [&](const Json& value, const std::string& path) {
-        return scene_parts::to_material(value, path, errors);
-      },
-      [&](Material material, std::size_t at, bool intact) {
-        if (intact) {
-          partial.scene.materials.push_back(std::move(material));
-          partial.materials_at.push_back(at);
-        } else if (material.name.empty()) {
-          partial.material_names_known = false;
-        } else {
-          partial.broken_materials.insert(material.name);
-        }
-      });
+  for_elements(reader, list, "materials", errors, scene_parts::to_material,
+               [&](Material material, std::size_t at, bool intact) {
+                 if (intact) {
+                   partial.scene.materials.push_back(std::move(material));
+                   partial.materials_at.push_back(at);
+                 } else if (material.name.empty()) {
+                   partial.material_names_known = false;
+                 } else {
+                   partial.broken_materials.insert(material.name);
+                 }
+               });
 }
 
 void read_interfaces(ObjectReader& reader, PartialScene& partial, Errors& errors) {
-  for_elements(
-      reader, reader.array("interfaces", scene_parts::kMaxInterfaces), "interfaces", errors,
-      [&](const Json& value, const std::string& path) {
-        return scene_parts::to_interface(value, path, errors);
-      },
-      [&](InterfaceDescription interface, std::size_t at, bool intact) {
-        if (!intact || !can_be_checked(partial, interface.materials[0]) ||
-            !can_be_checked(partial, interface.materials[1])) {
-          return;
-        }
-        partial.scene.interfaces.push_back(std::move(interface));
-        partial.interfaces_at.push_back(at);
-      });
+  for_elements(reader, reader.array("interfaces", scene_parts::kMaxInterfaces), "interfaces",
+               errors, scene_parts::to_interface,
+               [&](InterfaceDescription interface, std::size_t at, bool intact) {
+                 if (!intact || !can_be_checked(partial, interface.materials[0]) ||
+                     !can_be_checked(partial, interface.materials[1])) {
+                   return;
+                 }
+                 partial.scene.interfaces.push_back(std::move(interface));
+                 partial.interfaces_at.push_back(at);
+               });
 }
 
 void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& partial,
@@ -90,7 +83,7 @@ void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& p
   partial.body_names_known = list != nullptr;
   for_elements(
       reader, list, "bodies", errors,
-      [&](const Json& value, const std::string& path) {
+      [&](const Json& value, const std::string& path, Errors&) {
         return scene_parts::to_body(value, path, meshes, errors);
       },
       [&](BodyDescription body, std::size_t at, bool intact) {
@@ -111,36 +104,28 @@ bool is_checked(const PartialScene& partial, const std::string& body) {
 }
 
 void read_flow(ObjectReader& reader, PartialScene& partial, Errors& errors) {
-  for_elements(
-      reader, reader.array("emitters", kMaxEmitters), "emitters", errors,
-      [&](const Json& value, const std::string& path) {
-        return scene_parts::to_emitter(value, path, errors);
-      },
-      [&](Emitter emitter, std::size_t at, bool intact) {
-        if (!intact || !is_checked(partial, emitter.body)) return;
-        partial.scene.emitters.push_back(std::move(emitter));
-        partial.emitters_at.push_back(at);
-      });
-  for_elements(
-      reader, reader.array("drains", kMaxDrains), "drains", errors,
-      [&](const Json& value, const std::string& path) {
-        return scene_parts::to_drain(value, path, errors);
-      },
-      [&](Drain drain, std::size_t at, bool intact) {
-        if (!intact) return;
-        partial.scene.drains.push_back(std::move(drain));
-        partial.drains_at.push_back(at);
-      });
+  for_elements(reader, reader.array("emitters", kMaxEmitters), "emitters", errors,
+               scene_parts::to_emitter, [&](Emitter emitter, std::size_t at, bool intact) {
+                 if (!intact || !is_checked(partial, emitter.body)) return;
+                 partial.scene.emitters.push_back(std::move(emitter));
+                 partial.emitters_at.push_back(at);
+               });
+  for_elements(reader, reader.array("drains", kMaxDrains), "drains", errors, scene_parts::to_drain,
+               [&](Drain drain, std::size_t at, bool intact) {
+                 if (!intact) return;
+                 partial.scene.drains.push_back(std::move(drain));
+                 partial.drains_at.push_back(at);
+               });
 }
 
 /// Reads the optional member `key`. `target` does not change if the member has errors.
 template <class Target, class Read>
-void read_part(ObjectReader& reader, std::string_view key, Target& target, const Errors& errors,
+void read_part(ObjectReader& reader, std::string_view key, Target& target, Errors& errors,
                Read&& read) {
   const Json* member = reader.member(key);
   if (member == nullptr) return;
   const std::size_t errors_before = errors.size();
-  auto value = read(*member, reader.path_of(key));
+  auto value = read(*member, reader.path_of(key), errors);
   if (errors.size() == errors_before) target = std::move(value);
 }
 
@@ -173,40 +158,27 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   scene.gravity = reader.vector("gravity", kAnyMin, kAnyMax, scene.gravity);
   read_materials(reader, partial, errors);
   read_part(reader, "default_interface", scene.default_interface, errors,
-            [&](const Json& value, std::string path) {
-              return scene_parts::to_interface_constants(value, std::move(path), errors);
-            });
+            scene_parts::to_interface_constants);
   read_interfaces(reader, partial, errors);
-  read_part(reader, "vat", scene.vat, errors, [&](const Json& value, std::string path) {
-    return scene_parts::to_vat(value, std::move(path), errors);
-  });
-  read_part(reader, "periodic", scene.periodic, errors, [&](const Json& value, std::string path) {
-    return scene_parts::to_periodicity(value, std::move(path), errors);
-  });
-  read_part(reader, "central_field", scene.central_field, errors,
-            [&](const Json& value, std::string path) {
-              return scene_parts::to_central_field(value, std::move(path), errors);
-            });
-  read_part(reader, "settling", scene.settling, errors, [&](const Json& value, std::string path) {
-    return scene_parts::to_settling(value, std::move(path), errors);
-  });
-  read_part(reader, "sleeping", scene.sleeping, errors, [&](const Json& value, std::string path) {
-    return scene_parts::to_sleeping(value, std::move(path), errors);
-  });
-  read_part(reader, "incompressible", scene.incompressible, errors,
-            [&](const Json& value, std::string path) {
-              return scene_parts::to_incompressible(value, std::move(path), errors);
-            });
-  read_part(reader, "forces", scene.forces, errors, [&](const Json& value, std::string path) {
-    return scene_parts::to_force_switches(value, std::move(path), errors);
-  });
-  read_part(reader, "numerics", scene.numerics, errors, [&](const Json& value, std::string path) {
-    return scene_parts::to_numerics(value, std::move(path), errors);
-  });
+  read_part(reader, "vat", scene.vat, errors, scene_parts::to_vat);
+  read_part(reader, "periodic", scene.periodic, errors, scene_parts::to_periodicity);
+  read_part(reader, "central_field", scene.central_field, errors, scene_parts::to_central_field);
+  read_part(reader, "settling", scene.settling, errors, scene_parts::to_settling);
+  read_part(reader, "sleeping", scene.sleeping, errors, scene_parts::to_sleeping);
+  read_part(reader, "incompressible", scene.incompressible, errors, scene_parts::to_incompressible);
+  read_part(reader, "forces", scene.forces, errors, scene_parts::to_force_switches);
+  read_part(reader, "numerics", scene.numerics, errors, scene_parts::to_numerics);
   read_bodies(reader, meshes, partial, errors);
   read_flow(reader, partial, errors);
   reader.refuse_unknown();
   return partial;
+}
+
+/// Returns the value, or the errors of its reader.
+template <class T>
+Result<T> unless_failed(T value, const Errors& errors) {
+  if (!errors.empty()) return errors;
+  return value;
 }
 
 /// Converts a JSON pointer of the partial scene to one of the document.
@@ -246,23 +218,17 @@ Result<Scene> read_scene_text(std::string_view text, const MeshSource& meshes) {
 Result<BodyDescription> read_body(const Json& document, const std::string& path,
                                   const MeshSource& meshes) {
   Errors errors;
-  BodyDescription body = scene_parts::to_body(document, path, meshes, errors);
-  if (!errors.empty()) return errors;
-  return body;
+  return unless_failed(scene_parts::to_body(document, path, meshes, errors), errors);
 }
 
 Result<InterfaceDescription> read_interface(const Json& document, const std::string& path) {
   Errors errors;
-  InterfaceDescription interface = scene_parts::to_interface(document, path, errors);
-  if (!errors.empty()) return errors;
-  return interface;
+  return unless_failed(scene_parts::to_interface(document, path, errors), errors);
 }
 
 Result<Material> read_material(const Json& document, const std::string& path) {
   Errors errors;
-  Material material = scene_parts::to_material(document, path, errors);
-  if (!errors.empty()) return errors;
-  return material;
+  return unless_failed(scene_parts::to_material(document, path, errors), errors);
 }
 
 }  // namespace vat

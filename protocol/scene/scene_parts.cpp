@@ -38,14 +38,9 @@ Part to_part(const Json& value, std::string path, Errors& errors) {
 LatticeSprings to_lattice_springs(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   LatticeSprings springs;
-  const auto read = [&](std::string_view key, std::optional<SpringConstants>& constants) {
-    if (const Json* member = reader.member(key)) {
-      constants = to_spring_constants(*member, reader.path_of(key), errors);
-    }
-  };
-  read("structural", springs.structural);
-  read("shear", springs.shear);
-  read("bend", springs.bend);
+  read_member(reader, "structural", springs.structural, errors, to_part<SpringConstants>);
+  read_member(reader, "shear", springs.shear, errors, to_part<SpringConstants>);
+  read_member(reader, "bend", springs.bend, errors, to_part<SpringConstants>);
   reader.refuse_unknown();
   return springs;
 }
@@ -56,10 +51,6 @@ SpringConstants to_spring_constants(ObjectReader& reader) {
   SpringConstants constants;
   read_members(reader, constants);
   return constants;
-}
-
-SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors) {
-  return to_part<SpringConstants>(value, std::move(path), errors);
 }
 
 namespace {
@@ -124,18 +115,10 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
   Material material;
   material.name = reader.text("name", kMaxNameLength);
   read_members(reader, material);
-  if (const Json* liquid = reader.member("liquid")) {
-    material.liquid = to_part<LiquidConstants>(*liquid, reader.path_of("liquid"), errors);
-  }
-  if (const Json* springs = reader.member("springs")) {
-    material.springs = to_lattice_springs(*springs, reader.path_of("springs"), errors);
-  }
-  if (const Json* contact = reader.member("self_contact")) {
-    material.self_contact = to_spring_constants(*contact, reader.path_of("self_contact"), errors);
-  }
-  if (const Json* plasticity = reader.member("plasticity")) {
-    material.plasticity = to_part<Plasticity>(*plasticity, reader.path_of("plasticity"), errors);
-  }
+  read_member(reader, "liquid", material.liquid, errors, to_part<LiquidConstants>);
+  read_member(reader, "springs", material.springs, errors, to_lattice_springs);
+  read_member(reader, "self_contact", material.self_contact, errors, to_part<SpringConstants>);
+  read_member(reader, "plasticity", material.plasticity, errors, to_part<Plasticity>);
   reader.refuse_unknown();
   return material;
 }

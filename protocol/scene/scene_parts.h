@@ -25,13 +25,20 @@ Enum read_enum(ObjectReader& reader, std::string_view key, std::optional<Enum> f
   return static_cast<Enum>(reader.choice(key, kNamesOf<Enum>, index));
 }
 
+/// Reads the optional member `key` by `read(value, path, errors)`.
+template <class Target, class Read>
+void read_member(ObjectReader& reader, std::string_view key, Target& target, Errors& errors,
+                 Read&& read) {
+  if (const Json* value = reader.member(key)) target = read(*value, reader.path_of(key), errors);
+}
+
 /// Reads a list of vectors with components of at most `bound` in magnitude.
 std::vector<Vec3> read_vectors(ObjectReader& reader, std::string_view key, Real bound,
                                bool required, Errors& errors);
 /// Reads a quaternion without normalising it. The core reports a length far from 1.
 Quat to_orientation(const Json& value, const std::string& path, Errors& errors);
+/// Reads the constants among the members of an object.
 SpringConstants to_spring_constants(ObjectReader& reader);
-SpringConstants to_spring_constants(const Json& value, std::string path, Errors& errors);
 /// Reads the constants of an interface without materials and threshold.
 InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors);
 Material to_material(const Json& value, std::string path, Errors& errors);

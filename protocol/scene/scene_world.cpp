@@ -30,9 +30,7 @@ std::array<Wall, 6> to_walls(const Json& value, std::string path, Errors& errors
   ObjectReader reader(value, std::move(path), errors);
   std::array<Wall, 6> walls;
   for (std::size_t i = 0; i < walls.size(); ++i) {
-    if (const Json* wall = reader.member(kWallNames[i])) {
-      walls[i] = to_wall(*wall, reader.path_of(kWallNames[i]), errors);
-    }
+    read_member(reader, kWallNames[i], walls[i], errors, to_wall);
   }
   reader.refuse_unknown();
   return walls;
@@ -62,12 +60,8 @@ Vat to_vat(const Json& value, std::string path, Errors& errors) {
   vat.min = reader.vector("min", -kMaxLength, kMaxLength);
   vat.max = reader.vector("max", -kMaxLength, kMaxLength);
   vat.lid = reader.boolean("lid", vat.lid);
-  if (const Json* motion = reader.member("motion")) {
-    vat.motion = to_motion(*motion, reader.path_of("motion"), errors);
-  }
-  if (const Json* walls = reader.member("walls")) {
-    vat.walls = to_walls(*walls, reader.path_of("walls"), errors);
-  }
+  read_member(reader, "motion", vat.motion, errors, to_motion);
+  read_member(reader, "walls", vat.walls, errors, to_walls);
   reader.refuse_unknown();
   return vat;
 }
