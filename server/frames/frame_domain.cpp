@@ -1,4 +1,7 @@
 #include "server/frames/frame_domain.h"
+
+#include <algorithm>
+
 #include "core/support/check.h"
 
 namespace vat {
@@ -6,6 +9,8 @@ namespace {
 
 using Box = Eigen::AlignedBox<Real, 3>;
 
+constexpr double kSpacingsPerRadius = 2;
+constexpr double kErrorsPerSpacing = 64;
 constexpr Real kSlack = 0.25;        // on each side, of the width there
 constexpr Real kGreatestExcess = 4;  // of the widest side
 
@@ -43,6 +48,16 @@ FrameGrid FrameDomain::grid(double max_error) const {
   VAT_CHECK(max_error >= 0);
   if (box_.isEmpty()) return make_frame_grid(Vec3::Zero(), Vec3::Zero(), max_error);
   return make_frame_grid(box_.min(), box_.max(), max_error);
+}
+
+double default_max_error(const Simulation& simulation) {
+  double least = 0;
+  for (const BodyView& body : simulation.bodies()) {
+    if (body.kind == BodyKind::rigid || body.radii.empty()) continue;
+    const double radius = std::ranges::max(body.radii);
+    least = least == 0 ? radius : std::min(least, radius);
+  }
+  return kSpacingsPerRadius * least / kErrorsPerSpacing;
 }
 
 }  // namespace vat

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/scene/scene.h"
+#include "core/simulation/simulation.h"
 #include "protocol/frame/frame_codec.h"
 
 namespace vat {
@@ -25,5 +26,9 @@ class FrameDomain {
   Box vat_;
   Box box_;
 };
+
+/// Returns the default position error of frames [m]: 1/64 of the particle spacing of the finest
+/// liquid or deformable body. Returns 0, the finest grid, if there is no such body.
+double default_max_error(const Simulation& simulation);
 
 }  // namespace vat

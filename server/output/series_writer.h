@@ -2,17 +2,25 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "server/output/frame_writer.h"
+#include "server/output/output_file.h"
 
 namespace vat {
 
 /// One file per output time. Each file is complete as soon as it bears its name.
 class SeriesWriter : public FrameWriter {
  public:
-  SeriesWriter(std::string name, std::size_t frame_count);
+  SeriesWriter(std::string name, std::size_t frame_count)
+      : name_(std::move(name)), frame_count_(frame_count) {}
 
-  Status write(const Simulation& simulation) final;
+  Status write(const Simulation& simulation) final {
+    Result<OutputFile> file = OutputFile::create(series_name(name_, next_frame_++, frame_count_));
+    if (!file) return file.errors();
+    if (Status written = file.value().append(content(simulation)); !written) return written;
+    return file.value().commit();
+  }
   Status finish() final { return {}; }
 
  protected:

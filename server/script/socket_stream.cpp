@@ -1,18 +1,74 @@
 #include "server/script/socket_stream.h"
 
+#include <openssl/ssl.h>
+#include <openssl/x509v3.h>
+
 #include <boost/asio/basic_stream_socket.hpp>
 #include <boost/asio/connect.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/stream.hpp>
 #include <stdexcept>
-
-#include "server/script/tls.h"
 
 namespace vat::script {
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
+
+namespace {
+
+using ErrorCode = SocketStream::ErrorCode;
+
+/// Returns a client context for TLS 1.2 and later. Throws std::runtime_error if the file cannot be
+/// used.
+asio::ssl::context make_client_context(const TlsTrust& trust) {
+  asio::ssl::context context(asio::ssl::context::tls_client);
+  SSL_CTX_set_min_proto_version(context.native_handle(), TLS1_2_VERSION);
+  context.set_verify_mode(trust.is_unchecked ? asio::ssl::verify_none : asio::ssl::verify_peer);
+  ErrorCode failure;
+  if (trust.authority_file.empty()) {
+    context.set_default_verify_paths(failure);
+    if (failure) throw std::runtime_error("the system's certificates: " + failure.message());
+  } else {
+    context.load_verify_file(trust.authority_file, failure);
+    if (failure) {
+      throw std::runtime_error(trust.authority_file +
+                               ": has no certificate in PEM that can be read");
+    }
+  }
+  return context;
+}
+
+/// Requests the server at `url` in the handshake of `tls`, and accepts only its certificate.
+void expect_server(SSL* tls, const WebSocketUrl& url) {
+  ErrorCode no_address;
+  boost::asio::ip::make_address(url.host, no_address);
+  X509_VERIFY_PARAM* expected = SSL_get0_param(tls);
+  if (no_address) {
+    // SSL_set_tlsext_host_name() without its cast of the old kind.
+    SSL_ctrl(tls, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name,
+             const_cast<char*>(url.host.c_str()));
+    X509_VERIFY_PARAM_set1_host(expected, url.host.c_str(), url.host.size());
+  } else {
+    X509_VERIFY_PARAM_set1_ip_asc(expected, url.host.c_str());
+  }
+}
+
+/// Returns the reason of a failed handshake, and a hint.
+std::string handshake_fault(SSL* tls, const WebSocketUrl& url, const ErrorCode& failure) {
+  const long found = SSL_get_verify_result(tls);
+  if (found != X509_V_OK && SSL_get_verify_mode(tls) != SSL_VERIFY_NONE) {
+    return "the certificate of " + url.authority() +
+           " is not trusted: " + X509_verify_cert_error_string(found) +
+           "; --ca FILE names whom to trust, --insecure trusts whoever answers";
+  }
+  return "no TLS with " + url.authority() + ": " + failure.message() +
+         "; a server without TLS is at ws://";
+}
+
+}  // namespace
 
 struct SocketStream::Transport {
   using Socket = asio::basic_stream_socket<tcp, executor_type>;

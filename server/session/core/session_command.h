@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "core/support/check.h"
 #include "core/support/result.h"
 #include "protocol/json/json_reader.h"
 #include "server/messages/method_row.h"
@@ -66,7 +67,12 @@ struct SessionMethods {
   std::variant<SessionCommand, Errors> (*parse)(std::string_view method, Json params) = nullptr;
 
   /// Returns a command that the server itself gives. `params` must be valid.
-  SessionCommand make(std::string_view method, Json params) const;
+  SessionCommand make(std::string_view method, Json params) const {
+    VAT_CHECK(parse != nullptr);
+    auto command = parse(method, std::move(params));
+    VAT_CHECK(std::holds_alternative<SessionCommand>(command));
+    return std::get<SessionCommand>(std::move(command));
+  }
 };
 
 }  // namespace vat

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/support/check.h"
-#include "server/frames/default_error.h"
+#include "server/frames/frame_domain.h"
 #include "server/messages/describe.h"
 #include "server/session/core/playback.h"
 

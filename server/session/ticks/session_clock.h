@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+
+#include "core/support/check.h"
 #include "server/session/ticks/tick_clock.h"
 
 namespace vat {
@@ -14,10 +17,21 @@ class SessionClock {
   bool is_slow() const { return playing_ && rate_.slower_than(speed_); }
 
   /// Sets both without an interruption: state of a log or recording.
-  void set(bool playing, double speed);
+  void set(bool playing, double speed) {
+    playing_ = playing;
+    speed_ = speed;
+  }
   /// Interrupts control.step. A change restarts the measurement.
-  void set_playing(bool playing);
-  void set_speed(double speed);
+  void set_playing(bool playing) {
+    interrupt();
+    if (playing != playing_) restart_rate();
+    playing_ = playing;
+  }
+  void set_speed(double speed) {
+    VAT_CHECK(speed > 0);
+    speed_ = speed;
+    restart_rate();
+  }
   void tick_done(SteadyClock::time_point now, double tick_seconds) {
     rate_.tick_done(now, tick_seconds);
   }
@@ -26,7 +40,7 @@ class SessionClock {
   /// Ends the ticks of control.step: another control command, another scene, a failed guard.
   void interrupt() { interrupted_ = true; }
   /// Returns true once after interrupt().
-  bool take_interruption();
+  bool take_interruption() { return std::exchange(interrupted_, false); }
 
  private:
   RateMeter rate_;
