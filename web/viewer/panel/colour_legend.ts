@@ -1,5 +1,6 @@
 import { mapStops } from '../view/colour/maps';
 import { formatQuantity, kQuantities } from '../view/colour/quantity';
+import { make } from './elements';
 import type { ColourScale, Meaning } from '../view/colour/colour_scale';
 
 const kTicks = 5;
@@ -9,19 +10,17 @@ const kPeriodMs = 250;
 
 /** The legend of colours beside the picture. */
 export class ColourLegend {
-  readonly element = document.createElement('figure');
-  private readonly title = document.createElement('figcaption');
-  private readonly bar = document.createElement('div');
-  private readonly ticks = document.createElement('ol');
+  readonly element: HTMLElement;
+  private readonly title = make('figcaption');
+  private readonly bar = make('div', { className: 'bar' });
+  private readonly ticks = make('ol');
   /** The next meaning to display. */
   private meaning: Meaning | undefined;
   private writtenAt = -Infinity;
 
   constructor(scale: ColourScale) {
-    this.element.id = 'colour-legend';
-    this.element.hidden = true;
-    this.bar.className = 'bar';
-    this.element.append(this.title, this.bar, this.ticks);
+    const properties = { id: 'colour-legend', hidden: true };
+    this.element = make('figure', properties, this.title, this.bar, this.ticks);
     scale.subscribe((meaning) => this.show(meaning));
   }
 
@@ -43,11 +42,9 @@ export class ColourLegend {
     this.writtenAt = performance.now();
     this.title.textContent = `${title} [${unit}]`;
     this.bar.style.background = `linear-gradient(to top, ${mapStops(map).join(', ')})`;
-    const items = Array.from({ length: kTicks }, (_, i) => {
-      const item = document.createElement('li');
-      item.textContent = formatQuantity(range.max - (i / (kTicks - 1)) * (range.max - range.min));
-      return item;
-    });
+    const items = Array.from({ length: kTicks }, (_, i) =>
+      make('li', {}, formatQuantity(range.max - (i / (kTicks - 1)) * (range.max - range.min))),
+    );
     this.ticks.replaceChildren(...items);
     this.element.dataset.min = String(range.min);
     this.element.dataset.max = String(range.max);

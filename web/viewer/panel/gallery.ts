@@ -1,5 +1,5 @@
 import type { SceneEntry } from '../../client/index';
-import { element, onPress } from './elements';
+import { element, make, onPress } from './elements';
 
 /** The addresses of the scenes' pictures, made by scripts/gallery.ts. */
 const kPictures = import.meta.glob<string>('../scenes/*.webp', {
@@ -44,25 +44,16 @@ export class Gallery {
   }
 
   private card({ name, title, description }: SceneEntry): HTMLElement {
-    const button = document.createElement('button');
-    button.type = 'button';
+    const src = kPictures[`../scenes/${name}.webp`];
+    const picture = make('img', { loading: 'lazy', alt: '', hidden: src === undefined });
+    if (src !== undefined) picture.src = src;
+    const words = make('span', {}, title);
+    const button = make('button', { type: 'button', title: description }, picture, words);
     button.dataset.scene = name;
-    button.title = description;
-    const picture = document.createElement('img');
-    picture.loading = 'lazy';
-    picture.alt = '';
-    const source = kPictures[`../scenes/${name}.webp`];
-    if (source !== undefined) picture.src = source;
-    else picture.hidden = true;
-    const words = document.createElement('span');
-    words.textContent = title;
-    button.append(picture, words);
     button.addEventListener('click', () => {
       this.dialog.close();
       this.load(name);
     });
-    const item = document.createElement('li');
-    item.append(button);
-    return item;
+    return make('li', {}, button);
   }
 }

@@ -1,5 +1,5 @@
 import type { SessionDescription } from '../../client/index';
-import { element } from './elements';
+import { element, make } from './elements';
 import { formatCount } from './format';
 
 /** Position of a particle, and the simulated time. */
@@ -84,22 +84,17 @@ export class Inspector {
   }
 
   private write(title: string, rows: [string, string][]): void {
-    const header = document.createElement('header');
-    const close = document.createElement('button');
-    close.type = 'button';
-    close.className = 'icon';
-    close.ariaLabel = 'Close';
-    close.textContent = '×';
-    close.addEventListener('click', () => this.close());
-    const kept = this.card.querySelector('button');
-    header.append(title, kept ?? close);
-    const list = document.createElement('dl');
-    for (const [name, value] of rows) {
-      const [term, number] = [document.createElement('dt'), document.createElement('dd')];
-      [term.textContent, number.textContent] = [name, value];
-      list.append(term, number);
-    }
-    this.card.replaceChildren(header, list);
+    const close = this.card.querySelector('button') ?? this.closeButton();
+    const list = make('dl');
+    for (const [name, value] of rows) list.append(make('dt', {}, name), make('dd', {}, value));
+    this.card.replaceChildren(make('header', {}, title, close), list);
     this.card.hidden = false;
+  }
+
+  private closeButton(): HTMLButtonElement {
+    const properties = { type: 'button', className: 'icon', ariaLabel: 'Close' } as const;
+    const close = make('button', properties, '×');
+    close.addEventListener('click', () => this.close());
+    return close;
   }
 }

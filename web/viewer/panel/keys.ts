@@ -1,4 +1,4 @@
-import { element, onPress } from './elements';
+import { element, make, onPress } from './elements';
 
 export interface Key {
   /** Values of `KeyboardEvent.key` in lower case. */
@@ -35,13 +35,8 @@ export class Keys {
   add(key: Key): void {
     this.all.push(key);
     if (key.sign === undefined || key.words === undefined) return;
-    const sign = document.createElement('dt');
-    const text = document.createElement('kbd');
-    text.textContent = key.sign;
-    sign.append(text);
-    const words = document.createElement('dd');
-    words.textContent = key.words;
-    this.list.append(sign, words);
+    const sign = make('dt', {}, make('kbd', {}, key.sign));
+    this.list.append(sign, make('dd', {}, key.words));
   }
 
   private handle(event: KeyboardEvent): void {

@@ -1,5 +1,5 @@
 import type { GuardEvent, SessionDescription } from '../../client/index';
-import { element, makeButton, onPress } from './elements';
+import { element, make, makeButton } from './elements';
 import { formatSeconds } from './format';
 
 const kMostShown = 4;
@@ -28,16 +28,8 @@ export class Notices {
   add(level: Level, text: string, remedy?: Remedy): void {
     const newest = this.list.firstElementChild;
     if (newest?.firstChild?.textContent === text) return; // already displayed
-    const item = document.createElement('li');
+    const item = make('li', {}, make('span', {}, text));
     item.dataset.level = level;
-    const dismiss = document.createElement('button');
-    dismiss.type = 'button';
-    dismiss.ariaLabel = 'Dismiss';
-    dismiss.textContent = '×';
-    onPress(dismiss, () => item.remove());
-    const words = document.createElement('span');
-    words.textContent = text;
-    item.append(words);
     if (remedy) {
       const { label, act } = remedy;
       item.append(
@@ -47,7 +39,7 @@ export class Notices {
         }),
       );
     }
-    item.append(dismiss);
+    item.append(makeButton('×', () => item.remove(), 'Dismiss'));
     this.list.prepend(item);
     while (this.list.children.length > kMostShown) this.list.lastElementChild?.remove();
     if (level === 'warning') window.setTimeout(() => item.remove(), remedy ? kOfferMs : kWarningMs);

@@ -1,5 +1,5 @@
 import type { BodyKindName, SceneEntry, SessionDescription } from '../../client/index';
-import { element } from './elements';
+import { element, make } from './elements';
 import { formatCount } from './format';
 import { bodyColour } from '../view/base/palette';
 import type { Gallery } from './gallery';
@@ -74,9 +74,8 @@ export class Scenes {
     const items = kinds.map((kind) => {
       const ofKind = bodies.filter((body) => body.kind === kind);
       const count = ofKind.reduce((sum, { particles }) => sum + particles, 0);
-      const item = document.createElement('li');
-      item.append(...swatches(kind, ofKind.length), `${kKindWords[kind]} ${formatCount(count)}`);
-      return item;
+      const words = `${kKindWords[kind]} ${formatCount(count)}`;
+      return make('li', {}, ...swatches(kind, ofKind.length), words);
     });
     this.legend.replaceChildren(...items);
   }
@@ -89,7 +88,7 @@ function swatches(kind: BodyKindName, bodies: number): HTMLElement[] {
     (_, n) => `#${bodyColour(kind, n).getHexString()}`,
   );
   return [...new Set(colours)].map((colour) => {
-    const dot = document.createElement('i');
+    const dot = make('i');
     dot.style.background = colour;
     return dot;
   });

@@ -8,7 +8,7 @@ import type {
 } from '../view/base/settings';
 import type { View } from '../view/view';
 import { ColourLegend } from './colour_legend';
-import { element } from './elements';
+import { element, make } from './elements';
 import { formatMilliseconds } from './format';
 import './view_options.css';
 
@@ -36,19 +36,18 @@ const kWords: Words = {
   smooth: { auto: 'automatic', on: 'between frames', off: 'frame by frame' },
 };
 
+const kHidden = { className: 'view-words', hidden: true };
+
 /** The update interval of the delay [ms]. */
 const kDelayPeriodMs = 500;
 
 /** The section for the view's settings. */
 export class ViewOptions {
-  private readonly section = document.createElement('section');
-  private readonly notice = words();
-  private readonly delay = words();
+  private readonly section = make('section', { id: 'view-options', ariaLabel: 'View' });
+  private readonly notice = make('p', { ...kHidden, id: 'view-notice' });
+  private readonly delay = make('p', kHidden);
 
   constructor(private readonly view: View) {
-    this.section.id = 'view-options';
-    this.section.ariaLabel = 'View';
-    this.notice.id = 'view-notice';
     const isOfNumbers = ({ colour }: ViewSettings): boolean =>
       colour !== 'body' && colour !== 'kind';
     const isClipped = ({ clip }: ViewSettings): boolean => clip !== 'off';
@@ -88,8 +87,7 @@ export class ViewOptions {
   }
 
   private choice<N extends ChoiceName>(name: N, label: string): HTMLElement {
-    const picker = document.createElement('select');
-    picker.id = `view-${name}`;
+    const picker = make('select', { id: `view-${name}` });
     const texts: Readonly<Record<string, string>> = kWords[name];
     for (const value of kChoices[name]) picker.add(new Option(texts[value], value));
     this.bind(picker, () => ({ [name]: picker.value as Choice<N> }));
@@ -98,18 +96,14 @@ export class ViewOptions {
   }
 
   private toggle(name: SwitchName, label: string): HTMLElement {
-    const box = document.createElement('input');
-    box.type = 'checkbox';
-    box.id = `view-${name}`;
+    const box = make('input', { type: 'checkbox', id: `view-${name}` });
     this.bind(box, () => ({ [name]: box.checked }));
     this.view.settings.subscribe((now) => (box.checked = now[name]));
     return row(label, box);
   }
 
   private slider(name: NumberName, label: string): HTMLElement {
-    const slider = document.createElement('input');
-    slider.type = 'range';
-    slider.id = `view-${name}`;
+    const slider = make('input', { type: 'range', id: `view-${name}` });
     [slider.min, slider.max, slider.step] = ['0', '1', '0.01'];
     this.bind(slider, () => ({ [name]: slider.valueAsNumber }), 'input');
     this.view.settings.subscribe((now) => (slider.value = String(now[name] ?? 0.5)));
@@ -118,22 +112,21 @@ export class ViewOptions {
 
   /** Returns the controls for the ends of the colour map: fixed or automatic. */
   private range(): HTMLElement {
-    const group = document.createElement('span');
-    group.className = 'view-range';
-    const fields = (['from', 'to'] as const).map((name) => {
-      const field = document.createElement('input');
-      field.type = 'number';
-      field.step = 'any';
-      field.id = `view-${name}`;
-      field.placeholder = 'auto';
-      field.ariaLabel = `Colours ${name}`;
+    const [from, to] = (['from', 'to'] as const).map((name) => {
+      const field = make('input', {
+        type: 'number',
+        step: 'any',
+        id: `view-${name}`,
+        placeholder: 'auto',
+        ariaLabel: `Colours ${name}`,
+      });
       this.bind(field, () => ({
         [name]: Number.isFinite(field.valueAsNumber) ? field.valueAsNumber : undefined,
       }));
       this.view.settings.subscribe((now) => (field.value = String(now[name] ?? '')));
       return field;
     });
-    group.append(fields[0]!, '–', fields[1]!);
+    const group = make('span', { className: 'view-range' }, from!, '–', to!);
     const whole = row('Range', group);
     whole.title = 'Values at the ends of the colour map; empty: minimum and maximum';
     return whole;
@@ -154,18 +147,8 @@ export class ViewOptions {
 }
 
 function row(label: string, control: HTMLElement): HTMLElement {
-  const isGroup = control.tagName === 'SPAN';
-  const whole = document.createElement(isGroup ? 'div' : 'label');
-  whole.className = 'view-row';
-  whole.append(label, control);
-  return whole;
-}
-
-function words(): HTMLElement {
-  const text = document.createElement('p');
-  text.className = 'view-words';
-  text.hidden = true;
-  return text;
+  const tag = control.tagName === 'SPAN' ? 'div' : 'label';
+  return make(tag, { className: 'view-row' }, label, control);
 }
 
 function write(to: HTMLElement, text: string | undefined): void {

@@ -1,5 +1,6 @@
 import { Vector3 } from 'three';
 import type { Vector } from '../../client/index';
+import { make } from '../panel/elements';
 import type { Stage } from '../view/stage';
 
 /** A name at a position in the scene. */
@@ -38,8 +39,7 @@ export class Labels {
   private elementOf({ key, colour }: Label): HTMLElement {
     const known = this.shown.get(key);
     if (known) return known;
-    const element = document.createElement('span');
-    element.className = this.className;
+    const element = make('span', { className: this.className });
     element.style.background = colour;
     this.shown.set(key, element);
     this.layer.append(element);

@@ -1,5 +1,5 @@
 import type { Participant, RoleName } from '../../client/index';
-import { element, onPress } from '../panel/elements';
+import { element, make, makeButton, onPress } from '../panel/elements';
 import { personColour } from '../stream/people';
 import type { People } from '../stream/people';
 
@@ -72,36 +72,31 @@ export class PeopleList {
   }
 
   private item(person: Participant): HTMLElement {
-    const item = document.createElement('li');
-    item.dataset.participant = String(person.participant);
-    item.dataset.away = String(person.away);
-    const dot = document.createElement('i');
+    const dot = make('i');
     dot.style.background = personColour(person.participant);
     const isSelf = person.participant === this.people.self?.participant;
-    item.append(
+    const item = make(
+      'li',
+      {},
       dot,
       span('who', isSelf ? `${person.name} (you)` : person.name),
       span('role', person.away ? 'away' : kRoles[person.role]),
     );
+    item.dataset.participant = String(person.participant);
+    item.dataset.away = String(person.away);
     if (person.grabs.length > 0) {
       const names = person.grabs.map((body) => this.actions.nameOfBody(body));
       item.append(span('does', `holds ${names.join(', ')}`));
     }
     const acts = isSelf ? [] : this.actsOn(person);
-    if (acts.length > 0) {
-      const row = document.createElement('span');
-      row.className = 'acts';
-      row.append(...acts);
-      item.append(row);
-    }
+    if (acts.length > 0) item.append(span('acts', ...acts));
     return item;
   }
 
   private actsOn({ participant, role, name }: Participant): HTMLElement[] {
     const { people, actions } = this;
     if (people.isOwner && role !== 'admin') {
-      const picker = document.createElement('select');
-      picker.ariaLabel = `Role of ${name}`;
+      const picker = make('select', { ariaLabel: `Role of ${name}` });
       picker.add(new Option('watches', 'viewer'));
       picker.add(new Option('controls', 'controller'));
       picker.add(new Option('owns the session', 'owner'));
@@ -109,29 +104,16 @@ export class PeopleList {
       picker.addEventListener('change', () =>
         actions.setRole(participant, picker.value as 'viewer' | 'controller' | 'owner'),
       );
-      return [picker, button('Remove', `Remove ${name}`, () => actions.kick(participant))];
+      return [picker, makeButton('Remove', () => actions.kick(participant), `Remove ${name}`)];
     }
     if (people.isInControl && role === 'viewer') {
-      return [
-        button('Give control', `Give control to ${name}`, () => actions.handOver(participant)),
-      ];
+      const label = `Give control to ${name}`;
+      return [makeButton('Give control', () => actions.handOver(participant), label)];
     }
     return [];
   }
 }
 
-function span(className: string, text: string): HTMLElement {
-  const whole = document.createElement('span');
-  whole.className = className;
-  whole.textContent = text;
-  return whole;
-}
-
-function button(text: string, label: string, act: () => void): HTMLButtonElement {
-  const whole = document.createElement('button');
-  whole.type = 'button';
-  whole.textContent = text;
-  whole.ariaLabel = label;
-  onPress(whole, act);
-  return whole;
+function span(className: string, ...content: (Node | string)[]): HTMLElement {
+  return make('span', { className }, ...content);
 }
