@@ -4,7 +4,7 @@ import tseslint from 'typescript-eslint';
 
 export default defineConfig(
   { ignores: ['**/node_modules/', '**/dist/'] },
-  { ignores: ['web/client/protocol.ts', 'web/client/scene_format.ts'] }, // written by a script
+  { ignores: ['web/client/protocol.ts', 'web/client/scene_format.ts'] }, // generated
   js.configs.recommended,
   tseslint.configs.strict,
   {
@@ -17,7 +17,7 @@ export default defineConfig(
       'max-lines': ['error', 400],
       'max-lines-per-function': ['error', 60],
       'no-console': 'error',
-      // Typed arrays are read in loops whose bounds are checked.
+      // Typed arrays are read in loops with checked bounds.
       '@typescript-eslint/no-non-null-assertion': 'off',
     },
   },

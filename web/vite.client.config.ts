@@ -3,7 +3,7 @@ import { defineConfig } from 'vite';
 
 const folder = (name: string) => fileURLToPath(new URL(`client/${name}`, import.meta.url));
 
-// The package vat-client as one module; its types are written by tsc.
+// Builds the package vat-client as one module. tsc writes its types.
 export default defineConfig({
   root: folder('.'),
   build: {

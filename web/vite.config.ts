@@ -3,7 +3,7 @@ import { defineConfig } from 'vite';
 
 const server = process.env.VAT_SERVER ?? 'http://127.0.0.1:8080';
 
-/** A folder of the repository. */
+/** Returns the path of a folder of the repository. */
 const above = (folder: string): string => fileURLToPath(new URL(`../${folder}`, import.meta.url));
 
 export default defineConfig({
@@ -17,7 +17,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 900,
   },
-  // `npm run dev` serves the page by itself and takes the protocol from a running server.
+  // `npm run dev` serves the page and connects to a running server.
   server: {
     proxy: { '/ws': { target: server, ws: true } },
     fs: { allow: ['web', 'protocol/scenes'].map(above) },

@@ -9,7 +9,7 @@ export default defineConfig({
   root: repository,
   server: { fs: { allow: [repository] } },
   resolve: {
-    // The root and the tests lie outside of this folder, from where its packages are not found.
+    // The tests are outside this folder, so its packages need explicit paths.
     alias: {
       'playwright-core': resolve(web, 'node_modules/playwright-core/index.mjs'),
       vite: resolve(web, 'node_modules/vite/dist/node/index.js'),
@@ -19,7 +19,7 @@ export default defineConfig({
   test: {
     include: ['tests/browser/**/*.test.ts'],
     globalSetup: 'tests/browser/support/setup.ts',
-    // One process for all files, one after the other: they share a browser, and load takes long.
+    // One process for all files in sequence: they share a browser, and loading takes long.
     fileParallelism: false,
     pool: 'forks',
     poolOptions: { forks: { singleFork: true, isolate: false } },

@@ -1,4 +1,4 @@
-"""Why a frame is refused: a reason of the table in FRAMES.md, "Header"."""
+"""The error of a rejected frame, with a reason of the table in FRAMES.md, "Header"."""
 
 
 class BadFrame(Exception):

@@ -1,4 +1,4 @@
-"""The states of bodies that frames tell, in whole numbers: FRAMES.md, "Blocks", "Check"."""
+"""The states of bodies in frames, as integers: FRAMES.md, "Blocks", "Check"."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,14 +10,13 @@ Triple = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class ParticleBlock:
-    """A liquid or deformable body: its particles in the order of their numbers."""
+    """A liquid or deformable body, with its particles in the order of their numbers."""
 
     body: int
     kind: int
     numbers: list[int]
     positions: list[Triple]
-    attributes: list[list[int]]  # speeds, densities, pressures, and accelerations where frames have
-    # them; each empty where there are none
+    attributes: list[list[int]]  # speeds, densities, pressures, accelerations; some empty
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,7 @@ Block = ParticleBlock | PoseBlock
 
 
 def check_of(numbers: Iterable[int]) -> int:
-    """K(x1, x2, ...)."""
+    """Returns K(x1, x2, ...)."""
     check = 0
     for x in numbers:
         check = (check * 16777619 + x) % (1 << 32)
@@ -43,7 +42,7 @@ def check_of(numbers: Iterable[int]) -> int:
 
 
 def block_numbers(block: Block) -> list[int]:
-    """What the check covers of a block."""
+    """Returns the numbers of a block that the check covers."""
     head = [block.body, block.kind]
     if isinstance(block, PoseBlock):
         orientation = block.orientation or [0, 0, 0, 0]

@@ -1,6 +1,7 @@
 """Decodes the frames of a subscription: FRAMES.md.
 
-Written from that document alone, in its words and its order, to show that it is enough.
+It is written from that document alone, in its terms and order, to show that the document is
+sufficient.
 """
 
 from collections.abc import Sequence
@@ -24,13 +25,13 @@ class Frame:
 
 
 class Decoder:
-    """Decodes frames one after the other; a refused one leaves it as it was."""
+    """Decodes successive frames. A rejected frame does not change the decoder."""
 
     def __init__(self) -> None:
-        self.frames: list[Frame] = []  # those that may be references, the newest last
+        self.frames: list[Frame] = []  # possible references, the newest last
 
     def decode(self, data: bytes) -> Frame:
-        """Raises BadFrame."""
+        """Decodes a frame. Raises BadFrame if it is invalid."""
         header = read_header(data)
         if header.type == KEY_FRAME:
             scale = read_scale(data, header)
@@ -50,7 +51,7 @@ class Decoder:
         return frame
 
     def reference(self, header: Header, back: int) -> Frame:
-        """The newest frame of the epoch that has the number so much lower."""
+        """Returns the newest frame of the epoch whose number is lower by `back`."""
         number = (header.number - back) % (1 << 32)
         for frame in reversed(self.frames):
             if (frame.header.number, frame.header.epoch) == (number, header.epoch):
@@ -83,7 +84,9 @@ def read_key_block(symbols: Symbols, scale: Scale) -> Block:
 
 
 def checked_pose(pose: PoseBlock) -> PoseBlock:
-    """A rigid body's pose, unless its orientation is far from a unit quaternion."""
+    """Returns the pose of a rigid body. Raises BadFrame if its orientation is far from a unit
+    quaternion.
+    """
     one = 1 << (2 * pose.orientation_bits)
     squares = sum(x * x for x in pose.orientation)
     if not 3 * one <= 4 * squares <= 5 * one:
@@ -92,7 +95,7 @@ def checked_pose(pose: PoseBlock) -> PoseBlock:
 
 
 def read_delta_blocks(symbols: Symbols, scale: Scale, references: Sequence[Frame]) -> list[Block]:
-    """The blocks, from those of the first reference and, if there is one, the second."""
+    """Reads the blocks relative to those of the references. The second is optional."""
     turn = symbols.factor()
     two = len(references) == 2
     blocks: list[Block] = []
@@ -125,7 +128,7 @@ def read_changed_pose(
 def read_turned(
     symbols: Symbols, turn: int, first: Sequence[int], second: Sequence[int]
 ) -> list[int]:
-    """The numbers of a place or an orientation, each predicted from those of the references."""
+    """Reads the numbers of a position or orientation, predicted from those of the references."""
     residual_class = symbols.residual_class()
     numbers = []
     for q, (x1, x2) in enumerate(zip(first, second)):

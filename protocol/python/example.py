@@ -1,4 +1,4 @@
-"""example.py URL: lets a ball fall for half a second and watches it, in a session of its own."""
+"""example.py URL: shows a ball that falls for half a second, in a separate session."""
 
 import sys
 
@@ -13,7 +13,7 @@ SCENE = {
 
 
 def height(frame):
-    """Of the one body, whose place a frame has in half quanta."""
+    """Returns the height of the only body. Frames contain its position in half quanta."""
     return frame.scale.origin[2] + frame.scale.quantum * frame.blocks[0].place[2] / 2
 
 

@@ -16,11 +16,11 @@ ACCELERATION_FLAG = 32
 
 @dataclass(frozen=True)
 class Scale:
-    """What steps of the grid and of attributes stand for, in SI units."""
+    """The values of steps of the grid and of attributes, in SI units."""
 
     origin: tuple[float, float, float]
     quantum: float
-    attribute_quanta: tuple[float, ...]  # three, or four where there are accelerations
+    attribute_quanta: tuple[float, ...]  # three, or four with accelerations
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Header:
 
 
 def read_header(frame: bytes) -> Header:
-    """The first 52 bytes of a frame."""
+    """Reads the first 52 bytes of a frame."""
     if len(frame) < FIELDS.size:
         raise BadFrame("truncated")
     (magic, version, frame_type, flags, stride, epoch, number, first_back, second_back, check,
@@ -83,14 +83,14 @@ def read_header(frame: bytes) -> Header:
 
 
 def symbols_begin(header: Header) -> int:
-    """Where the rest of a frame begins."""
+    """Returns the index of the first byte after the header."""
     if header.type == DELTA_FRAME:
         return FIELDS.size
     return FIELDS.size + (SCALE_WITH_ACCELERATION if header.accelerations else SCALE).size
 
 
 def read_scale(frame: bytes, header: Header) -> Scale:
-    """What a key frame has behind its first 52 bytes."""
+    """Reads the scale that follows the first 52 bytes of a key frame."""
     if len(frame) < symbols_begin(header):
         raise BadFrame("truncated")
     fields = SCALE_WITH_ACCELERATION if header.accelerations else SCALE

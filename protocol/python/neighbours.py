@@ -1,4 +1,4 @@
-"""What coded particles tell of those to come: FRAMES.md, "Order" and "Context of neighbouring cells"."""
+"""Predictions from coded particles: FRAMES.md, "Order" and "Context of neighbouring cells"."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ def clamp(x: int, least: int, greatest: int) -> int:
 
 @dataclass(frozen=True)
 class Order:
-    """The cells of the particles of the first reference, and their indices sorted by them."""
+    """The cells of the particles of the first reference, and their indices sorted by cell."""
 
     cells: list[Triple]
     particles: list[int]
@@ -38,7 +38,7 @@ def order_of(positions: Sequence[Triple], shift: int) -> Order:
 
 @dataclass
 class Coded:
-    """What has been coded of a cell."""
+    """The coded quantities of a cell."""
 
     count: int = 0
     errors: list[int] = field(default_factory=lambda: [0, 0, 0])
@@ -49,7 +49,7 @@ NOTHING_CODED = Coded()
 
 
 class Neighbours:
-    """Reads three quantities of particle after particle, in the order."""
+    """Reads three quantities of each particle, in the order of the document."""
 
     def __init__(self, symbols: Symbols) -> None:
         self.symbols = symbols
@@ -58,7 +58,9 @@ class Neighbours:
         self.cells: dict[Triple, Coded] = {}
 
     def read(self, cell: Triple, predictions: Sequence[int], is_read: Sequence[bool]) -> list[int]:
-        """The quantities of a particle in the cell, predicted in eighths; those not read are 0."""
+        """Reads the quantities of a particle in the cell, predicted in eighths. Quantities that are
+        not read are 0.
+        """
         own = self.cells.setdefault(cell, Coded())
         x, y, z = cell
         before = [
@@ -90,9 +92,11 @@ class Neighbours:
 def mean_steps(
     order: Order, positions: Sequence[Triple], earlier: Sequence[Triple | None]
 ) -> dict[Triple, Triple]:
-    """The mean step of each cell in eighths, from the particles that are in both references."""
+    """Returns the mean step of each cell in eighths, from the particles that are in both
+    references.
+    """
     seen: dict[Triple, int] = {}
-    steps: dict[Triple, list[int]] = {}  # count, and a sum along each axis
+    steps: dict[Triple, list[int]] = {}  # count, and a sum for each axis
     for i in order.particles:
         cell = order.cells[i]
         seen[cell] = seen.get(cell, 0) + 1

@@ -1,4 +1,4 @@
-"""What changes of a body's particles: FRAMES.md, "Changed particles" and its parts."""
+"""Changes of a body's particles: FRAMES.md, "Changed particles" and its parts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Particles:
 
 
 def attributes_of(kind: int, attribute_quanta: Sequence[float]) -> list[bool]:
-    """Which attributes the block of a body of this kind has."""
+    """Returns which attributes the block of a body of this kind has."""
     of_all_kinds = (SPEED, ACCELERATION)
     return [
         quantum > 0 and (kind == LIQUID or q in of_all_kinds)
@@ -45,9 +45,9 @@ def checked(values: Sequence[int], least: int, greatest: int) -> Sequence[int]:
 def read_changed(
     symbols: Symbols, first: ParticleBlock, second: ParticleBlock, has: Sequence[bool]
 ) -> ParticleBlock:
-    """A changed block, from those of its references, of which the second may have no particles.
+    """Reads a changed block from those of its references. The second may have no particles.
 
-    `has` tells which attributes it has.
+    `has` states for each attribute whether the block has it.
     """
     removes = symbols.flag(2048)
     added = symbols.check_count(symbols.whole())
@@ -81,7 +81,7 @@ def read_changed(
 
 
 def read_stays(symbols: Symbols, order: Order) -> list[bool]:
-    """Which particles of the first reference stay."""
+    """Returns for each particle of the first reference whether it stays."""
     after_stay, after_gone = read_cases(symbols), read_cases(symbols)
     stays = [True] * len(order.particles)
     gone = False
@@ -99,7 +99,7 @@ def read_cases(symbols: Symbols) -> int:
 
 
 def indices_in(block: ParticleBlock, numbers: Sequence[int]) -> list[int | None]:
-    """Where the block has the particles of these numbers."""
+    """Returns the indices of the particles with these numbers in the block."""
     places = {number: i for i, number in enumerate(block.numbers)}
     return [places.get(number) for number in numbers]
 
@@ -112,7 +112,7 @@ def read_positions(
     second: ParticleBlock,
     earlier: Sequence[int | None],
 ) -> None:
-    """Moves the staying particles from where they are in the first reference."""
+    """Moves the staying particles from their positions in the first reference."""
     common, own = symbols.factor(), symbols.factor()
     neighbours = Neighbours(symbols)
     before = [None if at is None else second.positions[at] for at in earlier]
@@ -140,8 +140,10 @@ def read_attributes(
     changes: Sequence[bool],
     begin: int,
 ) -> None:
-    """Changes three attributes of the staying particles from those in the first reference: those
-    from `begin` on, as far as there are any."""
+    """Changes up to three attributes of the staying particles, starting with `begin`.
+
+    They are relative to the attributes in the first reference.
+    """
     three = [*changes[begin:begin + 3], False, False][:3]
     factors = [symbols.factor() if change else 0 for change in three]
     neighbours = Neighbours(symbols)
@@ -160,7 +162,7 @@ def read_attributes(
 
 
 def merged(body: int, kind: int, stayed: Particles, come: Particles) -> ParticleBlock:
-    """All particles in the order of their numbers."""
+    """Returns all particles in the order of their numbers."""
     numbers = stayed.numbers + come.numbers
     by_number = sorted(range(len(numbers)), key=numbers.__getitem__)
     positions = stayed.positions + come.positions
@@ -175,7 +177,7 @@ def merged(body: int, kind: int, stayed: Particles, come: Particles) -> Particle
 
 
 def read_numbers(symbols: Symbols, count: int) -> list[int]:
-    """The numbers of particles that come."""
+    """Reads the numbers of new particles."""
     if count == 0:
         return []
     next_cases, k = symbols.bits(12), symbols.bits(5)
@@ -200,7 +202,7 @@ def read_gap(symbols: Symbols, k: int) -> int:
 
 
 def read_coming(symbols: Symbols, numbers: list[int], has: Sequence[bool]) -> Particles:
-    """The places and attributes of particles that come."""
+    """Reads the positions and attributes of new particles."""
     count = len(numbers)
     if count == 0:
         return Particles([], [], [[] for _ in has])
@@ -244,7 +246,9 @@ def size_left(value: int, prediction: int) -> int:
 def read_coming_position(
     symbols: Symbols, before: Sequence[Triple], sizes: Sequence[Sequence[int]]
 ) -> tuple[Triple, list[int]]:
-    """A place, predicted from those before and the sizes that they left, and what it leaves."""
+    """Reads a position, predicted from the earlier ones and their residual sizes. Returns it and
+    its sizes.
+    """
     predictions = [8 * MIDDLE_OF_GRID] * 3
     classes = [CLASS_OF_NOTHING] * 3
     if before:
@@ -262,7 +266,7 @@ def read_coming_position(
 def read_coming_attribute(
     symbols: Symbols, q: int, count: int, strides: Sequence[int]
 ) -> list[int]:
-    """Attribute q of all particles that come."""
+    """Reads attribute q of all new particles."""
     values: list[int] = []
     sizes: list[int] = []
     for i in range(count):

@@ -1,4 +1,4 @@
-"""The tables of FRAMES.md, "Residuals": how likely each residual is, by scale and place."""
+"""The tables of FRAMES.md, "Residuals": the probability of each residual by scale and position."""
 
 STEEPNESS = (
     5689, 4784, 4023, 3383, 2844, 2392, 2011, 1691, 1422, 1196, 1006, 846,
@@ -18,7 +18,7 @@ LARGEST_CLASS = 67
 
 
 def part_below(x: int, steepness: int) -> int:
-    """P(x): the part of the distribution below x eighths, in 65536ths."""
+    """Returns P(x): the part of the distribution below x eighths, in 65536ths."""
     u = abs(x) * steepness
     i = min(u >> 8, 80)
     p = LOGISTIC[i] + (((LOGISTIC[i + 1] - LOGISTIC[i]) * (u % 256)) >> 8)
@@ -26,7 +26,7 @@ def part_below(x: int, steepness: int) -> int:
 
 
 def starts_of(table: int, place: int) -> list[int]:
-    """The start of each symbol of a table, and 4096 behind the last."""
+    """Returns the start of each symbol of a table, and 4096 after the last."""
     steepness, radius = STEEPNESS[table], RADIUS[table]
     m = 3 if place == 1 else 1
     n = 2 * radius + 2
@@ -42,7 +42,7 @@ STARTS = tuple(tuple(starts_of(table, place) for place in (0, 1)) for table in r
 
 
 def table_of(residual_class: int) -> tuple[int, int]:
-    """The table of a class, and its count of low bits."""
+    """Returns the table of a class, and its number of low bits."""
     if residual_class < 24:
         return residual_class, 0
     d = residual_class - 24
@@ -50,7 +50,7 @@ def table_of(residual_class: int) -> tuple[int, int]:
 
 
 def class_of_size(size: int) -> int:
-    """C(z), of a mean magnitude of residuals in 2048ths."""
+    """Returns C(z) of a mean absolute residual in 2048ths."""
     z = max(size, 64)
     n = z.bit_length() - 7
     return 4 * n + ((z >> (n + 4)) % 4) - 3

@@ -1,4 +1,4 @@
-"""What a frame has behind its header: FRAMES.md, "Symbols" and "Residuals"."""
+"""The part of a frame after its header: FRAMES.md, "Symbols" and "Residuals"."""
 
 import struct
 from bisect import bisect_right
@@ -12,13 +12,13 @@ WORD = struct.Struct("<H")
 
 
 def split(prediction: int) -> tuple[int, int]:
-    """The whole part of a prediction in eighths, and its fraction."""
+    """Returns the integer part of a prediction in eighths, and its fraction."""
     whole = (prediction + 4) >> 3
     return whole, prediction - 8 * whole
 
 
 class Symbols:
-    """Reads symbols, of three lanes that share one stream of words."""
+    """Reads symbols from three lanes that share one stream of words."""
 
     def __init__(self, stream: bytes) -> None:
         if len(stream) < STATES.size:
@@ -30,20 +30,20 @@ class Symbols:
         self.place = STATES.size
 
     def finish(self) -> None:
-        """Holds what comes behind the last symbol to its rules."""
+        """Checks the rules for the data after the last symbol."""
         if self.place != len(self.stream):
             raise BadFrame("extra_bytes")
         if any(state != LOWEST_STATE for state in self.states):
             raise BadFrame("bad_block")
 
     def check_count(self, count: int) -> int:
-        """A count, unless it is of more than the symbols can hold."""
+        """Returns a count. Raises BadFrame if the symbols cannot contain so many."""
         if count > 8 * len(self.stream):
             raise BadFrame("bad_block")
         return count
 
     def take(self, start: int, frequency: int, lane: int) -> None:
-        """Takes the symbol that has these cases out of a lane."""
+        """Removes the symbol with this range of cases from a lane."""
         state = self.states[lane]
         state = frequency * (state >> 12) + state % 4096 - start
         if state < LOWEST_STATE:
@@ -88,7 +88,7 @@ class Symbols:
         return value
 
     def factor(self) -> int:
-        """In 256ths."""
+        """Reads a factor in 256ths."""
         return self.bits(11) - 1024
 
     def residual_class(self) -> int:
@@ -115,6 +115,6 @@ class Symbols:
         return -r if fraction < 0 else r
 
     def predicted(self, prediction: int, residual_class: int, lane: int) -> int:
-        """The value of which this was predicted, in eighths."""
+        """Reads a value that was predicted in eighths."""
         whole, fraction = split(prediction)
         return whole + self.residual(residual_class, fraction, lane)

@@ -1,7 +1,7 @@
 """A client of vat.v1 in plain Python: `with Client(url) as client: client.call("server.info")`.
 
-Everything happens in the caller's thread, while a call waits. Frames are decoded by the module
-decode_frame beside this file, where it is there; without it only their bytes can be had.
+It reads from the connection in the caller's thread, during calls only. The module decode_frame in
+this folder decodes frames. Without it, only their bytes are available.
 """
 
 import base64
@@ -21,7 +21,7 @@ CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10
 
 
 class VatError(Exception):
-    """An error that the server answered: `code`, `kind`, `data`, with `path` and `hint` in it."""
+    """An error reply of the server: `code`, `kind`, `data`, with `path` and `hint` in it."""
 
     def __init__(self, error):
         super().__init__(error["message"])
@@ -31,7 +31,7 @@ class VatError(Exception):
 
 
 class Closed(Exception):
-    """The connection has ended; `code` is 0 where that came without a word."""
+    """The connection has ended. `code` is 0 if there was no close frame."""
 
     def __init__(self, code, reason):
         super().__init__(f"closed with {code} {reason}".rstrip())
@@ -39,7 +39,7 @@ class Closed(Exception):
 
 
 class WebSocket:
-    """The client's side of RFC 6455, over TCP or TLS."""
+    """A WebSocket client (RFC 6455) over TCP or TLS."""
 
     def __init__(self, url, timeout, tls):
         parts = urlsplit(url)
@@ -49,7 +49,7 @@ class WebSocket:
         self.socket = socket.create_connection(address, timeout)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.buffer = b""
-        self.message = None  # the opcode and parts of a message that is not whole yet
+        self.message = None  # opcode and parts of an incomplete message
         try:
             if parts.scheme == "wss":
                 context = tls or ssl.create_default_context()
@@ -77,7 +77,7 @@ class WebSocket:
             raise ConnectionError(f"the server refuses: {status}")
 
     def fill(self, deadline):
-        """Adds to the buffer what has come. TimeoutError where that is nothing."""
+        """Appends received data to the buffer. Raises TimeoutError if there is none."""
         if deadline is not None:
             left = deadline - time.monotonic()
             if left <= 0:
@@ -103,7 +103,7 @@ class WebSocket:
         self.socket.sendall(head + mask + masked.to_bytes(size, "big"))
 
     def frame_size(self):
-        """Bytes of the head and of the payload of the first frame; None while that is unknown."""
+        """Returns the sizes of head and payload of the first frame, or None if they are unknown."""
         if len(self.buffer) < 2:
             return None
         size = self.buffer[1] & 127
@@ -113,7 +113,7 @@ class WebSocket:
         return 2 + extra, int.from_bytes(self.buffer[2:2 + extra], "big") if extra else size
 
     def read_frame(self, deadline):
-        """(whether it is the last of its message, opcode, payload)"""
+        """Returns (whether it is the last of its message, opcode, payload)."""
         while (found := self.frame_size()) is None or len(self.buffer) < sum(found):
             self.fill(deadline)
         head, size = found
@@ -123,7 +123,7 @@ class WebSocket:
         return bool(first & 0x80), first & 15, payload
 
     def receive(self, deadline):
-        """The next message: (TEXT or BINARY, bytes). Answers pings."""
+        """Returns the next message: (TEXT or BINARY, bytes). Answers pings."""
         while True:
             last, opcode, payload = self.read_frame(deadline)
             if opcode == PING:
@@ -141,16 +141,16 @@ class WebSocket:
 
 
 class Client:
-    """One connection. Results, events and frames are as in PROTOCOL.md, as dictionaries."""
+    """One connection. Results, events and frames are dictionaries as in PROTOCOL.md."""
 
     def __init__(self, url="ws://127.0.0.1:8080/ws", timeout=10, tls=None):
-        """`tls`: an ssl.SSLContext that tells whom to trust; None: whom the system trusts."""
+        """`tls` is an ssl.SSLContext with trusted certificates. None trusts those of the system."""
         self.timeout = timeout
         self.socket = WebSocket(url, timeout, tls)
         self.last_id = 0
         self.replies = {}
-        self.events = deque()  # (name, params) of those that came and were not taken
-        self.frames = deque()  # bytes of the same
+        self.events = deque()  # (name, params) of received events that were not taken
+        self.frames = deque()  # bytes of received frames that were not taken
         self.decoder = None
 
     def __enter__(self):
@@ -160,11 +160,11 @@ class Client:
         self.close()
 
     def close(self):
-        """Ends the connection; what the server still says is not read."""
+        """Closes the connection. Later messages of the server are not read."""
         try:
             self.socket.send(CLOSE, struct.pack(">H", 1000))
         except OSError:
-            pass  # it has ended already
+            pass  # it has already ended
         self.socket.socket.close()
 
     def send(self, method, params, **more):
@@ -174,7 +174,9 @@ class Client:
         self.socket.send(TEXT, json.dumps(message).encode())
 
     def call(self, method, **params):
-        """The result. VatError where the server refuses, TimeoutError where no answer comes."""
+        """Returns the result. Raises VatError if the server refuses, and TimeoutError without a
+        reply.
+        """
         self.last_id += 1
         identity = self.last_id
         self.send(method, params, id=identity)
@@ -187,11 +189,11 @@ class Client:
         return reply["result"]
 
     def notify(self, method, **params):
-        """Nobody answers."""
+        """Sends a notification, which has no reply."""
         self.send(method, params)
 
     def wait_event(self, name, timeout=None):
-        """The params of the next event of this name; passes over others."""
+        """Returns the params of the next event with this name. Discards others."""
         deadline = time.monotonic() + (timeout or self.timeout)
         while True:
             while self.events:
@@ -201,7 +203,9 @@ class Client:
             self.take(deadline)
 
     def next_frame(self, timeout=None):
-        """The next frame, decoded and acknowledged: header, scale and blocks of decode_frame."""
+        """Returns the next frame, decoded and acknowledged: header, scale and blocks of
+        decode_frame.
+        """
         if self.decoder is None:
             from decode_frame import Decoder
             self.decoder = Decoder()
@@ -210,14 +214,14 @@ class Client:
         return frame
 
     def next_frame_bytes(self, timeout=None):
-        """The bytes of the next frame; whoever takes it so acknowledges it by frames.ack."""
+        """Returns the bytes of the next frame. The caller acknowledges it with frames.ack."""
         deadline = time.monotonic() + (timeout or self.timeout)
         while not self.frames:
             self.take(deadline)
         return self.frames.popleft()
 
     def take(self, deadline):
-        """Reads one message and keeps it for who asks."""
+        """Reads one message and stores it for its caller."""
         opcode, payload = self.socket.receive(deadline)
         if opcode == BINARY:
             self.frames.append(payload)

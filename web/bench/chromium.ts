@@ -4,13 +4,16 @@ import type { AddressInfo } from 'node:net';
 import { launchChromium } from '../../tests/browser/support/chromium';
 import type { DecodeTimes } from './decode_times';
 
-/** With these a page's clock has steps of 5 µs, otherwise 100. */
+/** Headers with which a page's clock has steps of 5 µs, otherwise 100 µs. */
 const kIsolation = {
   'cross-origin-opener-policy': 'same-origin',
   'cross-origin-embedder-policy': 'require-corp',
 };
 
-/** What the built bench/worker.ts says of a stream in a worker, as the viewer has one. */
+/**
+ * Returns the times that the built bench/worker.ts measures for a stream, in a worker as in the
+ * viewer.
+ */
 export async function timesInChromium(
   script: Buffer,
   stream: Buffer,

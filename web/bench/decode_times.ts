@@ -1,16 +1,16 @@
 import { emptyFrame, FrameDecoder } from '../client/index';
 
-/** How long frames took to decode [ms]: those with two references, and key frames. */
+/** Decoding times of frames [ms]: those with two references, and key frames. */
 export interface DecodeTimes {
   deltas: number[];
   keys: number[];
 }
 
-/** At first V8 has not compiled all that is used often. */
+/** In the first rounds, V8 has not compiled all frequently used code. */
 const kWarmUpRounds = 2;
 const kRounds = 3;
 
-/** Decodes a stream, as `vat bench codec` writes it, again and again as a viewer would. */
+/** Decodes a stream of `vat bench codec` repeatedly, as a viewer would. */
 export function decodeTimes(stream: ArrayBuffer): DecodeTimes {
   const frames = framesOf(stream);
   const decoder = new FrameDecoder();
@@ -27,7 +27,7 @@ export function decodeTimes(stream: ArrayBuffer): DecodeTimes {
   return times;
 }
 
-/** Each is behind the number of its bytes. */
+/** Returns the frames. Each follows the number of its bytes. */
 function framesOf(stream: ArrayBuffer): ArrayBuffer[] {
   const view = new DataView(stream);
   const frames: ArrayBuffer[] = [];
@@ -39,7 +39,9 @@ function framesOf(stream: ArrayBuffer): ArrayBuffer[] {
   return frames;
 }
 
-/** Those that this frame's time belongs to; none for the one frame with one reference. */
+/**
+ * Returns the times to which the frame's time is added; none for the one frame with one reference.
+ */
 function timesLike(frame: ArrayBuffer, { deltas, keys }: DecodeTimes): number[] | undefined {
   const view = new DataView(frame);
   if (view.getUint8(5) === 1) return keys;

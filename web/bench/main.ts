@@ -1,7 +1,7 @@
 /**
- * Times the decoder of frames for `vat bench codec`, built as the viewer is: with the arguments
- * STREAM and RESULT it decodes the one in Node and, if there is a browser, in a worker of it, and
- * writes the other, a CSV file with a row for each time.
+ * Times the frame decoder for `vat bench codec`. It is built as the viewer is. With the arguments
+ * STREAM and RESULT it decodes the stream in Node and, if there is a browser, in a worker of the
+ * browser. It writes a CSV file with a row for each time.
  */
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

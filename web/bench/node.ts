@@ -1,4 +1,4 @@
-/** Times the decoder in Node: prints the times of the stream that the first argument names. */
+/** Times the decoder in Node: prints the times of the stream in its first argument. */
 import { readFileSync } from 'node:fs';
 import { decodeTimes } from './decode_times';
 

@@ -1,6 +1,6 @@
 /**
- * example.mjs URL: lets a body fall for half a second and watches it, in the server's first session.
- * Node has a WebSocket of its own from version 22 on; before it is that of the package ws.
+ * example.mjs URL: shows a body that falls for half a second, in the server's first session. Node
+ * has a WebSocket since version 22. Earlier versions use the package ws.
  */
 import { BodyKind, Session } from 'vat-client';
 
@@ -23,7 +23,7 @@ const session = new Session(
   },
 );
 
-/** The first frame of this tick; until it comes, frames of others are passed over. */
+/** Returns the first frame of this tick. Discards earlier frames. */
 async function frameOf(tick) {
   for (;;) {
     const frame = frames.shift();

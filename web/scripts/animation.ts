@@ -1,7 +1,7 @@
 /**
- * Records the moving picture of the README, web/animation.webp: one period of a catalogue scene, as
- * the built page shows it. VAT_PROGRAM names the program, CHROMIUM the browser. Needs img2webp of
- * Debian's package webp (./vat packages bench).
+ * Records the moving picture of the README, web/animation.webp: one period of a catalogue scene in
+ * the built page. VAT_PROGRAM names the program, CHROMIUM the browser. Needs img2webp of Debian's
+ * package webp (./vat packages bench).
  */
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';

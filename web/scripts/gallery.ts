@@ -1,7 +1,7 @@
 /**
- * Takes the pictures of the scene gallery, viewer/scenes/NAME.webp: each scene of the
- * catalogue after a while, as the built page shows it. VAT_PROGRAM names the program, CHROMIUM the
- * browser; names of scenes as arguments take the pictures of these alone.
+ * Takes the pictures of the scene gallery, viewer/scenes/NAME.webp: each catalogue scene after some
+ * time, in the built page. VAT_PROGRAM names the program, CHROMIUM the browser. Arguments select
+ * scenes by name.
  */
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -12,11 +12,11 @@ import { compress } from './webp';
 
 const kFolder = fileURLToPath(new URL('../viewer/scenes/', import.meta.url));
 const kSize = { width: 384, height: 240 };
-/** Simulated seconds after which scenes show what they are about. */
+/** Simulated time after which scenes show their subject [s]. */
 const kSeconds = 1;
 const kMostBytes = 10_000;
 
-/** The page's panel would take a phone's width. */
+/** The page's panel would cover the width of a phone. */
 const kOnlyPicture =
   '#panel, #stage > :not(#view) { display: none !important; } body { display: block !important; } #stage { position: fixed; inset: 0; }';
 

@@ -1,7 +1,6 @@
 /**
- * Takes the pictures of web/README.md, pictures/NAME.webp: the built page as the built program serves
- * it. VAT_PROGRAM names the program, CHROMIUM the browser; names of pictures as arguments take these
- * alone.
+ * Takes the pictures of web/README.md, pictures/NAME.webp, in the built page of the built program.
+ * VAT_PROGRAM names the program, CHROMIUM the browser. Arguments select pictures by name.
  */
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -23,12 +22,12 @@ const dark = { colorScheme: 'dark' } as const;
 interface Picture {
   name: string;
   scene: string;
-  /** After so many ticks. */
+  /** The tick of the picture. */
   ticks: number;
-  /** Settings of the view, as links carry them. */
+  /** Settings of the view, in the form of links. */
   view?: string;
   look?: Look;
-  /** Before it is taken. */
+  /** Called before the picture is taken. */
   act?(viewer: Viewer, observer: Observer): Promise<void>;
 }
 
@@ -113,7 +112,7 @@ async function take(picture: Picture, server: Server, observer: Observer): Promi
     await viewer.untilTick(ticks, ticks);
     await act?.(viewer, observer);
     await viewer.page.addStyleTag({ content: '#hint { display: none; }' });
-    await viewer.page.waitForTimeout(1500); // surfaces are made beside the page
+    await viewer.page.waitForTimeout(1500); // a worker computes surfaces
     const png = await viewer.page.screenshot();
     const page = await viewer.blankPage();
     const address = `data:image/png;base64,${png.toString('base64')}`;
@@ -125,7 +124,7 @@ async function take(picture: Picture, server: Server, observer: Observer): Promi
 }
 
 mkdirSync(kFolder, { recursive: true });
-const data = mkdtempSync(join(tmpdir(), 'vat-pictures-')); // for a recording to show
+const data = mkdtempSync(join(tmpdir(), 'vat-pictures-')); // for a recording
 const server = new Server(['--data', data]);
 await server.start();
 const observer = await Observer.join(server.url);

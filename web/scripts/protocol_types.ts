@@ -1,4 +1,4 @@
-/** The types of web/client/protocol.ts and scene_format.ts, from the schemas in protocol/schemas/. */
+/** Generates web/client/protocol.ts and scene_format.ts from the schemas in protocol/schemas/. */
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { compile } from 'json-schema-to-typescript';
@@ -13,7 +13,7 @@ interface SchemaFile {
 const kFolder = new URL('../../protocol/schemas/', import.meta.url);
 const kShared = new Set(['common', 'errors', 'events', 'message', 'scene_format']);
 const kBanner = '// Written from protocol/schemas/ by `npm run types`; not to be edited.';
-/** What scenes are to a client that sends them as they are. */
+/** Types of scenes in messages, which clients send unchanged. */
 const kSceneTypes: Readonly<Record<string, string>> = {
   body: 'SceneBody',
   interface: 'SceneInterface',
@@ -37,7 +37,7 @@ function readSchemas(): Map<string, SchemaFile> {
   );
 }
 
-/** The schema for one document of definitions; bounds of lists that are no tuples are left out. */
+/** Adapts a schema for one document of definitions. Omits bounds of lists that are not tuples. */
 function adapt(node: unknown, file: string, scenes: string): unknown {
   if (Array.isArray(node)) return node.map((child) => adapt(child, file, scenes));
   if (typeof node !== 'object' || node === null) return node;
@@ -70,12 +70,12 @@ function definitionsOf(files: Map<string, SchemaFile>, names: string[]): Node {
   );
 }
 
-/** "control.step.params" as json-schema-to-typescript names it. */
+/** Returns the name of "control.step.params" in json-schema-to-typescript. */
 function typeName(definition: string): string {
   return definition.replace(/(^|[._])([a-z])/g, (_, __, letter: string) => letter.toUpperCase());
 }
 
-/** Leaves out what says where a type comes from, and bounds that the types have already. */
+/** Removes the origins of types, and bounds that the types contain. */
 function tidyRemarks(text: string): string {
   return text.replace(/\/\*\*([\s\S]*?)\*\//g, (_, remark: string) => {
     const words = remark
@@ -95,11 +95,11 @@ async function writeTypes(definitions: Node, head: string, tail: string): Promis
     unreachableDefinitions: true,
     style: { singleQuote: true, printWidth: 100 },
   });
-  // Of the document of all definitions there is no value, so it needs no type.
+  // The document of all definitions has no values, so it needs no type.
   return tidyRemarks(text.replace(/export interface Everything \{[^}]*\}\n/, '')) + tail;
 }
 
-/** The type of a definition: where it is nothing but a reference, of what that points to. */
+/** Returns the type of a definition. For a reference, it is the type of its target. */
 function typeOf(files: Map<string, SchemaFile>, file: string, definition: string): string {
   const reference = files.get(file)?.$defs[definition]?.$ref;
   if (typeof reference !== 'string') return typeName(definition);
@@ -137,7 +137,7 @@ ${eventNames.join('')}] as const;
 `;
 }
 
-/** The files as they are to be. */
+/** Returns the contents of the files. */
 export async function generate(): Promise<GeneratedFile[]> {
   const files = readSchemas();
   const groups = [...files.keys()].filter((name) => name !== 'scene_format' && name !== 'message');

@@ -1,4 +1,7 @@
-/** Runs in the browser: a picture's address as WebP in base64, with the least loss that is small enough. */
+/**
+ * Runs in the browser: converts a picture to WebP in base64, with the best quality that is small
+ * enough.
+ */
 export async function compress([address, most]: readonly [string, number]): Promise<string> {
   const image = new Image();
   image.src = address;
