@@ -7,7 +7,7 @@ const repository = resolve(web, '..');
 
 export default defineConfig({
   root: repository,
-  resolve: { alias: { three: resolve(web, 'node_modules/three') } }, // for tests, which are outside web/
+  resolve: { alias: { three: resolve(web, 'node_modules/three') } }, // tests are outside web/
   server: { fs: { allow: [repository] } },
   test: { include: ['tests/web/**/*.test.ts'] },
 });
