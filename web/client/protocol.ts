@@ -1,62 +1,62 @@
 // Written from protocol/schemas/ by `npm run types`; not to be edited.
 import type {Body as SceneBody, Interface as SceneInterface, Scene} from './scene_format.js';
 
-/** A secret that lets somebody in */
+/** A secret that grants access */
 export type Token = string;
-/** What a participant may do; each role may do what those before it may */
+/** Rights of a participant; each role includes the rights of the roles before it */
 export type Role = 'viewer' | 'controller' | 'owner' | 'admin';
-/** Names a session for the life of the server */
+/** Identifies a session during the life of the server */
 export type SessionId = string;
-/** The session's tick from which what was asked is in effect; 0 after a reset. */
+/** The session's tick from which the command is in effect; 0 after a reset. */
 export type Tick = number;
-/** [x, y, z], z is up, in SI units */
+/** [x, y, z] in SI units; z points up */
 export type Vector = [number, number, number];
 /** [w, x, y, z] of a unit quaternion */
 export type Quaternion = [number, number, number, number];
-/** [x, y, z] of a place [m] */
+/** [x, y, z] of a position [m] */
 export type Point = [number, number, number];
 /** At most 64 bytes of UTF-8 without control characters */
 export type Name = string;
-/** At most 64 bytes of UTF-8: something to see, and neither control characters nor marks of direction */
+/** At most 64 bytes of UTF-8, with a visible character and without control or direction characters */
 export type PersonName = string;
-/** Numbers a participant of a session, and no other one of it */
+/** Identifies a participant within its session */
 export type ParticipantId = number;
-/** Names a body for the life of its session; 0 is the vat's */
+/** Identifies a body during the life of its session; 0 is the vat */
 export type BodyId = number;
-/** A particle's number within its body */
+/** Number of a particle within its body */
 export type ParticleNumber = number;
-/** Names a grab for the life of its session */
+/** Identifies a grab during the life of its session */
 export type GrabId = number;
 
 export type BodyKind = 'liquid' | 'deformable' | 'rigid';
-/** Hashes can be compared where it is the same */
+/** Hashes are comparable if their instruction set is the same */
 export type InstructionSet = 'baseline' | 'avx2' | 'avx512';
-/** Of the state of a simulation */
+/** Hash of the state of a simulation */
 export type Hash = string;
-/** A scene of the catalogue by its name, or a scene as in a scene file */
+/** Name of a catalogue scene or saved scene, or a scene as in a scene file */
 export type SceneReference = string | Scene;
 /** No parameters */
 export type Nothing = Record<string, never>;
-/** Ticks that a session had ever run, resets and loads included */
+/** Number of ticks that a session has run, including those before resets and loads */
 export type Position = number;
-/** Who took part when it was recorded; nobody of them is here */
+/** A participant of the recorded session, who is not in the replay session */
 export type RecordedPeople = {
-  /** The number of the participant then */
+  /** Participant id in the recorded session */
   person: number;
   name: string;
   role: Role;
-  /** Bodies that were held */
+  /** Bodies that the participant had grabbed */
   grabs: BodyId[];
-  /** To where what was held was drawn */
+  /** Target of the grab */
   pointer: null | {
     position: Vector;
   };
 }[];
-/** The parameter that is at fault, a JSON pointer into params */
+/** JSON pointer into params to the invalid parameter */
 export type Path = string;
-/** What to do */
+/** The action that resolves the error */
 export type Hint = string;
-/** Messages and hints are for people and may change their words */
+/** Messages and hints are for people and may change */
 export type ReplyError =
   | ParseError
   | InvalidRequest
@@ -74,12 +74,12 @@ export type ReplyError =
   | RateLimited
   | StorageFailed
   | NotRecovered;
-/** Body, number of its particle, other body, number of its particle; and so on */
+/** Body, particle number, other body, particle number, and so on */
 export type ConnectedPairs = number[];
 
 export type Motion = [number, number, number];
 
-/** Shows a token: an admin's, an invitation, a ticket, or that of a participant */
+/** Enters with a token: of an admin, an invitation, a ticket or a participant */
 export interface AccessEnterParams {
   token: Token;
 }
@@ -88,9 +88,9 @@ export interface AccessEnterResult {
   role: Role;
   session?: SessionId;
 }
-/** Makes a token that is good once and soon */
+/** Creates a token that is valid once and for a short time */
 export interface AccessTicketParams {
-  /** An admin is one in all sessions */
+  /** An admin has this role in all sessions */
   role: 'viewer' | 'controller' | 'admin';
   session?: SessionId;
 }
@@ -98,39 +98,39 @@ export interface AccessTicketParams {
 export interface AccessTicketResult {
   token: Token;
   role: Role;
-  /** For which it is good */
+  /** Period of validity */
   seconds: number;
 }
-/** Who takes part, as others are told */
+/** A participant of the session */
 export interface Participant {
   participant: ParticipantId;
   name: string;
   role: Role;
-  /** Its connection has ended; it may be resumed */
+  /** Whether its connection has ended; it can resume */
   away: boolean;
-  /** The bodies that it holds */
+  /** The bodies that it has grabbed */
   grabs: BodyId[];
-  /** Where it points */
+  /** The position of its pointer */
   pointer: null | Pointer;
 }
-/** A place, or from there a direction */
+/** A position, or a ray that starts there */
 export interface Pointer {
   position: Point;
   direction?: Vector;
 }
-/** What an owner decides of a session */
+/** Settings of a session, made by its owner */
 export interface Settings {
   name: string;
-  /** Of who joins without an invitation */
+  /** Role of participants that join without an invitation */
   default_role: 'viewer' | 'controller';
-  /** Nobody joins without an invitation */
+  /** Whether joining needs an invitation */
   locked: boolean;
 }
-/** What a command answers that has nothing else to say */
+/** Result of commands without further data */
 export interface InEffect {
   tick: Tick;
 }
-/** The vat at offset zero */
+/** The vat at displacement 0 */
 export interface VatDescription {
   min: Vector;
   max: Vector;
@@ -142,14 +142,14 @@ export interface BodyDescription {
   name: string;
   kind: BodyKind;
   material: string;
-  /** Their number when the epoch began; emitters and drains change it, and the frames' blocks tell */
+  /** Number of particles at the start of the epoch; emitters and drains change it, and frames contain the current number */
   particles: number;
-  /** Of the largest particle [m] */
+  /** Radius of the largest particle [m] */
   radius: number;
-  /** Rigid bodies: particles about the centre of mass in body axes, 3 numbers each */
+  /** Rigid bodies: particles relative to the centre of mass in body axes, 3 numbers each */
   local_positions?: number[];
 }
-/** The first tick at which a replay is not what was recorded; it pauses there */
+/** First tick at which the replay differs from the recording; it pauses there */
 export interface Divergence {
   position: Position;
   tick: Tick;
@@ -161,38 +161,38 @@ export interface SessionDescription {
   /** Frames of the same epoch belong to this description */
   epoch: number;
   tick: Tick;
-  /** Of the session */
+  /** Name of the session */
   name: string;
-  /** The scene's name */
+  /** Name of the scene */
   scene: string;
-  /** The scene's title */
+  /** Title of the scene */
   title: string;
   playing: boolean;
-  /** Simulated seconds per second that are asked for */
+  /** Set speed [simulated seconds per second] */
   speed: number;
   /** Simulated time of a tick [s] */
   tick_seconds: number;
   gravity: Vector;
   vat: null | VatDescription;
-  /** In the order of a frame's blocks */
+  /** In the order of the blocks in frames */
   bodies: BodyDescription[];
-  /** Of a session that shows a recording */
+  /** Present if the session is a replay */
   replay?: {
     begin: Position;
     end: Position;
     position: Position;
   };
 }
-/** Pauses, then runs so many ticks */
+/** Pauses, then runs a number of ticks */
 export interface ControlStepParams {
   ticks?: number;
 }
-/** Sets how fast time goes on */
+/** Sets the speed */
 export interface ControlSetSpeedParams {
   /** Simulated seconds per second */
   speed: number;
 }
-/** Makes a viewer a controller; a controller becomes a viewer by it */
+/** Makes a viewer a controller; a calling controller becomes a viewer */
 export interface ControlHandOverParams {
   participant: ParticipantId;
 }
@@ -297,7 +297,7 @@ export interface LimitReached {
     kind: 'limit_reached';
     hint: Hint;
     path?: Path;
-    /** Its name in server.info */
+    /** Name in server.info */
     limit: string;
     maximum: number;
   };
@@ -331,7 +331,7 @@ export interface Busy {
     kind: 'busy';
     hint: Hint;
     path: Path;
-    /** Who has it */
+    /** Participant who has grabbed the body */
     holder: {
       participant: ParticipantId;
       name: string;
@@ -345,11 +345,11 @@ export interface RateLimited {
   data: {
     kind: 'rate_limited';
     hint: Hint;
-    /** Its name in server.info */
+    /** Name in server.info */
     limit: string;
-    /** Messages, or bytes, a second */
+    /** Messages or bytes per second */
     maximum: number;
-    /** Time until the next one will pass [s] */
+    /** Time until the next message is accepted [s] */
     retry_after: number;
   };
 }
@@ -372,7 +372,7 @@ export interface NotRecovered {
     state: 'recovering' | 'lost';
   };
 }
-/** Twice a second and after each change */
+/** Sent twice per second and after each change */
 export interface SessionStatus {
   tick: Tick;
   /** Simulated time [s] */
@@ -381,39 +381,39 @@ export interface SessionStatus {
   speed: number;
   /** Achieved simulated seconds per second */
   real_time_factor: number;
-  /** Participants that are connected */
+  /** Connected participants */
   clients: number;
   particles: number;
   position?: Position;
 }
-/** A step with impossible values was undone */
+/** A step with invalid values was undone */
 export interface SessionGuard {
   tick: Tick;
   cause: 'non_finite' | 'outside_domain' | 'too_fast' | 'too_many_pairs';
   time: number;
   body: BodyId;
   particle: number;
-  /** If false, the session has paused at the last good state */
+  /** If false, the session has paused at the last valid state */
   recovered: boolean;
 }
-/** The server ends soon: no new connections, sessions and joins */
+/** The server ends soon and accepts no new connections, sessions and joins */
 export interface ServerDraining {
-  /** For which clients may stay at most */
+  /** Time until the server closes the connections */
   seconds: number;
 }
-/** The session has come back in another state than it was in, and stands still */
+/** The recovered session differs from its log, and pauses */
 export interface SessionDiverged {
-  /** Ticks that it had ever run */
+  /** Number of ticks that the session has run */
   position: number;
   tick: Tick;
   reason: string;
 }
-/** The replay has come to its last position, and pauses */
+/** The replay has reached its last position and pauses */
 export interface ReplayEnded {
   position: Position;
   tick: Tick;
 }
-/** Those who were recorded have changed; at most ten times a second */
+/** The recorded participants have changed; sent at most ten times per second */
 export interface ReplayPeople {
   people: RecordedPeople;
 }
@@ -422,37 +422,37 @@ export interface SessionClosed {
   session: SessionId;
   reason: string;
 }
-/** Who has come, changed or gone; at most ten times a second */
+/** Added, changed and removed participants; sent at most ten times per second */
 export interface PresenceChanged {
   participants: Participant[];
   left: ParticipantId[];
 }
-/** The server has ended a grab that nobody moved any more */
+/** The server has ended a grab that was not moved */
 export interface GrabEnded {
   grab: GrabId;
   body: BodyId;
   participant: ParticipantId;
   reason: 'idle';
 }
-/** Somebody asks for control; sent to those who can hand it over */
+/** A participant requests control; sent to participants who can hand it over */
 export interface ControlRequested {
   participant: ParticipantId;
   name: string;
 }
-/** Asks for frames, or for other frames than before */
+/** Subscribes to frames, or changes the subscription */
 export interface FramesSubscribeParams {
-  /** Greatest position error per axis [m]; default: a 64th of the finest spacing */
+  /** Maximum position error per axis [m]; default: 1/64 of the smallest spacing */
   max_error?: number;
-  /** Frames of the ticks that it divides */
+  /** Sends frames of ticks that are multiples of this number */
   every?: number;
   /** An eighth, a quarter, half or all of the particles of liquid and deformable bodies */
   detail?: number;
-  /** Only what is inside [m] */
+  /** Sends only particles inside this box [m] */
   region?: {
     min: Point;
     max: Point;
   };
-  /** Those that are wanted, each with its greatest error [m/s, kg/m^3, Pa, m/s^2] */
+  /** Requested attributes, each with its maximum error [m/s, kg/m^3, Pa, m/s^2] */
   attributes?: {
     speed?: number;
     density?: number;
@@ -460,16 +460,16 @@ export interface FramesSubscribeParams {
     acceleration?: number;
   };
 }
-/** Acknowledges frames, so that more come */
+/** Acknowledges frames, so that the server sends more */
 export interface FramesAckParams {
-  /** Of a frame that came, from its header; acknowledges all before it too */
+  /** Number in the header of a received frame; also acknowledges all earlier frames */
   number: number;
 }
-/** The tick is there while the client is in a session */
+/** Contains the tick if the client is in a session */
 export interface FramesAckResult {
   tick?: Tick;
 }
-/** Pulls a particle to a place */
+/** Pulls a particle to a target */
 export interface GrabStartParams {
   body: BodyId;
   particle: ParticleNumber;
@@ -480,12 +480,12 @@ export interface GrabStartResult {
   tick: Tick;
   grab: GrabId;
 }
-/** Pulls it to another place */
+/** Moves the target of a grab */
 export interface GrabMoveParams {
   grab: GrabId;
   target: Point;
 }
-/** Lets it go */
+/** Ends a grab */
 export interface GrabEndParams {
   grab: GrabId;
 }
@@ -493,15 +493,15 @@ export interface GrabEndParams {
 export interface ParticipantRenameParams {
   name: PersonName;
 }
-/** Gives a role; ownership is handed over */
+/** Sets the role of a participant; if it becomes owner, the previous owner becomes a controller */
 export interface ParticipantSetRoleParams {
   participant: ParticipantId;
   role: 'viewer' | 'controller' | 'owner';
 }
-/** Ends a participant and its connection */
+/** Removes a participant and closes its connection */
 export interface ParticipantKickParams {
   participant: ParticipantId;
-  /** What the close frame tells */
+  /** Reason in the close frame */
   reason?: string;
 }
 
@@ -509,7 +509,7 @@ export interface PresenceListResult {
   tick: Tick;
   participants: Participant[];
 }
-/** Shows others where one points; without a position, nowhere */
+/** Shows the caller's pointer to others; without a position, hides it */
 export interface PresencePointParams {
   position?: Point;
   direction?: Vector;
@@ -517,43 +517,43 @@ export interface PresencePointParams {
 
 export interface RecordingExportResult {
   tick: Tick;
-  /** On the server's host and port, for one GET */
+  /** Path on the server's host and port, for one GET */
   path: string;
   bytes: number;
-  /** That it covers */
+  /** Number of recorded ticks */
   ticks: number;
-  /** Until when it can be fetched [s] */
+  /** End of the period for the download [s] */
   expires: number;
 }
-/** Brings a recording, part by part */
+/** Uploads a recording in parts */
 export interface RecordingImportParams {
-  /** That the answer to the first part gave, which has none */
+  /** Id from the reply to the first part; absent in the first part */
   recording?: string;
-  /** Of the whole file [bytes] */
+  /** Size of the whole file [bytes] */
   size: number;
-  /** Where the part begins */
+  /** Position of the part in the file */
   offset: number;
   /** Base64 with padding */
   data: string;
 }
 
 export interface RecordingImportResult {
-  /** For further parts, and replay.open */
+  /** Id for further parts and for replay.open */
   recording: string;
-  /** Bytes so far */
+  /** Received bytes */
   received: number;
-  /** Whether it is read, and what follows is told */
+  /** Whether the file is complete; the reply then has the other members */
   whole: boolean;
-  /** Of the session that was recorded */
+  /** Name of the recorded session */
   name?: string;
-  /** That it covers */
+  /** Number of recorded ticks */
   ticks?: number;
   instruction_set?: InstructionSet;
 }
-/** Makes a session that shows a recording; nobody has joined it yet */
+/** Creates a session that replays a recording; the caller does not join it */
 export interface ReplayOpenParams {
   session?: SessionId;
-  /** Instead: one that was imported */
+  /** Instead of a session: id of an imported recording */
   recording?: string;
   name?: Name;
 }
@@ -567,24 +567,24 @@ export interface ReplayOpenResult {
 
 export interface ReplayInfoResult {
   tick: Tick;
-  /** Of the session that was recorded */
+  /** Name of the recorded session */
   name: string;
   begin: Position;
   end: Position;
   position: Position;
   playing: boolean;
   speed: number;
-  /** From which it goes anywhere, ascending */
+  /** Positions of the stored states from which seeks continue, ascending */
   checkpoints: Position[];
-  /** Whether no more of them are to come by themselves */
+  /** Whether the server has stopped adding checkpoints */
   filled: boolean;
-  /** Of states that are compared */
+  /** Number of compared state hashes */
   hashes: number;
-  /** Where it differed since the last seek */
+  /** First difference since the last seek */
   diverged: null | Divergence;
   people: RecordedPeople;
 }
-/** Goes to a position, or to a tick of the present run */
+/** Seeks to a position, or to a tick of the current run */
 export interface ReplaySeekParams {
   position?: Position;
   tick?: Tick;
@@ -596,7 +596,7 @@ export interface ReplaySeekResult {
 }
 
 export interface SceneListResult {
-  /** Of the catalogue, and then those that users have saved */
+  /** Catalogue scenes, then saved scenes */
   scenes: SceneEntry[];
 }
 
@@ -604,15 +604,15 @@ export interface SceneEntry {
   name: string;
   title: string;
   description: string;
-  /** Of one that a user has saved: the name of a participant */
+  /** Saved scenes: name of the participant who saved it */
   saved_by?: string;
-  /** The same: when [s since 1970] */
+  /** Saved scenes: time of saving [s since 1970] */
   saved?: number;
 }
-/** A scene, written out */
+/** Returns a complete scene */
 export interface SceneGetParams {
   scene?: Name;
-  /** The session's with what commands and time have made of its bodies; default: as it was loaded */
+  /** Whether to return the session's scene in its current state, after commands and simulated time; default: as loaded */
   current?: boolean;
 }
 
@@ -620,11 +620,11 @@ export interface SceneGetResult {
   tick: Tick;
   scene: Scene;
 }
-/** Puts another scene into the session, at tick 0 */
+/** Replaces the session's scene, at tick 0 */
 export interface SceneLoadParams {
   scene: SceneReference;
 }
-/** Keeps a scene for all sessions */
+/** Saves a scene for all sessions */
 export interface SceneSaveParams {
   name: PersonName;
   scene?: Scene;
@@ -634,34 +634,34 @@ export interface SceneSaveParams {
 export interface SceneSaveResult {
   tick: Tick;
   name: string;
-  /** That it takes */
+  /** Size of the scene */
   bytes: number;
   key?: Token;
 }
-/** Deletes a scene that was saved */
+/** Deletes a saved scene */
 export interface SceneDeleteParams {
   name: PersonName;
   key?: Token;
 }
 
 export interface SceneDeleteResult {}
-/** What the server is and allows */
+/** Properties and limits of the server */
 export interface ServerInfoResult {
   name: 'vat';
   version: string;
   protocol: 'vat.v1';
   instruction_set: InstructionSet;
-  /** Whether a token has to be shown first */
+  /** Whether clients need a token */
   access: 'open' | 'token';
-  /** Where what is kept lives: in a folder, or in memory, where it ends with the server */
+  /** Storage of saved data: in a folder, or in memory until the server ends */
   storage: 'folder' | 'memory';
   /** The server's clock [s since 1970] */
   time: number;
-  /** Every limit by its name, as in the errors limit_reached */
+  /** Every limit by its name, as in the error limit_reached */
   limits: {
     [k: string]: number;
   };
-  /** The names of all methods */
+  /** Names of all methods */
   methods: string[];
 }
 
@@ -672,13 +672,13 @@ export interface ServerSessionsResult {
 export interface WatchedSession {
   session: SessionId;
   name: string;
-  /** Of one that is not running only the name is known */
+  /** If the session is not running, only the name is known */
   state: 'running' | 'recovering' | 'lost';
   /** A replay shows a recording */
   kind: 'live' | 'replay';
   scene: string;
   playing: boolean;
-  /** It plays, but stands still while nobody is in it */
+  /** Whether the session is stopped because no client is in it */
   hibernating: boolean;
   tick: Tick;
   particles: number;
@@ -689,22 +689,22 @@ export interface WatchedParticipant {
   participant: ParticipantId;
   name: string;
   role: Role;
-  /** It has no connection just now */
+  /** Whether it is disconnected */
   away: boolean;
-  /** From which it is connected */
+  /** Address of its connection */
   address?: string;
 }
-/** Ends the server, once clients have had some time */
+/** Ends the server after a period for clients */
 export interface ServerDrainParams {
-  /** That clients may stay at most; by default the server's setting [s] */
+  /** Period for clients; default: the server's setting [s] */
   seconds?: number;
 }
 
 export interface ServerDrainResult {
-  /** That clients may stay at most [s] */
+  /** Period for clients [s] */
   seconds: number;
 }
-/** Makes a session, which plays; nobody has joined it yet */
+/** Creates a session, which plays; the caller does not join it */
 export interface SessionCreateParams {
   name: Name;
   scene: SceneReference;
@@ -722,18 +722,18 @@ export interface SessionListResult {
 export interface SessionEntry {
   session: SessionId;
   name: string;
-  /** Of one that is not running only the name is known */
+  /** If the session is not running, only the name is known */
   state: 'running' | 'recovering' | 'lost';
   /** A replay shows a recording */
   kind: 'live' | 'replay';
   scene: string;
-  /** Participants that are connected */
+  /** Connected participants */
   clients: number;
   playing: boolean;
   tick: Tick;
   particles: number;
 }
-/** Takes part in a session */
+/** Joins a session */
 export interface SessionJoinParams {
   session?: SessionId;
   name?: PersonName;
@@ -746,15 +746,15 @@ export interface SessionJoinResult {
   participant: ParticipantId;
   name: string;
   role: Role;
-  /** A secret: who joins with it takes the participant over */
+  /** Secret with which a client can resume the participant */
   resume: string;
-  /** Whether it is one that was there before */
+  /** Whether an existing participant was resumed */
   resumed: boolean;
   settings: Settings;
   participants: Participant[];
   description: SessionDescription;
 }
-/** Decides who may join, and as what */
+/** Sets who may join, and the default role */
 export interface SessionConfigureParams {
   name?: PersonName;
   default_role?: 'viewer' | 'controller';
@@ -767,10 +767,10 @@ export interface SessionConfigureResult {
   default_role: 'viewer' | 'controller';
   locked: boolean;
 }
-/** Makes an invitation into the session */
+/** Creates an invitation to the session */
 export interface SessionInviteParams {
   role: 'viewer' | 'controller';
-  /** By default any number */
+  /** Number of uses; default: unlimited */
   uses?: number;
   /** [s] */
   expires?: number;
@@ -783,7 +783,7 @@ export interface SessionInviteResult {
   /** [s] */
   expires: number;
 }
-/** Ends a session for all */
+/** Ends a session for all participants */
 export interface SessionCloseParams {
   session: SessionId;
 }
@@ -794,29 +794,29 @@ export interface SessionHashResult {
   instruction_set: InstructionSet;
   /** Simulated time [s] */
   time: number;
-  /** Ticks that the session has ever run */
+  /** Number of ticks that the session has run */
   position: number;
 }
-/** What the session's ticks have cost, and sums over what they lead to */
+/** Returns the cost of the session's ticks, and diagnostics */
 export interface SessionStatsParams {
-  /** Whether energies and the like are measured, at the cost of about one of a tick's steps; default false */
+  /** Whether to measure diagnostics such as energies, at the cost of about one step; default false */
   diagnostics?: boolean;
 }
 
 export interface SessionStatsResult {
   tick: Tick;
   instruction_set: InstructionSet;
-  /** That step sessions */
+  /** Number of threads that step sessions */
   threads: number;
   /** Simulated time [s] */
   time: number;
-  /** Simulated seconds per second that are achieved */
+  /** Achieved simulated seconds per second */
   real_time_factor: number;
   particles: number;
   sleeping_bodies: number;
-  /** This and what follows: since the scene was loaded */
+  /** This and the following members: since the scene was loaded */
   ticks: number;
-  /** Parts of steps and undone ones included */
+  /** Including parts of steps and undone steps */
   substeps: number;
   undone_substeps: number;
   /** Wall time of the ticks [s] */
@@ -830,29 +830,29 @@ export interface SessionStatsResult {
   }[];
   diagnostics?: Diagnostics;
 }
-/** Where it was asked for */
+/** Present if requested */
 export interface Diagnostics {
   /** [J] */
   kinetic_energy: number;
-  /** About the origin [J] */
+  /** Relative to the origin [J] */
   gravitational_energy: number;
-  /** Of static springs and of cells that keep their volume [J] */
+  /** Energy of static springs and of cells with volume conservation [J] */
   elastic_energy: number;
-  /** Between bodies and at walls [J] */
+  /** Energy of contacts between bodies and at walls [J] */
   contact_energy: number;
   momentum: Vector;
   angular_momentum: Vector;
-  /** Of liquid: the mean of what is above the density at rest, over that */
+  /** Liquid: mean relative excess above the rest density */
   mean_density_error: number;
-  /** The greatest of these */
+  /** Liquid: maximum of this excess */
   max_density_error: number;
   torn_springs: number;
-  /** Since time 0 */
+  /** Number since time 0 */
   emitted_particles: number;
-  /** The same */
+  /** Number since time 0 */
   drained_particles: number;
 }
-/** Keeps the session's state under a name */
+/** Saves the session's state under a name */
 export interface SessionSaveParams {
   name: PersonName;
 }
@@ -861,10 +861,10 @@ export interface SessionSaveResult {
   tick: Tick;
   name: string;
   hash: Hash;
-  /** That it takes */
+  /** Size of the saved state */
   bytes: number;
 }
-/** Goes to a state that was saved, and on from there */
+/** Continues from a saved state */
 export interface SessionLoadParams {
   name: PersonName;
 }
@@ -876,11 +876,11 @@ export interface SessionSavesResult {
 
 export interface SavedState {
   name: string;
-  /** Name of a participant */
+  /** Name of the participant who saved it */
   saved_by: string;
-  /** When [s since 1970] */
+  /** Time of saving [s since 1970] */
   saved: number;
-  /** The session's tick then */
+  /** Tick of the session when it was saved */
   at_tick: number;
   /** Simulated time [s] */
   time: number;
@@ -891,9 +891,9 @@ export interface SavedState {
 export interface SessionDeleteSaveParams {
   name: PersonName;
 }
-/** The bodies' state in full precision */
+/** Returns the state of bodies in full precision */
 export interface StateQueryParams {
-  /** Names or ids; by default all */
+  /** Names or ids; default: all */
   bodies?: (BodyId | Name)[];
 }
 
@@ -908,22 +908,22 @@ export interface BodyState {
   body: BodyId;
   name: string;
   kind: BodyKind;
-  /** Of its particles in the order of their numbers [m] */
+  /** Positions of the particles in the order of their numbers [m] */
   positions: Vector[];
   /** [m/s] */
   velocities: Vector[];
-  /** Which particles are there, where some are gone */
+  /** Particle numbers; absent if no particle was removed */
   numbers?: ParticleNumber[];
   center_of_mass?: Vector;
   orientation?: Quaternion;
   velocity?: Vector;
   angular_velocity?: Vector;
 }
-/** Springs and contacts */
+/** Returns springs and contacts */
 export interface StateConnectionsParams {
-  /** Name or id: those of this body alone */
+  /** Name or id of a body whose springs and contacts are returned; default: all */
   body?: BodyId | Name;
-  /** Of springs, and of contacts; default 2000 */
+  /** Maximum number of springs, and of contacts; default 2000 */
   most?: number;
 }
 
@@ -936,41 +936,41 @@ export interface StateConnectionsResult {
 }
 
 export interface ConnectedSprings {
-  /** How many there are */
+  /** Number of all springs */
   total: number;
-  /** Every so many of them is told */
+  /** Springs are sampled at this interval */
   every: number;
   pairs: ConnectedPairs;
-  /** Length over length at rest, less 1, pair by pair */
+  /** Length divided by rest length, minus 1, for each pair */
   strains: number[];
 }
 
 export interface ConnectedContacts {
-  /** How many there are */
+  /** Number of all contacts */
   total: number;
-  /** Every so many of them is told */
+  /** Contacts are sampled at this interval */
   every: number;
   pairs: ConnectedPairs;
-  /** Along the line between the two [N], pair by pair; below 0 where it pulls */
+  /** Force along the connecting line [N], for each pair; negative if attractive */
   forces: number[];
 }
 /** Adds a body */
 export interface WorldAddBodyParams {
   body: SceneBody;
-  /** Where it is and how it moves, as state.query tells it, in place of what the body says */
+  /** Position and motion as in state.query; replaces those in the body */
   state?: ParticleMotion | RigidMotion;
 }
-/** Of each particle of a liquid or deformable body */
+/** Motion of each particle of a liquid or deformable body */
 export interface ParticleMotion {
   /** [m] */
   positions: Point[];
   /** [m/s] */
   velocities: Motion[];
 }
-/** Of a rigid body */
+/** Motion of a rigid body */
 export interface RigidMotion {
   center_of_mass: Point;
-  /** [w, x, y, z], of length 1 */
+  /** Unit quaternion [w, x, y, z] */
   orientation: [number, number, number, number];
   velocity: Motion;
   angular_velocity: Motion;
@@ -980,11 +980,11 @@ export interface WorldAddBodyResult {
   tick: Tick;
   body: BodyId;
 }
-/** Takes a body away */
+/** Removes a body */
 export interface WorldRemoveBodyParams {
   body: BodyId;
 }
-/** Makes a deformable body liquid */
+/** Melts a deformable body */
 export interface WorldMeltBodyParams {
   body: BodyId;
   material: Name;
@@ -999,35 +999,35 @@ export interface WorldSetGravityParams {
   /** [m/s^2] */
   gravity: [number, number, number];
 }
-/** Sets what happens where two materials meet */
+/** Sets the interface of two materials */
 export interface WorldSetInterfaceParams {
   interface: SceneInterface;
 }
-/** Pushes a body for a while */
+/** Applies a force to a body for some time */
 export interface WorldApplyForceParams {
   body: BodyId;
-  /** On the whole body [N] */
+  /** Total force on the body [N] */
   force: [number, number, number];
   /** [s] */
   duration: number;
 }
-/** Puts a body elsewhere, as it is */
+/** Moves a body without changing its shape */
 export interface WorldMoveBodyParams {
   body: BodyId;
   position: Point;
-  /** [w, x, y, z] of a rigid body, of length 1; by default as it is */
+  /** Unit quaternion [w, x, y, z] of a rigid body; default: unchanged */
   orientation?: [number, number, number, number];
-  /** Of all of it, which then does not turn [m/s]; by default as it is */
+  /** Velocity of the whole body, which then does not rotate [m/s]; default: unchanged */
   velocity?: [number, number, number];
 }
-/** Adds a material, or replaces the constants of the one of its name */
+/** Adds a material, or replaces the constants of the material with this name */
 export interface WorldSetMaterialParams {
   material: unknown;
 }
-/** Steps with another integrator, or in steps of another length */
+/** Sets the integrator or the step */
 export interface WorldSetNumericsParams {
   integrator?: unknown;
-  /** [s]; the tick, which stays, is a whole number of them */
+  /** [s]; the tick does not change, and must be a whole number of steps */
   step?: number;
 }
 /** Moves the vat by hand */
@@ -1035,7 +1035,7 @@ export interface WorldMoveVatParams {
   offset: Point;
 }
 
-/** Every method: what it takes and what it answers. */
+/** Parameters and result of each method. */
 export interface Methods {
   'access.enter': { params: AccessEnterParams; result: AccessEnterResult };
   'access.ticket': { params: AccessTicketParams; result: AccessTicketResult };
@@ -1098,7 +1098,7 @@ export interface Methods {
   'world.move_vat': { params: WorldMoveVatParams; result: InEffect };
 }
 
-/** Every event: what its notification carries. */
+/** Parameters of each event. */
 export interface Events {
   'session.description': SessionDescription;
   'session.status': SessionStatus;

@@ -1,12 +1,12 @@
 // Written from protocol/schemas/ by `npm run types`; not to be edited.
 
-/** [x, y, z] of a place [m] */
+/** [x, y, z] of a position [m] */
 export type Place = [number, number, number];
 /** [m] */
 export type Length = number;
 
 export type Name = string;
-/** Any vector but zero */
+/** Any vector except zero */
 export type Direction = [number, number, number];
 /** [m/s] */
 export type Speed = [number, number, number];
@@ -19,9 +19,9 @@ export type Interface =
       /** [N s/m] */
       damping?: number;
       restitution?: number;
-      /** Coulomb's coefficient */
+      /** Coulomb coefficient */
       friction?: number;
-      /** Two names of materials; one may be "vat" */
+      /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       threshold?: Length;
       /** [degrees] */
@@ -29,11 +29,11 @@ export type Interface =
     }
   | {
       law: 'lennard_jones';
-      /** At the threshold [N/m] */
+      /** At the threshold distance [N/m] */
       stiffness: number;
-      /** Where a layer ends, in thresholds */
+      /** End of the adhesive layer, relative to the threshold */
       reach?: number;
-      /** Two names of materials; one may be "vat" */
+      /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       threshold?: Length;
       /** [degrees] */
@@ -42,9 +42,9 @@ export type Interface =
   | {
       law: 'projection';
       restitution?: number;
-      /** Coulomb's coefficient */
+      /** Coulomb coefficient */
       friction?: number;
-      /** Two names of materials; one may be "vat" */
+      /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       threshold?: Length;
       /** [degrees] */
@@ -52,7 +52,7 @@ export type Interface =
     }
   | {
       law: 'sph';
-      /** Two names of materials; one may be "vat" */
+      /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       /** [degrees] */
       contact_angle?: number;
@@ -66,20 +66,20 @@ export type DefaultInterface =
       /** [N s/m] */
       damping?: number;
       restitution?: number;
-      /** Coulomb's coefficient */
+      /** Coulomb coefficient */
       friction?: number;
     }
   | {
       law: 'lennard_jones';
-      /** At the threshold [N/m] */
+      /** At the threshold distance [N/m] */
       stiffness: number;
-      /** Where a layer ends, in thresholds */
+      /** End of the adhesive layer, relative to the threshold */
       reach?: number;
     }
   | {
       law: 'projection';
       restitution?: number;
-      /** Coulomb's coefficient */
+      /** Coulomb coefficient */
       friction?: number;
     }
   | {
@@ -134,7 +134,7 @@ export interface Material {
     /** [N/m] */
     surface_tension?: number;
   };
-  /** What deformable bodies get between lattice neighbours */
+  /** Springs between lattice neighbours of deformable bodies */
   springs?: {
     structural?: SpringConstants;
     shear?: SpringConstants;
@@ -196,13 +196,13 @@ export interface Numerics {
   tick?: number;
   control?: 'fixed' | 'adaptive' | 'local';
   tolerance?: number;
-  /** In place of integrator, step, control and tolerance */
+  /** Replaces integrator, step, control and tolerance */
   accuracy?: number;
 }
 
 export interface VelocityField {
   center?: Place;
-  /** Row i has the derivatives of component i */
+  /** Row i contains the derivatives of component i */
   gradient?: [[number, number, number], [number, number, number], [number, number, number]];
   waves?: {
     
@@ -216,7 +216,7 @@ export interface VelocityField {
 
 export interface DisplacementField {
   center?: Place;
-  /** Row i has the derivatives of component i */
+  /** Row i contains the derivatives of component i */
   gradient?: [[number, number, number], [number, number, number], [number, number, number]];
   waves?: {
     
@@ -251,7 +251,7 @@ export interface Cylinder {
 
 export interface MeshFile {
   type: 'mesh';
-  /** Below the scene file's folder; not in a message */
+  /** Path below the scene file's folder; not in a message */
   file: string;
   scale?: number;
 }
@@ -260,7 +260,7 @@ export interface Mesh {
   type: 'mesh';
   vertices: Place[];
   triangles: [number, number, number][];
-  /** A name for messages */
+  /** Name of the mesh in messages */
   source?: string;
 }
 
@@ -290,7 +290,7 @@ export interface Body {
   material: Name;
   shape: Shape;
   spacing?: Length;
-  /** Of the whole body [kg] */
+  /** Mass of the whole body [kg] */
   mass?: number;
   radius?: Length;
   position?: Place;
@@ -302,7 +302,7 @@ export interface Body {
   springs?: Spring[];
   velocity_field?: VelocityField;
   displacement_field?: DisplacementField;
-  /** In spacings */
+  /** Relative to the spacing */
   jitter?: number;
   seed?: number;
   fixed?: boolean;
@@ -320,7 +320,7 @@ export interface Drain {
   min: Place;
   max: Place;
 }
-/** A scene file, or the scene of a message; protocol/SCENE.md has the meaning of all */
+/** A scene file, or the scene of a message; protocol/SCENE.md describes all members */
 export interface Scene {
   format: 'vat.scene/1';
   name?: string;

@@ -124,11 +124,11 @@ function tables(files: Map<string, SchemaFile>): string {
   const eventRows = events.map((name) => `  '${name}': ${typeOf(files, 'events', name)};\n`);
   const eventNames = events.map((name) => `  '${name}',\n`);
   return `
-/** Every method: what it takes and what it answers. */
+/** Parameters and result of each method. */
 export interface Methods {
 ${methodRows.join('')}}
 
-/** Every event: what its notification carries. */
+/** Parameters of each event. */
 export interface Events {
 ${eventRows.join('')}}
 

@@ -39,7 +39,7 @@ def reply_message(method, file):
                       result=shared(f"{file}.json#/$defs/{method}.result"),
                       error=shared("errors.json#/$defs/reply_error"))
     schema["oneOf"] = [{"required": ["result"]}, {"required": ["error"]}]
-    return message(method + ".reply", f"The answer to {method}", schema)
+    return message(method + ".reply", f"Reply to {method}", schema)
 
 
 def event_message(event):
@@ -84,7 +84,7 @@ def operations():
         found[method]["reply"] = {"channel": CHANNEL, "messages": [reply]}
     for event, definition in schemas.definitions("events").items():
         found[event] = operation("send", event, definition.get("description", "An event"))
-    found["frame"] = operation("send", "frame", "The newest state, to who has subscribed")
+    found["frame"] = operation("send", "frame", "The newest state, for subscribers")
     return found
 
 
@@ -93,7 +93,7 @@ def channel(names):
     headers = {"type": "object", "properties": {"Sec-WebSocket-Protocol": protocol}}
     return {
         "address": "/ws",
-        "description": "Text messages are JSON-RPC 2.0, binary ones frames from the server.",
+        "description": "Text messages are JSON-RPC 2.0, binary messages are frames of the server.",
         "messages": {name: {"$ref": f"#/components/messages/{name}"} for name in names},
         "bindings": {"ws": {"method": "GET", "headers": headers, "bindingVersion": "0.1.0"}},
     }
@@ -105,7 +105,7 @@ def document():
         "asyncapi": "3.0.0",
         "info": {
             "title": "vat.v1", "version": "1.0.0", "license": {"name": "MIT"},
-            "description": "The protocol of vat, as the server sees it; PROTOCOL.md explains it.",
+            "description": "The protocol of vat from the perspective of the server; see PROTOCOL.md.",
         },
         "defaultContentType": "application/json",
         "servers": {"local": {"host": "127.0.0.1:8080", "protocol": "ws"}},
