@@ -45,7 +45,7 @@ def checked(values: Sequence[int], least: int, greatest: int) -> Sequence[int]:
 def read_changed(
     symbols: Symbols, first: ParticleBlock, second: ParticleBlock, has: Sequence[bool]
 ) -> ParticleBlock:
-    """Reads a changed block from those of its references. The second may have no particles.
+    """Reads a changed block. The block of the second reference may have no particles.
 
     `has` states for each attribute whether the block has it.
     """

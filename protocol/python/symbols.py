@@ -37,7 +37,7 @@ class Symbols:
             raise BadFrame("bad_block")
 
     def check_count(self, count: int) -> int:
-        """Returns a count. Raises BadFrame if the symbols cannot contain so many."""
+        """Returns a count. Raises BadFrame if the symbols cannot contain this number of items."""
         if count > 8 * len(self.stream):
             raise BadFrame("bad_block")
         return count

@@ -81,7 +81,7 @@ class WebSocket:
         if deadline is not None:
             left = deadline - time.monotonic()
             if left <= 0:
-                raise TimeoutError("nothing came in time")
+                raise TimeoutError("no data arrived in time")
             self.socket.settimeout(left)
         more = self.socket.recv(1 << 16)
         if not more:
@@ -144,7 +144,7 @@ class Client:
     """One connection. Results, events and frames are dictionaries as in PROTOCOL.md."""
 
     def __init__(self, url="ws://127.0.0.1:8080/ws", timeout=10, tls=None):
-        """`tls` is an ssl.SSLContext with trusted certificates. None trusts those of the system."""
+        """`tls` is an ssl.SSLContext with trusted certificates. None: the system's."""
         self.timeout = timeout
         self.socket = WebSocket(url, timeout, tls)
         self.last_id = 0

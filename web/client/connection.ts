@@ -24,7 +24,7 @@ export interface ConnectionHandlers {
 
 export interface ConnectionOptions {
   url: string;
-  /** The browser's `WebSocket` or that of the `ws` package. */
+  /** The `WebSocket` class of the browser or of the `ws` package. */
   socket: SocketConstructor;
   /**
    * Returns whether the server answers plain HTTP. Browsers do not report why a WebSocket failed to

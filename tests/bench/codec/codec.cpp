@@ -273,7 +273,7 @@ void add_codec_command(CLI::App& app, int& exit_code) {
   add_options(*command, *options);
   command->add_flag("!--no-web", options->times_web, "Do not time the decoder in TypeScript");
   command->footer(
-      "Exit codes: 0 measured, 1 a run failed or a frame came back changed, 2 wrong "
+      "Exit codes: 0 measured, 1 a run failed or a decoded frame differs, 2 wrong "
       "usage.");
   command->callback([options, &exit_code] { exit_code = codec(*options); });
 }

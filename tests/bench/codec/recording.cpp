@@ -83,7 +83,7 @@ Recording record(const CodecScene& scene, std::size_t threads) {
     advance(simulation, scene.name);
   }
   if (scene.rests && simulation.sleeping_body_count() < simulation.bodies().size()) {
-    throw std::runtime_error(scene.name + ": it has not come to rest");
+    throw std::runtime_error(scene.name + ": not at rest");
   }
   for (auto tick = std::lround(scene.seconds * kFrameRate); tick > 0; --tick) {
     advance(simulation, scene.name);

@@ -23,7 +23,7 @@ FrameFacts frame_facts(std::string_view start) {
   in.get<std::uint64_t>();  // tick
   in.get<double>();         // time
   facts.published = in.get<double>();
-  if (!is_ours || in.ended_early()) throw std::runtime_error("a frame that is none");
+  if (!is_ours || in.ended_early()) throw std::runtime_error("an invalid frame header");
   return facts;
 }
 

@@ -174,7 +174,7 @@ class Client {
     if (!exported.contains("result")) return;
     const Json answer = fetch(place_.port, exported["result"]["path"]);
     if (answer["size"] != exported["result"]["bytes"]) {
-      throw std::runtime_error("a recording is not what it was said to be: " + answer.dump());
+      throw std::runtime_error("a recording differs from its description: " + answer.dump());
     }
     ++tally_.recordings;
   }

@@ -78,7 +78,7 @@ struct NamedScene {
 };
 
 /// Times several scenes in turn, so that their ratios belong to one run. Returns all rows of the
-/// first scene, then those of the next. The memory is that of all scenes together.
+/// first scene, then those of the next. The memory includes all scenes.
 Result<std::vector<SpeedRow>> measure_in_turn(const std::vector<NamedScene>& scenes,
                                               const SpeedSetup& setup,
                                               const SpeedSettings& settings);

@@ -109,7 +109,7 @@ Scene peer_dam_break(int edge, PressureSolver solver) {
   Scene scene;
   scene.pressure_solver = solver;
   scene.materials = {water(liquid)};
-  // The tolerance of density changes equals that of the peer. That of densities leaves a smaller
+  // The tolerance of density changes equals the peer's. The density tolerance leaves a smaller
   // error than the peer's.
   scene.incompressible = {.density_tolerance = 1.5e-3, .divergence_tolerance = 1e-3};
   scene.vat = closed_vat({-2, -0.75, 0}, {2, 0.75, 3});

@@ -52,7 +52,7 @@ class PlaneKernel {
 /// Layers at z < 0. The lower half is fixed.
 class Surface {
  public:
-  /// `share` is that of the wall at z = 0. Without it, the surface is free.
+  /// `share` is the share of the wall at z = 0. Without it, the surface is free.
   explicit Surface(std::optional<Real> share) : share_(share) {
     for (int n = 0; n < kCount; ++n) z_.push_back(-(n + 0.5) * kLayer);
     for (int n = -kPerSupport; n <= kPerSupport; ++n) lattice_ += kLayer * plane_.value(n * kLayer);

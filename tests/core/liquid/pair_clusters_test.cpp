@@ -16,7 +16,7 @@ namespace {
 
 using Points = std::vector<Vec3>;
 
-/// Two groups of sources. The targets are those of the first group.
+/// Two groups of sources. The targets are the first group.
 class Cloud {
  public:
   Cloud(Points first, Points second, Real cell_size) {

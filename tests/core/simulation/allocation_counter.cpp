@@ -34,8 +34,8 @@ void* operator new(std::size_t size) {
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return allocate(size, static_cast<std::size_t>(alignment));
 }
-// The library's version calls the function above, but that of a sanitizer does not. Its memory must
-// not be passed to free.
+// The library's version calls the function above, but a sanitizer's version does not. Its memory
+// must not be passed to free.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   const std::size_t allowed = std::exchange(allowed_count, kUnlimited);
   void* memory = nullptr;

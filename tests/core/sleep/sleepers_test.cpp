@@ -29,7 +29,7 @@ BodyDescription make_cubes(const char* name, BodyKind kind, const char* material
   return body;
 }
 
-/// Two bodies of each kind, in an order that differs from that of the columns.
+/// Two bodies of each kind, in an order that differs from the order of the columns.
 Scene make_all_kinds() {
   Scene scene = make_resting_scene();
   scene.pressure_solver = PressureSolver::incompressible;

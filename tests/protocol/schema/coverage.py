@@ -1,7 +1,7 @@
 """coverage.py SCRIPTS TRANSCRIPTS: checks the coverage of the scripts.
 
-The scripts must show every method, event, error kind and limit. SCRIPTS is the folder of the
-scripts, TRANSCRIPTS that of their recorded messages.
+The scripts must show every method, event, error kind and limit. SCRIPTS is their folder,
+TRANSCRIPTS the folder of their recorded messages.
 """
 
 import json

@@ -76,7 +76,7 @@ TEST_F(SessionFrames, WithoutAnErrorBoundItGoesByTheFinestParticles) {
   EXPECT_LT(quantum({{"max_error", 0}}), usual / 10);
 }
 
-// In free fall, the acceleration is that of gravity in each tick.
+// In free fall, the acceleration equals gravity in each tick.
 TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
   client->result("world.set_gravity", {{"gravity", {0, 0, -5}}});
   client->result("frames.subscribe", {{"attributes", {{"acceleration", 1e-3}}}});

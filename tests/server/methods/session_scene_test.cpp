@@ -103,7 +103,7 @@ class SceneGetLimits : public testing::Test {
   const Catalogue catalogue = make_catalogue();
 };
 
-// Every returned scene can be sent back: the limit of the loading message equals that of the reply.
+// Every returned scene can be sent back: reply and loading message have the same limit.
 TEST_F(SceneGetLimits, WhatIsGivenFitsIntoAMessage) {
   const std::size_t bytes = write_scene(to_scene(mixed_scene_text())).dump().size();
   const std::size_t least = refused_up_to(

@@ -1,5 +1,5 @@
-// Attacks by flooding: memory use, and the delay for another client. Memory is that of this
-// process, including the attackers.
+// Attacks by flooding: memory use, and the delay for another client. The memory of
+// this process includes the attackers.
 
 #include <algorithm>
 #include <atomic>

@@ -139,7 +139,7 @@ TEST_F(TransportStopTest, AnAddressOfNobodyIsAnErrorThatNamesIt) {
             "cannot listen on example.org:0: the host must be a numeric address");
 }
 
-// Socket options that the transport sets. The tests find its sockets among those of this process.
+// Socket options that the transport sets. The tests find its sockets among all of this process.
 
 std::uint16_t local_port(int file) {
   sockaddr_in address{};
@@ -157,7 +157,7 @@ std::optional<int> option(int file, int level, int name) {
   return value;
 }
 
-/// Returns the server's listening sockets, or those of its connections.
+/// Returns the server's listening sockets, or the sockets of its connections.
 std::vector<int> sockets_of(std::uint16_t port, bool listening) {
   constexpr int kMaxFiles = 4096;
   std::vector<int> files;

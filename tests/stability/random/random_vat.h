@@ -19,7 +19,7 @@ struct RandomVat {
 
 /// Returns a valid scene, identical for the same seed and solver on every machine. Spacings are 5
 /// mm to 0.2 m, and vats are 8 to 14 spacings wide. The step is 0.9 of the limit of
-/// find_step_limits(), or 0.6 with the `gas` solver, whose limit is that of a liquid at rest. The
+/// find_step_limits(), or 0.6 with the `gas` solver, whose limit assumes a liquid at rest. The
 /// speed of sound is the recommended one, ten times the maximum speed.
 RandomVat random_vat(std::uint64_t seed, PressureSolver solver);
 

@@ -165,7 +165,7 @@ export class ParticleChanges {
     }
   }
 
-  /** Reads those of the three attributes from `begin` on that exist and have changed. */
+  /** Reads up to three attributes, starting with `begin`, if they exist and have changed. */
   private readAttributes(matched: Matched, block: BlockData, begin: number): void {
     const { symbols, cells, kept, moved, lanes, factors } = this;
     for (let q = 0; q < 3; ++q) lanes[q] = moved[begin + q] === true;

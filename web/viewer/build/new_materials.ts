@@ -118,7 +118,7 @@ function grain(scene: Scene, density = kDefaults.density, spacing: number): Grai
   return { mass: density * spacing ** (scene.dimensions ?? 3), spacing, step };
 }
 
-/** Returns the support radius of the scene's liquids, which share one, or that of the model. */
+/** Returns the common support radius of the scene's liquids, or the model's if there are none. */
 function supportFor(scene: Scene, spacing: number): number {
   const there = scene.materials.find(({ liquid }) => liquid)?.liquid;
   const { liquid } = kModel.materials.find((one) => one.liquid)!;

@@ -8,7 +8,7 @@ const kTicks = 5;
 /** The update interval of the numbers [ms], for readability. */
 const kPeriodMs = 250;
 
-/** The legend of colours beside the picture. */
+/** The legend of colours next to the picture. */
 export class ColourLegend {
   readonly element: HTMLElement;
   private readonly title = make('figcaption');

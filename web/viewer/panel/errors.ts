@@ -63,7 +63,7 @@ function adviceFor({ kind, data }: RequestError): string | undefined {
   return undefined;
 }
 
-/** Returns the error as text beside its field, without the field's path. */
+/** Returns the error as text for display next to its field, without the field's path. */
 export function describeFault(error: RequestError): string {
   const faults = (error.data?.errors ?? []).slice(0, kMostFaults).map(({ message }) => message);
   return faults.length > 0 ? sentence(capital(faults.join('; '))) : describeError(error);

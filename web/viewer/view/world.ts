@@ -203,7 +203,7 @@ export class World {
     this.shared.floor.shadow_colour.value.copy(look.shadow);
   }
 
-  /** The present extent: that of the vat if there is one. */
+  /** The present extent of the vat, or of the bodies if there is no vat. */
   get extent(): Box3 {
     return this.vat?.box ?? this.seen;
   }

@@ -26,7 +26,7 @@ Vec3 semi_axes(const Run& run) {
 }
 
 /// Returns the axes relative to the start. The moments of a lattice cut to a ball differ slightly
-/// from those of the ball.
+/// from the moments of the ball.
 Vec3 stretch_at(Run& run, const Vec3& start, Real time) {
   run.advance_to(time);
   return semi_axes(run).cwiseQuotient(start);

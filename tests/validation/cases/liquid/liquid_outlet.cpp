@@ -41,7 +41,7 @@ void run_outlet(Sheet& sheet) {
   set_rest_mass(scene);
   scene.materials[0].liquid->viscosity = 1000 * artificial_viscosity(scene, 0.05);
   Run run = sheet.start(with_step(scene, acoustic_step(scene, 0.01)));
-  // The start of the flow takes some time, and at the end the depth is that of the slot.
+  // The start of the flow takes some time, and at the end the depth equals the slot width.
   const Real begin = time_at_depth(run, 0.3);
   const Real coefficient = ideal_time(0.3, 0.15) / (time_at_depth(run, 0.15) - begin);
   sheet.add("coefficient of discharge of a slot of five spacings",

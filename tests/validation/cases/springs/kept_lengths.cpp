@@ -25,7 +25,7 @@ Real period_of(Run& run, Real step) {
 
 // The thread removes velocity inelastically: (w dt)^2 / 2 of the energy per step. With w^2 = 2 g
 // cos / L, the loss is at most 2 g dt T / 4 / 2 of the energy until it hangs vertically, and half
-// of that of the speed.
+// of this fraction of the speed.
 void add_pendulum(Sheet& sheet) {
   const Real expected = reference("/deformable/DEF-4a/period/90");
   for (const IntegratorId integrator :

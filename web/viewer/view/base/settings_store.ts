@@ -11,7 +11,7 @@ export class SettingsStore {
   private current: ViewSettings;
   private readonly listeners: ((settings: ViewSettings) => void)[] = [];
 
-  /** Uses the settings of the page's link, otherwise those of the last visit. */
+  /** Uses the settings of the page's link, otherwise the settings of the last visit. */
   constructor(
     private readonly shelf: Shelf,
     linked?: string,

@@ -28,7 +28,7 @@ import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 /** Draw order: shadows on the floor, then solids. Liquids draw the depth before the splats. */
 const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 
-/** Skins. Beside particles they are transparent and enclose the spheres. */
+/** Skins. If particles are shown too, skins are transparent and enclose the spheres. */
 const kSkins = {
   liquid: { wet: 1, opacity: 0.82, size: 1.5 },
   deformable: { wet: 0.15, opacity: 1, size: 1.2 },

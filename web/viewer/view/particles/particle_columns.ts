@@ -51,7 +51,7 @@ export class ParticleColumns {
     for (const geometry of this.geometries) geometry.dispose();
   }
 
-  /** The present number of particles. That of a liquid can change. */
+  /** The present number of particles, which can change for a liquid. */
   get count(): number {
     return this.geometry.instanceCount;
   }
