@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Proves that a fresh clone works on a bare Debian 12 machine: makes one in a folder (debootstrap,
-# chroot), clones this checkout's HEAD into it, runs `./vat serve` twice and `./vat test`, and
+# Tests a fresh clone on a bare Debian 12 machine: creates the machine in a folder (debootstrap,
+# chroot), clones this checkout's HEAD into it, and runs `./vat serve` twice and `./vat test`. It
 # prints the wall and processor time of each, without the download of Debian's packages. Needs root
 # and debootstrap.
 #
 # From the environment: MIRROR (a Debian mirror), PORT (8080), CPUS (as for taskset: "0-1"), BASE
-# (an earlier debootstrap folder to copy, in place of a new one), LOGIN (root, or the name of a
-# user to make, who has sudo without a password). Proxies, extra
+# (an earlier debootstrap folder to copy), LOGIN (root, or the name of a new user with sudo without
+# a password). Proxies, extra
 # certificates (NODE_EXTRA_CA_CERTS) and npm's registry are those of this machine.
 set -euo pipefail
 
@@ -43,13 +43,13 @@ make_machine() {
     debootstrap --variant=minbase bookworm "$machine" "$mirror" >"$work/debootstrap.log" 2>&1 ||
       { cat "$work/debootstrap.log" && fail "debootstrap"; }
   fi
-  # The devices are the machine's own: what goes wrong in it must not reach those of this one.
+  # The machine has separate devices, so that faults in it cannot affect the devices of this machine.
   mount -t proc proc "$machine/proc"
   mount -t devpts devpts "$machine/dev/pts"
   mount -t tmpfs tmpfs "$machine/dev/shm"
 }
 
-# What this machine needs to reach the network, and a bare one there would have too.
+# Copies the network configuration of this machine, which a bare machine would have too.
 give_network() {
   cp /etc/resolv.conf /etc/hosts "$machine/etc/"
   apt-config dump Acquire >"$machine/etc/apt/apt.conf.d/99network"
@@ -68,9 +68,9 @@ fetch_packages() {
     { cat "$work/packages.log" && fail "packages"; }
 }
 
-# Sets `processor` to the processor seconds of all that this script has waited for.
+# Sets `processor` to the processor seconds of all processes that this script has waited for.
 measure_processor() {
-  times >"$work/times" # not in a subshell, which has waited for nothing
+  times >"$work/times" # not in a subshell, which has not waited for any process
   processor=$(awk 'NR == 2 {for (i = 1; i <= 2; ++i) {split($i, part, /[ms]/)
     sum += 60 * part[1] + part[2]} printf "%.0f", sum}' "$work/times")
 }
@@ -83,7 +83,7 @@ make_user() {
   chroot "$machine" chown -R "$login" "$checkout"
 }
 
-# Runs a command in the checkout, with the environment of a fresh log-in and no more.
+# Runs a command in the checkout, with only the environment of a fresh login.
 inside() {
   local environment=(TERM=dumb LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin) name
   environment+=("HOME=$(chroot "$machine" sh -c "echo ~$login")")
@@ -99,7 +99,7 @@ inside() {
 
 answers() { curl --silent --fail --output "${2:-/dev/null}" "http://127.0.0.1:$port$1"; }
 
-# Starts the server, waits until it answers, looks at the page, stops it. Sets `seconds`.
+# Starts the server, waits for its reply, checks the page, and stops the server. Sets `seconds`.
 serve_once() {
   local start=$EPOCHREALTIME
   (inside ./vat serve --port "$port") >"$work/serve.log" 2>&1 &

@@ -39,8 +39,8 @@ struct Outcome {
   std::uint64_t evaluations = 0;
 };
 
-/// Returns the largest error of the height after three bounces, over several initial heights, so
-/// that the phase of the step at a contact does not matter.
+/// Returns the largest error of the height after three bounces, over several initial heights. The
+/// phase of the step at a contact then does not matter.
 Outcome run_bounces(Real stiffness, Real step, StepControl control) {
   constexpr Real kTime = 2.8;
   Outcome outcome;

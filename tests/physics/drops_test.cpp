@@ -75,8 +75,8 @@ BodyDescription make_slab(bool below) {
   return slab;
 }
 
-/// Returns the height of the centre of mass, divided by the square root of the area, of a part of a
-/// disc that meets the floor at this angle.
+/// Returns the height of the centre of mass of a part of a disc that meets the floor at this angle.
+/// The unit is the square root of its area.
 Real cap_height(Real angle) {
   const Real area = angle - std::sin(angle) * std::cos(angle);  // for radius 1
   return (2 * std::pow(std::sin(angle), 3) / (3 * area) - std::cos(angle)) / std::sqrt(area);

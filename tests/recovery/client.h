@@ -48,8 +48,8 @@ class WaitingClient {
     if (!reply.contains("result")) throw std::runtime_error(method + ": " + reply.dump());
     return reply.at("result");
   }
-  /// Returns the next message with this id or event, or the event of this kind that arrived during
-  /// another wait; {"closed": code} after the end of the connection.
+  /// Returns the next message with this id or event, or such an event that arrived during another
+  /// wait. After the end of the connection it is {"closed": code}.
   Json wait(const Json& id_or_event) {
     if (id_or_event.is_string()) {
       if (auto passed = passed_.extract(id_or_event.get<std::string>()))

@@ -21,8 +21,8 @@ struct CodecScene {
 /// Frames per second.
 inline constexpr Real kFrameRate = 30;
 
-/// Returns the scenes: the dam breaks of the other codecs' measurements, from the start for four
-/// seconds; a settled, sleeping pool; and the article's two scenes, moving and at rest. `quick`
+/// Returns the dam breaks of the other codecs' measurements, from the start for four seconds.
+/// Further scenes are a pool at rest, and the article's two scenes, moving and at rest. `quick`
 /// makes them smaller and shorter.
 std::vector<CodecScene> codec_scenes(bool quick);
 

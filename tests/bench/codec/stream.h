@@ -14,8 +14,8 @@ inline constexpr std::size_t kKeyInterval = 10;
 
 using FrameBytes = std::vector<std::uint8_t>;
 
-/// Returns the frames with which a decoder is timed, in decoding order: each frame relative to the
-/// two before it, as clients receive them, then each kKeyInterval-th again as a key frame.
+/// Returns the frames for timing a decoder, in decoding order. Each frame refers to the two before
+/// it, as for a client. Each kKeyInterval-th follows again as a key frame.
 std::vector<FrameBytes> stream_of(const std::vector<GridFrame>& frames);
 
 /// Writes each frame, preceded by the number of its bytes (u32, little-endian).

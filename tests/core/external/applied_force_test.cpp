@@ -16,8 +16,8 @@ using namespace test;
 constexpr Real kStep = 1e-3;
 const Vec3 kForce(3, -20, 7);
 
-// Momenta are about 4 kg m/s. Each is the sum of at most 54 particles after at most 40 steps: a
-// hundred roundings of half an epsilon, and as many of the forces that cancel.
+// Momenta are about 4 kg m/s. Each is the sum of at most 54 particles after at most 40 steps. This
+// gives a hundred roundings of half an epsilon, and as many of the cancelling forces.
 constexpr Real kRoundOff = 4 * 200 * std::numeric_limits<Real>::epsilon();
 
 Vec3 total_momentum(const Simulation& simulation) {

@@ -23,8 +23,8 @@ struct LinearCase {
 
 /// Returns the cases of springs only, with implicit springs. They have no step limit.
 std::vector<LinearCase> implicit_cases(bool quick);
-/// Returns the cases: oscillator, pair, chain, lattice, ball on the floor, two balls on the floor,
-/// and a periodic liquid lattice with sound only or viscosity only.
+/// Returns the cases: oscillator, pair, chain, lattice, one and two balls on the floor, and
+/// periodic liquid lattices with sound only or viscosity only.
 std::vector<LinearCase> linear_cases(bool quick);
 /// Returns the cases of liquids. They have the mode of find_step_limits(). Its limits of velocity
 /// Verlet, c dt / h and nu dt / h^2, follow from the linear dispersion operator.
@@ -34,9 +34,10 @@ std::vector<LinearCase> liquid_cases(bool quick);
 Real theoretical_step(const LinearCase& linear, IntegratorId integrator);
 
 /// Returns the largest fraction of `step`, up to 1.5, that is stable, to 1 / 128; 0 if a quarter is
-/// unstable. A step is stable if, within `steps` steps, no particle exceeds a thousand times the
-/// initial displacement, or twice its maximum of the first half in the second half. Without
-/// damping, explicit Euler and Heun grow with every step, slowly if the step is short.
+/// unstable. A step is stable if no particle exceeds a thousand times the initial displacement
+/// within `steps` steps. In the second half, no particle may exceed twice its maximum of the first
+/// half. Without damping, explicit Euler and Heun grow with every step, slowly if the step is
+/// short.
 Real largest_stable_part(const LinearCase& linear, IntegratorId integrator, Real step, int steps);
 
 struct StepMapPoint {

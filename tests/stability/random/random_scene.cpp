@@ -140,8 +140,8 @@ InterfaceConstants random_law(Random& random, Real stiffness, Real mass) {
   return {stiffness, damping(random, stiffness, mass), pick < 0.7 ? rough : 0};
 }
 
-/// Adds interfaces. A wall must stop the heaviest body at a single particle within half a radius,
-/// after a fall through the vat and at the initial speeds of body and vat.
+/// Adds interfaces. A wall must stop the heaviest body at a single particle within half a radius.
+/// The body may have fallen through the vat, with the initial speeds of body and vat.
 void add_interfaces(Random& random, Scene& scene, std::span<const SampledBody> samples,
                     Real spacing) {
   Real heaviest = 0;

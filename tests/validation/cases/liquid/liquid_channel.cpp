@@ -56,8 +56,8 @@ Real profile_error(const Run& run, Profile profile) {
   return std::sqrt(error / scale);
 }
 
-/// Returns the effective viscosity of a square lattice, relative to that of its material, for flows
-/// that are almost uniform over a support of `reach` spacings: the summed second moment of the
+/// Returns the effective viscosity of a square lattice, relative to its material, for flows that
+/// are almost uniform over a support of `reach` spacings. It is the summed second moment of the
 /// Laplacian, divided by the square of the density sum.
 Real lattice_viscosity(int reach) {
   Real density = 0;

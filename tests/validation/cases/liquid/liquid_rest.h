@@ -31,8 +31,8 @@ Real artificial_viscosity(const Scene& scene, Real alpha);
 Real pressed_height(Real thickness, Real above, Real c2);
 
 /// Returns the longest step that divides `interval` and in which sound travels at most a fifth of
-/// the support radius, or two fifths in a weakly compressible liquid. Half of the stable step is
-/// 0.48 or 0.43 of the support radius.
+/// the support radius. In a weakly compressible liquid, the limit is two fifths. Half of the stable
+/// step is 0.48 or 0.43 of the support radius.
 Real acoustic_step(const Scene& scene, Real interval);
 
 }  // namespace vat::validation

@@ -44,8 +44,8 @@ export interface FluidLook {
 }
 
 /**
- * Draws liquids as one surface: smoothed depth of the nearest particle per pixel, thickness and
- * colour summed along the ray, then refraction, absorption and reflection over the scene behind.
+ * Draws liquids as one surface, in three steps: the smoothed depth of the nearest particle per
+ * pixel, thickness and colour summed along the ray, and refraction, absorption and reflection.
  * After S. Green, "Screen space fluid rendering for games" (GDC 2010), with the filter of N. Truong
  * and C. Yuksel, "A narrow-range filter for screen-space fluid rendering" (2018).
  */
