@@ -6,8 +6,8 @@
 #
 # From the environment: MIRROR (a Debian mirror), PORT (8080), CPUS (as for taskset: "0-1"), BASE
 # (an earlier debootstrap folder to copy), LOGIN (root, or the name of a new user with sudo without
-# a password). Proxies, extra
-# certificates (NODE_EXTRA_CA_CERTS) and npm's registry are those of this machine.
+# a password). Proxies, extra certificates (NODE_EXTRA_CA_CERTS) and npm's registry are those of
+# this machine.
 set -euo pipefail
 
 repository=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/..

@@ -12,10 +12,10 @@ namespace vat {
 /// Counts items per network address. Safe to use from any thread.
 class AddressCounts {
  public:
-  /// One counted item. Not counted any more when the last copy is destroyed. Null: refused.
+  /// One counted item, counted until the last copy is destroyed. Null: refused.
   using Place = std::shared_ptr<void>;
 
-  /// Adds an item of the address, unless it has `most` already.
+  /// Adds an item of the address. Refuses if the address has `most` items.
   Place take(const std::string& address, std::size_t most) {
     const std::lock_guard lock(table_->mutex);
     std::size_t& count = table_->counts[address];

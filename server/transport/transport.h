@@ -14,7 +14,7 @@
 /// that the library's target can include it.
 namespace vat {
 
-/// Identifies a connection for the life of the server. Not used twice.
+/// Identifies a connection during the life of the server. Not reused.
 using ConnectionId = std::uint64_t;
 
 /// An open WebSocket. All functions may be called from any thread, and do nothing after the peer
@@ -23,20 +23,20 @@ class Connection {
  public:
   virtual ~Connection() = default;
   virtual ConnectionId id() const = 0;
-  /// Address by which connections and sessions are counted: the host, or the IPv6 network of 64
-  /// bits, because one host has many addresses in it.
+  /// Address that limits connections and sessions: the host, or the IPv6 network of 64 bits,
+  /// because one host has many addresses in its network.
   virtual const std::string& address() const = 0;
   virtual void send_text(std::string message) = 0;
   /// The bytes are shared, not copied, until they are passed to the socket.
   virtual void send_binary(std::shared_ptr<const std::string> bytes) = 0;
-  /// Bytes handed to send_* that the socket has not taken yet.
+  /// Bytes passed to send_* that the socket has not accepted yet.
   virtual std::size_t queued_bytes() const = 0;
   /// Sends a close frame with a code of PROTOCOL.md. Later sends do nothing.
   virtual void close(std::uint16_t code, std::string_view reason) = 0;
 };
 
-/// Receives events of connections. Those of one connection come on one thread, in order: opened,
-/// messages, closed. Those of several connections may come at once.
+/// Receives events of connections. The events of one connection arrive on one thread in order:
+/// opened, messages, closed. Events of several connections may arrive simultaneously.
 class ConnectionHandler {
  public:
   virtual ~ConnectionHandler() = default;
@@ -55,7 +55,7 @@ struct HttpResponse {
   std::vector<std::pair<std::string, std::string>> headers;  ///< other headers: name, value
 };
 
-/// Answers an HTTP request. Called on the transport's threads, several at once.
+/// Answers an HTTP request. Called on the transport's threads, possibly several at once.
 using HttpHandler = std::function<HttpResponse(std::string_view method, std::string_view target)>;
 
 struct TransportSettings {
@@ -72,7 +72,7 @@ struct TransportSettings {
   std::size_t max_message_bytes = 1024 * 1024;    ///< a longer one closes with 1009
   std::size_t max_http_request_bytes =
       16 * 1024;  ///< of the body; longer ones are answered with 413
-  std::chrono::milliseconds handshake_timeout{10'000};  ///< for a whole request or upgrade
+  std::chrono::milliseconds handshake_timeout{10'000};  ///< for a complete request or upgrade
   /// Send buffer of the system per connection. Small, because its content is late and cannot be
   /// withdrawn.
   int send_buffer_bytes = 128 * 1024;
@@ -81,14 +81,14 @@ struct TransportSettings {
   /// Called with faults of this program, such as an exception of a handler, on the transport's
   /// threads.
   std::function<void(std::string_view)> report;
-  /// Called with the name of the limit, in server.info's `limits`, that refused a connection.
+  /// Called with the name of the exceeded limit, as in server.info's `limits`.
   std::function<void(std::string_view limit)> count_refusal;
   /// Called with the close code of an ended WebSocket; 1006 if it had none.
   std::function<void(std::uint16_t code)> count_close;
 };
 
 /// A port for HTTP and WebSocket, served from start() to stop() by one thread per endpoint. The
-/// system assigns each connection to an endpoint, where it stays. Limits apply to all endpoints
+/// system assigns each connection to an endpoint permanently. Limits apply to all endpoints
 /// together.
 class Transport {
  public:
@@ -101,7 +101,7 @@ class Transport {
   virtual void stop() = 0;
 };
 
-/// The handlers must outlive the transport.
+/// Creates a transport. The handlers must outlive it.
 std::unique_ptr<Transport> make_websocket_transport(TransportSettings settings,
                                                     ConnectionHandler& connections,
                                                     HttpHandler http);

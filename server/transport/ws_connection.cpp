@@ -6,7 +6,7 @@ namespace vat {
 
 namespace {
 
-/// Counts bytes from the call of send_*() until the socket has taken them, or never will.
+/// Counts bytes from the call of send_*() until the socket has accepted them or they are discarded.
 class QueuedBytes {
  public:
   QueuedBytes(std::shared_ptr<std::atomic<std::size_t>> total, std::size_t size)
@@ -33,7 +33,7 @@ WsConnection::WsConnection(ConnectionId id, std::string address, std::shared_ptr
       queued_bytes_(std::make_shared<std::atomic<std::size_t>>(0)) {}
 
 void WsConnection::send_text(std::string message) {
-  message.shrink_to_fit();  // it may wait long, and often has spare capacity
+  message.shrink_to_fit();  // may wait long, and often has unused capacity
   send(std::make_shared<const std::string>(std::move(message)), websocketpp::frame::opcode::TEXT);
 }
 

@@ -21,9 +21,9 @@ using boost::asio::ip::tcp;
 namespace opcode = websocketpp::frame::opcode;
 
 constexpr std::chrono::seconds kStopTimeout{1};
-constexpr std::chrono::seconds kResponseTimeout{60};  ///< for a peer to take a whole file
+constexpr std::chrono::seconds kResponseTimeout{60};  ///< until a peer has received a whole file
 constexpr long kClosingHandshakeTimeout = 5000;       // [ms]
-/// Sockets beyond the WebSockets: HTTP requests, upgrades under way, connections refused or ending.
+/// Sockets besides the WebSockets: HTTP requests, pending upgrades, refused and ending connections.
 constexpr std::size_t kMaxOtherSockets = 256;
 constexpr std::size_t kMaxOtherSocketsPerAddress = 64;
 
@@ -32,8 +32,8 @@ constexpr std::uint16_t kNotUtf8 = 1007;
 constexpr std::uint16_t kInternalError = 1011;
 constexpr std::uint16_t kTryAgainLater = 1013;
 
-/// The library finds out the byte order at its first conversion, and keeps it unguarded. What
-/// endpoints on other threads do comes after this one.
+/// Makes the library determine the byte order before other threads use it. The library does so at
+/// its first conversion without synchronisation.
 void find_byte_order() {
   [[maybe_unused]] static const std::uint64_t kFound = websocketpp::lib::net::_htonll(0);
 }
@@ -48,7 +48,7 @@ bool ends_within_character(const std::string& text) {
   return false;
 }
 
-/// Returns Connection::address(), or an empty text if the peer has gone.
+/// Returns Connection::address(), or an empty text if the peer has disconnected.
 std::string address_of(const tcp::socket& socket) {
   boost::system::error_code error;
   const auto address = socket.remote_endpoint(error).address();
@@ -153,7 +153,7 @@ void WsEndpoint::run() {
   forget_all();
 }
 
-/// Connections whose closing handshake did not end in time.
+/// Closes connections whose closing handshake did not end in time.
 void WsEndpoint::forget_all() {
   for (const StreamPtr& left : open_streams()) {
     guarded("close", [&] { closed(*left); });
@@ -173,7 +173,7 @@ void WsEndpoint::join() {
 void WsEndpoint::close_all() {
   stopping_ = true;
   ping_timer_.cancel();
-  websocketpp::lib::error_code ignored;  // it is listening
+  websocketpp::lib::error_code ignored;  // the endpoint is listening
   server_.stop_listening(ignored);
   const std::vector<StreamPtr> streams = open_streams();
   if (streams.empty()) return io_.stop();
@@ -182,13 +182,13 @@ void WsEndpoint::close_all() {
   for (const StreamPtr& open : streams) close_stream(*open, kGoingAway, "the server is stopping");
 }
 
-/// Limits the sockets before they have said anything: the library would go on accepting until the
-/// process is out of file descriptors.
+/// Limits the sockets before their first data. The library would accept connections until no file
+/// descriptors are left.
 void WsEndpoint::accepted(WsStream& stream) {
   const std::size_t count = ++*shared_.socket_count;
   stream.socket_slot = std::shared_ptr<void>(
       nullptr, [counter = shared_.socket_count](std::nullptr_t) { --*counter; });
-  boost::system::error_code ignored;  // a socket that is closed already is found by the first read
+  boost::system::error_code ignored;  // the first read detects a closed socket
   stream.address = address_of(stream.get_raw_socket());
   const char* passed = nullptr;
   if (count > shared_.settings.max_connections + kMaxOtherSockets) {
@@ -259,8 +259,8 @@ void WsEndpoint::received(WsStream& stream, const WsMessage& message) {
   }
 }
 
-/// Answers unless an earlier pong still waits for the socket, so that a peer that pings and never
-/// reads makes nothing grow. RFC 6455, section 5.5.3 allows to skip pongs.
+/// Answers a ping, unless an earlier pong still waits for the socket. A peer that sends pings and
+/// does not read therefore uses no memory. RFC 6455, section 5.5.3 permits omitting pongs.
 void WsEndpoint::answer_ping(WsStream& stream, const std::string& payload) {
   stream.unanswered_pings = 0;
   if (!stream.unsent_pong.expired()) return;
@@ -288,8 +288,8 @@ void WsEndpoint::count_refusal(std::string_view limit) const {
 }
 
 void WsEndpoint::answer_http(const StreamPtr& stream) {
-  // Deferring takes the response out of the handshake's time limit, which is too short for a large
-  // file on a slow line.
+  // A deferred response is exempt from the handshake's time limit, which is too short for a large
+  // file on a slow connection.
   stream->defer_http_response();
   stream->response_deadline.emplace(io_, kResponseTimeout);
   stream->response_deadline->async_wait(
@@ -334,7 +334,7 @@ void WsEndpoint::ping_all() {
       stream->terminate(make_error_code(websocketpp::transport::error::timeout));
     } else {
       ++stream->unanswered_pings;
-      stream->ping("", error);  // fails on a connection that is closing, which has its own deadline
+      stream->ping("", error);  // fails on a closing connection, which has a separate deadline
     }
   }
 }

@@ -48,8 +48,8 @@ class WsEndpoint {
   WsEndpoint(const WsEndpoint&) = delete;
   WsEndpoint& operator=(const WsEndpoint&) = delete;
 
-  /// Throws as listen() does if another program listens on the port. Endpoints that share the port
-  /// would not notice it.
+  /// Throws like listen() if another program listens on the port. Endpoints that share the port
+  /// would not detect it.
   void check_free(std::uint16_t port);
   /// Listens on the port (0: any), together with other endpoints if `shares_port`. Returns the
   /// port. Throws std::runtime_error that names host and port if it cannot.

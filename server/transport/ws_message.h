@@ -10,8 +10,8 @@
 
 namespace vat {
 
-/// Message of the library. Its payload can be shared by connections, and its token lives as long as
-/// the message waits for the socket. Has the members that the library calls.
+/// Message of the library, with the members that the library needs. Connections can share its
+/// payload. Its token exists as long as the message waits for the socket.
 class WsMessage {
  public:
   using ptr = std::shared_ptr<WsMessage>;

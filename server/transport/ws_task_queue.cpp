@@ -8,7 +8,8 @@ namespace vat {
 
 namespace {
 
-/// What fits into a close frame. Ends before a whole character: the library refuses half a one.
+/// Returns the part of a reason that fits into a close frame, with complete characters. The library
+/// refuses incomplete ones.
 std::string fit_reason(const std::string& reason) {
   constexpr std::size_t kMaxSize = websocketpp::frame::limits::close_reason_size;
   std::size_t size = std::min(reason.size(), kMaxSize);
@@ -40,7 +41,7 @@ void WsTaskQueue::put(Task task) {
   const std::lock_guard lock(mutex_);
   if (io_ == nullptr) return;
   tasks_.push_back(std::move(task));
-  if (tasks_.size() > 1) return;  // the thread has been called already
+  if (tasks_.size() > 1) return;  // the thread has been notified already
   // Weak: a stopped io_context keeps its posted tasks.
   boost::asio::post(*io_, [weak = weak_from_this()] {
     if (const auto self = weak.lock()) self->run_all();
@@ -57,7 +58,7 @@ void WsTaskQueue::run_all() {
     const auto stream = task.stream.lock();
     if (!stream) continue;
     if (task.message) {
-      // A stream that is no longer open refuses the message, which is then dropped as promised.
+      // A closed stream refuses the message, which is then dropped.
       stream->send(std::move(task.message));
     } else {
       close_stream(*stream, task.code, task.reason);

@@ -12,8 +12,8 @@
 namespace vat {
 
 /// Sends and closes of other threads, which the endpoint's thread executes in order. Calls that
-/// arrive faster than it takes them become one task, so that a frame for a thousand clients wakes
-/// it once. Safe to use from any thread.
+/// arrive before it runs become one task, so that a frame for a thousand clients wakes it once.
+/// Safe to use from any thread.
 class WsTaskQueue : public std::enable_shared_from_this<WsTaskQueue> {
  public:
   explicit WsTaskQueue(boost::asio::io_context& io) : io_(&io) {}
@@ -34,12 +34,12 @@ class WsTaskQueue : public std::enable_shared_from_this<WsTaskQueue> {
   void run_all();
 
   std::mutex mutex_;
-  boost::asio::io_context* io_;  // null once shut
+  boost::asio::io_context* io_;  // null after shut()
   std::vector<Task> tasks_;
 };
 
-/// Starts the closing handshake, or drops the connection if that is not possible. Endpoint's
-/// thread only.
+/// Starts the closing handshake, or drops the connection if that is not possible. Must run on the
+/// endpoint's thread.
 void close_stream(WsStream& stream, std::uint16_t code, const std::string& reason);
 
 }  // namespace vat

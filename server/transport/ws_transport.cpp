@@ -24,7 +24,7 @@ std::shared_ptr<ssl::context> make_tls_context(const std::string& certificate_fi
                                                const std::string& key_file) {
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
   SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
-  // A client could make the server compute keys without end.
+  // Otherwise a client could make the server compute keys without limit.
   SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION);
   boost::system::error_code error;
   context->use_certificate_chain_file(certificate_file, error);

@@ -16,11 +16,12 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// Both leave out the scheme's default port, so they compare as text.
+/// Compares as text, because both omit the scheme's default port.
 bool same_origin(std::string_view origin, std::string_view host) {
   constexpr std::string_view kSeparator = "://";
   const std::size_t scheme_end = origin.find(kSeparator);
-  if (scheme_end == std::string_view::npos) return false;  // "null", say: a sandboxed page
+  if (scheme_end == std::string_view::npos)
+    return false;  // for example "null" for a sandboxed page
   return equal_ignoring_case(origin.substr(scheme_end + kSeparator.size()), host);
 }
 

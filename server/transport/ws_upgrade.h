@@ -23,8 +23,8 @@ struct UpgradeRefusal {
   const char* message;
 };
 
-/// Returns the reason for a refusal, or nothing. Only pages of this server and of allowed origins
-/// may connect; otherwise any site could control a user's server.
+/// Returns the reason for a refusal, or no value. Only pages of this server and of allowed origins
+/// may connect. Otherwise any site could control a user's server.
 std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
                                              const std::vector<std::string>& allowed_origins);
 
