@@ -28,12 +28,10 @@ struct Pull {
   Real felt_mass;  ///< effective mass of the grabbed particles [kg]
 };
 
-/// Returns the initial energy of the spring, k
-/// offset
-/// ^2 / 2. The spring is critically damped for the body's mass, or for a smaller mass if its damper
-/// would reverse the particles' velocity. The damper only dissipates, so the body never has more
-/// energy. Its centre is never faster than 2 Hz times the offset. The limit of the grab's force is
-/// a dozen times the force here.
+/// Returns the initial energy of the spring, k |offset|^2 / 2. The spring is critically damped for
+/// the body's mass, or for a smaller mass if its damper would reverse the particles' velocity. The
+/// damper only dissipates, so the body never has more energy. Its centre is never faster than 2 Hz
+/// times the offset. The limit of the grab's force is a dozen times the force here.
 Real first_energy(const Simulation& simulation, const Pull& pull) {
   const Real most = kMaxDampingRatio * pull.felt_mass / (2 * kFrequency * kStep);
   const Real mass = std::min(simulation.diagnostics().bodies[0].mass, most);

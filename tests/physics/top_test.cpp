@@ -32,9 +32,7 @@ Scene make_top(Real step, const Vec3& angular_velocity, const Vec3& inertia) {
 
 /// Returns the orientation of a body with moments `equal` about two axes and `other` about the
 /// third. In the body, the rate vector rotates at (other - equal) / equal times its component along
-/// the third axis. The body rotates about L at
-/// L
-/// / equal.
+/// the third axis. The body rotates about L at |L| / equal.
 Quat symmetric_top_at(Real time, const Vec3& rate, int axis, Real equal, Real other) {
   const Vec3 third = Vec3::Unit(axis);
   const Real excess = (other - equal) / equal * rate[axis];

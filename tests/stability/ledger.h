@@ -17,9 +17,7 @@ class Ledger {
   /// the trapezoidal rule of wall forces without damping and friction.
   static bool closes(const Scene& scene);
 
-  /// Returns the maximum of
-  /// P - P_0 - impulses
-  /// , relative to the sum of the absolute impulses.
+  /// Returns the maximum of |P - P_0 - impulses|, relative to the sum of the absolute impulses.
   Real momentum_error() const { return momentum_error_; }
   /// Returns the part of momentum_error() that round-off explains: 1e-12 of the sums, and the
   /// rounding of overlaps times the walls' stiffness. Overlaps are differences of coordinates, and

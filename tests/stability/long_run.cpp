@@ -184,10 +184,8 @@ std::vector<LongRunRow> run_top(std::uint64_t steps) {
     energy.values.push_back(energy_of(now));
     error = std::max(error, (angular_momentum_of(now) - angular_momentum).norm());
   });
-  // A symmetric splitting of fourth order in dt times the rotation rate
-  // L
-  // / I_min, with a constant of order one. Angular momentum is part of the state, and no torque
-  // acts.
+  // A symmetric splitting of fourth order in dt times the rotation rate |L| / I_min, with a
+  // constant of order one. Angular momentum is part of the state, and no torque acts.
   const Real phase = 0.02 * std::sqrt(20.0) / 2;
   return {
       make_row(run, "top", "energy, greatest change", energy.greatest_change(),

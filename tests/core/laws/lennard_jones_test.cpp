@@ -115,10 +115,8 @@ Real energy_of(const Simulation& simulation) {
 }
 
 TEST(LennardJones, KeepsEnergyAndMomentumInAllControls) {
-  // Verlet's energy error is dt^2 (v U'' v / 12 -
-  // U'
-  // ^2 / 24 m). Here U'' / m is at most 1.5 times the slope at 0.15 m, and m v^2 is twice the depth
-  // of the well.
+  // Verlet's energy error is dt^2 (v U'' v / 12 - |U'|^2 / 24 m). Here U'' / m is at most 1.5 times
+  // the slope at 0.15 m, and m v^2 is twice the depth of the well.
   const Real steepest = 1.5 * layer_slope(kStiffness, kWidth, kEnd, 0.15);
   const Real sway = 1e-6 * steepest / 6 * kStiffness * kWidth * kWidth / 15;
   for (const StepControl control :

@@ -68,9 +68,7 @@ TEST(SurfaceTension, NormalsOfABallPointToItsCentre) {
   }
 }
 
-// The integral of 2
-// g
-// over the liquid is the area of the surface.
+// The integral of 2 |g| over the liquid is the area of the surface.
 TEST(SurfaceTension, GradientsOfABallAddUpToItsSurface) {
   for (const int dimensions : {2, 3}) {
     const Real radius = 12 * kSpacing;

@@ -12,13 +12,7 @@
 namespace vat::mesh_test {
 namespace {
 
-/// An octahedron with the faces
-/// x
-/// +
-/// y
-/// +
-/// z
-/// = 1.
+/// An octahedron with the faces |x| + |y| + |z| = 1.
 MeshShape octahedron() {
   MeshShape mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

@@ -28,9 +28,7 @@ inline std::string label(Real value) {
   return text;
 }
 
-/// Returns the total momentum, divided by the sum of m
-/// v
-/// .
+/// Returns the total momentum, divided by the sum of m |v|.
 Real relative_momentum(const Simulation& simulation);
 
 }  // namespace vat::stability

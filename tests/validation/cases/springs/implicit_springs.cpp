@@ -93,9 +93,7 @@ void add_rigid_rows(Sheet& sheet) {
   for (SpringDescription& spring : scene.bodies[0].springs) spring.constants = {1e9, 1e5};
   Run run = sheet.start(scene);
   run.advance_to(1);
-  // All moments of a cube are equal, so it rotates by
-  // omega
-  // t about its axis.
+  // All moments of a cube are equal, so it rotates by |omega| t about its axis.
   const Vec3 omega(1, 2, 3);
   const Vec3 corner = Eigen::AngleAxisd(omega.norm(), omega.normalized()) * Vec3(0.5, 0.5, 0.5) +
                       Vec3(0.3, -0.2, 0.1);
