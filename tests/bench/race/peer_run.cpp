@@ -63,7 +63,8 @@ Json peer_scene(const PeerRun& run) {
                      {"maxErrorV", 0.1},
                      {"enableDivergenceSolver", true}}},
                    {"WCSPH", {{"stiffness", 50000}, {"exponent", 7}}}};
-  const fs::path box = fs::absolute(run.program).parent_path() / ".." / "data" / "models" / "UnitBox.obj";
+  const fs::path box =
+      fs::absolute(run.program).parent_path() / ".." / "data" / "models" / "UnitBox.obj";
   Json walls = {{"geometryFile", fs::weakly_canonical(box).string()},
                 {"translation", {0, 1.5, 0}},
                 {"rotationAxis", {1, 0, 0}},
