@@ -28,8 +28,8 @@ class UniformGrid {
   /// The corner with the highest coordinates.
   Vec3 end() const { return origin_ + Vec3(count_[0], count_[1], count_[2]) / inverse_cell_size_; }
 
-  /// Calls f(begin, end) for runs of slots that together contain every point closer to `p` than
-  /// `radius`, each once, and other points.
+  /// Calls f(begin, end) for disjoint runs of slots that contain every point closer to `p` than
+  /// `radius`. The runs may contain other points.
   template <class F>
   void for_each_run(const Vec3& p, Real radius, F&& f) const {
     const Real reach = radius * (1 + 1e-6);  // more than the rounding error of p - radius

@@ -14,7 +14,8 @@
 #include "core/types.h"
 
 /// Conversion of values to little-endian bytes and back. A struct takes the bytes of its members in
-/// the order of declaration. If some members are not saved, or others come first, a function
+/// the order of declaration. To save only some members, or in another order, define this function,
+/// which passes the saved members to the archive:
 ///
 ///     template <class Archive>
 ///     void describe(Archive& archive, Of<Archive, Struct>& value);
@@ -105,8 +106,8 @@ class SavingArchive {
 };
 
 /// Reads values. After invalid bytes it returns zeros and empty lists, and failed() stays true, so
-/// that a caller can read all values and check once. A list takes no more memory than its bytes
-/// justify.
+/// that a caller can read all values and check once. The memory for a list is limited by the number
+/// of remaining bytes.
 class LoadingArchive {
  public:
   static constexpr bool kLoads = true;

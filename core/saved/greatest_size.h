@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// The maximum size in bytes of Snapshot::to_bytes() for a simulation with these numbers of
-/// particles and springs, from their written fields and the limits of all other data. Meshes count
+/// Returns the maximum size in bytes of Snapshot::to_bytes() for these numbers of particles and
+/// springs. It is computed from their saved fields and the limits of all other data. Meshes count
 /// with three vertices for each triangle.
 std::size_t greatest_saved_size(std::size_t particles, std::size_t springs);
 

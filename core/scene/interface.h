@@ -12,8 +12,8 @@ namespace vat {
 
 /// The interaction of two particles at an interface.
 enum class InterfaceLaw : std::uint8_t {
-  /// A spring and dashpot along the line between the particles that only repel, and Coulomb
-  /// friction across it; see core/laws/friction.h.
+  /// A repulsive spring and dashpot along the line between the particles, and Coulomb friction
+  /// perpendicular to this line; see core/laws/friction.h.
   penalty,
   lennard_jones,  ///< an attracting layer, see core/laws/lennard_jones.h
   sph,            ///< solids take part in the density and pressure of the liquid
@@ -48,8 +48,8 @@ inline constexpr const char* kVatMaterial = "vat";
 inline constexpr Real kNeutralAngle = 90;
 
 /// Interface (Boldt def. 0.6) between all bodies of two materials, or between a material and the
-/// walls of the vat: dynamic connections with rest length `threshold`, present at distances below
-/// it, or below the reach of a layer.
+/// walls of the vat. Its connections have the rest length `threshold` and exist below this distance
+/// (lennard_jones: below the reach).
 struct InterfaceDescription {
   std::array<std::string, 2> materials;
   InterfaceConstants constants;

@@ -9,7 +9,7 @@
 
 namespace vat {
 
-/// Bodies that do not move, sorted so that bodies near others are found fast.
+/// Spatial index of resting bodies, for fast search of bodies near given points.
 class RestingBodies {
  public:
   /// `distance` [m] should be that of the searches.

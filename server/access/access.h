@@ -28,8 +28,9 @@ struct AccessSettings {
   std::chrono::milliseconds enter_time{
       10'000};  ///< time for the token; the connection is closed afterwards
   std::chrono::milliseconds refusal_delay{1000};  ///< delay of the answer to a wrong token
-  std::size_t max_wrong_tokens = 3;               ///< the connection is closed after so many
-  std::chrono::seconds ticket_time{60};           ///< validity of a ticket
+  std::size_t max_wrong_tokens =
+      3;  ///< number of wrong tokens after which the connection is closed
+  std::chrono::seconds ticket_time{60};  ///< validity of a ticket
 };
 
 /// Access of a connection.
@@ -47,17 +48,19 @@ class AccessTokens {
       : max_issued_(max_issued), clock_(clock) {}
 
   /// Loads the tokens of the store, and stores issued tokens from now on. This and all functions
-  /// that change stored tokens throw StorageError, and then change nothing.
+  /// that change stored tokens throw StorageError if the store cannot be written. They then change
+  /// nothing.
   void keep_in(TokenStore& store);
 
   /// Returns a new token, valid for `uses` uses (absent: any number) and for `time`. Returns
   /// nothing if there are too many tokens.
   std::optional<std::string> issue(Grant grant, std::optional<std::size_t> uses,
                                    std::chrono::seconds time);
-  /// Adds a token whose owner removes it.
+  /// Adds a token without expiry. The caller must remove it.
   void add(const TokenHash& token, Grant grant);
   void remove(const TokenHash& token);
-  /// Removes the session's tokens. If it `comes_back`, issued tokens stay stored.
+  /// Removes the session's tokens. If `comes_back` is true (the session will be restored), issued
+  /// tokens stay in the store.
   void remove_session(const std::string& session, bool comes_back);
   /// Returns the token's grant and counts the use, or returns nothing if the token is invalid.
   std::optional<Grant> use(const TokenHash& token);

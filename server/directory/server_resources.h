@@ -32,7 +32,7 @@ struct ServerResources {
   const Catalogue& catalogue;
   const ServerSettings settings;
   Clock& clock;
-  /// Helps with the steps of sessions while the pool's threads have nothing else to do.
+  /// Runs parts of session steps on idle threads of the pool.
   ThreadPoolRunner runner;
   ServerMetrics metrics;
   AccessTokens tokens;
@@ -44,7 +44,7 @@ struct ServerResources {
   const std::unique_ptr<Storage> storage;                // null: sessions are in memory only
   const std::unique_ptr<SavedInMemory> saved_in_memory;  // null: they are in the storage
   const SessionEnvironment environment;
-  // For recoveries, which accept what was accepted before.
+  // Limits and budget for session recovery, which must not reject previously accepted sessions.
   const ServerLimits recovery_limits;
   ResourceBudget recovery_budget;
   const SessionEnvironment recovery_environment;

@@ -21,18 +21,18 @@ class FrameDelivery {
  public:
   FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics);
 
-  /// Replaces an earlier subscription of the client. The next state is due to it, whatever its
-  /// period.
+  /// Replaces an earlier subscription of the client. The client receives the next state regardless
+  /// of its period.
   void add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
            Subscription subscribed);
   void remove(ConnectionId client);
-  /// Later states are of another scene, or of the same scene after a reset.
+  /// Sets the vat of later states, after a scene change or a reset.
   void set_vat(const std::optional<Vat>& vat);
   /// Position error [m] of viewers that requested none. Initially 0, the finest grid.
   void set_default_error(double max_error) { default_error_ = max_error; }
 
-  /// Sends a new state to the viewers that are due it. Exchanges `state` for the memory of an older
-  /// one.
+  /// Sends a new state to the viewers that are scheduled for it. Swaps `state` with an older state,
+  /// whose memory the caller can reuse.
   void publish(PublishedState& state, SteadyClock::time_point now);
   /// Sends the last state to clients that may have become ready.
   void retry(std::span<const ConnectionId> clients, SteadyClock::time_point now);
@@ -44,10 +44,10 @@ class FrameDelivery {
     Subscription subscribed;
     FramePace pace;
     bool awaits_any = true;   ///< a frame is due even if it shows nothing new
-    bool has_turn = false;    ///< the last state was due to it
+    bool has_turn = false;    ///< the viewer was scheduled for the last state
     bool owes_frame = false;  ///< a state was due, and no frame was sent since
     HeldFrames held;
-    std::uint32_t shown = 0;      ///< number of the frame after which nothing new was left to show
+    std::uint32_t shown = 0;  ///< number of the last frame that made the viewer's display current
     std::uint64_t sent_tick = 0;  ///< of the last frame
     std::size_t passed_over = 0;  ///< consecutive times that its group was not encoded
 

@@ -17,8 +17,8 @@ Json describe_bodies(const Simulation& simulation);
 Json describe_vat(const std::optional<Vat>& vat);
 /// Returns a body of state.query, with full precision.
 Json describe_state(const BodyView& body);
-/// Returns one flat list of body and particle numbers, pair by pair, and a list named `values`,
-/// rounded to four digits.
+/// Returns a flat list of body and particle numbers of all pairs, and a list of values rounded to
+/// four digits. `values` is the name of the second list.
 Json describe_connections(const ConnectionList& list, const char* values);
 /// Returns the sums over all bodies.
 Json describe_diagnostics(const Diagnostics& diagnostics);

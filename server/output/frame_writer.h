@@ -16,14 +16,14 @@ class FrameWriter {
   virtual ~FrameWriter() = default;
   /// Adds the present state as one output time.
   virtual Status write(const Simulation& simulation) = 0;
-  /// Completes the output; without it a file that grows keeps the ending ".part".
+  /// Completes the output. Without this call, an appended file keeps the extension ".part".
   virtual Status finish() = 0;
 };
 
-/// The endings that create_frame_writer() knows, for messages.
+/// File name extensions that create_frame_writer() supports, for error messages.
 inline constexpr const char* kFrameEndings = ".csv, .vtk, .ply or .npy";
 
-/// Whether the name has one of the endings of kFrameEndings.
+/// Returns whether the name has one of the extensions in kFrameEndings.
 bool is_frame_file_name(const std::string& name);
 
 /// Chooses the format by the file name's ending, which must be known:
@@ -39,7 +39,7 @@ Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name
 /// keeps its name.
 std::string series_name(const std::string& name, std::size_t index, std::size_t count);
 
-/// The liquid's fields of a body; empty for the other kinds.
+/// Returns the liquid fields of a body; empty if the body is not liquid.
 LiquidFields liquid_fields_of(const Simulation& simulation, const BodyView& body);
 
 }  // namespace vat

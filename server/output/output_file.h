@@ -9,9 +9,9 @@
 
 namespace vat {
 
-/// A file that bears its name only once it is complete: until commit() it is called NAME.part, so
-/// that the file of a failed run is not taken for a result. Devices and pipes are written
-/// directly. The path of every error is the file's name.
+/// A file that is written as NAME.part and renamed to NAME by commit(). The file of a failed run
+/// therefore cannot be mistaken for a result. Devices and pipes are written directly. The path of
+/// every error is the file's name.
 class OutputFile {
  public:
   /// Creates or replaces NAME.part.
@@ -32,7 +32,7 @@ class OutputFile {
   Error system_error(const char* what) const;
 
   std::string name_;
-  std::string written_name_;  ///< where the bytes go until commit()
+  std::string written_name_;  ///< name of the written file before commit()
   std::unique_ptr<std::FILE, Close> file_;
 };
 

@@ -11,8 +11,8 @@
 
 namespace vat::script {
 
-/// A line of a script was not met. The text contains the line, the expectation and the received
-/// message.
+/// An expectation of a script line was not met. The text contains the line, the expectation and the
+/// received message.
 struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -36,7 +36,8 @@ class Player {
   /// Records sent and received messages. `transcript` must outlive this.
   void record(Transcript& transcript) { transcript_ = &transcript; }
 
-  /// Throws Failure at the first line that is not met, and ScriptError for an invalid line.
+  /// Throws Failure at the first line whose expectation is not met, and ScriptError for an invalid
+  /// line.
   void play(const std::vector<Line>& lines);
 
  private:
@@ -93,7 +94,8 @@ class Player {
   int connections_ = 0;
   std::map<std::string, Peer> peers_;
   Captures captures_;
-  std::int64_t last_id_ = 1'000'000;  ///< of `call`; scripts choose smaller ones
+  std::int64_t last_id_ =
+      1'000'000;  ///< last request id of the action `call`; ids in scripts must be smaller
 };
 
 }  // namespace vat::script

@@ -17,14 +17,14 @@ namespace vat {
 
 class WsConnection;
 
-/// Data of the transport for each connection of the library.
+/// Transport data of each websocketpp connection.
 struct WsPeer {
   ConnectionId id = 0;  ///< 0: not an open WebSocket
   std::shared_ptr<WsConnection> peer;
   std::shared_ptr<void> socket_slot;   ///< counts the open sockets
   std::string address;                 ///< see Connection::address()
   std::shared_ptr<void> address_slot;  ///< counts the address's sockets
-  std::shared_ptr<void> peer_slot;     ///< counts its WebSockets
+  std::shared_ptr<void> peer_slot;     ///< counts the WebSockets of this address
   std::weak_ptr<void> unsent_pong;
   std::optional<boost::asio::steady_timer> response_deadline;
   int unanswered_pings = 0;

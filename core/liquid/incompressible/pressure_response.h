@@ -22,8 +22,8 @@ struct ResponseScratch {
   Forces unused;  ///< required by StepContext
 };
 
-/// The response of a liquid and its solids to pressures, at the positions of one step, and that of
-/// the liquid's density to motions.
+/// Computes the accelerations of a liquid and its solids by pressures, and the density rate of the
+/// liquid by motions, at the positions of one step.
 ///
 /// With rest volumes V, s_i = sum_j V_j W_ij and pressures p, both at liquid particles:
 ///
@@ -35,8 +35,8 @@ struct ResponseScratch {
 /// pressure p_i and the velocity 2 v_b - v_i, as a mirror of i: F_i = -2 V_i V_b p_i G grad_i W_ib
 /// = -F_b.
 ///
-/// The present motion is stored in the scratch. Pairs are those of the workspace; the weights and
-/// motions of its sources change.
+/// The present motion is stored in the scratch. Uses the pairs in the workspace. Changes the
+/// weights and motions of the workspace's sources.
 class PressureResponse {
  public:
   /// `at` has the positions for which pairs and densities were found. `solids_move`: whether solids
@@ -51,7 +51,7 @@ class PressureResponse {
 
   /// rate = D of the motion, by slot.
   void compress(std::span<Real> rate);
-  /// product = factor scale D of the motion, by slot.
+  /// product[slot] = factor * scale[slot] * D(motion)[slot].
   void compress(std::span<Real> product, std::span<const Real> scale, Real factor);
   /// Computes an upper bound of the diagonal of -V D M^-1 F, by slot.
   void find_diagonal(std::span<Real> diagonal);

@@ -51,7 +51,7 @@ struct LiquidScratch {
   bool too_many_pairs = false;  ///< above max_pairs(): the lists are incomplete, a density is NaN
   std::vector<Real> density;    ///< by liquid particle [kg/m^3]
   std::uint64_t density_version = 0;  ///< version of the summed sources
-  /// Density with liquid of rest density in the whole space beyond no-slip walls [kg/m^3].
+  /// Density, computed as if liquid of rest density filled all space beyond no-slip walls [kg/m^3].
   std::vector<Real> filled_density;
   std::vector<Real> filling;   ///< by liquid slot: density / filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]

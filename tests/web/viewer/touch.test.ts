@@ -182,7 +182,7 @@ describe('what the server refuses, in words', () => {
     [
       'not_allowed',
       { role: 'viewer', least_role: 'controller' },
-      'Viewers cannot do this. It needs control.',
+      'Viewers cannot do this. Only controllers can.',
     ],
     ['not_allowed', { role: 'controller', least_role: 'owner' }, 'This needs the role owner.'],
     ['not_allowed', {}, 'Method.name: reason.'],

@@ -26,7 +26,8 @@ export interface ChartPlan {
 export const kCharts: readonly ChartPlan[] = [
   {
     title: 'Energy',
-    explanation: 'Of all bodies, by kind. The origin has zero gravitational energy.',
+    explanation:
+      'Energy of all bodies, by kind of energy. Gravitational energy is zero at the origin.',
     series: [
       { name: 'kinetic', label: 'motion', colour: '#3f87d9' },
       { name: 'gravitational', label: 'gravity', colour: '#e08a3c' },

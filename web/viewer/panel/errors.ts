@@ -46,7 +46,7 @@ function whatHappened(error: RequestError): string {
     return `This server is older than the page and does not support this: ${message}`;
   }
   if (kind === 'timed_out') return 'The server did not answer';
-  if (needsControl(error)) return 'Viewers cannot do this. It needs control';
+  if (needsControl(error)) return 'Viewers cannot do this. Only controllers can';
   if (kind === 'not_allowed' && data?.least_role !== undefined) {
     return `This needs the role ${data.least_role}`;
   }
