@@ -18,8 +18,8 @@ class HalfSpace {
 
   /// The integral of s/d times the Laplacian of the viscosity kernel [1/m^2], with s the distance
   /// from the particle along the wall's normal. The velocity beyond the wall is the linear
-  /// extrapolation from the particle's velocity and the wall's velocity. Constant below
-  /// kMinDistance.
+  /// extrapolation from the particle's velocity and the wall's velocity. The integral is constant
+  /// for d < kMinDistance.
   Real drag(Real d) const;
 
   /// Minimum distance in support radii. The drag, and thus the decay rate of velocities, grows as

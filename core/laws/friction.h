@@ -5,22 +5,23 @@
 #include "core/types.h"
 
 /// Regularised Coulomb friction of contacts, without memory (P. K. Haff, B. T. Werner, Powder
-/// Technology 48 (1986) 239). If the velocities of two touching ends differ by the slip u_t across
-/// the line between them, their friction is
+/// Technology 48 (1986) 239). Let u_t be the relative velocity of two particles in contact,
+/// perpendicular to the line between their centres. The friction force is
 ///
 ///   F_t = -min(mu F_n, c_t |u_t|) u_t / |u_t|,   c_t = sqrt(k m),
 ///
 /// with the normal force F_n, the stiffness k of the contact, and the reduced mass m of both
-/// particles (at a wall, the mass of the particle). c_t / m is the frequency sqrt(k / m) of the
-/// contact itself, so that friction adds no faster process than the step must resolve, and does not
-/// depend on the step. It depends on the state only: sticking contacts creep with F_t / c_t, which
-/// falls as 1 / sqrt(k).
+/// particles (at a wall, the mass of the particle). c_t / m equals the contact frequency sqrt(k /
+/// m). Friction therefore does not reduce the stable step, and does not depend on the step.
+/// Friction depends on the present state only. Sticking contacts therefore creep with the speed F_t
+/// / c_t, which is proportional to 1 / sqrt(k).
 ///
-/// Both ends feel the friction at one point of the line between them, with the slip at this point.
-/// Between two rigid bodies, the point divides the line in the ratio of the radii. The point of a
-/// free particle, which has no spin, is its centre, and that of a wall is in its plane. The forces
-/// are therefore equal, opposite and without a couple, and conserve angular momentum. Between two
-/// free particles they act at both centres, and their couple, force times distance, is lost.
+/// Friction acts on both particles at one point of the line between them, and uses the slip at this
+/// point. Between two rigid bodies, the point divides the line in the ratio of the radii. The point
+/// of a free particle, which has no spin, is its centre, and that of a wall is in its plane. The
+/// forces are therefore equal, opposite and without a couple, and conserve angular momentum.
+/// Between two free particles, the forces act at the two centres. Their torque is not balanced, so
+/// angular momentum is not conserved.
 namespace vat {
 
 /// The constant c_t [N s/m] of a contact with this stiffness [N/m] and reduced mass [kg].

@@ -12,19 +12,19 @@ struct VatMotion {
   Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 };
 VatMotion vat_motion(const Vat& vat, Real time);
-/// The part of the motion that users cause, from its start on.
+/// Returns the part of the motion that users cause. `time` must not be before its start.
 VatMotion hand_motion(const HandMotion& hand, Real time);
 /// Returns whether the motion that users cause has not ended at `time`.
 bool is_moving(const HandMotion& hand, Real time);
 
-/// Returns whether a wall of the vat moves at any time, across itself or along itself. Motions that
-/// users cause count until they end.
+/// Returns whether a wall of the vat moves at any time, in its normal or a tangential direction.
+/// Motions that users cause count until they end.
 bool moves_walls(const Vat& vat, Real time);
-/// An upper bound of the speeds of walls across themselves, from `time` on [m/s].
+/// An upper bound of the normal speeds of the walls at and after `time` [m/s].
 Real greatest_vat_speed(const Vat& vat, Real time);
 
-/// The distance of `p` from each wall [m], negative beyond it, and the inward normals of the walls.
-/// The last wall is the lid.
+/// wall_normal(): the inward normal of a wall. wall_distance(): the signed distance of `p` from a
+/// wall [m], negative outside. The last wall is the lid.
 inline constexpr int kWallCount = 6;
 inline Vec3 wall_normal(int wall) {
   return wall % 2 == 0 ? Vec3(Vec3::Unit(wall / 2)) : Vec3(-Vec3::Unit(wall / 2));

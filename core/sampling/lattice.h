@@ -7,14 +7,14 @@
 
 namespace vat {
 
-/// A simple cubic lattice, centred on the bounding box of a shape. Along each axis it has as many
-/// points as cells of `spacing` fit, at least one; in two dimensions one along y. Not for explicit
-/// particles.
+/// A simple cubic lattice, centred on the bounding box of a shape. The number of points on each
+/// axis is floor(extent / spacing), and at least one. In two dimensions, it is one on y. Not for
+/// explicit particles.
 struct Lattice {
   Vec3 first = Vec3::Zero();
-  Real spacing = 0;  ///< [m]
-  std::array<Real, 3> size{
-      0, 0, 0};  ///< points by axis, whole numbers; Real, because invalid scenes have huge ones
+  Real spacing = 0;                   ///< [m]
+  std::array<Real, 3> size{0, 0, 0};  ///< number of points on each axis; of type Real because an
+                                      ///< invalid scene can exceed the range of an integer
   Real point_count() const { return size[0] * size[1] * size[2]; }
 };
 Lattice make_lattice(const Shape& shape, Real spacing, int dimensions = 3);

@@ -36,8 +36,8 @@ template <>
 inline constexpr std::array kNamesOf<PairPrecision>{"single", "double"};
 
 /// Tolerances of the solves of an incompressible liquid: relative changes of density, as means over
-/// its particles. The density of a single particle may exceed the first 36 times, and its change of
-/// density the second 200 times.
+/// its particles. For a single particle, the density error may be 36 × density_tolerance, and the
+/// density change 200 × divergence_tolerance.
 struct IncompressibleSolve {
   Real density_tolerance = 5e-4;     ///< density above that at rest, at the end of a step
   Real divergence_tolerance = 1e-5;  ///< change of density by the velocities within a step

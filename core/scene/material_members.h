@@ -67,7 +67,7 @@ inline constexpr std::array kMembersOf<Plasticity>{
     Member<Plasticity>{"yield_strain", &Plasticity::yield_strain, true, 0, kMaxStrain, "",
                        "strain at which plastic flow begins"},
     Member<Plasticity>{"hardening", &Plasticity::hardening, false, 0, kMaxHardening, "",
-                       "stiffness of the flow / stiffness of the spring"},
+                       "hardening modulus / stiffness of the spring"},
     Member<Plasticity>{"relaxation_time", &Plasticity::relaxation_time, false, 0, kMaxPeriod, "s",
                        "time in which the stress beyond yield falls to 1/e"},
     Member<Plasticity>{"max_strain", &Plasticity::max_strain, false, 0, kMaxPlasticStrain, "",

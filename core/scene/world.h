@@ -78,7 +78,7 @@ struct Sleeping {
 
 /// A nozzle that adds particles to a liquid body: a tube of moving liquid with an opening. The tube
 /// is as long as the support radius of the liquid. Its layers are one spacing apart and move with
-/// the speed of the nozzle, independent of forces. At the opening they become free.
+/// the speed `speed`, independent of forces. At the opening they become free.
 struct Emitter {
   std::string name;
   std::string body;              ///< the liquid body, which has a spacing

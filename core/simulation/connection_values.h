@@ -37,8 +37,7 @@ struct ConnectionQuery {
   std::size_t max_count = 0;     ///< of each list
 };
 
-/// Static springs that are not torn, and contacts, within bodies and between them, that exert a
-/// force.
+/// Intact static springs, and contacts that exert a force, within and between bodies.
 struct Connections {
   ConnectionList springs;
   ConnectionList contacts;

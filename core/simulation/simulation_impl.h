@@ -44,7 +44,7 @@ struct MeltedBody {
 struct SimulationImpl : SimulationContent {
   using Samples = std::vector<std::shared_ptr<const SampledBody>>;
 
-  /// The state before an advance(), for its failure.
+  /// The state before advance(), restored if advance() fails.
   struct CallStart {
     SimulationContent content;
     /// The bounds of the model, if the call has changed it.
@@ -60,8 +60,8 @@ struct SimulationImpl : SimulationContent {
   Stepper stepper;
   CallStart call_start;        ///< of the present advance()
   mutable Workspace measured;  ///< buffers of read-only queries
-  Configuration
-      shown;  ///< configuration of all bodies after a call, without contacts; if some sleep
+  Configuration shown;  ///< configuration of all bodies after a call, without contacts; valid only
+                        ///< if a body sleeps
   std::shared_ptr<const Sleepers> shown_sleepers;  ///< the sleepers in `shown`
   // Buffers of wake_near().
   std::vector<Index> near;
@@ -78,13 +78,14 @@ struct SimulationImpl : SimulationContent {
   const ModelBody* find(BodyId id) const;
   const ModelBody* find(std::string_view name) const;
   BodyView view_of(const ModelBody& body) const;
-  /// Runs the plan on all bodies in `measured`, and sums up.
+  /// Runs the plan for all bodies, with the buffers `measured`, and returns the sums over all
+  /// particles.
   Diagnostics measure_all() const;
   /// The present state of the scene, for the checks of commands.
   CurrentScene present() const;
 
-  /// The bounds of the stepped bodies. Their travel depends on all bodies that they can touch,
-  /// including sleepers.
+  /// The bounds of the stepped bodies. The bound of a body's travel depends on all bodies that it
+  /// can touch, including sleepers.
   static GuardBounds bounds_of(const SimulationContent& content);
   /// Adopts the state from the bytes of a snapshot. If it fails, it changes only next_id.
   Status load(LoadingArchive& archive);
@@ -92,16 +93,16 @@ struct SimulationImpl : SimulationContent {
   void adopt(SimulationContent content, GuardBounds content_bounds,
              StepBounds content_step_bounds) noexcept;
   /// Compiles `scene`, and carries over the state of the bodies whose ids remain, and their grabs.
-  /// If it fails, it changes nothing. A null sample stands for the present sample of the body, or a
-  /// computed one. `kept`, if not empty, lists the particles of each body that remain, in ascending
-  /// order; without a list all remain. Bodies in `described_anew` are sampled again if their sample
-  /// follows from their description.
+  /// If it fails, it changes nothing. If a sample is null, the body's present sample is used. A
+  /// body without a sample is sampled. `kept` lists the remaining particles of each body in
+  /// ascending order. A body without a list keeps all particles. Bodies in `described_anew` are
+  /// sampled again if their sample follows from their description.
   void recompile(Scene scene, const std::vector<BodyId>& ids, Samples samples,
                  const std::vector<std::optional<std::vector<Index>>>& kept,
                  const std::vector<BodyId>& described_anew = {});
   void recompile(Scene scene, const std::vector<BodyId>& ids);
-  /// Like recompile(), if only the initial position and motion of one body change and no body
-  /// sleeps. Compiles this body only.
+  /// A faster recompile() for a change of one body's initial position and motion. No body may
+  /// sleep. Compiles this body only.
   void recompile_moved(std::size_t body, BodyDescription moved);
   /// The ids of all bodies, in order.
   std::vector<BodyId> ids() const;
@@ -112,15 +113,15 @@ struct SimulationImpl : SimulationContent {
   /// Moves rigid particles to their poses, for views.
   void pose_rigid_particles();
 
-  /// Wakes all bodies. Every command that may disturb their rest begins with it.
+  /// Wakes all bodies. Every command that may move a sleeping body must first call wake_all().
   void wake_all();
-  /// Lets rested bodies sleep, and wakes bodies that others may reach in the next nominal step.
+  /// Puts bodies at rest to sleep, and wakes bodies that others may reach in the next nominal step.
   void sleep_and_wake();
   void look_for_rest();
   void wake_near();
   /// Updates `shown` if some bodies sleep.
   void show();
-  /// Continues with the bodies that are in no island, from a configuration of all bodies.
+  /// Continues with the bodies that `islands` does not list, from a configuration of all bodies.
   void step_others_than(std::vector<Index> islands, std::shared_ptr<const Model> whole,
                         Configuration now);
 

@@ -6,7 +6,8 @@
 
 namespace vat {
 
-/// The present spring: plastic springs have other rest lengths, torn ones zero constants.
+/// Returns the spring in its present state: with its plastic rest length, and with zero constants
+/// if it is torn.
 inline SpringEnd present_spring(const Model& model, const Configuration& at, Index end) {
   SpringEnd spring = model.spring_ends[end];
   if (at.springs.empty()) return spring;

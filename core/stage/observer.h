@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// Receives the begin of each stage of the plan, and of the other parts of advance(). The core has
-/// no clock: an observer can measure times.
+/// Is notified when a stage of the plan, or another part of advance(), starts. The core has no
+/// clock: an observer can measure times.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

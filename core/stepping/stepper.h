@@ -40,14 +40,15 @@ class Stepper {
   /// part failed in all lengths; the state is then that at the start of this part.
   bool take_nominal_step(const StepInput& input);
 
-  /// The state has been changed by something other than a step.
+  /// Discards the data of earlier steps. Call it if something other than a step has changed the
+  /// state.
   void forget() { local_.forget(); }
 
  private:
   bool take_varied_step(const StepInput& input);
   /// Takes a step, in two, four or eight parts if the whole one fails. Returns false if all failed.
   bool take_guarded_step(const StepInput& input, Real start, Real dt);
-  /// Takes one step and checks it. Returns its fault, if any; the state is then of no use.
+  /// Takes one step and checks it. Returns its fault, if any; the state is then invalid.
   std::optional<Fault> take_step(const StepInput& input, const StepInterval& interval);
   /// Takes the step in equal parts. Returns the first fault, if any.
   std::optional<GuardEvent> take_step_in(std::uint32_t parts, const StepInput& input, Real start,

@@ -54,7 +54,7 @@ struct PublishedState {
 /// Copies the visible state of a simulation into reused memory. Not thread-safe.
 class StatePublisher {
  public:
-  /// Replaces `state`, with the `wanted` attributes. Of the header, sets the time only. Density and
+  /// Replaces `state`, with the `wanted` attributes. Sets only the time in the header. Density and
   /// pressure require a neighbour search. Does not allocate if `state` has sufficient capacity,
   /// except for density and pressure.
   void publish(const Simulation& simulation, const ByAttribute<bool>& wanted,

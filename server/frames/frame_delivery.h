@@ -16,7 +16,7 @@ namespace vat {
 /// Distributes the frames of a session to its viewers. A viewer that is not ready when a frame is
 /// due receives a newer one as soon as it is ready. Viewers with equal selections and reference
 /// frames form a group and share one encoding. At most kMaxFrameGroups groups are encoded per
-/// state; the viewers of the other groups are due the next state. Used by one thread at a time.
+/// state. The viewers of the other groups receive the next state. Used by one thread at a time.
 class FrameDelivery {
  public:
   FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics);
@@ -28,7 +28,8 @@ class FrameDelivery {
   void remove(ConnectionId client);
   /// Sets the vat of later states, after a scene change or a reset.
   void set_vat(const std::optional<Vat>& vat);
-  /// Position error [m] of viewers that requested none. Initially 0, the finest grid.
+  /// Sets the position error [m] for viewers whose subscription has no `max_error`. Initially 0,
+  /// the finest grid.
   void set_default_error(double max_error) { default_error_ = max_error; }
 
   /// Sends a new state to the viewers that are scheduled for it. Swaps `state` with an older state,

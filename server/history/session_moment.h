@@ -14,7 +14,7 @@ namespace vat {
 /// State of a session at one moment, sufficient to continue from it. May be read by any thread.
 struct SessionMoment {
   std::uint64_t position = 0;   ///< as in a LogEntry
-  std::uint64_t tick = 0;       ///< the same
+  std::uint64_t tick = 0;       ///< as in a LogEntry
   std::uint64_t sequence = 0;   ///< of the last executed entry of the log
   std::uint64_t loaded = 0;     ///< of the entry that loaded the scene
   std::uint64_t last_grab = 0;  ///< greatest id of a grab
@@ -35,7 +35,7 @@ SessionMoment read_moment(const std::string& fields, Snapshot snapshot);
 
 /// Returns the settings, except the name.
 Json write_settings(const SessionSettings& settings);
-/// Throws StorageError, of kind corrupt, if they are invalid.
+/// Throws StorageError, of kind corrupt, if the settings are invalid.
 SessionSettings read_settings(std::string name, const std::string& settings);
 
 /// Returns the participants with the hashes of their tokens and their grabs.

@@ -13,13 +13,13 @@ BodyId read_body_id(ObjectReader& params);
 /// Reads the parameter `session`. The session may not exist.
 SessionId read_session_id(ObjectReader& params);
 
-/// Returns an action on a required parameter, which the action itself reads: a scene or a part of
-/// one, all of whose errors are reported.
+/// Returns an action that reads the required parameter `parameter`, a scene or a part of a scene.
+/// The action reports all errors of the parameter.
 SessionAction read_action_on(const char* parameter, ObjectReader& params,
                              ActionResult (*action)(SessionCore&, const Json&));
 
-/// Changes the simulation. Undoes the change and returns the error if the core refuses it, or if a
-/// limit of the session or of all sessions is exceeded.
+/// Changes the simulation. Undoes the change and returns the error if the core rejects the change.
+/// The same applies if the change exceeds a limit.
 std::optional<RpcError> change_within_limits(SessionCore& core,
                                              const std::function<Status(Simulation&)>& change);
 

@@ -19,16 +19,16 @@ namespace vat {
 /// Number of a participant in its session, from 1. Not used twice.
 using ParticipantNumber = std::uint64_t;
 
-/// Position that a participant points at, or a ray with its direction.
+/// Position that a participant points at; with `direction`, a ray from this position.
 struct Pointer {
   Vec3 position;
   std::optional<Vec3> direction;
   bool operator==(const Pointer&) const = default;
 };
 
-/// A participant of a session. Can be away: its connection has ended, and another one can resume
-/// it. A placeholder was never connected: it stands for the sender of commands in a log that is
-/// repeated.
+/// A participant of a session. A participant is away if its connection has ended. Another
+/// connection can resume it. A placeholder was never connected. It represents the sender of
+/// commands in a replayed log.
 struct Participant {
   ParticipantNumber number = 0;
   std::string name;
@@ -56,7 +56,7 @@ class Participants {
   std::size_t connected() const { return by_client_.size(); }
   std::size_t away() const;
 
-  /// Returns null if there is none.
+  /// The find functions return null if there is no such participant.
   Participant* find(ParticipantNumber number);
   Participant* find_client(ConnectionId client);
   Participant* find_resume(const TokenHash& token);
@@ -72,7 +72,7 @@ class Participants {
   Participant& find_or_add(ParticipantNumber number);
   void remove(ParticipantNumber number);
   ParticipantNumber last_number() const { return last_number_; }
-  /// Later participants have greater numbers than this.
+  /// Participants added later have numbers greater than `number`.
   void skip_to(ParticipantNumber number) { last_number_ = std::max(last_number_, number); }
   /// Counts changes of participants, their roles and connections.
   std::uint64_t changes() const { return changes_; }
@@ -99,7 +99,7 @@ class Participants {
   void forget_grab(std::uint64_t grab);
   void forget_grabs_of(BodyId body);
 
-  /// In ascending order of their numbers.
+  /// All participants in ascending order of their numbers.
   const std::map<ParticipantNumber, Participant>& all() const { return all_; }
 
  private:

@@ -16,7 +16,7 @@ class Presence {
  public:
   static constexpr std::chrono::milliseconds kInterval{100};
 
-  /// Participants may have changed.
+  /// Marks the participants as possibly changed.
   void touch() { is_touched_ = true; }
   bool is_touched() const { return is_touched_; }
   /// Earliest time of the next event.

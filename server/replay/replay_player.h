@@ -21,25 +21,25 @@ namespace vat {
 /// recording is invalid.
 class ReplayPlayer {
  public:
-  /// Both must outlive this. The environment must have no limits on scenes, because what was
-  /// accepted before is accepted again.
+  /// The recording and the environment must outlive the player. The environment must have no limits
+  /// on scenes, so that all recorded commands are accepted again.
   ReplayPlayer(const Recording& recording, const SessionEnvironment& environment);
 
-  /// Returns the simulation to make a core with. go_to_begin() then moves the core to the begin of
-  /// the recording.
+  /// Returns the initial simulation for the constructor of a SessionCore. go_to_begin() then moves
+  /// the core to the start of the recording.
   Simulation begin() const;
   void go_to_begin(SessionCore& core);
-  /// Compares the states of the recording's moments too, at some cost each.
+  /// Also compares the states of the recording's moments. Each comparison takes additional time.
   void compare_moments();
   /// Runs commands and ticks up to a position. Compares the state with the hashes of the recording.
   /// Throws Cancelled.
   void play_to(SessionCore& core, std::uint64_t position, const std::atomic<bool>& cancelled);
-  /// Moves the core to a position, from the nearest moment before it. The time is at most the work
-  /// between two moments.
+  /// Moves the core to a position, from the nearest moment before it. A seek takes at most the
+  /// computing time between two moments.
   void seek(SessionCore& core, std::uint64_t position, const std::atomic<bool>& cancelled);
 
-  /// Settings of the moments in memory: least work between two moments, and their greatest size.
-  /// See MomentCache.
+  /// Settings of the cache of moments: the minimum computing time between two moments, and the
+  /// maximum total size. See MomentCache.
   struct CacheSettings {
     MomentCache::Seconds work{0.04};
     std::size_t most_bytes = std::size_t{128} << 20;
@@ -47,11 +47,12 @@ class ReplayPlayer {
   void set_cache(const CacheSettings& keeping) {
     kept_ = std::make_shared<MomentCache>(keeping.work, keeping.most_bytes);
   }
-  /// Uses moments that others share.
+  /// Uses a moment cache that is shared with other players.
   void share(std::shared_ptr<MomentCache> moments) { kept_ = std::move(moments); }
   const MomentCache& kept() const { return *kept_; }
 
-  /// Starts a seek: jumps to a moment if that is nearer. Does not run ticks.
+  /// Starts a seek: moves to a stored moment if it is nearer to `position` than the core. Does not
+  /// run ticks.
   void begin_seek(SessionCore& core, std::uint64_t position);
   /// Compares no states before the next seek.
   void stop_comparing() { next_hash_ = hashes_.size(); }

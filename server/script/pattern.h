@@ -24,18 +24,16 @@ Json substitute(const Json& value, const Captures& captures);
 /// Returns the reason why `value` does not match `pattern`, with its JSON pointer, or nothing. A
 /// match adds its captures.
 ///
-/// An object matches one that has at least the pattern's members; a list one of equal length; other
-/// values must be equal. "$any" matches anything; "$name" matches anything the first time and an
-/// equal value after that. An object whose members begin with $ tests:
-///   $eq $ne $ge $gt $le $lt: comparison with an operand, which may use captures
-///   $near: [x, e], a number within e of x, or a list of numbers each within e of that in x
-///   $turned: [q, e], an orientation [w, x, y, z] at most e rad from q
-///   $type: "number", "string", "boolean", ...
-///   $contains: a text with this part              $size: a text or list of this length
-///   $has: a list with a matching element          $each: a list of matching elements only
-///   $absent: true if there must be no such member
-///   $capture: keeps the value under a name in place of an earlier one, once all tests beside it
-///   hold
+/// A pattern object matches an object that has at least its members. A pattern list matches a list
+/// of equal length. Other values must be equal. "$any" matches anything; "$name" matches anything
+/// the first time and an equal value after that. A pattern object with the following members is a
+/// test of the value: $eq $ne $ge $gt $le $lt: comparison with an operand, which may use captures
+/// $near: [x, e]: a number within e of x; if x is a list, a list whose elements are each within e
+/// of the same element of x $turned: [q, e], an orientation [w, x, y, z] at most e rad from q
+/// $type: "number", "string", "boolean", ... $contains: a text with this part $size: a text or list
+/// of this length $has: a list with a matching element $each: a list of matching elements only
+/// $absent: true if there must be no such member $capture: if all other tests of the object pass,
+/// stores the value under this name and replaces an earlier capture
 std::optional<std::string> mismatch(const Json& pattern, const Json& value, Captures& captures);
 
 }  // namespace vat::script

@@ -1,5 +1,5 @@
-/// Highway, with the instruction sets of PairSums. Each file that is compiled for all sets includes
-/// it after HWY_TARGET_INCLUDE.
+/// Includes the SIMD library Highway, configured for the instruction sets of PairSums. Each file
+/// that is compiled for all sets includes this header after defining HWY_TARGET_INCLUDE.
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
 #endif

@@ -2,8 +2,9 @@
 
 namespace vat {
 
-/// While it exists, SIGINT and SIGTERM are only recorded, so that a run can end in order. A second
-/// signal ends the program at once. Ignored signals stay ignored. One may exist at a time.
+/// While an InterruptWatch exists, SIGINT and SIGTERM are only recorded, so that a run can end
+/// cleanly. A second signal ends the program at once. Ignored signals stay ignored. One may exist
+/// at a time.
 class InterruptWatch {
  public:
   InterruptWatch();

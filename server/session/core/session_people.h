@@ -24,8 +24,8 @@ struct JoinedParticipant {
   bool resumed = false;
 };
 
-/// Joins, leaves and roles of a session's participants. Leaves and released grabs are logged. Used
-/// by one thread at a time.
+/// Manages joining, leaving and the roles of a session's participants. Departures and released
+/// grabs are logged. Used by one thread at a time.
 class SessionPeople {
  public:
   SessionPeople(SessionContext& context, SessionRun& run, Participants& participants,
@@ -58,7 +58,7 @@ class SessionPeople {
   Json describe_settings() const;
   /// Removes participants that have been away for the resume time.
   void end_absences(SteadyClock::time_point now);
-  /// After a recovery: participants are away, and those that cannot resume leave.
+  /// Marks all participants as away after a recovery. Removes participants that cannot resume.
   void recover(SteadyClock::time_point now);
 
  private:

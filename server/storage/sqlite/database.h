@@ -35,14 +35,15 @@ class Database {
   /// Returns the number in the only row of a query.
   std::int64_t number(std::string_view sql);
   std::int64_t last_row() const;
-  /// Ends a transaction, if any, without effect.
+  /// Rolls back the current transaction, if any.
   void roll_back() noexcept;
 
   /// Uses a write-ahead log, which survives the end of the process at any moment. Only move_log()
   /// copies it into the file.
   void use_log();
-  /// Copies the log into the file, as far as no reader needs it. If `wait`, writers wait and the
-  /// log starts anew. Returns the bytes of the log.
+  /// Runs a checkpoint: copies the part of the log that no reader uses into the file. If `wait` is
+  /// true, writers wait and the log restarts from its beginning. Returns the size of the log in
+  /// bytes.
   std::size_t move_log(bool wait);
 
  private:
