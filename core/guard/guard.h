@@ -19,9 +19,9 @@ struct Fault {
 struct GuardBounds {
   Vec3 min;  ///< of positions [m]
   Vec3 max;  ///< of positions [m]
-  /// For each body, the distance that its particles may move in one step: the minimum distance at
-  /// which one of them interacts with a wall or another body [m]. A faster particle could pass
-  /// through without a contact.
+  /// For each body, the maximum displacement of its particles in one step [m]. It equals the
+  /// minimum distance at which one of the particles interacts with a wall or another body. A faster
+  /// particle could pass through without a contact.
   std::vector<Real> travel;
   /// For each rigid body, the distance from the centre of mass to the farthest particle [m].
   std::vector<Real> extent;
@@ -29,12 +29,13 @@ struct GuardBounds {
   std::vector<Vec3> half_sizes;
 };
 
-/// With a vat, the domain is its box, extended by twice its longest side, and by 100 sides above an
-/// open top. It is unbounded along axes without walls.
+/// Returns the bounds of `model`. With a vat, the domain is its box, extended by twice its longest
+/// side, and by 100 times that side above an open top. It is unbounded along axes without walls.
 GuardBounds guard_bounds(const Model& model);
 
-/// The first particle or rigid body that is non-finite, out of bounds, or too fast for steps of
-/// `dt`: faster than kMaxSpeed or its travel in a step, or rotating by more than a radian.
+/// Returns the first particle or rigid body that is non-finite, out of bounds, or too fast. The
+/// speed limits are kMaxSpeed, GuardBounds::travel per step of `dt`, and a rotation of one radian
+/// per step.
 std::optional<Fault> find_fault(const Model& model, const Configuration& configuration,
                                 const GuardBounds& bounds, Real dt, TaskRunner* runner = nullptr);
 

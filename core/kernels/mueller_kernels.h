@@ -54,10 +54,11 @@ class Spiky {
   Real scale_;
 };
 
-/// The kernel whose Laplacian is C (h - r) for r <= h, zero with its slope at h. In three
-/// dimensions W(r) = 15/(2 pi h^3) (-r^3/(2h^3) + r^2/h^2 + h/(2r) - 1), C = 45/(pi h^6) [MCG03]
-/// eq. 22. Boldt prints 2h/r for h/(2r); only the latter has a unit integral, and a zero value and
-/// slope at h. In two, W(r) = C (h r^2/4 - r^3/9 - 5h^3/36 - h^3/6 ln(r/h)), C = 40/(pi h^5).
+/// The kernel with the Laplacian C (h - r) for r <= h; its value and its slope are zero at h. In
+/// three dimensions W(r) = 15/(2 pi h^3) (-r^3/(2h^3) + r^2/h^2 + h/(2r) - 1), C = 45/(pi h^6)
+/// [MCG03] eq. 22. Boldt prints 2h/r for h/(2r); only the latter has a unit integral, and a zero
+/// value and slope at h. In two, W(r) = C (h r^2/4 - r^3/9 - 5h^3/36 - h^3/6 ln(r/h)), C = 40/(pi
+/// h^5).
 class ViscosityKernel {
  public:
   /// `dimensions`: 3 or 2.

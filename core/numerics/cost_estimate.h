@@ -7,7 +7,7 @@
 
 namespace vat {
 
-/// The expected cost of a scene, within a factor of two or three: for one core of a current
+/// The expected cost of a scene, within a factor of two or three. It assumes one core of a current
 /// processor, steps of the nominal length, and no contacts between bodies.
 struct CostEstimate {
   Real memory = 0;   ///< [bytes]

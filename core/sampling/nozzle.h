@@ -26,7 +26,8 @@ struct Nozzle {
   }
 };
 
-/// Upper bound of the number of particles in a layer of the emitter, and their positions.
+/// lattice_points() returns an upper bound of the number of particles in a layer of the emitter;
+/// layer_of() returns the positions of these particles.
 Real lattice_points(const Emitter& emitter, Real spacing, int dimensions);
 std::vector<Vec3> layer_of(const Emitter& emitter, Real spacing, int dimensions);
 

@@ -7,7 +7,7 @@
 /// Structs that are not saved as a whole.
 namespace vat {
 
-/// Without `hand`, which is no part of a scene.
+/// Describes the fields of a vat except `hand`, which is not part of a scene.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Vat>& v) {
   auto& [min, max, lid, motion, walls, hand] = v;
@@ -20,13 +20,14 @@ void describe(Archive& archive, Of<Archive, SampledBody>& v) {
          next_number] = v;
   archive(positions, velocities, masses, radii, in_nozzles, numbers, next_number);
 }
-/// Without `friction_torque`, which is read only during an evaluation.
+/// Describes the fields of the forces except `friction_torque`, which is read only during an
+/// evaluation.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Forces>& v) {
   auto& [particle, rigid_force, rigid_torque, friction_torque, transport] = v;
   archive(particle, rigid_force, rigid_torque, transport);
 }
-/// Forces that are not current, and their levels, are never read.
+/// Omits the forces and their levels if they are not current, because they are then never read.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, State>& v) {
   auto& [now, step_count, forces, bound, forces_current, history, volume, levels, emitted, drained,

@@ -8,8 +8,8 @@
 
 #include "core/support/result.h"
 
-/// Content with a header for its identification and verification: a magic of eight bytes, the
-/// format version in four, and the length and checksum of the content in eight each.
+/// Content with a header that identifies and verifies it. The header has a magic (8 bytes), the
+/// format version (4 bytes), and the length and the checksum of the content (8 bytes each).
 namespace vat {
 
 inline constexpr std::size_t kSealSize = 28;

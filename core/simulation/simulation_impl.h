@@ -131,7 +131,8 @@ struct SimulationImpl : SimulationContent {
   }
   void begin_call();
   void undo_call() noexcept;
-  /// Applies the changes of bodies that the scene describes for the next nominal step.
+  /// Applies the scheduled changes of bodies (melting and flow) that the scene prescribes for the
+  /// next nominal step.
   void change_bodies_on_time(AdvanceReport& report);
   void melt_on_time(AdvanceReport& report);
   void flow();

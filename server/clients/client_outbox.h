@@ -22,9 +22,10 @@ namespace vat {
 /// An encoded frame, shared by several clients.
 using SharedFrame = std::shared_ptr<const std::string>;
 
-/// Messages that the socket has not taken yet. Derived from the sizes of all sent messages and the
-/// bytes that are queued now. Control messages are limited to `max_bytes`, and in addition
-/// kMaxLongMessages that are longer than this, such as a description of many particles.
+/// Messages that the socket has not taken yet. The queue is derived from the sizes of all sent
+/// messages and the number of currently queued bytes. Control messages are limited to `max_bytes`
+/// in total. Up to kMaxLongMessages messages that are each longer than `max_bytes`, such as large
+/// descriptions, are not counted.
 class ControlQueue {
  public:
   /// Memory of a waiting message in addition to its text: its entries here and in the transport,
@@ -74,7 +75,7 @@ class FrameWaker {
 /// in a window of three. Safe to use from any thread.
 ///
 /// Events belong to a membership, which starts with a join. Frames belong to a subscription and an
-/// epoch. They are dropped if these have ended.
+/// epoch. Events and frames are dropped if their membership, subscription or epoch has ended.
 class ClientOutbox {
  public:
   explicit ClientOutbox(
@@ -108,7 +109,8 @@ class ClientOutbox {
   void unsubscribe();
 
   /// A frame can be sent while fewer than three are unacknowledged and the system has taken all
-  /// sent ones. If it cannot, the waker is called once this may have changed.
+  /// sent ones. If no frame can be sent, the waker is called a single time when sending may have
+  /// become possible.
   FrameChannel frame_channel(std::uint64_t subscription);
   /// Returns false if the subscription or the epoch has ended.
   bool send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame,

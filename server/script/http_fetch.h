@@ -8,9 +8,10 @@
 
 namespace vat::script {
 
-/// Sends GET for `path` to the server at `url`. The answer as scripts see it: `status`, `size` of
-/// the body in bytes, `headers` by their names in small letters, and `text`, the body, unless it is
-/// `application/octet-stream`. Throws std::runtime_error if none comes by the deadline.
+/// Sends GET for `path` to the server at `url`. Returns the response as scripts see it: `status`,
+/// `size` (bytes of the body), `headers` (keys in lower case), and `text` (the body). `text` is
+/// absent for `application/octet-stream`. Throws std::runtime_error if no response arrives before
+/// the deadline.
 Json fetch_http(const WebSocketUrl& url, const TlsTrust& trust, const std::string& path,
                 std::chrono::steady_clock::time_point deadline);
 

@@ -10,8 +10,8 @@ namespace vat::script {
 /// A running `vat serve`, which ends when this is destroyed.
 class ServerProcess {
  public:
-  /// Starts `program` with `arguments` and waits for its URL. Throws std::runtime_error if none is
-  /// printed.
+  /// Starts `program` with `arguments` and waits for its URL. Throws std::runtime_error if the
+  /// program prints no URL.
   ServerProcess(const std::string& program, const std::vector<std::string>& arguments);
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;

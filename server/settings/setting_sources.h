@@ -25,8 +25,8 @@ Status apply_file(std::span<const Setting> settings, const std::string& file,
 /// Applies the variables VAT_*, given as "NAME=VALUE". The path of an error is the variable.
 Status apply_environment(std::span<const Setting> settings,
                          const std::vector<std::string>& environment, SettingSources& sources);
-/// Returns the variables VAT_* that are no setting, each with the nearest one: "VAT_PROT, not
-/// VAT_PORT?". They are not errors, because other programs may use such names.
+/// Returns the variables VAT_* that do not name a setting, each with the most similar setting:
+/// "VAT_PROT, not VAT_PORT?". They are not errors, because other programs may use such names.
 std::vector<std::string> unknown_variables(std::span<const Setting> settings,
                                            const std::vector<std::string>& environment);
 

@@ -46,7 +46,7 @@ class SavedStates {
   /// Writes or replaces the state of this name. Returns the limit if it would be exceeded.
   std::optional<LimitExcess> write(const std::string& session, const SavedState& state,
                                    const SavedStateLimits& limits);
-  /// In alphabetical order of names.
+  /// Returns the entries in alphabetical order of their names.
   std::vector<SavedStateEntry> list(const std::string& session);
   std::optional<SavedState> find(const std::string& session, const std::string& name);
   /// Returns false if there is no such state.

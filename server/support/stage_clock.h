@@ -11,8 +11,8 @@
 
 namespace vat {
 
-/// Measures the wall time of a simulation's stages. Reads the clock once per stage, so that it can
-/// always be on.
+/// Measures the wall time of a simulation's stages. Reads the clock only once per stage, so that
+/// the measurement can always be enabled.
 class StageClock final : public StageObserver {
  public:
   using Clock = std::chrono::steady_clock;
@@ -30,7 +30,7 @@ class StageClock final : public StageObserver {
   void stage_begins(std::string_view stage) override;
   void stages_end() override;
 
-  /// In the order in which they first ran.
+  /// Returns the stages in the order of their first runs.
   const std::vector<Stage>& stages() const { return stages_; }
   /// Sets all times to zero. Stages keep their names and indices.
   void clear();

@@ -23,8 +23,8 @@ class Connection {
  public:
   virtual ~Connection() = default;
   virtual ConnectionId id() const = 0;
-  /// Address that limits connections and sessions: the host, or the IPv6 network of 64 bits,
-  /// because one host has many addresses in its network.
+  /// Address to which the per-address limits apply: the IPv4 address, or the /64 network of an IPv6
+  /// address, because one host has many addresses in its network.
   virtual const std::string& address() const = 0;
   virtual void send_text(std::string message) = 0;
   /// The bytes are shared, not copied, until they are passed to the socket.
@@ -73,8 +73,8 @@ struct TransportSettings {
   std::size_t max_http_request_bytes =
       16 * 1024;  ///< of the body; longer ones are answered with 413
   std::chrono::milliseconds handshake_timeout{10'000};  ///< for a complete request or upgrade
-  /// Send buffer of the system per connection. Small, because its content is late and cannot be
-  /// withdrawn.
+  /// Send buffer of the system per connection. The buffer is small, because queued frames become
+  /// outdated and cannot be removed from it.
   int send_buffer_bytes = 128 * 1024;
   std::chrono::milliseconds ping_interval{
       20'000};  ///< a peer silent for two intervals is disconnected
@@ -93,8 +93,8 @@ struct TransportSettings {
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Starts to listen and serve. Returns the port. Throws std::runtime_error that names host and
-  /// port, or the TLS file, if it cannot.
+  /// Starts to listen and serve. Returns the port. If this fails, throws std::runtime_error with a
+  /// message that names host and port, or the TLS file.
   virtual std::uint16_t start() = 0;
   /// Stops listening, closes all connections with 1001, waits at most one second for the closing
   /// handshakes, and joins the threads.

@@ -39,7 +39,7 @@ struct WsShared {
       std::make_shared<std::atomic<std::size_t>>(0);
 };
 
-/// An endpoint of websocketpp, and the only thread that calls the library for it.
+/// An endpoint of websocketpp with its thread. Only this thread calls the library for the endpoint.
 class WsEndpoint {
  public:
   explicit WsEndpoint(WsShared& shared);
@@ -49,10 +49,11 @@ class WsEndpoint {
   WsEndpoint& operator=(const WsEndpoint&) = delete;
 
   /// Throws like listen() if another program listens on the port. Endpoints that share the port
-  /// would not detect it.
+  /// would not detect the other program.
   void check_free(std::uint16_t port);
   /// Listens on the port (0: any), together with other endpoints if `shares_port`. Returns the
-  /// port. Throws std::runtime_error that names host and port if it cannot.
+  /// port. Throws std::runtime_error with a message that names host and port if the endpoint cannot
+  /// listen.
   std::uint16_t listen(std::uint16_t port, bool shares_port);
   /// Starts the thread.
   void start();

@@ -15,7 +15,7 @@ struct VolumeScratch {
   std::vector<Real> relative_density;  ///< by slot
 };
 
-/// Stage: the pressure at the end of the last step.
+/// Stage: sets the pressure to that at the end of the last step.
 void recall_pressure(StepContext& context);
 
 // A step of an incompressible liquid contains two solves, for velocities and for positions: the
@@ -27,17 +27,18 @@ void recall_pressure(StepContext& context);
 ///
 /// With s = rho / rho_0 and the rate D of PressureResponse, impulses dt F(p), p >= 0, change the
 /// velocities of liquid and solids until dt D_i(v) <= r_i. For s_i < 1, r_i = (1 - s_i) / 2, which
-/// closes half of a gap. If s_i exceeds 1 by more than a fifth of the density tolerance, r_i is
-/// minus the excess beyond it, at most the tolerance and 0.0015. This removes the excess density of
-/// steps before positions must be corrected, with a speed that the tolerance limits. Liquid at rest
-/// fluctuates closer to 1; removing that would cause noise in its pressure. The forces already
-/// include the impulses of the last step, so that only the difference is solved. A divergence
-/// tolerance above 0.001 is limited to a quarter of the density tolerance, and to 0.01.
+/// closes half of a gap. Let e_i be the part of s_i - 1 above a fifth of the density tolerance. If
+/// e_i > 0, r_i = -min(e_i, density tolerance, 0.0015). This removes the excess density of steps
+/// before positions must be corrected, with a speed that the tolerance limits. In liquid at rest, s
+/// fluctuates by less than this fifth of the tolerance; removing these fluctuations would cause
+/// noise in the pressure. The forces already include the impulses of the last step, so that only
+/// the difference is solved. A divergence tolerance is limited to a quarter of the density
+/// tolerance; this bound is at least 0.001 and at most 0.01.
 void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
-/// Moves liquid with excess density at the end of a step, at `time`, until s <= 1 within the
-/// density tolerance of the scene, as measured and not by linear theory. Uses Newton's method, with
-/// a shift of D_i(shift) = 1 - s_i in each round. Sets the report of the positions.
+/// Moves liquid with excess density at the end of a step, at `time`, until the measured s is at
+/// most 1 within the scene's density tolerance. Uses Newton's method; each round solves D_i(shift)
+/// = 1 - s_i for the shift. Sets the report of the positions.
 ///
 /// The shifts do not change velocities (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)
 /// 264), so that excess density adds no energy: bodies that overlap at the start separate without

@@ -4,22 +4,23 @@ namespace vat {
 
 struct StepContext;
 
-/// Stages of weakly compressible liquids, with one kernel for density and force, Tait's equation of
-/// state, a pressure force that derives from an energy, and central viscosity.
+/// Stages of weakly compressible liquids. The method uses one kernel for density and force, Tait's
+/// equation of state, a pressure force derived from an energy, and central viscosity.
 ///
 /// With the rest volume V_i = m_i / rho_0 and s_i = rho_i / rho_0 = sum_j V_j W_ij over liquid,
 /// solids and the mirror images in walls, the energy sum_i V_i u(s_i), du/ds = p / s^2, leads to
 /// F_i = -V_i sum_j V_j (p_i/s_i^2 + p_j/s_j^2) grad_i W_ij (J. J. Monaghan, Rep. Prog. Phys. 68
 /// (2005) 1703, sec. 3; rest volumes in place of masses allow liquids of different densities). The
 /// kernel is scaled so that a cubic lattice at rest has the rest density. Its gradient is scaled so
-/// that the lattice has the exact force of a pressure gradient; without this, the pressure gradient
-/// in a column of liquid is up to 7 % too large.
+/// that the lattice has the exact force of a pressure gradient. Without this scaling, the pressure
+/// gradient in a liquid column is up to 7 % too large.
 ///
 /// A wall of the vat is a mirror. The images of the liquid complete the sums (A. Colagrossi, M.
-/// Landrini, J. Comput. Phys. 191 (2003) 448) and conserve energy. The weight of the liquid in
-/// between is added to the pressure of the images. Along walls the liquid slips without friction,
-/// except along no_slip walls (core/liquid/pairs/viscous_images.h). Solid particles take part with
-/// their volumes, the rest density, and the pressure of the surrounding liquid.
+/// Landrini, J. Comput. Phys. 191 (2003) 448) and conserve energy. The hydrostatic pressure
+/// difference between a particle and its image is added to the pressure of the image. Along walls
+/// the liquid slips without friction, except along no_slip walls
+/// (core/liquid/pairs/viscous_images.h). Solid particles take part with their volumes, the rest
+/// density, and the pressure of the surrounding liquid.
 
 /// Sorts solids into cells.
 void sort_solids_in_liquid(StepContext& context);
@@ -37,12 +38,13 @@ void compute_tait_density(StepContext& context);
 /// (core/liquid/surface/cohesion.h).
 void compute_tait_pressure(StepContext& context);
 
-/// Computes the pressure of solid particles from that of the surrounding liquid and the weight in
-/// between (S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq. 27), with the
-/// same minimum.
+/// Computes the pressure of solid particles from that of the surrounding liquid and the hydrostatic
+/// difference between both (S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057, eq.
+/// 27). The minimum is that of compute_tait_pressure().
 void extrapolate_pressure(StepContext& context);
 
-/// Add the forces on liquid particles, and on solids.
+/// These stages add the forces: add_tait_forces() on liquid particles, add_tait_forces_on_solids()
+/// on solids.
 void add_tait_forces(StepContext& context);
 void add_tait_forces_on_solids(StepContext& context);
 

@@ -28,7 +28,8 @@ class Playback {
 
   /// Starts to move the session to a position. Clients see nothing before end_seek().
   virtual void begin_seek(SessionCore& core, std::uint64_t position) = 0;
-  /// Continues until the time is over. Returns true at the target, or if the recording differs.
+  /// Continues the seek until the time `until`. Returns true if the session is at the target, or if
+  /// its state differs from the recording.
   virtual bool continue_seek(SessionCore& core, CostClock::time_point until) = 0;
   virtual void end_seek(SessionCore& core) = 0;
   /// Returns the position of a tick of the current run. A reset or another scene ends a run.

@@ -31,7 +31,7 @@ class SessionCore {
   /// Null unless the session is a replay.
   Playback* playback() const { return context_.playback; }
   void set_playback(Playback* playback) { context_.playback = playback; }
-  /// The session's strand holds it during a turn. All functions check it.
+  /// The session's strand holds this ownership during a turn. All functions check it.
   ThreadOwner& owner() { return context_.owner; }
 
   SessionRun& run() { return run_; }
@@ -52,22 +52,25 @@ class SessionCore {
   void set_speed(double speed);
   /// Replaces the simulation; ticks count from 0.
   void load(Simulation simulation);
-  /// Replaces the simulation by one that has run `tick` ticks since it was `as_loaded`.
+  /// Replaces the simulation by `simulation`, which has run `tick` ticks since the state
+  /// `as_loaded`.
   void restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick);
   void reset();
-  /// Starts an epoch because bodies were added, removed or changed. `moved`: some have moved other
-  /// than by ticks, so their accelerations are unknown.
+  /// Starts an epoch because bodies were added, removed or changed. `moved`: some bodies were moved
+  /// by a command and not by a tick, so that their accelerations are unknown.
   void start_epoch(bool moved = false);
   /// Runs one tick, whose frame is then due. Returns false if the guard failed, which pauses the
-  /// session. The rate is measured only if `timed`: control.step does not keep a pace.
+  /// session. The rate is measured only if `timed` is true, because ticks of control.step are not
+  /// timed.
   bool tick(SteadyClock::time_point now, bool timed);
 
   /// Logs and executes commands between two ticks. If they cannot be logged, all are refused.
   std::vector<ActionResult> execute(std::span<const ParticipantCommand> commands);
-  /// Executes a logged command, now or when a log is repeated. Adds the participant if it is
-  /// missing.
+  /// Executes a logged command, either when it is issued or when a log is replayed. Adds the
+  /// participant if it is missing.
   ActionResult execute(const LogEntry& entry, const SessionAction& action);
-  /// Ends grabs that were not moved for the idle time, by logged commands of their participants.
+  /// Ends grabs without `grab.move` during the idle time. Logs each end as a command of the grab's
+  /// participant.
   void end_idle_grabs(SteadyClock::time_point now);
 
  private:

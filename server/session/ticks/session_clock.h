@@ -12,11 +12,11 @@ class SessionClock {
  public:
   bool playing() const { return playing_; }
   double speed() const { return speed_; }       ///< simulated seconds per second, as set
-  double rate() const { return rate_.rate(); }  ///< the same, as measured
+  double rate() const { return rate_.rate(); }  ///< measured simulated seconds per second
   /// True while a playing session is slower than its speed.
   bool is_slow() const { return playing_ && rate_.slower_than(speed_); }
 
-  /// Sets both without an interruption: state of a log or recording.
+  /// Sets playing state and speed from a log or recording, without interrupting control.step.
   void set(bool playing, double speed) {
     playing_ = playing;
     speed_ = speed;
@@ -37,7 +37,8 @@ class SessionClock {
   }
   void restart_rate() { rate_ = {}; }
 
-  /// Ends the ticks of control.step: another control command, another scene, a failed guard.
+  /// Ends the ticks of control.step because of another control command, another scene, or a failed
+  /// guard.
   void interrupt() { interrupted_ = true; }
   /// Returns true once after interrupt().
   bool take_interruption() { return std::exchange(interrupted_, false); }
