@@ -10,7 +10,7 @@ namespace {
 
 struct SweepCase {
   const char* scene;
-  Real min_gain;  ///< least ratio of the cost at 0.05 % to that at 1 %
+  bool gains;  ///< whether 1 % must cost less than 0.05 % by a factor of 1.7
 };
 
 void PrintTo(const SweepCase& one, std::ostream* out) {
@@ -22,7 +22,7 @@ class ToleranceSweep : public testing::TestWithParam<SweepCase> {};
 // A tolerance holds at the end of each step; a factor of three covers the forces between. In the
 // shallow pools a step at 0.05 % takes hardly more than the one iteration that each step takes.
 TEST_P(ToleranceSweep, HoldsEveryToleranceWithoutAFailure) {
-  const auto [scene, min_gain] = GetParam();
+  const auto [scene, gains] = GetParam();
   std::map<Real, TolerancePoint> points;
   for (const Real tolerance : all_tolerances()) {
     const TolerancePoint point = measure_tolerance(scene, tolerance, 1);
@@ -30,14 +30,18 @@ TEST_P(ToleranceSweep, HoldsEveryToleranceWithoutAFailure) {
     EXPECT_LT(point.density_error, 3 * tolerance) << tolerance;
     points[tolerance] = point;
   }
-  EXPECT_GT(points.at(5e-4).products(), min_gain * points.at(0.01).products());
+  if (gains) {
+    EXPECT_GT(points.at(5e-4).products(), 1.7 * points.at(0.01).products());
+  }
+  EXPECT_GT(1.05 * points.at(5e-4).products(), points.at(0.1).products());
   EXPECT_GT(1.05 * points.at(0.01).products(), points.at(0.1).products());
   EXPECT_GT(points.at(1e-5).products(), points.at(5e-4).products());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ToleranceSweep,
-                         testing::Values(SweepCase{"dam-break", 1.7}, SweepCase{"deep-tank", 1.7},
-                                         SweepCase{"buoyancy", 0.9}, SweepCase{"sloshing-tank", 1}),
+                         testing::Values(SweepCase{"dam-break", true}, SweepCase{"deep-tank", true},
+                                         SweepCase{"buoyancy", false},
+                                         SweepCase{"sloshing-tank", false}),
                          [](const testing::TestParamInfo<SweepCase>& one) {
                            std::string name = one.param.scene;
                            for (char& c : name) c = c == '-' ? '_' : c;
