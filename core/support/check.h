@@ -11,9 +11,10 @@ namespace vat {
 #define VAT_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::vat::check_failed(#condition, __FILE__, __LINE__))
 
-/// Like VAT_CHECK, for inner loops: without effect if NDEBUG is defined.
+/// Like VAT_CHECK, for inner loops. If NDEBUG is defined, the condition is compiled but not
+/// evaluated.
 #ifdef NDEBUG
-#define VAT_ASSERT(condition) static_cast<void>(0)
+#define VAT_ASSERT(condition) static_cast<void>(sizeof((condition) ? 1 : 0))
 #else
 #define VAT_ASSERT(condition) VAT_CHECK(condition)
 #endif

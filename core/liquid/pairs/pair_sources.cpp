@@ -124,6 +124,7 @@ PackedImage ImageOffsets::pack(const PairImage& image) const {
 }
 
 Index PairSources::source_of(Index n) const {
+  VAT_ASSERT(n < count_);
   if (n < images_begin_) return n;
   const auto group = std::ranges::find_if(
       images_, [&](const ImageGroup& one) { return n - one.first < one.count(); });
@@ -132,7 +133,6 @@ Index PairSources::source_of(Index n) const {
 }
 
 void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
-  VAT_ASSERT(n < count_);
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const bool is_solid = kind == shifted_solids || kind == mirrored_solids;
   const bool is_mirrored = kind == mirrored_solids || kind == mirrored_liquid;
