@@ -24,6 +24,7 @@ export class ValueField {
   private readonly fault = make('p', { className: 'fault', role: 'alert', hidden: true });
   private initial: number | undefined;
   private value: number | undefined;
+  private edits = 0; // the reply to an earlier edit does not change the error of a later one
 
   constructor(
     private readonly spec: ValueSpec,
@@ -74,13 +75,16 @@ export class ValueField {
   }
 
   private async apply(value: number | undefined): Promise<void> {
+    const edit = ++this.edits;
     const fault = await this.set(value);
+    if (edit !== this.edits) return;
     if (fault !== undefined) return this.refuse(fault);
     this.fault.hidden = true;
   }
 
   /** Restores the value and displays the error. */
   private refuse(words: string): void {
+    ++this.edits;
     this.input.value = this.text;
     this.fault.textContent = words;
     this.fault.hidden = false;
