@@ -17,8 +17,7 @@ struct SiteSources {
 };
 
 /// Returns a handler for GET and HEAD:
-/// - files of the viewer ("/" is "/index.html"). Without a viewer, "/" describes how to build the
-/// viewer.
+/// - files of the viewer ("/" is "/index.html"). Without a viewer, "/" describes how to build it.
 /// - "/healthz": 200 while the process runs.
 /// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
 /// - "/version" and "/metrics".

@@ -21,8 +21,8 @@ struct Schedule {
 
 /// Returns a schedule whose output interval and end are whole numbers of steps. All arguments are
 /// in [s], and `until` may be 0. Uses the wanted step if both times are multiples of the step (to
-/// 1e-9). Otherwise shortens the step. If the step would be shorter than a tenth, rounds the end to
-/// whole steps instead.
+/// 1e-9). Otherwise shortens the step. Rounds the end to whole steps if the step would be shorter
+/// than a tenth of the wanted step.
 Schedule make_schedule(Real wanted_step, Real every, Real until);
 
 /// Returns the numerics with another step. Changes the tick only if the tick would not be a whole
