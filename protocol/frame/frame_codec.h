@@ -76,7 +76,7 @@ class FrameDecoder {
 std::uint32_t frame_number(std::span<const std::uint8_t> frame);
 bool is_key_frame(std::span<const std::uint8_t> frame);
 
-/// Encodes or decodes a single key frame.
+/// Encode or decode a single key frame.
 std::vector<std::uint8_t> encode_key_frame(const GridFrame& frame);
 Result<GridFrame> decode_key_frame(std::span<const std::uint8_t> bytes);
 

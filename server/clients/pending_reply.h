@@ -62,7 +62,7 @@ class PendingReply {
 
   void answer(const RpcResult& result) {
     if (metrics_ != nullptr) count_refusal(result);
-    uncount();  // first, because the client may send its next command as soon as it has the answer
+    uncount();  // first, because the client may send a command as soon as it gets the reply
     if (id_) client_->send(write_reply(*id_, result));
   }
 

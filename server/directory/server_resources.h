@@ -14,7 +14,8 @@
 
 namespace vat {
 
-/// Saved states and scenes of a server without a data folder. The server's end deletes them.
+/// Saved states and scenes of a server without a data folder. The data is deleted when the server
+/// ends.
 struct SavedInMemory {
   SavedStates states{MainDatabase::kInMemory};
   SavedScenes scenes{std::make_shared<MainDatabase>(MainDatabase::kInMemory)};

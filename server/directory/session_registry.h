@@ -34,8 +34,8 @@ class SessionRegistry {
 
   explicit SessionRegistry(const OwnedMutex& mutex) : mutex_(mutex) {}
 
-  /// Returns an unused number for a session in memory. next_replay_number() returns one for a
-  /// replay.
+  /// Returns an unused number for a session in memory. next_replay_number() returns an unused
+  /// number for a replay.
   SessionNumber next_number();
   SessionNumber next_replay_number();
 

@@ -22,9 +22,9 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
             boost::asio::thread_pool& pool, const Clock& clock);
 
-  /// Changes take effect before a state that is published later. Returns true if a waiting state
-  /// was dropped. Such a state may lack attributes of the new subscription. The caller should then
-  /// publish a state soon.
+  /// Adds or replaces a subscription. The change applies to all later published states. Returns
+  /// true if a waiting state was dropped. Such a state may lack attributes of the new subscription.
+  /// The caller should then publish a state soon.
   bool add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription, Subscription wish);
   void remove(ConnectionId client);
   void set_vat(const std::optional<Vat>& vat);
@@ -67,7 +67,7 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   PendingChanges pending_;
   bool turn_scheduled_ = false;
 
-  // Used on the strand only.
+  // Members that only the strand uses.
   PendingChanges active_changes_;  // empty between turns; the memory is reused
   FrameDelivery delivery_;
 };

@@ -43,7 +43,7 @@ struct Recording {
   InstructionSet instructions = InstructionSet::baseline;
   std::string name;  ///< name of the session
   std::uint64_t begin = 0;
-  std::uint64_t end = 0;                ///< range of positions
+  std::uint64_t end = 0;                ///< last position
   std::vector<LogEntry> log;            ///< first entry: the scene
   std::vector<RecordedMoment> moments;  ///< ascending by position, then by sequence
   std::vector<RecordedHash> hashes;     ///< ascending by position, then by sequence

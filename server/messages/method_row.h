@@ -15,8 +15,8 @@ namespace vat {
 enum class RateClass : std::uint8_t {
   query,    ///< reads data, or acknowledges a frame
   control,  ///< command with a few numbers
-  pointer,  ///< follows a pointer; only the latest of one tick is executed
-  scene     ///< contains a scene or a body, and may be long
+  pointer,  ///< command that follows a pointer; only the latest per tick is executed
+  scene     ///< command with a scene or a body, which may be long
 };
 template <>
 inline constexpr std::array kNamesOf<RateClass>{"query", "control", "pointer", "scene"};

@@ -9,9 +9,9 @@
 /// The creation of the writer does not fail.
 namespace vat {
 
-/// Returns a writer of a table with the columns time [s], body, kind, particle (index in the body),
-/// x, y, z [m], vx, vy, vz [m/s], density [kg/m^3] and pressure [Pa]. Density and pressure are
-/// empty except for liquids. Creates the file, and returns an error if the creation fails.
+/// Returns a writer of a table. Columns: time [s], body, kind, particle (index in the body), x, y,
+/// z [m], vx, vy, vz [m/s], density [kg/m^3], pressure [Pa]. Density and pressure are empty except
+/// for liquids. Creates the file, and returns an error if the creation fails.
 Result<std::unique_ptr<FrameWriter>> create_csv_writer(const std::string& name);
 
 /// Returns a writer of an array [times, particles, 6] of float64: x, y, z [m], vx, vy, vz [m/s].
@@ -19,15 +19,15 @@ Result<std::unique_ptr<FrameWriter>> create_csv_writer(const std::string& name);
 /// fails.
 Result<std::unique_ptr<FrameWriter>> create_npy_writer(const std::string& name);
 
-/// Returns a writer of a series of binary point files for viewers. The single-precision properties
-/// are position [m], velocity [m/s], radius [m], a colour by kind of body, and the index of the
-/// body in the scene.
+/// Returns a writer of a series of binary point files for viewers. Properties in single precision:
+/// position [m], velocity [m/s], radius [m], colour by kind of body, index of the body in the
+/// scene.
 Result<std::unique_ptr<FrameWriter>> create_ply_writer(const std::string& name,
                                                        std::size_t frame_count);
 
-/// Returns a writer of a series of legacy VTK polydata in text. The properties of each particle are
+/// Returns a writer of a series of legacy VTK polydata in text. Properties of each particle:
 /// position [m], velocity [m/s], index of the body in the scene, kind of body (number of BodyKind),
-/// radius [m], density [kg/m^3] and pressure [Pa]. Density and pressure are 0 except for liquids.
+/// radius [m], density [kg/m^3], pressure [Pa]. Density and pressure are 0 except for liquids.
 Result<std::unique_ptr<FrameWriter>> create_vtk_writer(const std::string& name,
                                                        std::size_t frame_count);
 

@@ -43,8 +43,8 @@ class Session : public std::enable_shared_from_this<Session> {
     closed,     ///< permanently closed
     resumable,  ///< recovered at the next start of the server, if stored
   };
-  /// Ends all work soon. Answers waiting requests with no_such_session, and then answers `reply`,
-  /// if present, with the last tick. May be called once.
+  /// Ends the session asynchronously. Answers waiting requests with no_such_session, and then
+  /// answers `reply`, if present, with the last tick. May be called once.
   void close(End end, std::optional<PendingReply> reply);
 
   /// Adds a participant. The reply contains the participant and the session's description. Calls

@@ -28,7 +28,7 @@ class SessionCore {
   const std::string& id() const { return context_.id; }
   const SessionEnvironment& environment() const { return *context_.environment; }
   void set_environment(const SessionEnvironment& environment);
-  /// Returns null unless the session is a replay.
+  /// Returns the playback of a replay. Returns null for other sessions.
   Playback* playback() const { return context_.playback; }
   void set_playback(Playback* playback) { context_.playback = playback; }
   /// Returns the ownership of the session, which the strand's thread holds during a turn (see
