@@ -8,35 +8,37 @@
 
 namespace vat {
 
-/// Particles sorted by the cells of a cubic grid: FRAMES.md, "Order". Changes since a reference
-/// frame are coded in this order. Reuses its memory.
+/// Particles sorted by the cells of a cubic grid (FRAMES.md, "Order"). Delta frames code changes in
+/// this order. An object reuses its memory.
 class CellOrder {
  public:
   struct Cell {
-    std::uint32_t begin = 0;  ///< index of its first particle in order()
+    std::uint32_t begin = 0;  ///< index of the cell's first particle in order()
     std::uint32_t end = 0;
-    std::uint32_t place = 0;                ///< index in the box of all cells
-    std::array<std::uint32_t, 3> before{};  ///< numbers of the neighbours at smaller x, y and z
+    std::uint32_t place = 0;                ///< index of the cell in the box of all cells
+    std::array<std::uint32_t, 3> before{};  ///< indices in cells() of neighbours at x-1, y-1, z-1
   };
 
-  /// Sorts `positions` (x, y, z of each particle) by cells of 2^shift quanta per axis. Returns
-  /// false, with undefined content, if the box of cells is too large for the number of particles.
+  /// Sorts particles by cells with an edge of 2^shift quanta. `positions` contains x, y and z of
+  /// each particle. Returns false if the box of cells is too large for the number of particles. The
+  /// content is then unspecified.
   bool sort(std::span<const std::uint16_t> positions, int shift);
-  /// Sorts by cells of about eight particles. Returns the chosen shift.
+  /// Sorts particles by cells that contain about eight particles on average. Returns the chosen
+  /// shift.
   int sort(std::span<const std::uint16_t> positions);
 
   std::span<const std::uint32_t> order() const { return order_; }
-  /// The occupied cells in ascending order of place. Element 0 has no particles and represents all
-  /// empty cells.
+  /// Returns the occupied cells in ascending order of `place`. Element 0 contains no particles and
+  /// represents all empty cells.
   std::span<const Cell> cells() const { return cells_; }
-  /// Returns the number of the cell at `place`, 0 if it is empty. `place` must be at most one cell
-  /// away from a cell of cells().
+  /// Returns the index in cells() of the cell at `place`, or 0 if the cell is empty. `place` must
+  /// be at most one cell away from an occupied cell.
   std::uint32_t cell_at(std::uint32_t place) const { return numbers_[place]; }
-  std::uint32_t row() const { return row_; }      ///< difference of places along y
-  std::uint32_t layer() const { return layer_; }  ///< difference of places along z
+  std::uint32_t row() const { return row_; }      ///< difference of `place` along y
+  std::uint32_t layer() const { return layer_; }  ///< difference of `place` along z
 
  private:
-  /// Determines the box of cells. Returns false if it has too many.
+  /// Computes the box of cells. Returns false if the box contains too many cells.
   bool divide(std::size_t particles, int shift);
   /// Stores the place of each particle's cell and the number of particles per cell. Returns the
   /// number of occupied cells.
@@ -46,8 +48,8 @@ class CellOrder {
 
   std::vector<std::uint32_t> order_;
   std::vector<Cell> cells_;
-  std::vector<std::uint32_t> places_;   // by particle
-  std::vector<std::uint32_t> numbers_;  // by place: particle counts, then cell numbers
+  std::vector<std::uint32_t> places_;   // indexed by particle
+  std::vector<std::uint32_t> numbers_;  // indexed by place: particle counts, later cell indices
   std::uint32_t row_ = 0;
   std::uint32_t layer_ = 0;
   std::uint32_t place_count_ = 0;

@@ -6,8 +6,8 @@
 
 namespace vat {
 
-/// Returns the checksum of FRAMES.md over all blocks of a frame. It detects a decoder that differs
-/// from the encoder, because later frames depend on this frame.
+/// Returns the checksum over all blocks of a frame (FRAMES.md, "Check"). A decoder uses the
+/// checksum to detect a difference from the encoder, because later frames depend on this frame.
 std::uint32_t frame_check(const GridFrame& frame);
 
 }  // namespace vat

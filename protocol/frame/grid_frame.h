@@ -9,30 +9,30 @@
 
 namespace vat {
 
-/// The grid of transmitted positions: origin + n * quantum with 0 <= n <= 65 535 per axis.
+/// Grid of encoded positions. A coordinate is origin + n * quantum with 0 <= n <= 65 535.
 struct FrameGrid {
   std::array<double, 3> origin{};  ///< [m]
-  double quantum = 0;              ///< [m] finite and above 0
+  double quantum = 0;              ///< [m], finite and above 0
 
   bool operator==(const FrameGrid&) const = default;
 };
-/// Returns the coarsest grid with an error of at most `max_error` [m] per axis: quantum =
-/// 2 * max_error, or larger if [min, max] requires it. If `max_error` is not above 0, returns the
-/// finest grid that covers the domain. The corners [m] must be finite.
+/// Returns the coarsest grid with an error of at most `max_error` [m] per axis. The quantum is 2 *
+/// max_error, or larger if the box [min, max] requires a larger quantum. If `max_error` is not
+/// above 0, returns the finest grid that covers the box. The corners of the box [m] must be finite.
 FrameGrid make_frame_grid(const Vec3& min, const Vec3& max, double max_error);
 
-/// The quantisation of a frame.
+/// Quantisation of the positions and attributes of a frame.
 struct FrameScale {
   FrameGrid grid;
-  ByAttribute<double> attribute_quanta{};  ///< twice the maximum error; 0: not in the frame
+  ByAttribute<double> attribute_quanta{};  ///< twice the maximum error; 0: attribute omitted
 
   bool operator==(const FrameScale&) const = default;
 };
 
-/// Largest level of detail. Level d contains the layers 0 to d.
+/// Greatest level of detail. Level d contains the layers 0 to d, see detail_layer().
 inline constexpr std::uint8_t kFullDetail = 3;
 /// Returns the layer of a particle number. Layers 0 and 1 each contain an eighth of a body's
-/// particles, layer 2 a quarter, layer 3 half.
+/// particles, layer 2 a quarter, and layer 3 half.
 std::uint8_t detail_layer(std::uint32_t number);
 
 /// An axis-aligned box [m].
@@ -43,30 +43,30 @@ struct FrameRegion {
   bool operator==(const FrameRegion&) const = default;
 };
 
-/// Selects the particles of liquid and deformable bodies in a frame.
+/// Selection of the particles of liquid and deformable bodies in a frame.
 struct FrameSelection {
   std::uint8_t detail = kFullDetail;
-  std::optional<FrameRegion> region;  ///< only particles inside or on the boundary
+  std::optional<FrameRegion> region;  ///< only particles inside or on the boundary; absent: all
 
   bool operator==(const FrameSelection&) const = default;
 
   bool is_all() const { return detail == kFullDetail && !region; }
 };
 
-/// The quantised data of one body. Encoder and decoders store the same integers.
+/// Quantised data of one body. The encoder and all decoders store the same integers.
 struct GridBlock {
   enum class Kind : std::uint8_t { liquid = 0, deformable = 1, rigid = 2, vat = 3 };
 
-  std::uint32_t body = 0;  ///< 0 for the vat
+  std::uint32_t body = 0;  ///< id of the body; 0: the vat
   Kind kind = Kind::liquid;
-  // Liquid and deformable bodies.
+  // Members of liquid and deformable bodies.
   std::vector<std::uint32_t> numbers;    ///< particle numbers, ascending; empty: 0, 1, 2, ...
   std::vector<std::uint16_t> positions;  ///< x, y, z of each particle
   ByAttribute<std::vector<std::int32_t>> attributes;
-  // Rigid bodies: centre of mass in half quanta from the grid's origin. The vat: displacement since
-  // time 0 in quanta.
+  // Rigid bodies: centre of mass relative to the grid's origin [1/2 quantum]. Vat: displacement
+  // since time 0 [quantum].
   std::array<std::int32_t, 3> place{};
-  /// Rigid bodies: unit quaternion w, x, y, z times 2^orientation_bits, rounded.
+  /// Rigid bodies: unit quaternion w, x, y, z, multiplied by 2^orientation_bits and rounded.
   std::array<std::int32_t, 4> orientation{};
   std::uint8_t orientation_bits = 0;
 
@@ -78,7 +78,8 @@ struct GridBlock {
   bool operator==(const GridBlock&) const = default;
 };
 
-/// A quantised frame. Its blocks are in the order of the description's bodies, the vat first.
+/// A quantised frame. The block of the vat is the first. The other blocks are in the order of the
+/// bodies in the session's description.
 struct GridFrame {
   FrameHeader header;
   FrameScale scale;
@@ -87,18 +88,20 @@ struct GridFrame {
   std::vector<GridBlock> blocks;
 };
 
-/// Clears ascending `numbers` of `count` particles if they are 0, 1, 2, ...
+/// Clears `numbers` if the elements are 0, 1, ..., count - 1. `numbers` must be ascending.
 void drop_plain_numbers(std::size_t count, std::vector<std::uint32_t>& numbers);
 
-/// Writes the quantised state. The error of each position and attribute, and of each particle of a
-/// rigid body, is at most half a quantum per axis. Positions outside the grid are moved to its
-/// edge. Attributes are limited to 2^20 quanta. Reuses the memory of `frame`.
+/// Writes the quantised state to `frame` and reuses the memory of `frame`. The error of each
+/// coordinate and attribute is at most half a quantum, also for the particles of rigid bodies.
+/// Positions outside the grid are moved to the edge of the grid. Attributes are limited to 2^20
+/// quanta in magnitude.
 void make_grid_frame(const PublishedState& state, const FrameScale& scale, GridFrame& frame);
-/// Writes the selected part of a frame. `part` must be another frame; its memory is reused.
+/// Writes the selected part of the frame `all` to `part`, and reuses the memory of `part`. The
+/// arguments must be different objects.
 void select_particles(const GridFrame& all, const FrameSelection& selection, GridFrame& part);
 
-/// Returns whether two frames show the same content: they may differ in number, stride, tick, time,
-/// publication time and real-time factor only.
+/// Returns whether two frames show the same content. Number, stride, tick, time, publication time
+/// and real-time factor can differ.
 bool show_the_same(const GridFrame& a, const GridFrame& b);
 
 /// Returns a rigid body's centre of mass or the vat's displacement [m].

@@ -10,32 +10,33 @@
 #include "protocol/frame/cell_order.h"
 #include "protocol/frame/symbols.h"
 
-/// Prediction from neighbouring particles: FRAMES.md, "Context of neighbouring cells". All numbers
-/// are integers, so that all decoders compute the same values.
+/// Prediction of particle data from neighbouring particles (FRAMES.md, "Context of neighbouring
+/// cells"). All numbers are integers, so that all decoders compute the same values.
 namespace vat {
 
 using Triple = std::array<std::int32_t, 3>;
 
 inline constexpr std::size_t kInverses = 2048;
-/// 65536 / n, rounded down.
+/// Table of 65536 / n, rounded down.
 inline constexpr std::array<std::int32_t, kInverses> kInverse = [] {
   std::array<std::int32_t, kInverses> all{};
   for (std::size_t n = 1; n < kInverses; ++n) all[n] = 65536 / static_cast<std::int32_t>(n);
   return all;
 }();
 
-/// Returns the class for residuals with a mean magnitude of `size` / 2048.
+/// Returns the residual class for a mean residual magnitude of `size` / 2048.
 inline std::int32_t class_of_size(std::int32_t size) {
   const auto s = static_cast<std::uint32_t>(std::max(size, 64));
   const int octave = static_cast<int>(std::bit_width(s)) - 7;
   return 4 * octave + static_cast<int>(s >> (octave + 4) & 3) - 3;
 }
 
-/// Context for three quantities per particle, coded cell by cell. The residuals of earlier
-/// particles correct the next prediction and determine the width of its distribution.
+/// Context for the coding of three quantities per particle, cell by cell. The residuals of earlier
+/// particles correct the next prediction and determine the width of the residual's distribution.
 class Neighbourhood {
  public:
-  /// Classes chosen by the encoder: a shift of all classes, and the class without context.
+  /// Parameters chosen by the encoder. `shift` is added to all classes. `first_class` is used
+  /// without context.
   struct Tuning {
     std::int32_t shift = 0;
     std::uint32_t first_class = 0;
@@ -51,16 +52,17 @@ class Neighbourhood {
   }
   void leave(std::size_t cell) { cells_[cell] = own_; }
 
-  /// Writes the expected values and their distributions, from predictions [eighths].
+  /// Writes the integer parts of the corrected predictions and the residual distributions.
+  /// `predictions` are in eighths.
   void expect(const Triple& predictions, Triple& wholes,
               std::array<Expectation, 3>& expected) const;
   void learn(const Triple& predictions, const Triple& wholes,
              const std::array<Expectation, 3>& expected, const Triple& values);
 
  private:
-  static constexpr std::int32_t kMaxCounted = 63;         // particles of a cell
-  static constexpr std::int32_t kMaxResidual = 8184;      // [eighths]
-  static constexpr std::int32_t kMaxResidualSize = 2047;  // [eighths]
+  static constexpr std::int32_t kMaxCounted = 63;         // particles per cell
+  static constexpr std::int32_t kMaxResidual = 8184;      // in eighths
+  static constexpr std::int32_t kMaxResidualSize = 2047;  // in eighths
 
   struct Sums {
     std::int32_t count = 0;
@@ -78,7 +80,7 @@ class Neighbourhood {
 
   std::vector<Sums> cells_;
   Tuning tuning_;
-  Sums before_;  // of the three preceding neighbours of the current cell
+  Sums before_;  // sums of the three preceding neighbour cells
   Sums own_;
 };
 

@@ -8,8 +8,8 @@
 
 #include "core/support/check.h"
 
-/// The entropy coder of FRAMES.md: three interleaved range asymmetric numeral systems (rANS;
-/// J. Duda, arXiv:1311.2540), with frequencies of 12 bits and words of 16 bits.
+/// Entropy coder of FRAMES.md. Three range asymmetric numeral systems (rANS; J. Duda,
+/// arXiv:1311.2540) are interleaved. Frequencies have 12 bits, and words have 16 bits.
 namespace vat::rans {
 
 inline constexpr int kScaleBits = 12;
@@ -18,15 +18,15 @@ inline constexpr std::uint32_t kMinState = 1U << 15;  // states are in [kMinStat
 inline constexpr std::size_t kLanes = 3;
 inline constexpr std::size_t kStateBytes = 4 * kLanes;
 
-/// Collects symbols in reading order and encodes them in reverse order, as rANS requires.
+/// An rANS encoder. Collects symbols in reading order and encodes the symbols in reverse order.
 class Encoder {
  public:
   void clear() { symbols_.clear(); }
-  /// Appends a symbol with the range [start, start + frequency) of 4096.
+  /// Appends a symbol that occupies the slots [start, start + frequency) of 4096.
   void put(std::uint32_t lane, std::uint32_t start, std::uint32_t frequency) {
     symbols_.push_back(start | frequency << 12 | lane << 25);
   }
-  /// Appends the states and the words.
+  /// Appends the states of all lanes and the encoded words.
   void finish(std::vector<std::uint8_t>& bytes);
 
  private:
@@ -34,10 +34,10 @@ class Encoder {
   std::vector<std::uint16_t> words_;
 };
 
-/// Reads symbols. After the end of the data it reads zeros, and ended_early() is true.
+/// An rANS decoder. After the end of the data, the decoder reads zeros and ended_early() is true.
 class Decoder {
  public:
-  /// Reads the initial states. If there are fewer bytes, ended_early() is true.
+  /// Reads the initial states. If there are too few bytes, ended_early() is true.
   explicit Decoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), left_(bytes.size()) {
     for (std::uint32_t& state : states_) {
       const std::uint32_t low = word();
@@ -62,7 +62,8 @@ class Decoder {
 
   bool ended_early() const { return ended_early_; }
   std::size_t bytes_left() const { return left_; }
-  /// Returns whether the states equal the encoder's initial states, as after the last symbol.
+  /// Returns whether the states equal the encoder's initial states. This is true after the last
+  /// symbol of valid data.
   bool is_at_start() const {
     return states_ == std::array<std::uint32_t, kLanes>{kMinState, kMinState, kMinState};
   }

@@ -7,20 +7,21 @@
 #include "protocol/frame/rans.h"
 #include "protocol/frame/residual_tables.h"
 
-/// The symbols of FRAMES.md, "Symbols". Writer and reader have functions of the same names, so that
-/// the same code encodes and decodes a frame.
+/// Symbols of FRAMES.md, "Symbols". SymbolWriter and SymbolReader have functions of the same names,
+/// so that one template function can encode and decode.
 namespace vat {
 
-/// A residual's class and the centre of its distribution.
+/// Class of a residual, and centre of the residual's distribution.
 struct Expectation {
   std::uint32_t residual_class = 0;
-  std::int32_t fraction = 0;  ///< [eighths] prediction minus its integer part, -4 to 3
+  std::int32_t fraction = 0;  ///< prediction minus its integer part, -4 to 3 eighths
 };
 
 constexpr bool is_far(const Expectation& expected) {
   return expected.fraction >= 2 || expected.fraction <= -2;
 }
 
+/// Encoder of symbols. Each function writes its argument and returns it.
 class SymbolWriter {
  public:
   static constexpr bool kReads = false;
@@ -28,7 +29,7 @@ class SymbolWriter {
   void clear() { coder_.clear(); }
   void finish(std::vector<std::uint8_t>& bytes) { coder_.finish(bytes); }
 
-  /// Writes the lowest `count` bits, at most 12.
+  /// Writes the lowest `count` bits of `value`. `count` is at most 12.
   std::uint32_t bits(std::uint32_t value, std::uint32_t count, std::uint32_t lane = 0) {
     if (count > 0) coder_.put(lane, value << (rans::kScaleBits - count), rans::kScale >> count);
     return value;
@@ -78,8 +79,8 @@ class SymbolWriter {
   rans::Encoder coder_;
 };
 
-/// Reads symbols; ignores the values of its arguments. After invalid input, is_sound() is false
-/// permanently, and further results are undefined but in range.
+/// Decoder of symbols. The functions ignore the value arguments. After invalid input, is_sound() is
+/// false permanently, and all further results are unspecified but in range.
 class SymbolReader {
  public:
   static constexpr bool kReads = true;
@@ -133,7 +134,7 @@ class SymbolReader {
   }
 
   bool is_sound() const { return !was_refused_ && !coder_.ended_early(); }
-  /// Marks the input as invalid, unless the data has ended before.
+  /// Marks the input as invalid. Has no effect if the decoder has passed the end of the data.
   void refuse() { was_refused_ = was_refused_ || !coder_.ended_early(); }
   bool was_refused() const { return was_refused_; }
   /// Returns whether the input can contain `count` items of at least one bit.
@@ -152,7 +153,7 @@ class SymbolReader {
     return is_negative ? -high : high;
   }
 
-  static constexpr std::uint32_t kMaxBits = 30;  // limit of a residual
+  static constexpr std::uint32_t kMaxBits = 30;  // greatest number of bits of a residual
 
   rans::Decoder coder_;
   bool was_refused_ = false;

@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// Returns untrusted text for a message: printable ASCII, with a limited length.
+/// Returns untrusted text as printable ASCII of limited length, for messages.
 std::string printable(std::string_view text);
 
 }  // namespace vat

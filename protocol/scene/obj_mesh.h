@@ -9,9 +9,9 @@ namespace vat {
 
 inline constexpr std::size_t kMaxObjBytes = 16 * 1024 * 1024;  // sufficient for 200 000 triangles
 
-/// Reads a Wavefront `.obj` text. Returns all objects as one mesh, with polygons split into
-/// triangles and coordinates multiplied by `scale`. Ignores normals, textures, lines and points.
-/// `source` is the name in error messages. Codes: bad_mesh, too_large.
+/// Returns the content of a Wavefront `.obj` text as one mesh. Polygons are split into triangles,
+/// and coordinates are multiplied by `scale`. Ignores normals, textures, lines and points. `source`
+/// is the name for error messages. Error codes: bad_mesh, too_large.
 Result<MeshShape> read_obj(const std::string& text, const std::string& source, Real scale);
 
 }  // namespace vat

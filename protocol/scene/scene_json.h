@@ -11,48 +11,49 @@
 
 namespace vat {
 
-/// Returns the text of the `.obj` file of a scene, or an error. The server's source reads its
-/// catalogue only, so that clients cannot read other files.
+/// Function that returns the text of a scene's `.obj` file, or an error. The server's function
+/// reads only files of its catalogue, so that clients cannot read other files.
 using MeshSource = std::function<Result<std::string>(const std::string& name)>;
 
-/// Returns a source that reads files below `folder`. It rejects absolute names and "..".
+/// Returns a source that reads files below `folder`. The source rejects absolute names and names
+/// with "..".
 MeshSource meshes_in_folder(std::string folder);
 
-/// Limits of the text of a scene.
+/// Limits of the JSON text of a scene.
 inline constexpr JsonLimits kSceneLimits{4 * 1024 * 1024, 16, 1'000'000};
 
-/// Reads a scene. Returns all errors of the document and of the scene's values (find_errors()). If
-/// the document has errors, find_errors() checks only the parts that were read completely.
+/// Returns a scene. Returns all errors of the document and of the scene's values (find_errors()).
+/// If the document has errors, find_errors() checks only completely read parts.
 Result<Scene> read_scene(const Json& document, const MeshSource& meshes);
 Result<Scene> read_scene_text(std::string_view text, const MeshSource& meshes);
-/// Reads a scene file and the mesh files in its folder. A scene without a name gets the file name
-/// without its extension.
+/// Returns the scene of a file, with mesh files of the same folder. A scene without a name gets the
+/// file name without its extension.
 Result<Scene> read_scene_file(const std::string& path);
 
-/// Read one body, interface or material in the format of a scene file. They check the document, not
-/// its consistency with a scene. `path` prefixes the paths of errors.
+/// Return one body, interface or material in the format of a scene file. Check the document but not
+/// its consistency with a scene. Paths of errors begin with `path`.
 Result<BodyDescription> read_body(const Json& document, const std::string& path,
                                   const MeshSource& meshes);
 Result<InterfaceDescription> read_interface(const Json& document, const std::string& path);
 Result<Material> read_material(const Json& document, const std::string& path);
 
-/// Returns JSON from which read_scene() makes a bitwise equal scene. Meshes are written inline,
-/// with vertices and triangles.
+/// Returns JSON from which read_scene() creates a bitwise equal scene. Meshes are inline, with
+/// vertices and triangles.
 Json write_scene(const Scene& scene);
 
-/// A scene of the catalogue. Its name is the file name without the extension.
+/// Entry of the catalogue of scenes. `name` is the file name without its extension.
 struct CatalogueEntry {
   std::string name;
   std::string title;
   std::string description;
 };
-/// All scenes `*.json` of a folder.
+/// Catalogue of all scene files (`*.json`) in a folder.
 class Catalogue {
  public:
-  /// Fails if the folder cannot be read or a file is not a valid scene.
+  /// Returns an error if the folder cannot be read or a file is not a valid scene.
   static Result<Catalogue> open(const std::string& folder);
   const std::vector<CatalogueEntry>& entries() const { return entries_; }
-  /// Returns null if there is no such scene.
+  /// Returns the scene, or null if the catalogue has no scene with this name.
   const Scene* find(std::string_view name) const;
 
  private:

@@ -6,13 +6,13 @@
 
 namespace vat {
 
-/// Role of a client. Each role includes the rights of those before it.
+/// Role of a client. Each role includes the rights of all previous roles.
 enum class Role : std::uint8_t {
   none,        ///< no token was sent yet
-  viewer,      ///< watches and reads
-  controller,  ///< changes the simulation
-  owner,       ///< of a session: sets roles, and closes it
-  admin        ///< of the server: all rights in all sessions
+  viewer,      ///< may watch and read
+  controller,  ///< may change the simulation
+  owner,       ///< may set roles and close the session
+  admin        ///< has all rights in all sessions of the server
 };
 template <>
 inline constexpr std::array kNamesOf<Role>{"none", "viewer", "controller", "owner", "admin"};

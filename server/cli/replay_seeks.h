@@ -7,8 +7,8 @@
 
 namespace vat {
 
-/// Seeks random positions of a recording, first without and then with added moments. Prints the
-/// times and the memory of the moments.
+/// Seeks random positions of a recording, first without and then with cached moments (MomentCache).
+/// Prints the seek times and the memory of the moments.
 void time_seeks(const Recording& recording, const SessionEnvironment& environment,
                 std::size_t count);
 

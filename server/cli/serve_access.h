@@ -11,12 +11,13 @@ namespace vat {
 /// Access settings of a server.
 struct ServeAccess {
   AccessSettings settings;
-  std::string made_token;  ///< a generated admin token, or empty
+  std::string made_token;  ///< generated admin token; empty: none was generated
 };
 
-/// Fails if the token file cannot be read, or a token is too short.
+/// Returns the access settings. Returns an error if the token file cannot be read or a token is too
+/// short.
 Result<ServeAccess> serve_access(const ServeSettings& settings);
-/// Prints access information for the operator. `url` is the viewer's.
+/// Prints access information for the operator. `url` is the address of the viewer.
 void tell_access(const ServeSettings& settings, const ServeAccess& access, const std::string& url);
 
 }  // namespace vat

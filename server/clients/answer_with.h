@@ -9,8 +9,8 @@
 
 namespace vat {
 
-/// Answers with the result of `work`, or with the error that describes the exception that it
-/// throws. `what` names the work in the log.
+/// Answers a request with the result of `work`. If `work` throws an exception, logs the exception
+/// and answers with an error. `what` is the prefix of the log message.
 template <class Work>
 void answer_with(PendingReply& reply, std::string_view what, Work&& work) {
   try {

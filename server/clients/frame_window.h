@@ -10,25 +10,26 @@
 
 namespace vat {
 
-/// Delays from sending a frame to its acknowledgement.
+/// Delays between the transmission of a frame and its acknowledgement.
 struct AckDelays {
   std::uint64_t count = 0;                ///< number of acknowledgements
-  std::chrono::duration<double> mean{};   ///< weighted mean, recent ones weigh more
-  std::chrono::duration<double> least{};  ///< least of the last ten to twenty seconds
+  std::chrono::duration<double> mean{};   ///< weighted mean; recent delays have more weight
+  std::chrono::duration<double> least{};  ///< least delay of the last 10 to 20 seconds
 };
 
 /// Frames that were sent to a client and are not acknowledged.
 class FrameWindow {
  public:
-  /// Removes all frames: another session has its own numbers.
+  /// Removes all frames. Another session has other frame numbers.
   void clear();
   void sent(std::uint32_t number, SteadyClock::time_point now);
-  /// Acknowledges all frames up to this number. Returns false if no such frame was sent.
+  /// Acknowledges all frames up to this number. Returns false if no frame with this number was
+  /// sent.
   bool acknowledge(std::uint32_t number, SteadyClock::time_point now);
 
   std::size_t in_flight() const { return in_flight_.size(); }
   const AckDelays& delays() const { return delays_; }
-  /// Time at which the oldest frame in flight was sent.
+  /// Returns the time at which the oldest unacknowledged frame was sent.
   std::optional<SteadyClock::time_point> waits_since() const;
 
  private:
@@ -38,10 +39,10 @@ class FrameWindow {
   };
   void measure(std::chrono::duration<double> delay, SteadyClock::time_point now);
 
-  std::deque<Sent> in_flight_;  // the oldest first
+  std::deque<Sent> in_flight_;  // oldest frame first
   std::uint32_t last_sent_ = 0;
   AckDelays delays_;
-  // Least delays of the current and the last time span.
+  // Least delays of the current and the previous time span.
   SteadyClock::time_point span_began_{};
   std::chrono::duration<double> least_now_{};
   std::chrono::duration<double> least_before_{};

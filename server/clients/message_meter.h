@@ -13,18 +13,18 @@
 
 namespace vat {
 
-/// Limits events to `rate` per second on average, and `burst` at once. Used by one thread at a
-/// time.
+/// Limit of `rate` events per second on average and `burst` events at once. Not thread-safe.
 class TokenBucket {
  public:
   using Seconds = std::chrono::duration<double>;
 
-  /// Initially full.
+  /// The bucket is initially full.
   TokenBucket(double rate, double burst, SteadyClock::time_point now)
       : rate_(rate), burst_(burst), level_(burst), filled_at_(now) {}
 
-  /// Takes the amount. If it is not available, takes nothing and returns the time until it is. An
-  /// amount above a burst is taken from a full bucket, and the rest is owed.
+  /// Takes an amount from the bucket. If the level is too low, takes nothing and returns the
+  /// waiting time. An amount above `burst` requires a full bucket, and the level then becomes
+  /// negative.
   std::optional<Seconds> take(double amount, SteadyClock::time_point now) {
     level_ = std::min(burst_, level_ + rate_ * Seconds(now - filled_at_).count());
     filled_at_ = now;
@@ -41,23 +41,23 @@ class TokenBucket {
   SteadyClock::time_point filled_at_;
 };
 
-/// Rate that a message exceeds.
+/// Rate limit that a message exceeds.
 struct RateExcess {
-  std::string_view limit;  ///< its name in server.info's `limits`
-  double maximum = 0;      ///< its value
+  std::string_view limit;  ///< name in server.info's `limits`
+  double maximum = 0;      ///< value of the limit
   TokenBucket::Seconds retry_after{};
-  /// The connection has sent so many refused messages that it must be closed.
+  /// True if the connection has sent so many refused messages that it must be closed.
   bool is_flood = false;
 };
 
-/// Counts the messages of one connection against its rate limits. Used by one thread at a time.
+/// Counter of one connection's messages, with its rate limits. Not thread-safe.
 class MessageMeter {
  public:
   MessageMeter(const ServerLimits& limits, SteadyClock::time_point now);
 
-  /// Counts the bytes of a message before it is read.
+  /// Counts the bytes of a message before the message is parsed.
   std::optional<RateExcess> count_bytes(std::size_t bytes, SteadyClock::time_point now);
-  /// Counts the message in its class.
+  /// Counts a message in its rate class.
   std::optional<RateExcess> count(RateClass rate_class, SteadyClock::time_point now);
 
  private:

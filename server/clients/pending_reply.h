@@ -12,11 +12,11 @@
 
 namespace vat {
 
-/// Reply to a request, which is sent once. Moves with the request. If it is destroyed unanswered
-/// because the client has left, the request no longer counts as in flight.
+/// Reply to a request, which is sent once. If the client has left, the object is destroyed without
+/// a reply. The request then no longer counts as in flight.
 class PendingReply {
  public:
-  /// Without an id the request is a notification, and nothing is sent.
+  /// Without an id, the request is a notification and gets no reply.
   PendingReply(std::shared_ptr<ClientOutbox> client, std::optional<Json> id,
                ServerMetrics* metrics = nullptr)
       : client_(std::move(client)), id_(std::move(id)), metrics_(metrics) {}
@@ -38,15 +38,16 @@ class PendingReply {
 
   const std::shared_ptr<ClientOutbox>& client() const { return client_; }
 
-  /// The method that is called. Set by the dispatch, before handlers and sessions get the reply.
+  /// Returns the called method. The dispatcher sets the method before handlers and sessions get the
+  /// reply.
   const MethodRow& method() const {
     VAT_CHECK(method_ != nullptr);
     return *method_;
   }
   void set_method(const MethodRow& method) { method_ = &method; }
 
-  /// Counts the request, a message of `bytes`, as in flight until it is answered. Returns the error
-  /// if the client has too much in flight.
+  /// Counts the request, a message of `bytes`, as in flight until the reply. Returns an error if
+  /// the client has too many requests in flight.
   std::optional<RpcError> count(std::size_t bytes, std::size_t max_commands,
                                 std::size_t max_bytes) {
     if (const auto excess = client_->begin_command(bytes, max_commands, max_bytes)) {
@@ -56,12 +57,12 @@ class PendingReply {
     return {};
   }
 
-  /// False for a notification.
+  /// Returns false for a notification.
   bool wants_answer() const { return id_.has_value(); }
 
   void answer(const RpcResult& result) {
     if (metrics_ != nullptr) count_refusal(result);
-    uncount();  // first, because the client may send its next command as soon as it has the answer
+    uncount();  // first, because the client may send a command as soon as it gets the reply
     if (id_) client_->send(write_reply(*id_, result));
   }
 

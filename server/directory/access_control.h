@@ -7,18 +7,19 @@
 
 namespace vat {
 
-/// Access of connections by tokens. Safe to use from any thread.
+/// Access control of connections by tokens. Thread-safe.
 class AccessControl {
  public:
   AccessControl(ServerResources& resources, DirectoryTables& tables, const Admission& admission);
 
-  /// Grants a new connection its first access: without tokens all, otherwise none, and it is closed
-  /// unless it enters in time. The caller must hold the directory's lock.
+  /// Sets the initial access of a new connection. Without tokens, the connection gets all access.
+  /// Otherwise, the connection has no access and is closed if it sends no token in time. The caller
+  /// must hold the directory's lock.
   void start(Client& client);
-  /// Gives the client the access of the token. Answered at once, or later if the token is invalid.
+  /// Grants the access of the token to the client. The reply to an invalid token is delayed.
   std::optional<RpcResult> enter(PendingReply& reply, std::string_view token);
-  /// Returns a token that is valid once, for a short time. Only an admin may ask for one without a
-  /// session, which is valid in all sessions.
+  /// Returns a token that is valid once, for a short time. Only an admin may request a token
+  /// without a session, which is valid in all sessions.
   RpcResult issue_ticket(const PendingReply& reply, Role role,
                          const std::optional<SessionId>& session);
 

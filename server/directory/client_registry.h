@@ -10,33 +10,33 @@
 
 namespace vat {
 
-/// A connection, and the session that it has joined.
+/// Connection, and the session that the connection has joined.
 struct Client {
   std::shared_ptr<ClientOutbox> outbox;
-  SessionNumber session = 0;  ///< 0: none
+  SessionNumber session = 0;  ///< 0: no session
   Grant access;
   std::size_t wrong_tokens = 0;
 };
 
-/// The connections of a server. The caller must hold the directory's lock.
+/// Connections of a server. The caller must hold the directory's lock.
 class ClientRegistry {
  public:
   explicit ClientRegistry(const OwnedMutex& mutex) : mutex_(mutex) {}
 
-  /// The connection must be new.
+  /// Adds a client. The connection must be new.
   Client& add(std::shared_ptr<ClientOutbox> outbox);
-  /// Returns null if the connection has ended.
+  /// Returns the client, or null if the connection has ended.
   Client* find(ConnectionId id);
   const Client* find(ConnectionId id) const;
-  /// Returns the client that the reply is for, or null.
+  /// Returns the client to which the reply belongs, or null.
   const Client* find(const PendingReply& reply) const { return find(reply.client()->id()); }
   Client* find(const PendingReply& reply) { return find(reply.client()->id()); }
   void remove(ConnectionId id);
   std::size_t size() const;
-  /// Number of clients that have joined the session.
+  /// Returns the number of clients that have joined the session.
   std::size_t count_in(SessionNumber session) const;
   const std::map<ConnectionId, Client>& all() const;
-  /// Ends the membership of all clients of the session, and sends them `event`.
+  /// Ends the membership of all clients of the session, and sends `event` to them.
   void close_session(SessionNumber session, const std::string& event);
 
  private:

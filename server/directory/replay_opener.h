@@ -11,19 +11,19 @@ namespace vat {
 /// Source of a replay: a stored session, or an imported recording.
 struct ReplaySource {
   std::optional<SessionId> session;
-  std::optional<std::string> recording;  ///< set if `session` is not
-  std::string name;                      ///< of the new session; empty: the recording's
+  std::optional<std::string> recording;  ///< name of an import; set if `session` is absent
+  std::string name;                      ///< name of the new session; empty: name of the recording
 };
 
-/// Imports recordings, and creates sessions that replay them. Safe to use from any thread.
+/// Import of recordings, and creation of sessions that replay recordings. Thread-safe.
 class ReplayOpener {
  public:
   ReplayOpener(ServerResources& resources, DirectoryTables& tables, Admission& admission);
 
-  /// Adds a part of a file. The last part is answered after the whole file is read.
+  /// Adds a part of a file. The reply to the last part is sent after the whole file was read.
   std::optional<RpcResult> import_recording(PendingReply& reply, const Imports::Chunk& part);
-  /// Creates a session that replays the source, and answers with its id. Returns an error if that
-  /// is known at once.
+  /// Creates a session that replays the source, and answers with the id of the session. Errors that
+  /// are known immediately are returned instead.
   std::optional<RpcError> open(PendingReply& reply, const ReplaySource& source);
 
  private:

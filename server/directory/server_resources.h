@@ -14,14 +14,15 @@
 
 namespace vat {
 
-/// Saved states and scenes of a server without a data folder. They end with the server.
+/// Saved states and scenes of a server without a data folder. The data is deleted when the server
+/// ends.
 struct SavedInMemory {
   SavedStates states{MainDatabase::kInMemory};
   SavedScenes scenes{std::make_shared<MainDatabase>(MainDatabase::kInMemory)};
 };
 
-/// Threads, storage and budgets that all sessions share. The members are in the order in which they
-/// depend on each other; all are safe to use from any thread.
+/// Threads, storage and budgets that all sessions share. Each member depends only on previous
+/// members. All members are thread-safe.
 struct ServerResources {
   /// Throws StorageError if the data folder cannot be used.
   ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in, Clock& clock_in,
@@ -32,7 +33,7 @@ struct ServerResources {
   const Catalogue& catalogue;
   const ServerSettings settings;
   Clock& clock;
-  /// Runs parts of session steps on idle threads of the pool.
+  /// Runs blocks of simulation steps on helper threads.
   ThreadPoolRunner runner;
   ServerMetrics metrics;
   AccessTokens tokens;
@@ -42,15 +43,16 @@ struct ServerResources {
   Downloads downloads;
   Imports imports;
   const std::unique_ptr<Storage> storage;                // null: sessions are in memory only
-  const std::unique_ptr<SavedInMemory> saved_in_memory;  // null: they are in the storage
+  const std::unique_ptr<SavedInMemory> saved_in_memory;  // null: saved data is in the storage
   const SessionEnvironment environment;
-  // Limits and budget for session recovery, which must not reject previously accepted sessions.
+  // Limits and budget for the recovery of sessions, which must accept all previously accepted
+  // sessions.
   const ServerLimits recovery_limits;
   ResourceBudget recovery_budget;
   const SessionEnvironment recovery_environment;
   boost::asio::thread_pool pool;
   const std::shared_ptr<DeferredTasks> deferred;
-  /// Creations of sessions run one at a time, so that they take at most one thread.
+  /// Strand that creates sessions one at a time, so that creations use at most one thread.
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations;
 
   SavedScenes& saved_scenes() const { return *environment.scenes; }

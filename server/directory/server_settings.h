@@ -14,25 +14,25 @@
 
 namespace vat {
 
-/// Number of a session, from which its id is made. Sessions from kFirstReplay on are replays, which
+/// Number of a session, which determines its id. Numbers from kFirstReplay are for replays, which
 /// are not stored.
 using SessionNumber = std::uint64_t;
 inline constexpr SessionNumber kFirstReplay = SessionNumber{1} << 62;
 
-/// Identifies a session for the life of the server. Not used twice.
+/// Identifier of a session. An id is not used twice.
 using SessionId = std::string;
 SessionId to_id(SessionNumber number);
 
 struct ServerSettings {
   ServerLimits limits;
-  std::string version;  ///< reported by server.info
+  std::string version;  ///< version in the result of server.info
   InstructionSet instructions = best_instruction_set();
-  std::size_t threads = 0;  ///< of sessions; 0: as many as the machine has cores
+  std::size_t threads = 0;  ///< threads for sessions; 0: number of cores
   AccessSettings access;
-  std::string data_folder;  ///< stores sessions; empty: sessions are in memory only
+  std::string data_folder;  ///< folder for stored sessions; empty: sessions are in memory only
   StorageLimits storage;
-  /// Ends the server after the given time for clients, or after its default time, and returns that
-  /// time. May be called from any thread. Empty: clients cannot end the server.
+  /// Ends the server after the given time for clients, or after the default time. Returns the time.
+  /// Must be thread-safe. Empty: clients cannot end the server.
   std::function<std::chrono::milliseconds(std::optional<std::chrono::milliseconds>)> end;
 };
 

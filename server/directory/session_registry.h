@@ -14,19 +14,19 @@
 
 namespace vat {
 
-/// A stored session that is not running: it is being recovered, or its recovery has failed.
+/// Stored session that is not running, because its recovery is in progress or has failed.
 struct AbsentSession {
-  /// A session.join that waits for the recovery.
+  /// Request session.join that waits for the recovery.
   struct Waiting {
     PendingReply reply;
     JoinRequest request;
   };
   std::string name;
-  bool is_lost = false;  ///< the recovery has failed; the session stays in the storage
+  bool is_lost = false;  ///< the recovery has failed; the session remains in the storage
   std::vector<Waiting> waiting;
 };
 
-/// The sessions of a server, running and absent. The caller must hold the directory's lock.
+/// Running and absent sessions of a server. The caller must hold the directory's lock.
 class SessionRegistry {
  public:
   using Running = std::map<SessionNumber, std::shared_ptr<Session>>;
@@ -34,32 +34,34 @@ class SessionRegistry {
 
   explicit SessionRegistry(const OwnedMutex& mutex) : mutex_(mutex) {}
 
-  /// Returns a number that no session had: of a session in memory, or of a replay.
+  /// Returns an unused number for a session in memory. next_replay_number() returns an unused
+  /// number for a replay.
   SessionNumber next_number();
   SessionNumber next_replay_number();
 
-  /// `place` counts towards the sessions of its creator's address; null: the server's own.
+  /// Adds a running session. `place` counts towards the sessions of the creator's address. Null:
+  /// the server created the session.
   void add(SessionNumber number, std::shared_ptr<Session> session, AddressCounts::Place place);
   void remove(SessionNumber number);
-  /// Returns null if no running session has the id.
+  /// Returns the running session with this id, or null.
   const Running::value_type* find(const SessionId& id) const;
-  /// Returns null if there is no running session. The first never expires.
+  /// Returns the first running session, or null. The first session never expires.
   const Running::value_type* first() const;
-  /// The session must be running.
+  /// Returns a session, which must be running.
   Session& at(SessionNumber number) const;
   const Running& running() const;
   std::size_t replay_count() const;
 
   void add_absent(SessionNumber number, const std::string& name);
   void remove_absent(SessionNumber number);
-  /// Returns null if no absent session has the id. Without an id: the first session, if it is being
-  /// recovered.
+  /// Returns the absent session with this id, or null. Without an id, returns the first session if
+  /// its recovery is in progress.
   Absent::value_type* find_absent(const std::optional<SessionId>& id);
   AbsentSession& absent_at(SessionNumber number);
   const Absent& absent() const;
   bool is_recovering() const;
 
-  /// Running and absent.
+  /// Returns the number of running and absent sessions.
   std::size_t size() const;
 
  private:

@@ -13,27 +13,27 @@
 
 namespace vat {
 
-/// Distributes the frames of a session to its viewers. A viewer that is not ready when a frame is
-/// due receives a newer one as soon as it is ready. Viewers with equal selections and reference
+/// Distributor of a session's frames to the viewers. A viewer that is not ready for a due frame
+/// receives a newer frame as soon as it is ready. Viewers with equal selections and reference
 /// frames form a group and share one encoding. At most kMaxFrameGroups groups are encoded per
-/// state. The viewers of the other groups receive the next state. Used by one thread at a time.
+/// state. The viewers of the other groups receive the next state. Not thread-safe.
 class FrameDelivery {
  public:
   FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics);
 
-  /// Replaces an earlier subscription of the client. The client receives the next state regardless
-  /// of its period.
+  /// Adds a subscription, or replaces the client's subscription. The client receives the next state
+  /// regardless of its period.
   void add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
            Subscription subscribed);
   void remove(ConnectionId client);
-  /// Sets the vat of later states, after a scene change or a reset.
+  /// Sets the vat of later states after a scene change or a reset.
   void set_vat(const std::optional<Vat>& vat);
-  /// Sets the position error [m] for viewers whose subscription has no `max_error`. Initially 0,
+  /// Sets the position error [m] for subscriptions without `max_error`. The initial value 0 selects
   /// the finest grid.
   void set_default_error(double max_error) { default_error_ = max_error; }
 
-  /// Sends a new state to the viewers that are scheduled for it. Swaps `state` with an older state,
-  /// whose memory the caller can reuse.
+  /// Sends a new state to the viewers with a due frame. Exchanges `state` for an older state, so
+  /// that the caller can reuse memory.
   void publish(PublishedState& state, SteadyClock::time_point now);
   /// Sends the last state to clients that may have become ready.
   void retry(std::span<const ConnectionId> clients, SteadyClock::time_point now);
@@ -44,17 +44,17 @@ class FrameDelivery {
     std::uint64_t subscription = 0;
     Subscription subscribed;
     FramePace pace;
-    bool awaits_any = true;   ///< a frame is due even if it shows nothing new
-    bool has_turn = false;    ///< the viewer was scheduled for the last state
-    bool owes_frame = false;  ///< a state was due, and no frame was sent since
+    bool awaits_any = true;   ///< a frame is due even without new content
+    bool has_turn = false;    ///< the last state was due for the viewer
+    bool owes_frame = false;  ///< a state was due, and no frame was sent afterwards
     HeldFrames held;
-    std::uint32_t shown = 0;  ///< number of the last frame that made the viewer's display current
-    std::uint64_t sent_tick = 0;  ///< of the last frame
-    std::size_t passed_over = 0;  ///< consecutive times that its group was not encoded
+    std::uint32_t shown = 0;      ///< number of the last state that the viewer shows
+    std::uint64_t sent_tick = 0;  ///< tick of the last sent frame
+    std::size_t passed_over = 0;  ///< consecutive states in which its group was not encoded
 
     std::uint64_t period() const { return subscribed.every * pace.stride(); }  ///< [ticks]
   };
-  /// All properties of a viewer on which the bytes of its frame depend.
+  /// All properties of a viewer that determine the bytes of its frame.
   struct GroupKey {
     FrameCut cut;
     std::uint8_t stride = 1;
@@ -66,7 +66,7 @@ class FrameDelivery {
   };
   struct EncodedFrame {
     std::shared_ptr<const GridFrame> frame;
-    SharedFrame bytes;  // null: the frame would show nothing new
+    SharedFrame bytes;  // null: the frame has no new content
   };
   using Groups = std::map<GroupKey, std::vector<Viewer*>>;
 
@@ -81,12 +81,12 @@ class FrameDelivery {
   ServerMetrics& metrics_;
   std::map<ConnectionId, Viewer> viewers_;
   FrameSource source_;
-  std::map<GroupKey, EncodedFrame> encoded_;  // of the last state
+  std::map<GroupKey, EncodedFrame> encoded_;  // frames of the last state
   double default_error_ = 0;
   std::uint8_t least_detail_ = kFullDetail;
   bool has_state_ = false;
-  std::uint64_t tick_ = 0;   // of the last state
-  std::uint32_t epoch_ = 0;  // of the last state
+  std::uint64_t tick_ = 0;   // tick of the last state
+  std::uint32_t epoch_ = 0;  // epoch of the last state
 };
 
 }  // namespace vat

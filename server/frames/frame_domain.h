@@ -9,10 +9,10 @@
 
 namespace vat {
 
-/// Box that the frame grids of an epoch cover: the vat over its whole motion, and all particles of
-/// the last state. It has slack, so that the grid seldom changes and particles at rest do not
-/// flicker between grid positions. It is at most four times as wide as its content, so that one
-/// distant drop does not make all positions coarse.
+/// Box that the frame grids of an epoch cover. The box contains the vat in all positions of its
+/// motion, and all particles of the last state. A margin prevents frequent changes of the grid,
+/// which would make resting particles flicker. The box is at most four times as wide as its
+/// content, so that one distant drop does not make all positions coarse.
 class FrameDomain {
  public:
   FrameDomain() = default;
@@ -28,7 +28,7 @@ class FrameDomain {
 };
 
 /// Returns the default position error of frames [m]: 1/64 of the particle spacing of the finest
-/// liquid or deformable body. Returns 0, the finest grid, if there is no such body.
+/// liquid or deformable body. Without such a body, returns 0 (the finest grid).
 double default_max_error(const Simulation& simulation);
 
 }  // namespace vat

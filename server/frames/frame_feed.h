@@ -14,25 +14,25 @@
 
 namespace vat {
 
-/// Passes a session's states to its FrameDelivery, on a strand of the frame threads. These have a
-/// low priority, so that no tick waits for an encoder. While the strand is busy, a newer state
-/// replaces the waiting one. Safe to use from any thread.
+/// Queue from a session to its FrameDelivery, which runs on a strand of the frame threads. The
+/// frame threads have a low priority, so that encoding does not delay ticks. While the strand is
+/// busy, a newer state replaces the waiting state. Thread-safe.
 class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<FrameFeed> {
  public:
   FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
             boost::asio::thread_pool& pool, const Clock& clock);
 
-  /// Changes take effect before a state that is published later. Returns true if a waiting state
-  /// was dropped, because it may lack attributes of the new subscription; a state should then be
-  /// published soon.
+  /// Adds or replaces a subscription. The change applies to all later published states. Returns
+  /// true if a waiting state was dropped. Such a state may lack attributes of the new subscription.
+  /// The caller should then publish a state soon.
   bool add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription, Subscription wish);
   void remove(ConnectionId client);
   void set_vat(const std::optional<Vat>& vat);
-  /// See FrameDelivery.
+  /// See FrameDelivery::set_default_error().
   void set_default_error(double max_error);
 
-  /// Takes the state. Exchanges it for the memory of an older one, so that publishing does not
-  /// allocate.
+  /// Queues the state for delivery. Exchanges `state` for an older state, so that publishing does
+  /// not allocate.
   void publish(PublishedState& state);
   void wake(ConnectionId client) override;
   /// Runs `task` after all earlier calls have taken effect.
@@ -51,7 +51,7 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   struct PendingChanges {
     std::vector<Change> changes;
     PublishedState state;
-    bool has_state = false;  // otherwise `state` is only memory for the next
+    bool has_state = false;  // if false, `state` is only reusable memory
     std::vector<ConnectionId> woken;
   };
   template <class Put>
@@ -67,8 +67,8 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   PendingChanges pending_;
   bool turn_scheduled_ = false;
 
-  // Used on the strand only.
-  PendingChanges active_changes_;  // empty between turns, but keeps its memory
+  // Members that only the strand uses.
+  PendingChanges active_changes_;  // empty between turns; the memory is reused
   FrameDelivery delivery_;
 };
 

@@ -7,27 +7,27 @@
 
 namespace vat {
 
-/// Returns the least level of detail (0 to kFullDetail) that leaves at least 2000 particles, or
-/// all. Fewer particles would not make a slow viewer faster.
+/// Returns the lowest level of detail (0 to kFullDetail) with at least 2000 particles. Returns
+/// kFullDetail if there are too few particles. Fewer particles would not make a slow viewer faster.
 std::uint8_t least_detail(std::size_t particles);
 
-/// Reduces the frames of a slow viewer, so that its frames stay recent. Uses the frames that it
-/// missed and the delays of its acknowledgements. Reduces first the rate to a quarter, then the
-/// precision to a quarter, then the detail. Raises them in reverse order after a period without
-/// delays. A failed raise makes the next period longer.
+/// Adaptation of frames to a slow viewer, so that the displayed frames are recent. Uses the number
+/// of missed frames and the delays of acknowledgements. Reduces first the rate to a quarter, then
+/// the precision to a quarter, then the detail. Increases the values in reverse order after a
+/// period without delays. An unsuccessful increase lengthens the next period.
 class FramePace {
  public:
-  /// `max_stride` (1 to 4): the greatest divisor of the rate.
+  /// `max_stride` (1 to 4) is the greatest divisor of the rate.
   explicit FramePace(unsigned max_stride = 4) : max_stride_(max_stride) {}
 
-  /// The least level of detail (0 to kFullDetail; initially 0).
+  /// Sets the lowest level of detail (0 to kFullDetail). The initial value is 0.
   void set_least_detail(std::uint8_t least);
 
-  /// Notes that a frame is due, whether the viewer is ready for it, and its acknowledgements so
+  /// Records that a frame is due, whether the viewer is ready, and the viewer's acknowledgements so
   /// far.
   void frame_due(bool is_ready, const AckDelays& delays, SteadyClock::time_point now);
 
-  unsigned stride() const;      ///< every so many frames one is sent
+  unsigned stride() const;      ///< every stride-th due frame is sent
   unsigned coarseness() const;  ///< factor of the requested error: 1, 2 or 4
   std::uint8_t detail() const;  ///< greatest level of detail
 
@@ -41,8 +41,8 @@ class FramePace {
 
   unsigned max_stride_;
   std::uint8_t least_detail_ = 0;
-  unsigned level_ = 0;  // number of reductions; 0: none
-  // Since the last change of the level.
+  unsigned level_ = 0;  // number of reductions
+  // Values since the last change of the level.
   SteadyClock::time_point interval_began_{};
   std::uint64_t acks_ = 0;
   unsigned due_ = 0;
@@ -50,8 +50,8 @@ class FramePace {
 
   SteadyClock::time_point calm_since_{};
   SteadyClock::time_point raised_at_{};
-  bool was_raised_ = false;  // the last change was a raise
-  Seconds calm_time_{1};     // required time without delays before a raise
+  bool was_raised_ = false;  // the last change was an increase
+  Seconds calm_time_{1};     // required time without delays before an increase
 };
 
 }  // namespace vat

@@ -16,8 +16,8 @@
 
 namespace vat {
 
-/// Reuses the memory of frames that nobody holds. Used by one thread at a time, as are its frames.
-/// Frames may outlive the pool.
+/// Pool of frames that reuses the memory of released frames. The pool and its frames are not
+/// thread-safe. Frames may outlive the pool.
 class GridFramePool {
  public:
   /// Returns a frame with unspecified content.
@@ -42,15 +42,15 @@ class GridFramePool {
   std::shared_ptr<Spare> spare_ = std::make_shared<Spare>();
 };
 
-/// Frames that a client holds as references, the newest first; null: none.
+/// Frames that a client can use as references, the newest first. Null: no frame.
 using HeldFrames = std::array<std::shared_ptr<const GridFrame>, 2>;
 
 /// Selection and quantisation of a viewer's frames. Viewers with equal cuts receive equal frames.
 class FrameCut {
  public:
   FrameCut() = default;
-  /// Errors are `coarseness` times the requested ones, and the detail is at most `detail`.
-  /// Positions have the error `default_error` [m] if none was requested.
+  /// Errors are the requested errors times `coarseness`. The level of detail is at most `detail`.
+  /// Positions without a requested error have the error `default_error` [m].
   FrameCut(const Subscription& subscription, double default_error, unsigned coarseness,
            std::uint8_t detail);
 
@@ -58,7 +58,7 @@ class FrameCut {
   double coarseness() const { return coarseness_; }
   const ByAttribute<double>& attribute_errors() const { return attribute_errors_; }
   FrameSelection selection() const;
-  /// The same errors, for all particles.
+  /// Returns a cut with the same errors for all particles.
   FrameCut of_all() const;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reports a zero in the default
@@ -73,23 +73,23 @@ class FrameCut {
   std::array<double, 6> region_{};
 };
 
-/// Frames of a session's states. A state is quantised once per cut, and encoded once per cut and
-/// pair of references. Used by one thread at a time.
+/// Quantised and encoded frames of a session's states. Each state is quantised once per cut. Not
+/// thread-safe.
 class FrameSource {
  public:
   FrameSource(const std::optional<Vat>& vat, ServerMetrics& metrics);
 
-  /// Restarts the grids, for another scene or a reset.
+  /// Restarts the grids after a scene change or a reset.
   void set_vat(const std::optional<Vat>& vat);
-  /// Sets the state of the next frames. It gets a new number if it differs from the last one.
-  /// Exchanges `state` for the memory of an older one.
+  /// Sets the state of the next frames. A state that differs from the last state gets a new number.
+  /// Exchanges `state` for an older state.
   void publish(PublishedState& state);
 
   std::uint32_t number() const { return state_.header.number; }
   const FrameHeader& header() const { return state_.header; }
   /// Returns the quantised state. Equal cuts get the same frame until the next state.
   std::shared_ptr<const GridFrame> frame(const FrameCut& cut);
-  /// Encodes the frame relative to the reference frames, as far as they can be used.
+  /// Returns the frame, encoded relative to the usable reference frames in `held`.
   SharedFrame encode(const GridFrame& frame, const HeldFrames& held, std::uint8_t stride);
 
  private:
@@ -100,7 +100,7 @@ class FrameSource {
   PublishedState state_;
   FrameEncoder encoder_;
   GridFramePool pool_;
-  std::map<FrameCut, std::shared_ptr<const GridFrame>> frames_;  // of the last state
+  std::map<FrameCut, std::shared_ptr<const GridFrame>> frames_;  // frames of the last state
 };
 
 }  // namespace vat

@@ -7,12 +7,12 @@
 
 namespace vat {
 
-/// Selection and greatest precision of the frames that a client requests.
+/// Selection and precision of the frames that a client requests.
 struct Subscription {
   std::optional<double> max_error;  ///< [m]; 0: the finest grid; absent: the session's default
   std::uint64_t every = 1;          ///< [ticks]
   FrameSelection selection;
-  /// Greatest errors [m/s], [kg/m^3], [Pa], [m/s^2]; 0: without the attribute.
+  /// Greatest errors of the attributes [m/s], [kg/m^3], [Pa], [m/s^2]; 0: attribute omitted.
   ByAttribute<double> attribute_errors{};
 };
 

@@ -9,8 +9,9 @@
 
 namespace vat {
 
-/// Makes a recording of a stored session, up to its newest checkpoint or stored progress. It
-/// contains no tokens. Returns nothing if more than `most` bytes are stored. Throws StorageError.
+/// Returns a recording of a stored session, up to the newest checkpoint or stored progress. The
+/// recording contains no tokens. Returns nothing if more than `max_bytes` are stored. Throws
+/// StorageError.
 std::optional<Recording> record_session(Storage& storage, std::uint64_t session,
                                         std::size_t max_bytes);
 

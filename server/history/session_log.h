@@ -15,26 +15,26 @@
 
 namespace vat {
 
-/// Method name of the entry by which a participant leaves and its grabs end.
+/// Method name of the log entry that removes a participant and ends its grabs.
 inline constexpr std::string_view kLeaveEntry = "leave";
-/// Method name of the entry by which the grabs of a participant end.
+/// Method name of the log entry that ends the grabs of a participant.
 inline constexpr std::string_view kReleaseGrabsEntry = "let_go";
 
-/// Decides when a checkpoint is written. Limits the work that a recovery repeats, and the share of
-/// time that checkpoints take.
+/// Decision when to write a checkpoint. Limits the work that a recovery repeats, and the share of
+/// checkpoints in the computing time.
 class CheckpointPace {
  public:
   using Seconds = std::chrono::duration<double>;
-  static constexpr double kMaxShare = 0.05;  ///< of checkpoints in the work of ticks and commands
-  static constexpr Seconds kMaxWork =
-      Seconds(10);  ///< between checkpoints, regardless of their cost
+  static constexpr double kMaxShare = 0.05;  ///< greatest share of checkpoints in the work
+  /// Greatest work between two checkpoints, regardless of their cost.
+  static constexpr Seconds kMaxWork = Seconds(10);
 
-  /// `wanted`: work between two checkpoints, if their cost allows it.
+  /// `wanted` is the work (computing time) between two checkpoints, if the cost permits.
   explicit CheckpointPace(Seconds wanted) : wanted_(wanted) {}
 
-  /// Adds working time of the session.
+  /// Adds computing time of ticks and commands.
   void add_work(Seconds time) { work_ += time; }
-  /// Whether the work since the last checkpoint suffices. `cost`: time that the last one took.
+  /// Returns whether a checkpoint is due. `cost` is the computing time of the last checkpoint.
   bool is_due(Seconds cost) const;
   void begin() { work_ = Seconds(0); }
 
@@ -43,11 +43,11 @@ class CheckpointPace {
   Seconds work_{0};
 };
 
-/// Stored log, progress and checkpoints of a session. Entries are stored when the call returns. The
-/// storage's thread writes all else. Used by one thread at a time.
+/// Stored log, progress and checkpoints of a session. Log entries are stored when append() returns.
+/// The storage's thread writes all other data. Not thread-safe.
 class SessionLog {
  public:
-  /// State of the session when its log is opened.
+  /// State of the session at the opening of the log.
   struct Place {
     std::uint64_t last = 0;  ///< sequence of the last stored entry
     std::uint64_t position = 0;
@@ -55,45 +55,47 @@ class SessionLog {
   };
   SessionLog(Storage& storage, std::uint64_t session, const Place& place);
 
-  /// Sets the sequences of the entries, and stores all of them or none. Throws StorageError.
+  /// Assigns sequences to the entries, and stores all entries or no entry. Throws StorageError.
   void append(std::span<LogEntry> entries);
-  /// Marks an entry that changed nothing.
+  /// Marks an entry as refused. A refused entry had no effect.
   void refuse(std::uint64_t sequence);
-  /// A recovery will reach at least this position. Throws StorageError.
+  /// Stores that a recovery must repeat at least the ticks up to this position. Throws
+  /// StorageError.
   void reach(std::uint64_t position);
   std::uint64_t last() const { return last_; }
   /// Stores the settings of the session's owner. Throws StorageError.
   void configure(const std::string& name, const std::string& settings);
 
-  /// Whether a hash of the state is stored at this position. It tells a replay the first tick that
-  /// differs. Stored after each tick, or less often while bodies sleep and a tick may cost less
-  /// than its hash.
+  /// Returns whether a hash of the state is stored at this position. With the hashes, a replay
+  /// detects the first different tick. A hash is stored after each tick, and less often while
+  /// bodies sleep, because a hash may then cost more than a tick.
   static bool is_hash_due(const Simulation& simulation, std::uint64_t position) {
     return simulation.sleeping_body_count() == 0 || position % kSleepingHashInterval == 0;
   }
-  /// Adds the hash of the state after the tick that ended at a position.
+  /// Adds the hash of the state after a tick. `position` is the position at the end of the tick.
   void add_hash(std::uint64_t position, std::uint64_t hash) { hashes_.push_back({position, hash}); }
   void add_work(CheckpointPace::Seconds time) { pace_.add_work(time); }
-  /// Whether store() should be called: the session has changed since a second ago, or a checkpoint
-  /// is due. `people` counts the changes of its participants.
+  /// Returns whether store() should be called. The session must have changed since the last call.
+  /// In addition, the last call must be at least a second ago, or a checkpoint must be due.
+  /// `people` counts the changes of the participants.
   bool is_due(std::uint64_t position, std::uint64_t people, SteadyClock::time_point now) const;
-  /// Stores the progress, and a checkpoint if one is due, or `always`.
+  /// Stores the progress. Also stores a checkpoint if a checkpoint is due or `always` is true.
   void store(SessionMoment moment, SteadyClock::time_point now, bool always = false);
   /// Stores the progress and a checkpoint, and then runs `task` on the storage's thread.
   void store_then(SessionMoment moment, SteadyClock::time_point now,
                   std::function<void(Storage&, std::uint64_t session)> task);
-  /// Frees the storage of a closed session, soon.
+  /// Frees the stored data of a closed session in the background.
   void close() { storage_.remove_closed(); }
 
  private:
-  /// Shared with tasks of the storage's thread, which may outlive this.
+  /// State shared with tasks of the storage's thread, which may outlive the log.
   struct Writing {
     std::atomic<bool> under_way = false;
     std::atomic<double> checkpoint_cost = 0;  // [s]
     std::atomic<std::size_t> log_bytes = 0;
   };
   static constexpr std::uint64_t kSleepingHashInterval = 16;
-  /// Runs `write`, and counts a StorageError that it throws.
+  /// Runs `write`, and counts a StorageError.
   template <class Write>
   void write_now(const Write& write);
   static void write(Storage& storage, std::uint64_t session, const SessionMoment& moment,
@@ -106,13 +108,13 @@ class SessionLog {
   const std::uint64_t session_;
   std::uint64_t last_;
   CheckpointPace pace_;
-  // Of the last stored moment.
+  // Values of the last stored moment.
   std::uint64_t stored_position_ = 0;
   std::uint64_t stored_last_ = 0;
   std::uint64_t stored_people_ = 0;
   SteadyClock::time_point stored_at_{};
   bool needs_checkpoint_;
-  std::vector<TickHash> hashes_;  ///< not stored yet
+  std::vector<TickHash> hashes_;  ///< hashes that are not stored yet
   const std::shared_ptr<Writing> writing_ = std::make_shared<Writing>();
 };
 

@@ -11,17 +11,17 @@
 
 namespace vat {
 
-/// State of a session at one moment, sufficient to continue from it. May be read by any thread.
+/// State of a session from which the session can continue. Thread-safe if not modified.
 struct SessionMoment {
-  std::uint64_t position = 0;   ///< as in a LogEntry
-  std::uint64_t tick = 0;       ///< as in a LogEntry
-  std::uint64_t sequence = 0;   ///< of the last executed entry of the log
-  std::uint64_t loaded = 0;     ///< of the entry that loaded the scene
+  std::uint64_t position = 0;   ///< see LogEntry
+  std::uint64_t tick = 0;       ///< see LogEntry
+  std::uint64_t sequence = 0;   ///< sequence of the last executed log entry
+  std::uint64_t loaded = 0;     ///< sequence of the entry that loaded the scene
   std::uint64_t last_grab = 0;  ///< greatest id of a grab
   std::uint32_t epoch = 1;
   bool playing = true;
   double speed = 1;
-  std::uint64_t people = 0;  ///< changes of the participants so far; not stored
+  std::uint64_t people = 0;  ///< number of changes of the participants; not stored
   Json participants;         ///< see write_participants()
   Snapshot snapshot;
 
@@ -30,18 +30,19 @@ struct SessionMoment {
   std::string fields() const;
 };
 
-/// Reads the result of fields(). Throws StorageError, of kind corrupt, if it is invalid.
+/// Returns the moment with the result of fields(). Throws StorageError (kind `corrupt`) if `fields`
+/// is invalid.
 SessionMoment read_moment(const std::string& fields, Snapshot snapshot);
 
-/// Returns the settings, except the name.
+/// Returns the settings as JSON, without the name.
 Json write_settings(const SessionSettings& settings);
-/// Throws StorageError, of kind corrupt, if the settings are invalid.
+/// Returns the settings. Throws StorageError (kind `corrupt`) if the settings are invalid.
 SessionSettings read_settings(std::string name, const std::string& settings);
 
-/// Returns the participants with the hashes of their tokens and their grabs.
+/// Returns the participants as JSON, with their grabs and the hashes of their tokens.
 Json write_participants(const Participants& participants);
-/// Adds the participants of write_participants() as placeholders. Throws StorageError, of kind
-/// corrupt, if they are invalid.
+/// Adds the participants in the result of write_participants() as placeholders. Throws StorageError
+/// (kind `corrupt`) if the JSON is invalid.
 void read_participants(const Json& json, Participants& participants);
 
 }  // namespace vat

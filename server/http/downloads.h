@@ -14,26 +14,26 @@
 
 namespace vat {
 
-/// Files for one client each, which fetches them once by their unguessable path before they expire.
-/// Safe to use from any thread.
+/// Files for download by one client each. A client gets a file once, by an unguessable path, before
+/// the file expires. Thread-safe.
 class Downloads {
  public:
   static constexpr std::string_view kFolder = "/downloads/";
   static constexpr std::chrono::seconds kPatience{60};
 
   struct File {
-    std::string name;  ///< suggested to the browser
+    std::string name;  ///< name suggested to the browser
     std::string content;
   };
 
-  /// `max_bytes`: limit of all waiting files.
+  /// `max_bytes` is the limit for all waiting files.
   explicit Downloads(std::size_t max_bytes = ServerLimits{}.max_download_bytes)
       : max_bytes_(max_bytes) {}
 
-  /// Returns the path, or nothing if the limit would be exceeded.
+  /// Adds a file. Returns its path, or nothing if the limit would be exceeded.
   std::optional<std::string> add(File file, SteadyClock::time_point now);
   std::optional<File> take(std::string_view path, SteadyClock::time_point now);
-  /// Removes expired files. Returns the bytes of the others.
+  /// Removes expired files. Returns the size of the remaining files [bytes].
   std::size_t forget_old(SteadyClock::time_point now);
 
  private:
@@ -49,7 +49,7 @@ class Downloads {
   std::size_t bytes_ = 0;
 };
 
-/// Returns a handler for GET of these files, which passes other requests to `site`.
+/// Returns a handler for GET requests of the files. The handler passes other requests to `site`.
 HttpHandler with_downloads(HttpHandler site, Downloads& downloads, const Clock& clock);
 
 }  // namespace vat

@@ -9,17 +9,18 @@
 
 namespace vat {
 
-/// Sources of the answers about the server.
+/// Sources of the responses about the server.
 struct SiteSources {
-  std::function<std::string()> metrics;  ///< the text of "/metrics"
+  std::function<std::string()> metrics;  ///< returns the text of "/metrics"
   std::function<ServerPhase()> phase;
-  std::string version;  ///< the JSON of "/version"
+  std::string version;  ///< JSON text of "/version"
 };
 
-/// Returns a handler for GET and HEAD of the viewer's files ("/" is "/index.html"), and of
-/// "/healthz": 200 while the process runs; "/readyz": 200 if the server admits sessions, 503 while
-/// it starts, recovers or drains; "/version" and "/metrics". Without a viewer, "/" describes how to
-/// build it.
+/// Returns a handler for GET and HEAD:
+/// - files of the viewer ("/" is "/index.html"). Without a viewer, "/" describes how to build it.
+/// - "/healthz": 200 while the process runs.
+/// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
+/// - "/version" and "/metrics".
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources);
 
 }  // namespace vat

@@ -6,8 +6,9 @@
 
 namespace vat {
 
-/// Returns the decoded path of a request target ("/a%20b?c" gives "/a b"). Returns nothing if the
-/// target is not a path, or has an invalid escape, a NUL, a backslash, or a "." or ".." segment.
+/// Returns the decoded path of a request target ("/a b" for "/a%20b?c"). Returns nothing if the
+/// target is not a path, or contains an invalid escape, a NUL, a backslash, or a "." or ".."
+/// segment.
 std::optional<std::string> request_path(std::string_view target);
 
 }  // namespace vat

@@ -13,11 +13,11 @@ namespace vat {
 
 struct StaticFilesLimits {
   std::size_t max_files = 1000;
-  std::size_t max_bytes = 64 * 1024 * 1024;  ///< of all files together
+  std::size_t max_bytes = 64 * 1024 * 1024;  ///< total size of all files
 };
 
-/// Files of a folder, read once at the start. No path leads out of the folder, and a rebuild does
-/// not mix old and new files.
+/// Files of a folder, which are read once at the start. No request path can access files outside
+/// the folder. A rebuild of the viewer during operation cannot mix old and new files.
 class StaticFiles {
  public:
   struct File {
@@ -25,9 +25,9 @@ class StaticFiles {
     std::string content;
   };
 
-  /// Reads the regular files of the folder and its sub-folders, except symbolic links and names
-  /// that begin with '.'. A missing folder is empty. Fails if a file cannot be read or a limit is
-  /// exceeded.
+  /// Reads the regular files of the folder and its subfolders, except symbolic links and names that
+  /// begin with '.'. A missing folder is treated as empty. Returns an error if a file cannot be
+  /// read or a limit is exceeded.
   static Result<StaticFiles> read(const std::filesystem::path& folder,
                                   const StaticFilesLimits& limits = {});
 
@@ -39,7 +39,7 @@ class StaticFiles {
   std::map<std::string, File, std::less<>> files_;
 };
 
-/// Returns the content type for the ending of a file name.
+/// Returns the content type for the extension of a file name.
 std::string content_type_of(const std::filesystem::path& name);
 
 }  // namespace vat

@@ -5,25 +5,25 @@
 #include "core/simulation/simulation.h"
 #include "protocol/json/json_reader.h"
 
-/// JSON of a simulation, as PROTOCOL.md specifies it.
+/// JSON descriptions of a simulation (PROTOCOL.md).
 namespace vat {
 
 Json to_json(const Vec3& vector);
 Json to_json(const Quat& orientation);
 
-/// Returns the `bodies` of a description, which do not change within an epoch.
+/// Returns the `bodies` of a session's description. The bodies do not change within an epoch.
 Json describe_bodies(const Simulation& simulation);
-/// Returns `null`, or the vat at offset zero.
+/// Returns the vat at offset zero, or `null` without a vat.
 Json describe_vat(const std::optional<Vat>& vat);
-/// Returns a body of state.query, with full precision.
+/// Returns a body in the result of state.query, with full precision.
 Json describe_state(const BodyView& body);
-/// Returns a flat list of body and particle numbers of all pairs, and a list of values rounded to
-/// four digits. `values` is the name of the second list.
+/// Returns a flat list of body and particle numbers of all pairs. Also returns a list of values,
+/// which are rounded to four digits. `values` is the name of the second list.
 Json describe_connections(const ConnectionList& list, const char* values);
-/// Returns the sums over all bodies.
+/// Returns the sums of the diagnostics over all bodies.
 Json describe_diagnostics(const Diagnostics& diagnostics);
 Json describe_guard(const GuardEvent& event, std::uint64_t tick);
-/// Returns 16 hexadecimal digits.
+/// Returns a hash as 16 hexadecimal digits.
 std::string describe_hash(std::uint64_t hash);
 
 }  // namespace vat

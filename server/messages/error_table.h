@@ -26,15 +26,16 @@ enum class ErrorKind : std::uint8_t {
   not_recovered
 };
 
-/// Properties of all errors of a kind. Codes and names do not change. A new error gets a new kind.
+/// Properties of all errors of a kind. Codes and names do not change. A new type of error gets a
+/// new kind.
 struct ErrorRow {
   ErrorKind kind;
-  int code;               ///< the reply's `code`
-  std::string_view name;  ///< its `data.kind`
-  std::string_view hint;  ///< its `data.hint`: a sentence that says how to continue
+  int code;               ///< member `code` of the error
+  std::string_view name;  ///< member `data.kind` of the error
+  std::string_view hint;  ///< member `data.hint`: a sentence that states how to continue
 };
 
-/// Returns one row per kind, in their order: the table of errors in PROTOCOL.md.
+/// Returns the table of errors in PROTOCOL.md: one row per kind, in the order of ErrorKind.
 std::span<const ErrorRow> error_rows();
 const ErrorRow& error_row(ErrorKind kind);
 

@@ -11,32 +11,32 @@
 
 namespace vat {
 
-/// The rate limit that a message counts towards.
+/// Rate limit that applies to a message.
 enum class RateClass : std::uint8_t {
-  query,    ///< reads, or acknowledges a frame
-  control,  ///< a command with a few numbers
-  pointer,  ///< follows a pointer; only the latest of one tick is executed
-  scene     ///< contains a scene or a body, and may be long
+  query,    ///< reads data, or acknowledges a frame
+  control,  ///< command with a few numbers
+  pointer,  ///< command that follows a pointer; only the latest per tick is executed
+  scene     ///< command with a scene or a body, which may be long
 };
 template <>
 inline constexpr std::array kNamesOf<RateClass>{"query", "control", "pointer", "scene"};
 
-/// Whether the calls of a method are logged, so that a recovery or replay repeats them.
+/// Whether calls of a method are logged. A recovery or a replay repeats logged calls.
 enum class Logging : std::uint8_t {
   none,
-  clock,  ///< logged; sets only when ticks run. A replay has its own clock and skips it.
+  clock,  ///< logged; only controls when ticks run. A replay skips the call.
   scene   ///< logged; changes the simulation. Not allowed in a replay.
 };
 
-/// The role that is compared with the least role of a method.
+/// Role that must be at least the least role of a method.
 enum class RoleSource : std::uint8_t {
-  connection,   ///< granted to the connection by access.enter
-  participant,  ///< of the caller in the session that it has joined
-  named         ///< of the caller in the session that the parameters name
+  connection,   ///< role that access.enter granted to the connection
+  participant,  ///< caller's role in the session that the caller has joined
+  named         ///< caller's role in the session that the parameters name
 };
 
-/// Properties of a method that do not depend on its parameters. The table is in
-/// server/rpc/method_table.cpp.
+/// Properties of a method that do not depend on its parameters. server/rpc/method_table.cpp
+/// contains the table.
 struct MethodRow {
   std::string_view name;
   Role least_role = Role::none;
@@ -44,13 +44,15 @@ struct MethodRow {
   RateClass rate_class = RateClass::query;
   Logging logging = Logging::none;
 
-  /// File in protocol/schemas/ that defines the schemas NAME.params and NAME.result.
+  /// Returns the name of the file in protocol/schemas/ with the schemas NAME.params and
+  /// NAME.result.
   std::string schema_file() const;
   constexpr bool is_logged() const { return logging != Logging::none; }
   constexpr bool changes_scene() const { return logging == Logging::scene; }
 };
 
-/// Returns the error if `role` is below the least role of the method. The only check of roles.
+/// Returns an error if `role` is below the least role of the method. All role checks use this
+/// function.
 std::optional<RpcError> refuse_role(const MethodRow& row, Role role);
 
 }  // namespace vat

@@ -13,69 +13,72 @@
 #include "server/storage/sqlite/storage_error.h"
 #include "server/support/limit_excess.h"
 
-/// JSON-RPC 2.0 messages and the errors of PROTOCOL.md.
+/// JSON-RPC 2.0 messages, and the errors of PROTOCOL.md.
 namespace vat {
 
-/// Error of a reply. `data` is added to its `kind` and `hint`, for example `path`: the pointer of
-/// an invalid parameter.
+/// Error of a reply. `data` contains members in addition to `kind` and `hint`, for example `path`
+/// (JSON pointer of an invalid parameter).
 struct RpcError {
   ErrorKind kind;
-  std::string message;  ///< for users
+  std::string message;  ///< message for users
   Json data = Json::object();
 };
 
-// Errors of the kinds in error_rows(). Names of methods, sessions and scenes may contain any text;
-// they are made printable.
+// The functions below return errors of the kinds in error_rows(). Names of methods, sessions and
+// scenes may contain any text, and are converted to printable text.
 
-/// `error` is that of parse_json(). Its code becomes `data.reason`.
+/// Returns an error for `error` of parse_json(). `data.reason` is the code of `error`.
 RpcError parse_failed(const Error& error);
 RpcError invalid_request(std::string message);
 RpcError method_not_found(std::string_view method);
-/// `errors` must not be empty. Paths are pointers into `params`.
+/// Returns an error with all elements of `errors`, which must not be empty. Paths are JSON pointers
+/// into `params`.
 RpcError invalid_params(const Errors& errors);
-/// Fault of this program. Only the log describes it.
+/// Returns an error for a fault of this program. Details are only in the log.
 RpcError internal_error();
 RpcError not_joined();
-/// Without a path: the session has ended while a command waited.
+/// Returns an error for a missing session. Without a path, the session has ended while a command
+/// waited.
 RpcError no_such_session(std::string_view session, std::string_view path = {});
 RpcError no_such_body(std::string message, const std::string& path);
 RpcError no_such_scene(std::string_view scene, std::string_view path = "/scene");
-/// The session has no saved state with this name, the parameter `name`.
+/// Returns an error for a missing saved state. The path is the parameter `name`.
 RpcError no_such_state(std::string_view name);
-/// `limit` is the name in server.info's `limits`, and `maximum` its value.
+/// Returns an error for an exceeded limit. `limit` is the name in server.info's `limits`, and
+/// `maximum` is the value.
 RpcError limit_reached(std::string_view limit, std::size_t maximum);
 RpcError limit_reached(const LimitExcess& excess);
 RpcError not_allowed(std::string message);
-/// The role of the caller is below the least role of the method.
+/// Returns an error for a role below the least role of the method.
 RpcError role_too_low(std::string_view method, Role role, Role least);
 RpcError not_authenticated(std::string message);
-/// Another participant holds the body.
+/// Returns an error for a body that another participant has grabbed.
 RpcError held_by_other(std::uint64_t participant, const std::string& name);
-/// A command could not be stored, and was not executed.
+/// Returns an error for a command that could not be logged and was not executed.
 RpcError storage_failed(StorageError::Kind reason);
-/// `state` is "recovering" or "lost".
+/// Returns an error for a session that is not running. `state` is "recovering" or "lost".
 RpcError not_recovered(std::string_view session, std::string_view state);
-/// `limit` is the name in server.info's `limits`, `maximum` its value, and `retry_after` is in
-/// seconds.
+/// Returns an error for an exceeded rate. `limit` is the name in server.info's `limits`, `maximum`
+/// is the value, and `retry_after` is in [s].
 RpcError rate_limited(std::string_view limit, double maximum, double retry_after);
-/// Error of the core: no_such_body has its own kind, all others are invalid_params.
+/// Converts errors of the core. no_such_body has its own kind, and all others are invalid_params.
 RpcError refused(const Errors& errors);
 
-/// Content of a reply: its `result`, an object, or its `error`.
+/// Content of a reply: `result` (a JSON object) or `error`.
 using RpcResult = std::variant<Json, RpcError>;
 
-/// A request of valid form. Its method may be unknown.
+/// Request of valid form. The method may be unknown.
 struct RpcRequest {
-  std::optional<Json> id;  ///< a string of at most 64 bytes or an integer; absent: a notification
+  std::optional<Json> id;  ///< at most 64 bytes or an integer; absent: a notification
   std::string method;
-  Json params;  ///< an object; empty if the message has none
+  Json params;  ///< JSON object; empty if the message has no parameters
 };
 
-/// Returns the request in a parsed message, or the error. Sets `id` as soon as a valid one is
-/// found, so that an error can be answered to it.
+/// Returns the request in a parsed message, or an error. Sets `id` even if another part of the
+/// message is invalid, so that the error reply can contain the id.
 std::variant<RpcRequest, RpcError> read_request(Json message, std::optional<Json>& id);
 
-/// Return the text of a message to a client. A reply to an unreadable message has the id null.
+/// Return the text of a message to a client. The reply to an unreadable message has the id null.
 std::string write_reply(const Json& id, const RpcResult& result);
 std::string write_event(std::string_view event, Json params);
 

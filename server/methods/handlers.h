@@ -9,11 +9,12 @@
 #include "server/session/core/session_command.h"
 
 /// Handlers of all methods. A handler reads the parameters and returns the action that executes the
-/// call. It adds invalid parameters to `errors`; the action is then not used.
+/// call. A handler adds an error to `errors` for each invalid parameter. The caller then ignores
+/// the action.
 namespace vat {
 
 /// Action of a server method, called on the transport's thread. Returns the reply, or nothing if
-/// the reply was moved and is answered later.
+/// the reply was moved for a later answer.
 using ServerAction = std::function<std::optional<RpcResult>(SessionDirectory&, PendingReply&)>;
 
 using ServerHandler = ServerAction (*)(ObjectReader& params, Errors& errors);

@@ -5,29 +5,29 @@
 
 #include "server/directory/session_directory.h"
 
-/// Functions that several handlers use.
+/// Functions that several method handlers use.
 namespace vat {
 
-/// Reads the parameter `body`. The body may not exist.
+/// Returns the parameter `body`. The body may not exist.
 BodyId read_body_id(ObjectReader& params);
-/// Reads the parameter `session`. The session may not exist.
+/// Returns the parameter `session`. The session may not exist.
 SessionId read_session_id(ObjectReader& params);
 
-/// Returns an action that reads the required parameter `parameter`, a scene or a part of a scene.
+/// Returns an action that reads the required parameter `parameter` (a scene or a part of a scene).
 /// The action reports all errors of the parameter.
 SessionAction read_action_on(const char* parameter, ObjectReader& params,
                              ActionResult (*action)(SessionCore&, const Json&));
 
-/// Changes the simulation. Undoes the change and returns the error if the core rejects the change.
-/// The same applies if the change exceeds a limit.
+/// Changes the simulation. If the core rejects the change or the change exceeds a limit, undoes the
+/// change and returns an error.
 std::optional<RpcError> change_within_limits(SessionCore& core,
                                              const std::function<Status(Simulation&)>& change);
 
-/// Returns the error if another participant holds the body.
+/// Returns an error if another participant has grabbed the body.
 std::optional<RpcError> refuse_held_body(SessionCore& core, const Participant& participant,
                                          BodyId body);
 
-/// Returns the sessions that the client may join. `add` adds members to each.
+/// Returns the sessions that the client may join. `add` adds members to each session.
 RpcResult list_sessions(const SessionDirectory& directory, const PendingReply& reply,
                         void (*add)(Json& session, const SessionSummary& summary));
 

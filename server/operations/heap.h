@@ -7,17 +7,17 @@
 
 namespace vat {
 
-/// Returns the used bytes of the heap, or 0 if a sanitizer replaces the allocator.
+/// Returns the number of used heap bytes, or 0 if a sanitizer replaces the allocator.
 std::size_t heap_in_use();
 
-/// Configures the allocator: few arenas, so that free memory can be reused by other threads, and
-/// separate mappings for large blocks, which are returned when they are freed. Must be called
-/// before threads start.
+/// Configures the allocator. A small number of arenas allows other threads to reuse free memory.
+/// Large blocks have separate mappings, which are released immediately. Must be called before
+/// threads start.
 void prepare_heap();
 
-/// Returns free memory to the system at intervals, while it exists and its context runs. Without
-/// this, each arena keeps its greatest size, and the server grows for hours if clients do not read.
-/// Each return takes some milliseconds.
+/// Periodic release of free memory to the system. Without the release, each arena retains its
+/// greatest size, and memory grows for hours if clients do not read. Each release takes some
+/// milliseconds.
 class MemoryReturn {
  public:
   static constexpr std::chrono::milliseconds kInterval{10'000};

@@ -19,7 +19,7 @@
 
 namespace vat {
 
-/// The last 512 values of a sequence, for their quantiles.
+/// Buffer of the last 512 values of a sequence, for quantiles.
 class RecentValues {
  public:
   void add(double value) {
@@ -27,7 +27,7 @@ class RecentValues {
     next_ = (next_ + 1) % values_.size();
     count_ = std::min(count_ + 1, values_.size());
   }
-  /// Returns the quantile of `share` (0 to 1), or 0 without values.
+  /// Returns the quantile at `share` (0 to 1), or 0 without values.
   double quantile(double share) const {
     if (count_ == 0) return 0;
     std::vector<double> values(values_.begin(), values_.begin() + static_cast<long>(count_));
@@ -42,12 +42,12 @@ class RecentValues {
   std::size_t count_ = 0;
 };
 
-/// Counters of the server since its start, for Prometheus. Safe to use from any thread.
+/// Counters of the server since its start, for Prometheus. Thread-safe.
 class ServerMetrics {
  public:
   struct Tick {
     std::chrono::duration<double> time{};
-    std::uint64_t substeps = 0;  ///< includes repeated and undone ones
+    std::uint64_t substeps = 0;  ///< includes repeated and undone substeps
     std::uint64_t undone_substeps = 0;
     std::span<const StageClock::Stage> stages;
   };
@@ -58,30 +58,31 @@ class ServerMetrics {
   /// Adds the number of encodings of one state.
   void add_frame_groups(std::size_t count);
   void add_sent_frames(std::size_t count, std::size_t bytes_each);
-  /// Adds frames that were due to clients which were not ready or not served.
+  /// Adds due frames of clients that were not ready or not served.
   void add_missed_frames(std::size_t count);
-  /// Counts a refusal because of a limit, by its name in server.info's `limits`.
+  /// Counts a refusal because of a limit. `limit` is the name in server.info's `limits`.
   void add_refusal(std::string_view limit);
-  /// Counts a message that exceeded a rate, by the name of the limit.
+  /// Counts a message that exceeded a rate limit.
   void add_rate_limited(std::string_view limit);
-  /// Counts an ended WebSocket. Codes that PROTOCOL.md does not list count as one.
+  /// Counts a closed WebSocket. All codes that are not listed in PROTOCOL.md have one common
+  /// counter.
   void add_close(std::uint16_t code);
 
-  /// Current values.
+  /// Current values of the server.
   struct Gauges {
     std::string version;
     InstructionSet instructions = InstructionSet::baseline;
     std::size_t threads = 0;
     std::size_t playing_sessions = 0;
     std::size_t paused_sessions = 0;
-    std::size_t hibernating_sessions = 0;  ///< playing, but without participants
+    std::size_t hibernating_sessions = 0;  ///< playing, but stopped without participants
     std::size_t connections = 0;
     std::size_t clients = 0;    ///< connections that have joined a session
-    std::size_t particles = 0;  ///< of all sessions
-    std::size_t heap = 0;       ///< in use [bytes]
+    std::size_t particles = 0;  ///< in all sessions
+    std::size_t heap = 0;       ///< heap memory in use [bytes]
     StorageCounts storage;
   };
-  /// Returns all metrics in Prometheus' text format, version 0.0.4.
+  /// Returns all metrics in the text format of Prometheus, version 0.0.4.
   std::string to_text(const Gauges& gauges) const;
 
  private:
@@ -105,7 +106,7 @@ class ServerMetrics {
   void append_refusals(std::string& text) const;
 
   mutable std::mutex mutex_;
-  std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound, then those above all
+  std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound; last: above all bounds
   double tick_seconds_ = 0;
   RecentValues recent_ticks_;
   RecentValues recent_lateness_;
@@ -119,10 +120,10 @@ class ServerMetrics {
   std::uint64_t sent_frames_ = 0;
   std::uint64_t sent_bytes_ = 0;
   std::uint64_t missed_frames_ = 0;
-  std::map<std::string, std::uint64_t, std::less<>> refusals_;      // by limit
-  std::map<std::string, std::uint64_t, std::less<>> rate_limited_;  // by limit
-  std::map<std::uint16_t, std::uint64_t> closes_;                   // by code; 0: another code
-  std::map<std::string_view, StageTotal> stages_;  // one per stage name of the program
+  std::map<std::string, std::uint64_t, std::less<>> refusals_;      // by name of the limit
+  std::map<std::string, std::uint64_t, std::less<>> rate_limited_;  // by name of the limit
+  std::map<std::uint16_t, std::uint64_t> closes_;                   // by code; 0: all other codes
+  std::map<std::string_view, StageTotal> stages_;                   // by name of the stage
 };
 
 }  // namespace vat

@@ -7,12 +7,12 @@
 
 namespace vat {
 
-/// Phase of a server's life, which "/readyz" reports.
+/// Phase of a server, reported by "/readyz".
 enum class ServerPhase : std::uint8_t { starting, recovering, ready, draining };
 template <>
 inline constexpr std::array kNamesOf<ServerPhase>{"starting", "recovering", "ready", "draining"};
 
-/// The phase, shared by all threads.
+/// Phase of the server, shared by all threads.
 using SharedPhase = std::atomic<ServerPhase>;
 
 }  // namespace vat

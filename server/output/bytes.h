@@ -7,7 +7,7 @@
 
 namespace vat {
 
-// .npy and .ply are written little-endian, straight from memory.
+// The formats .npy and .ply require little-endian numbers, which are copied from memory.
 static_assert(std::endian::native == std::endian::little);
 
 /// Appends the bytes of a number in memory order.

@@ -9,15 +9,16 @@
 
 namespace vat {
 
-/// Writes one CSV row per output time. Columns: (a list, one item per line, with "external force"
-/// and "positions").
+/// Writer of one CSV row of diagnostics per output time. The first columns contain the time and the
+/// values of the whole simulation. For each body, further columns contain mass, centre of mass,
+/// momenta, external force and torque, and (if available) orientation and angular velocity.
 class DiagnosticsWriter {
  public:
-  /// Creates the file and its header row.
+  /// Creates the file with its header row.
   static Result<DiagnosticsWriter> create(const std::string& name, const Simulation& simulation);
 
   Status write(const Simulation& simulation, std::uint64_t guard_events);
-  /// Completes the file. Without this call, the file name keeps the extension ".part".
+  /// Completes the file. Without this call, the file name has the extension ".part".
   Status finish();
 
  private:

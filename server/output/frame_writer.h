@@ -9,14 +9,15 @@
 
 namespace vat {
 
-/// Writes the particles of a simulation at a series of times. Particles are in the order of the
-/// scene's bodies. The path of every error is the file's name.
+/// Writer of the particles of a simulation at a series of times. Particles are in the order of the
+/// scene's bodies. The path of every error is the file name.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
-  /// Adds the present state as one output time.
+  /// Writes the current state as one output time.
   virtual Status write(const Simulation& simulation) = 0;
-  /// Completes the output. Without this call, an appended file keeps the extension ".part".
+  /// Completes the output. Without this call, a file with all output times has the extension
+  /// ".part".
   virtual Status finish() = 0;
 };
 
@@ -26,20 +27,21 @@ inline constexpr const char* kFrameEndings = ".csv, .vtk, .ply or .npy";
 /// Returns whether the name has one of the extensions in kFrameEndings.
 bool is_frame_file_name(const std::string& name);
 
-/// Chooses the format by the file name's ending, which must be known:
+/// Returns a writer for the file name's extension, which must be known:
 /// - `.csv`: one row per particle and time, with a header row.
 /// - `.vtk`: legacy VTK polydata in text, one file per time (see series_name()).
 /// - `.ply`: binary points coloured by kind of body, one file per time.
 /// - `.npy`: one array [times, particles, 6] of float64: x, y, z, vx, vy, vz.
-/// `frame_count` is the number of times that will be written.
+///
+/// `frame_count` is the number of output times.
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
                                                          std::size_t frame_count);
 
-/// Name of one file of a series: "run.vtk" becomes "run-0000.vtk", "run-0001.vtk"…; a series of one
-/// keeps its name.
+/// Returns the name of one file of a series: "run-0000.vtk" for "run.vtk" and index 0. A series of
+/// one file uses `name`.
 std::string series_name(const std::string& name, std::size_t index, std::size_t count);
 
-/// Returns the liquid fields of a body; empty if the body is not liquid.
+/// Returns the liquid fields of a body. The fields are empty if the body is not liquid.
 LiquidFields liquid_fields_of(const Simulation& simulation, const BodyView& body);
 
 }  // namespace vat

@@ -9,19 +9,19 @@
 
 namespace vat {
 
-/// A file that is written as NAME.part and renamed to NAME by commit(). The file of a failed run
-/// therefore cannot be mistaken for a result. Devices and pipes are written directly. The path of
-/// every error is the file's name.
+/// File that is written as NAME.part and renamed to NAME by commit(). An incomplete file therefore
+/// cannot be mistaken for a result. Devices and pipes are written directly. The path of every error
+/// is the file name.
 class OutputFile {
  public:
   /// Creates or replaces NAME.part.
   static Result<OutputFile> create(const std::string& name);
 
-  /// Adds bytes at the end.
+  /// Appends bytes.
   Status append(std::string_view bytes);
-  /// Replaces the first bytes; the file must be at least as long.
+  /// Replaces the first bytes. The file must be at least as long as `bytes`.
   Status overwrite_start(std::string_view bytes);
-  /// Closes the file and gives it its name. Nothing may be written after.
+  /// Closes the file and renames it to NAME. No writes are allowed afterwards.
   Status commit();
 
  private:

@@ -9,7 +9,7 @@
 
 namespace vat {
 
-/// One file per output time. Each file is complete as soon as it bears its name.
+/// Writer of one file per output time. A file with its final name is complete.
 class SeriesWriter : public FrameWriter {
  public:
   SeriesWriter(std::string name, std::size_t frame_count)
@@ -24,7 +24,7 @@ class SeriesWriter : public FrameWriter {
   Status finish() final { return {}; }
 
  protected:
-  /// The whole content of the file for the present state.
+  /// Returns the whole content of the file for the current state.
   virtual std::string content(const Simulation& simulation) const = 0;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace vat {
 
-/// Appends a number in the fewest digits that read back to the same bits.
+/// Appends a number with the fewest digits from which the same bits can be read.
 template <class Number>
 void append_number(std::string& text, Number value) {
   char buffer[32];
@@ -19,10 +19,10 @@ void append_number(std::string& text, Number value) {
   text.append(buffer, result.ptr);
 }
 
-/// Appends 16 hexadecimal digits.
+/// Appends a hash as 16 hexadecimal digits.
 void append_hash(std::string& text, std::uint64_t hash);
 
-/// Appends a CSV field (RFC 4180), quoted only if necessary.
+/// Appends a CSV field (RFC 4180). Adds quotes only if necessary.
 void append_csv_field(std::string& text, std::string_view field);
 
 }  // namespace vat

@@ -16,18 +16,18 @@
 
 namespace vat {
 
-/// Number of a participant in its session, from 1. Not used twice.
+/// Number of a participant in its session, from 1. A number is not used twice.
 using ParticipantNumber = std::uint64_t;
 
-/// Position that a participant points at; with `direction`, a ray from this position.
+/// Position at which a participant points. With `direction`, a ray from this position.
 struct Pointer {
   Vec3 position;
   std::optional<Vec3> direction;
   bool operator==(const Pointer&) const = default;
 };
 
-/// A participant of a session. A participant is away if its connection has ended. Another
-/// connection can resume it. A placeholder was never connected. It represents the sender of
+/// Participant of a session. A participant is away if its connection has ended. Another connection
+/// can resume the participant. A placeholder was never connected and represents the sender of
 /// commands in a replayed log.
 struct Participant {
   ParticipantNumber number = 0;
@@ -35,34 +35,35 @@ struct Participant {
   Role role = Role::viewer;
   std::shared_ptr<ClientOutbox> outbox;  ///< null: away, or a placeholder
   std::uint64_t membership = 0;
-  std::optional<Subscription> subscription;  ///< retained while it is away
-  std::map<std::uint64_t, BodyId> grabs;     ///< body of each grab, by the grab's id
-  std::optional<TokenHash> resume;  ///< hash of the token with which another connection resumes it
+  std::optional<Subscription> subscription;  ///< retained while the participant is away
+  std::map<std::uint64_t, BodyId> grabs;     ///< body of each grab; key: grab id
+  /// Hash of the token with which another connection resumes the participant.
+  std::optional<TokenHash> resume;
   std::optional<SteadyClock::time_point> away_since;
   std::optional<Pointer> pointer;
-  std::map<std::uint64_t, SteadyClock::time_point>
-      grab_uses;  ///< time of the last use, by the grab's id
+  /// Time of the last use of each grab. The key is the grab id.
+  std::map<std::uint64_t, SteadyClock::time_point> grab_uses;
 
   bool is_here() const { return outbox != nullptr; }
   bool is_away() const { return away_since.has_value(); }
   bool is_placeholder() const { return !is_here() && !is_away(); }
 };
 
-/// The participants of a session. Used by one thread at a time. References are valid until the
-/// participant is removed.
+/// Participants of a session. Not thread-safe. A reference is valid until the participant is
+/// removed.
 class Participants {
  public:
-  /// Number of participants with a connection.
+  /// Returns the number of participants with a connection.
   std::size_t connected() const { return by_client_.size(); }
   std::size_t away() const;
 
-  /// The find functions return null if there is no such participant.
+  /// Return the participant, or null if there is no such participant.
   Participant* find(ParticipantNumber number);
   Participant* find_client(ConnectionId client);
   Participant* find_resume(const TokenHash& token);
-  /// Returns the participant that has this grab, or null.
+  /// Returns the participant with this grab, or null.
   Participant* holder_of(std::uint64_t grab);
-  /// Returns a participant that holds the body, or null.
+  /// Returns a participant that has grabbed the body, or null.
   const Participant* holder_of_body(BodyId body) const;
 
   /// Adds a participant with the next number.
@@ -72,9 +73,9 @@ class Participants {
   Participant& find_or_add(ParticipantNumber number);
   void remove(ParticipantNumber number);
   ParticipantNumber last_number() const { return last_number_; }
-  /// Participants added later have numbers greater than `number`.
+  /// Ensures that participants added later have numbers greater than `number`.
   void skip_to(ParticipantNumber number) { last_number_ = std::max(last_number_, number); }
-  /// Counts changes of participants, their roles and connections.
+  /// Returns the number of changes of participants, roles and connections.
   std::uint64_t changes() const { return changes_; }
   /// Counts a change that was made outside this class.
   void touch() { ++changes_; }
@@ -82,24 +83,24 @@ class Participants {
   void connect(Participant& participant, std::shared_ptr<ClientOutbox> outbox,
                std::uint64_t membership);
   void disconnect(Participant& participant);
-  /// Participants without a connection are away from now on.
+  /// Marks all participants without a connection as away.
   void send_away(SteadyClock::time_point now);
 
-  /// Sends to participants with at least this role.
+  /// Sends an event to all participants with at least this role.
   void send_event(const std::string& text, Role least = Role::viewer);
-  /// Clients receive no frames of earlier epochs from now on.
+  /// Drops frames of earlier epochs for all clients.
   void start_epoch(std::uint32_t epoch);
-  /// Whether a connected participant is subscribed to the frame of this tick.
+  /// Returns whether a connected participant has subscribed to the frame of this tick.
   bool is_watched(std::uint64_t tick) const;
   bool is_watched() const;
-  /// Attributes of particles that subscribers requested.
+  /// Returns the particle attributes that subscribers have requested.
   ByAttribute<bool> wanted_attributes() const;
   void close_silent(SteadyClock::time_point now, std::chrono::seconds patience);
   void forget_grabs();
   void forget_grab(std::uint64_t grab);
   void forget_grabs_of(BodyId body);
 
-  /// All participants in ascending order of their numbers.
+  /// Returns all participants in ascending order of their numbers.
   const std::map<ParticipantNumber, Participant>& all() const { return all_; }
 
  private:

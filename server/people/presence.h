@@ -10,8 +10,8 @@
 
 namespace vat {
 
-/// Collects changes of a session's participants for presence.changed, which is sent at most ten
-/// times a second. Used by one thread at a time.
+/// Collector of changes of a session's participants for the event presence.changed. The event is
+/// sent at most ten times per second. Not thread-safe.
 class Presence {
  public:
   static constexpr std::chrono::milliseconds kInterval{100};
@@ -19,14 +19,14 @@ class Presence {
   /// Marks the participants as possibly changed.
   void touch() { is_touched_ = true; }
   bool is_touched() const { return is_touched_; }
-  /// Earliest time of the next event.
+  /// Returns the earliest time of the next event.
   SteadyClock::time_point due() const { return told_at_ + kInterval; }
   /// Returns the parameters of presence.changed, or null if nothing has changed since the last
   /// call.
   Json take_changes(const Participants& participants, SteadyClock::time_point now);
 
  private:
-  /// Published state of a participant.
+  /// State of a participant in the last event.
   struct PublishedParticipant {
     std::string name;
     Role role = Role::none;
@@ -42,7 +42,7 @@ class Presence {
   bool is_touched_ = false;
 };
 
-/// Returns a participant as presence.list contains it.
+/// Returns a participant in the format of presence.list.
 Json describe_participant(const Participant& participant);
 /// Returns the first kMaxPresence participants.
 Json describe_participants(const Participants& participants);

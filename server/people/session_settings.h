@@ -10,9 +10,9 @@ namespace vat {
 /// Settings that a session's owner can change.
 struct SessionSettings {
   std::string name;
-  Role default_role = Role::controller;  ///< of participants without an invitation
-  bool is_locked = false;                ///< joins need an invitation
-  ConnectionId creator = 0;              ///< becomes the owner when it joins; 0: none
+  Role default_role = Role::controller;  ///< role of participants without an invitation
+  bool is_locked = false;                ///< joining requires an invitation
+  ConnectionId creator = 0;  ///< connection that becomes the owner when it joins; 0: none
 };
 
 }  // namespace vat

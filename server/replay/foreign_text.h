@@ -5,8 +5,8 @@
 
 namespace vat {
 
-/// Returns the text itself if it is UTF-8 of at most `most` bytes, or else the printable characters
-/// of its beginning.
+/// Returns the text if it is UTF-8 of at most `most` bytes. Otherwise returns the first `most`
+/// bytes as printable characters.
 std::string fit_to_tell(const std::string& text, std::size_t most);
 
 }  // namespace vat

@@ -9,14 +9,14 @@
 
 namespace vat {
 
-/// Plays a recording on a thread of the lowest priority, and stores moments in its widest gaps
-/// first, so that seeks are fast.
+/// Thread of the lowest priority that plays a recording and stores moments, so that seeks are fast.
+/// Starts with the greatest gaps between the recorded moments.
 class MomentFiller {
  public:
-  /// The contents of `environment` must outlive this.
+  /// The objects to which `environment` refers must outlive the filler.
   MomentFiller(std::shared_ptr<const Recording> recording, const SessionEnvironment& environment,
                std::shared_ptr<MomentCache> moments);
-  /// Ends the thread at its next tick.
+  /// Ends the thread after its current tick.
   ~MomentFiller();
   MomentFiller(const MomentFiller&) = delete;
   MomentFiller& operator=(const MomentFiller&) = delete;

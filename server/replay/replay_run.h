@@ -14,16 +14,16 @@
 
 namespace vat {
 
-/// Replay of a recording in a session. The recorded participants are kept apart from the viewers.
-/// Used by one thread at a time.
+/// Replay of a recording in a session. The recorded participants are separate from the viewers. Not
+/// thread-safe.
 class ReplayRun final : public Playback {
  public:
-  /// The contents of `environment` must outlive this.
+  /// The objects to which `environment` refers must outlive the replay.
   ReplayRun(std::shared_ptr<const Recording> recording, const SessionEnvironment& environment);
 
-  /// Returns the simulation to make the core with. Throws StorageError.
+  /// Returns the initial simulation of the SessionCore. Throws StorageError.
   Simulation begin() const { return player_.begin(); }
-  /// Moves the core to the begin of the recording, paused, and starts to fill it with moments.
+  /// Sets the core to the start of the recording, paused. Starts a MomentFiller.
   void start(SessionCore& core);
 
   Range range() const override { return {recording_->begin, recording_->end}; }
@@ -41,7 +41,7 @@ class ReplayRun final : public Playback {
   /// from the recording.
   template <class Action>
   bool with_recorded(SessionCore& core, Action&& action);
-  /// Pauses the session and sends replay.diverged.
+  /// Pauses the session and sends the event replay.diverged.
   void diverge(SessionCore& core, const std::string& reason);
   void read_names();
   Json describe_people(const SessionCore& core) const;
@@ -52,9 +52,9 @@ class ReplayRun final : public Playback {
   ReplayPlayer player_;
   std::map<ParticipantNumber, std::string> names_;
   const std::atomic<bool> cancelled_ = false;
-  std::uint64_t target_ = 0;        // of a seek
-  std::uint32_t epoch_ = 1;         // the last one shown
-  std::optional<Json> divergence_;  // the params of replay.diverged
+  std::uint64_t target_ = 0;        // target position of a seek
+  std::uint32_t epoch_ = 1;         // last epoch sent to clients
+  std::optional<Json> divergence_;  // parameters of replay.diverged
   std::string told_people_;
   SteadyClock::time_point told_at_{};
   std::unique_ptr<MomentFiller> filler_;

@@ -9,23 +9,23 @@
 
 namespace vat {
 
-/// Recovers a stored session from its newest readable checkpoint and the log after it, up to the
-/// position where it was last stored or reported. Compares its state with the stored hash.
+/// Recovery of a stored session. Starts from the newest readable checkpoint and repeats the later
+/// log, up to the last stored or reported position. Compares the state with the stored hash.
 class SessionRecovery {
  public:
-  /// `environment` must have no limits on scenes, because what was accepted before is accepted
-  /// again. `cancelled` is read at each tick. All arguments must outlive this.
+  /// `environment` must not limit scenes, so that all previously accepted commands are accepted
+  /// again. `cancelled` is read at each tick. All arguments must outlive the recovery.
   SessionRecovery(Storage& storage, StoredSession stored, const SessionEnvironment& environment,
                   const std::atomic<bool>& cancelled);
 
   const StoredSession& stored() const { return stored_; }
-  /// Returns the simulation to make the core with. Throws StorageError if nothing usable is stored,
-  /// or this machine lacks the session's instruction set.
+  /// Returns the initial simulation of the SessionCore. Throws StorageError if no usable data is
+  /// stored or this machine lacks the session's instruction set.
   Simulation begin();
-  /// Repeats the log in that core. If the state differs, the core is diverged and paused. Throws
-  /// Cancelled, and StorageError if the log is incomplete.
+  /// Repeats the log in the core. If the state differs, marks the session as diverged and pauses
+  /// it. Throws Cancelled. Throws StorageError if the log is incomplete.
   void repeat_log(SessionCore& core);
-  /// Continues the session in its own environment, stored from now on.
+  /// Ends the recovery. The session continues in `environment` and is stored again.
   void finish(SessionCore& core, const SessionEnvironment& environment);
 
  private:
@@ -37,10 +37,10 @@ class SessionRecovery {
   Simulation begin_at_scene();
   Simulation load_scene(std::uint64_t sequence);
   void execute_log(SessionCore& core);
-  /// Entries at the end of the log may lack the mark of a refusal, if the server ended before it
-  /// was written. Nobody had an answer to them.
+  /// Executes the last entry of the log. The mark of a refusal may be missing, because the server
+  /// ended before writing it. No client has received a reply to such an entry.
   void repeat_last_entry(SessionCore& core, const LogEntry& entry);
-  /// Compares the state if this is the position of the stored progress.
+  /// Compares the states if the position is that of the stored progress.
   void compare(SessionCore& core);
 
   Storage& storage_;

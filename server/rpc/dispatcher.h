@@ -10,24 +10,25 @@
 
 namespace vat {
 
-/// Reads the messages of clients and calls their methods. Checks rates, sizes, roles and
-/// parameters. Called on the transport's threads.
+/// Reader of client messages. Checks rates, sizes, roles and parameters, and calls the methods.
+/// Runs on the transport's threads.
 class Dispatcher {
  public:
   explicit Dispatcher(SessionDirectory& directory) : directory_(directory) {}
 
-  /// Executes a message. An error is answered to the message's id, or to null without one.
+  /// Executes a message. An error reply contains the id of the message, or null without an id.
   void receive(const SessionDirectory::Sender& sender, std::string_view message);
   /// Refuses a binary message, which only the server may send.
   void receive_binary(ClientOutbox& client, std::size_t bytes);
 
  private:
   const ServerLimits& limits() const { return directory_.resources().settings.limits; }
-  /// Answers a message that exceeds a rate. Closes clients that go on sending.
+  /// Answers a message that exceeds a rate. Closes the connection of a client that continues to
+  /// exceed rates.
   void refuse(ClientOutbox& client, const std::optional<Json>& id, const RateExcess& excess);
   std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
                                           std::optional<Json>& id) const;
-  /// Returns the reply, or nothing if `reply` was moved and is answered later.
+  /// Returns the reply, or nothing if `reply` was moved for a later answer.
   std::optional<RpcResult> call(PendingReply& reply, Role role, RpcRequest request,
                                 std::size_t bytes);
 

@@ -9,7 +9,7 @@
 
 namespace vat {
 
-/// A method of the protocol: its properties, and the handler of its calls.
+/// Method of the protocol: properties, and handler of the calls.
 struct Method {
   template <class Handler>
   constexpr Method(std::string_view name, Role least_role, RoleSource role_source,
@@ -20,12 +20,13 @@ struct Method {
   std::variant<ServerHandler, SessionHandler> handler;
 };
 
-/// All methods, in the order of PROTOCOL.md. The only list of methods: dispatch, roles, rate
-/// limits and the log use it, and tests compare the documents and the client's types with it.
+/// Returns all methods, in the order of PROTOCOL.md. The table is the only list of methods for
+/// dispatch, roles, rate limits and logging. Tests compare the documents and the client's types
+/// with the table.
 std::span<const Method> all_methods();
-/// Returns null if no method has this name.
+/// Returns the method, or null if no method has this name.
 const Method* find_method(std::string_view name);
-/// The methods as sessions use them.
+/// Returns the method table as sessions use it.
 const SessionMethods& session_methods();
 
 }  // namespace vat

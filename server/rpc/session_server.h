@@ -16,45 +16,45 @@ namespace vat {
 class Clock;
 class Downloads;
 
-/// The server behind the transport: sessions, clients and the methods of PROTOCOL.md. Safe to use
-/// from any thread. See server/THREADS.md.
+/// Server behind the transport: sessions, clients and the methods of PROTOCOL.md. Thread-safe. See
+/// server/THREADS.md.
 class SessionServer : public ConnectionHandler {
  public:
-  /// `catalogue` and `clock` must outlive this. Throws StorageError if the data folder cannot be
-  /// used.
+  /// `catalogue` and `clock` must outlive the server. Throws StorageError if the data folder cannot
+  /// be used.
   SessionServer(const Catalogue& catalogue, ServerSettings settings, Clock& clock);
   ~SessionServer() override;
   SessionServer(const SessionServer&) = delete;
   SessionServer& operator=(const SessionServer&) = delete;
 
-  /// Starts to recover the sessions of the data folder, and returns their number.
+  /// Starts the recovery of the stored sessions and returns their number.
   std::size_t recover();
-  /// False while sessions are being recovered, and after drain().
+  /// Returns false during the recovery of sessions and after drain().
   bool is_ready() const;
 
-  /// Starts a session, playing. Fails with the scene's errors, or with the code limit_reached.
+  /// Creates a playing session. Returns the errors of the scene, or the error limit_reached.
   Result<SessionId> create_session(std::string name, const Scene& scene);
 
-  /// Returns the metrics in Prometheus' text format.
+  /// Returns the metrics in the text format of Prometheus.
   std::string metrics() const;
 
-  /// Admits no connections, sessions and joins from now on. Tells clients that the server ends in
-  /// `time`. Returns when the time is over or the last client has left.
+  /// Refuses new connections, sessions and joins. Informs clients that the server ends after
+  /// `time`. Returns after `time`, or as soon as the last client has left.
   void drain(std::chrono::milliseconds time);
 
-  /// Files that clients fetch by HTTP.
+  /// Returns the files that clients can download by HTTP.
   Downloads& downloads();
 
-  /// Waits for the work posted before the call: creations of sessions, their turns, the frames of
-  /// these turns, and writes to the data folder.
+  /// Waits for all work posted before the call: creations of sessions, turns, their frames, and
+  /// writes to the data folder.
   void flush();
 
-  // For TransportSettings.
+  // Callbacks for TransportSettings.
   void count_refusal(std::string_view limit);
   void count_close(std::uint16_t code);
 
-  /// Ends all sessions after their current ticks, sends session.closed, and joins the threads.
-  /// Later calls have no effect. The data folder is then complete.
+  /// Ends all sessions after their current ticks, sends session.closed, and joins the threads. The
+  /// data folder is then complete. Later calls have no effect.
   void stop();
 
   void opened(std::shared_ptr<Connection> connection) override;

@@ -17,38 +17,40 @@ using Deadline = std::chrono::steady_clock::time_point;
 struct Message {
   enum class Kind { text, binary, closed };
   Kind kind = Kind::text;
-  std::string bytes;             ///< the message, or the reason given for closing
-  std::uint16_t close_code = 0;  ///< 0: the connection broke
+  std::string bytes;             ///< content of the message, or reason for closing
+  std::uint16_t close_code = 0;  ///< 0: the connection failed without a close frame
 };
 
-/// A WebSocket connection of a script.
+/// WebSocket connection of a script.
 class Client {
  public:
   virtual ~Client() = default;
   virtual void send_text(const std::string& text) = 0;
   virtual void send_binary(const std::string& bytes) = 0;
   virtual void close() = 0;
-  /// `wanted` false: leaves messages in the socket until the next call with true.
+  /// Enables or disables reading. While disabled, messages remain in the socket.
   virtual void read(bool wanted) = 0;
-  /// Returns the next message, or nothing if none came by the deadline. The last is `closed`.
+  /// Returns the next message, or nothing if no message arrives before the deadline. The last
+  /// message has the kind `closed`.
   virtual std::optional<Message> next(Deadline deadline) = 0;
 };
 
 struct ConnectRequest {
-  std::string path;                    ///< "": that of the URL
-  std::string subprotocol = "vat.v1";  ///< "": none is asked for
+  std::string path;                    ///< "": path of the URL
+  std::string subprotocol = "vat.v1";  ///< "": no subprotocol is requested
 };
 
-/// An open connection, or the HTTP status of the refusal.
+/// Open connection, or HTTP status of the refusal.
 struct Connected {
   std::unique_ptr<Client> client;
   unsigned http_status = 101;
 };
 using Connect = std::function<Connected(const ConnectRequest&)>;
-/// The answer to GET for a path, as fetch_http() gives it.
+/// Function that returns the response to GET for a path, see fetch_http().
 using Fetch = std::function<Json(const std::string& path, Deadline deadline)>;
 
-/// Connects to a server. Throws std::runtime_error if that fails or it is not trusted.
+/// Connects to a server. Throws std::runtime_error if the connection fails or the server is not
+/// trusted.
 Connected connect_websocket(const WebSocketUrl& url, const TlsTrust& trust,
                             const ConnectRequest& request, Deadline deadline);
 

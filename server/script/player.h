@@ -11,46 +11,48 @@
 
 namespace vat::script {
 
-/// An expectation of a script line was not met. The text contains the line, the expectation and the
-/// received message.
+/// Exception: an expectation of a script line failed. The text contains the line, the expectation
+/// and the received message.
 struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Plays scripts. protocol/SCRIPTS.md lists the actions.
+/// Interpreter of scripts. protocol/SCRIPTS.md lists the actions.
 ///
-/// In addition, every received message must be a JSON-RPC object or a valid frame. The frames of a
-/// client must be numbered without gaps, and belong to the epoch of the last description.
+/// In addition, every received message must be a JSON-RPC object or a valid frame. The frame
+/// numbers of a client must have no gaps, and frames must belong to the epoch of the last
+/// description.
 class Player {
  public:
-  /// `patience`: default time limit of a line.
+  /// `patience` is the default time limit of a line.
   Player(Connect connect, std::chrono::milliseconds patience)
       : connect_(std::move(connect)), patience_(patience) {}
 
-  /// Defines a capture.
+  /// Sets the value of a capture.
   void set(const std::string& name, Json value) { captures_[name] = std::move(value); }
 
-  /// Sets the function for lines that fetch. Without it such lines are invalid.
+  /// Sets the function for lines with the action `fetch`. Without the function, such lines are
+  /// invalid.
   void fetch_by(Fetch fetch) { fetch_ = std::move(fetch); }
 
-  /// Records sent and received messages. `transcript` must outlive this.
+  /// Records sent and received messages. `transcript` must outlive the player.
   void record(Transcript& transcript) { transcript_ = &transcript; }
 
-  /// Throws Failure at the first line whose expectation is not met, and ScriptError for an invalid
+  /// Runs the lines. Throws Failure at the first failed expectation, and ScriptError for an invalid
   /// line.
   void play(const std::vector<Line>& lines);
 
  private:
-  /// A client, and its received messages that no line has taken yet.
+  /// Client, and received messages that no line has used yet.
   struct Peer {
-    std::string connection;  ///< its name in the transcript
+    std::string connection;  ///< name of the connection in the transcript
     std::unique_ptr<Client> client;
     std::deque<Json> replies;
     std::deque<Json> events;
     std::deque<Json> frames;
     std::optional<Message> closed;
     FrameDecoder decoder;
-    std::optional<std::uint64_t> epoch;  ///< of the last description
+    std::optional<std::uint64_t> epoch;  ///< epoch of the last description
     BodyNames names;                     ///< from the last description
   };
   using Inbox = std::deque<Json> Peer::*;
@@ -73,13 +75,13 @@ class Player {
   std::string name_of(const Json& name) const;
   Peer& peer_of(const Json& line);
   Deadline deadline_of(const Json& line) const;
-  /// Receives a message into the inboxes. Returns false if none came by the deadline.
+  /// Receives a message into the inboxes. Returns false if no message arrives before the deadline.
   bool receive(Peer& peer, Deadline deadline);
   void send_text(Peer& peer, const std::string& text, const Json& line);
   /// Sends a request and waits for its reply.
   Json request(Peer& peer, const Json& method, const Json& params, const Json& line);
   void receive_text(Peer& peer, const std::string& text);
-  /// Stores the epoch and names of a description.
+  /// Stores the epoch and the body names of a description.
   static void learn_description(Peer& peer, const Json& content);
   void receive_frame(Peer& peer, const std::string& bytes);
   /// Removes and returns the first element of the inbox that satisfies `wanted`.
@@ -94,8 +96,8 @@ class Player {
   int connections_ = 0;
   std::map<std::string, Peer> peers_;
   Captures captures_;
-  std::int64_t last_id_ =
-      1'000'000;  ///< last request id of the action `call`; ids in scripts must be smaller
+  /// Last request id of the action `call`. Ids in scripts must be smaller.
+  std::int64_t last_id_ = 1'000'000;
 };
 
 }  // namespace vat::script

@@ -15,9 +15,10 @@
 
 namespace vat::script {
 
-/// A TCP connection, with TLS if the server's URL asks for it. HTTP and WebSocket of Boost.Beast
-/// run on top of it. Its handlers are of one type, so that those templates are compiled once. Used
-/// by one thread: operations proceed only inside the member functions of Operations.
+/// TCP connection, with TLS if the URL of the server requires TLS. HTTP and WebSocket of
+/// Boost.Beast use the connection. All handlers have one type, so that the templates of Boost.Beast
+/// are compiled once. Not thread-safe: operations run only inside the member functions of
+/// Operations.
 class SocketStream {
  public:
   using executor_type = boost::asio::io_context::executor_type;
@@ -34,7 +35,7 @@ class SocketStream {
   executor_type get_executor();
   /// Connects and checks the server's certificate. Throws std::runtime_error with the cause.
   void open(Deadline deadline);
-  /// Ends operations in progress with an error.
+  /// Closes the socket. Operations in progress end with an error.
   void close_socket();
 
   template <class Buffers, class Token>
@@ -53,13 +54,14 @@ class SocketStream {
         },
         token);
   }
-  /// Closes the transport after the closing handshake of WebSocket.
+  /// Closes the transport after the closing handshake of the WebSocket.
   void start_teardown(std::function<void(ErrorCode)> handler);
 
  private:
   struct Transport;
 
-  /// A partial read or write is allowed, so that one buffer of the sequence is enough.
+  /// Returns the first non-empty buffer. One buffer is sufficient, because partial reads and writes
+  /// are allowed.
   template <class Buffer, class Buffers>
   static Buffer first_buffer(const Buffers& buffers) {
     const auto end = boost::asio::buffer_sequence_end(buffers);
@@ -68,7 +70,8 @@ class SocketStream {
     }
     return {};
   }
-  /// The handlers of Boost.Beast can be moved only; Handler must be copyable.
+  /// Returns a copyable handler, as Handler requires. The handlers of Boost.Beast can only be
+  /// moved.
   template <class Moved>
   static Handler share(Moved handler) {
     return [shared = std::make_shared<Moved>(std::move(handler))](
@@ -83,7 +86,7 @@ class SocketStream {
   std::unique_ptr<Transport> transport_;
 };
 
-/// Found by Boost.Beast through argument-dependent lookup.
+/// Closes a stream. Boost.Beast finds the function by argument-dependent lookup.
 template <class Handler>
 void async_teardown(boost::beast::role_type, SocketStream& stream, Handler&& handler) {
   auto shared = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler));
@@ -94,22 +97,22 @@ inline void beast_close_socket(SocketStream& stream) {
   stream.close_socket();
 }
 
-/// Runs the operations of one stream on the caller's thread.
+/// Executor of the operations of one stream on the caller's thread.
 class Operations {
  public:
   using Deadline = SocketStream::Deadline;
 
   boost::asio::io_context& context() { return context_; }
 
-  /// Runs until the operation has set `outcome`. At the deadline closes the stream and throws
-  /// std::runtime_error with the message `fault`.
+  /// Runs handlers until the operation has set `outcome`. At the deadline, closes the stream and
+  /// throws std::runtime_error with the message `fault`.
   void finish(SocketStream& stream, const std::optional<SocketStream::ErrorCode>& outcome,
               Deadline deadline, const char* fault);
-  /// Runs until `reached`, until the deadline, or until nothing is left to wait for.
+  /// Runs handlers until `reached` returns true, until the deadline, or until no operations remain.
   void run_until(Deadline deadline, const std::function<bool()>& reached);
-  /// Runs handlers that need no waiting.
+  /// Runs all handlers that are ready.
   void run_ready();
-  /// Runs until all operations have ended.
+  /// Runs handlers until all operations have ended.
   void run_out();
 
  private:

@@ -9,17 +9,18 @@
 
 namespace vat::script {
 
-/// Messages of connections, written to a file: one JSON object per line with `connection` and
-/// `sent` or `received` (the message) or `closed` (the code). `wrong` is true if a message is
-/// expected to be refused. Safe to use from several threads.
+/// File with the messages of connections. Each line is a JSON object with `connection`. It also
+/// contains `sent` or `received` (the message), or `closed` (the close code). `wrong` is true if
+/// the server is expected to refuse the message. Thread-safe.
 class Transcript {
  public:
-  /// Starts a new file `folder`/`name`.jsonl. Throws std::runtime_error if it cannot be written.
+  /// Creates the file `folder`/`name`.jsonl. Throws std::runtime_error if the file cannot be
+  /// written.
   Transcript(const std::string& folder, const std::string& name);
 
   void sent(std::string_view connection, std::string_view message, bool wrong = false);
   void received(std::string_view connection, std::string_view message);
-  /// The server has closed the connection, or it broke (code 0).
+  /// Records the end of a connection by the server, or a connection failure (code 0).
   void closed(std::string_view connection, std::uint16_t code);
 
  private:

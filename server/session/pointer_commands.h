@@ -7,20 +7,21 @@
 
 namespace vat {
 
-/// Commands that follow a pointer and wait for the next tick. If a participant sends several for
-/// one target, only the latest is executed, and all are answered.
+/// Commands that follow a pointer, such as grab.move, and wait for the next tick. If a participant
+/// sends several commands for one target, only the latest command is executed. All commands are
+/// answered.
 class PointerCommands {
  public:
   struct Latest {
     ParticipantNumber participant = 0;
     SessionCommand command;
-    std::vector<PendingReply> replies;  ///< also of the commands that it replaces
+    std::vector<PendingReply> replies;  ///< includes replies of replaced commands
   };
 
   void add(ParticipantNumber participant, SessionCommand command, PendingReply reply);
   bool empty() const { return waiting_.empty(); }
   bool has_of(ParticipantNumber participant) const;
-  /// Returns all waiting commands in order.
+  /// Removes and returns all waiting commands in order.
   std::vector<Latest> take();
 
  private:

@@ -13,14 +13,13 @@
 
 namespace vat {
 
-/// Requests to a session that its strand has not executed yet, in their order. Safe to use from
-/// any thread.
+/// Queue of requests that the session's strand has not executed yet. Thread-safe.
 class SessionInbox {
  public:
   struct Join {
     std::uint64_t membership;
     JoinRequest request;
-    std::function<void()> undo;  ///< called before a refusal is answered
+    std::function<void()> undo;  ///< called before a join is refused
   };
   struct Leave {};
   struct Disconnect {};
@@ -30,14 +29,14 @@ class SessionInbox {
   };
 
   enum class Added {
-    to_pending,  ///< a turn is scheduled already
-    first,       ///< the caller has to schedule a turn
+    to_pending,  ///< a turn is already scheduled
+    first,       ///< the caller must schedule a turn
     refused      ///< the inbox is closed; the item is unchanged
   };
   Added add(Item& item);
-  /// Returns the first item. If there is none, the next item that is added needs a turn.
+  /// Removes and returns the first item. If there is no item, the next added item needs a new turn.
   std::optional<Item> take();
-  /// Refuses items from now on, and returns those that are left.
+  /// Closes the inbox and returns the remaining items. A closed inbox refuses new items.
   std::deque<Item> close();
 
  private:

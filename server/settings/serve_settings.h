@@ -14,32 +14,32 @@ namespace vat {
 
 /// Settings of `vat serve`.
 struct ServeSettings {
-  std::string host = "127.0.0.1";  ///< a numeric address
+  std::string host = "127.0.0.1";  ///< numeric address
   std::uint16_t port = 8080;       ///< 0: any free port
-  std::string tls_certificate;     ///< file in PEM; empty: no TLS
+  std::string tls_certificate;     ///< PEM file; empty: no TLS
   std::string tls_key;
-  std::string allow_origin;  ///< separated by commas
+  std::string allow_origin;  ///< list of origins, separated by commas
   std::string scene = "sliding-vat-liquid";
   std::string scenes_folder;
   std::string web_folder;
   std::size_t threads = 0;  ///< 0: one per core
   std::size_t endpoints = 1;
-  std::string instructions = "best";  ///< or the name of an instruction set
+  std::string instructions = "best";  ///< "best", or the name of an instruction set
   std::string log_level = "info";
-  std::string log_format = "text";  ///< or json
-  std::string access = "auto";      ///< or "open", "token"
-  std::string admin_token_file;     ///< empty: none
+  std::string log_format = "text";  ///< "text" or "json"
+  std::string access = "auto";      ///< "auto", "open" or "token"
+  std::string admin_token_file;     ///< empty: no admin token
   ServerLimits limits;
   std::chrono::milliseconds drain_time{0};
-  std::string data = "none";  ///< folder that stores sessions, or "none"
+  std::string data = "none";  ///< folder for stored sessions, or "none"
   StorageLimits storage;
 };
 
-/// Returns the parts of a list with commas.
+/// Returns the elements of a list that is separated by commas.
 std::vector<std::string> split_origins(const std::string& list);
 
 /// Returns the table of all settings. Options, environment variables, members of a configuration
-/// file and SETTINGS.md derive from it. `target` must outlive it.
+/// file and SETTINGS.md are generated from the table. `target` must outlive the table.
 std::vector<Setting> serve_settings(ServeSettings& target);
 
 }  // namespace vat

@@ -12,54 +12,55 @@
 
 namespace vat {
 
-/// State of a session after its log up to a sequence and a position.
+/// Stored state of a session after all log entries up to `sequence`, at `position`.
 struct Checkpoint {
   std::uint64_t session = 0;
-  std::uint64_t position = 0;       ///< as in a LogEntry
-  std::uint64_t sequence = 0;       ///< of the last executed entry
-  std::string fields;               ///< JSON object: state of the session other than its simulation
-  std::vector<std::uint8_t> state;  ///< of the simulation
+  std::uint64_t position = 0;       ///< see LogEntry
+  std::uint64_t sequence = 0;       ///< sequence of the last executed log entry
+  std::string fields;               ///< JSON object: session state except the simulation
+  std::vector<std::uint8_t> state;  ///< state of the simulation
 };
 
-/// Position of a checkpoint, without its content.
+/// Location of a checkpoint, without its content.
 struct CheckpointPlace {
   std::uint64_t row = 0;
   std::uint64_t position = 0;
   std::uint64_t sequence = 0;
-  std::size_t bytes = 0;  ///< its size in the database
+  std::size_t bytes = 0;  ///< size in the database
 };
 
-/// Hash of a session's state when it reached a position, before commands at that position.
+/// Hash of a session's state at a position, before the commands at this position.
 struct TickHash {
-  std::uint64_t position = 0;  ///< as in a LogEntry
+  std::uint64_t position = 0;  ///< see LogEntry
   std::uint64_t hash = 0;
 };
 
-/// Checkpoints of sessions, compressed, and hashes of their states. They have a separate database,
-/// so that their writes do not delay commands. Safe to use from any thread; throws StorageError.
+/// Store of compressed checkpoints and of state hashes. Uses a separate database, so that writes do
+/// not delay commands. Thread-safe. Functions throw StorageError.
 class CheckpointStore {
  public:
-  /// Checkpoints of a session beyond `session_bytes` are thinned: see write().
+  /// `session_bytes` limits the size of a session's checkpoints, see write().
   CheckpointStore(const std::string& path, std::size_t session_bytes);
 
-  /// Writes a checkpoint. If the session then exceeds its size, removes older ones so that the
-  /// remaining gaps grow evenly. Returns the size of the checkpoint.
+  /// Writes a checkpoint. If the session then exceeds its size, removes the checkpoints whose
+  /// removal causes the smallest gaps. Returns the size of the checkpoint [bytes].
   std::size_t write(const Checkpoint& checkpoint);
-  /// In ascending order of positions, then sequences.
+  /// Returns the checkpoints in ascending order of position, then of sequence.
   std::vector<CheckpointPlace> places(std::uint64_t session);
-  /// Returns nothing if it was removed meanwhile. Throws StorageError, of kind corrupt, if it is
-  /// damaged.
+  /// Returns the checkpoint, or nothing if the checkpoint was removed meanwhile. Throws
+  /// StorageError (kind `corrupt`) if the checkpoint is damaged.
   std::optional<Checkpoint> read(const CheckpointPlace& place);
-  /// Adds hashes at increasing positions. Removes those `kMaxHashes` positions before.
+  /// Adds hashes at increasing positions. Removes hashes that are more than kMaxHashes positions
+  /// older.
   void write_hashes(std::uint64_t session, std::span<const TickHash> hashes);
-  /// In ascending order of positions. The first may be somewhat before `from`.
+  /// Returns hashes in ascending order of position. The first hashes may be slightly before `from`.
   std::vector<TickHash> hashes(std::uint64_t session, std::uint64_t from);
   std::size_t hash_count(std::uint64_t session);
-  /// Removes the hashes behind a position, from which the session continues.
+  /// Removes the hashes after the position `behind`, at which the session continues.
   void drop_hashes(std::uint64_t session, std::uint64_t behind);
-  static constexpr std::size_t kMaxHashes = 2'000'000;  ///< eleven hours at 50 ticks a second
+  static constexpr std::size_t kMaxHashes = 2'000'000;  ///< eleven hours at 50 ticks per second
 
-  /// Removes the checkpoints of all other sessions.
+  /// Removes the checkpoints and hashes of all other sessions.
   void keep_only(const std::vector<std::uint64_t>& sessions);
 
   std::size_t move_log(bool wait) { return mover_.move_log(wait); }

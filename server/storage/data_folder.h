@@ -4,8 +4,8 @@
 
 namespace vat {
 
-/// Folder of a server's data. Created if it is missing, and locked for one server. Throws
-/// StorageError, of kind locked if another process uses it.
+/// Data folder of a server. The constructor creates a missing folder and locks the folder for one
+/// server. Throws StorageError, with the kind `locked` if another process uses the folder.
 class DataFolder {
  public:
   explicit DataFolder(std::string path);

@@ -19,18 +19,18 @@ struct SavedSceneEntry {
   std::string title;
   std::string description;
   std::string saved_by;  ///< name of a participant
-  double time = 0;       ///< [s] since 1970
+  double time = 0;       ///< [s since 1970]
   std::size_t bytes = 0;
 };
 
 struct SavedScene {
   SavedSceneEntry entry;
-  std::string address;                 ///< of the participant
-  std::array<std::uint8_t, 32> key{};  ///< hash of the key for replacing or deleting it
-  std::string scene;                   ///< JSON
+  std::string address;                 ///< address of the participant
+  std::array<std::uint8_t, 32> key{};  ///< hash of the key for replacement and deletion
+  std::string scene;                   ///< JSON text
 };
 
-/// Greatest numbers and sizes of saved scenes.
+/// Greatest numbers and sizes [bytes] of saved scenes.
 struct SavedSceneLimits {
   std::size_t per_address = 0;
   std::size_t bytes_per_address = 0;
@@ -38,14 +38,14 @@ struct SavedSceneLimits {
   std::size_t bytes_in_all = 0;
 };
 
-/// Scenes that users have saved. Safe to use from any thread; throws StorageError.
+/// Store of scenes saved by users. Thread-safe. Functions throw StorageError.
 class SavedScenes {
  public:
   explicit SavedScenes(std::shared_ptr<MainDatabase> main) : main_(std::move(main)) {}
 
-  /// Writes or replaces the scene of this name. Returns the limit if it would be exceeded.
+  /// Writes or replaces the scene with this name. Returns the limit that would be exceeded, if any.
   std::optional<LimitExcess> write(const SavedScene& scene, const SavedSceneLimits& limits);
-  /// In alphabetical order of names.
+  /// Returns the entries in alphabetical order of names.
   std::vector<SavedSceneEntry> list();
   std::optional<SavedScene> find(const std::string& name);
   void remove(const std::string& name);

@@ -16,40 +16,40 @@ namespace vat {
 struct SavedStateEntry {
   std::string name;
   std::string saved_by;        ///< name of a participant
-  double time = 0;             ///< [s] since 1970
-  std::uint64_t tick = 0;      ///< as in a LogEntry
+  double time = 0;             ///< [s since 1970]
+  std::uint64_t tick = 0;      ///< see LogEntry
   double simulation_time = 0;  ///< [s]
-  std::uint64_t hash = 0;      ///< of the simulation's state
-  std::size_t bytes = 0;       ///< its size in the database
+  std::uint64_t hash = 0;      ///< hash of the simulation's state
+  std::size_t bytes = 0;       ///< size in the database
 };
 
 struct SavedState {
   SavedStateEntry entry;
-  std::string fields;               ///< JSON object: the scene, and state other than the simulation
-  std::vector<std::uint8_t> state;  ///< of the simulation, compressed
+  std::string fields;               ///< JSON object: the scene, and state except the simulation
+  std::vector<std::uint8_t> state;  ///< compressed state of the simulation
 };
 
-/// Greatest numbers and sizes of saved states.
+/// Greatest numbers and sizes [bytes] of saved states.
 struct SavedStateLimits {
   std::size_t per_session = 0;
   std::size_t bytes_per_session = 0;
   std::size_t bytes_in_all = 0;
 };
 
-/// Saved states of sessions. They have a separate database, so that large ones do not delay
-/// commands. Safe to use from any thread; throws StorageError.
+/// Store of the saved states of sessions. Uses a separate database, so that large states do not
+/// delay commands. Thread-safe. Functions throw StorageError.
 class SavedStates {
  public:
   /// `path` may be MainDatabase::kInMemory.
   explicit SavedStates(const std::string& path);
 
-  /// Writes or replaces the state of this name. Returns the limit if it would be exceeded.
+  /// Writes or replaces the state with this name. Returns the limit that would be exceeded, if any.
   std::optional<LimitExcess> write(const std::string& session, const SavedState& state,
                                    const SavedStateLimits& limits);
-  /// Returns the entries in alphabetical order of their names.
+  /// Returns the entries in alphabetical order of names.
   std::vector<SavedStateEntry> list(const std::string& session);
   std::optional<SavedState> find(const std::string& session, const std::string& name);
-  /// Returns false if there is no such state.
+  /// Removes a state. Returns false if there is no such state.
   bool remove(const std::string& session, const std::string& name);
   void remove_session(const std::string& session);
   /// Removes the states of all other sessions.

@@ -20,7 +20,7 @@
 namespace vat {
 
 /// Data folder of a server, with a thread for slow work: checkpoints, removal of closed sessions,
-/// and moving of the log with its waits for the disk. Other threads do not wait for the disk.
+/// and copies of write-ahead logs. Other threads do not wait for the disk.
 class Storage {
  public:
   /// Opens or creates the folder. Throws StorageError.
@@ -38,17 +38,17 @@ class Storage {
   SavedScenes& scenes() { return scenes_; }
   TokenStore& tokens() { return tokens_; }
 
-  /// Runs a task on the thread, in the order of the calls. Exceptions are logged.
+  /// Runs a task on the storage's thread, in the order of the calls. Exceptions are logged.
   void post(std::function<void()> task);
   /// Waits until all posted tasks have run.
   void flush();
   /// Frees the data of closed sessions.
   void remove_closed();
-  /// Counters for /metrics.
+  /// Returns the counters for /metrics.
   StorageCounts counts() const;
   /// Counts a failed write.
   void count_failure() { ++failures_; }
-  /// Counts a checkpoint, which took this processor time.
+  /// Counts a checkpoint and its processor time.
   void count_checkpoint(std::chrono::duration<double> cost);
 
  private:
@@ -68,7 +68,7 @@ class Storage {
   std::atomic<std::uint64_t> checkpoints_written_ = 0;
   std::atomic<std::uint64_t> checkpoint_nanoseconds_ = 0;
   boost::asio::thread_pool thread_{1};
-  // Used on the thread only.
+  // Members that only the storage's thread uses.
   const std::unique_ptr<Timer> move_timer_;
   bool stopping_ = false;
 };

@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// Writes of a server since its start.
+/// Counters of a server's writes since its start.
 struct StorageCounts {
   std::uint64_t failures = 0;  ///< failed writes
   std::uint64_t checkpoints = 0;

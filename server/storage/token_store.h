@@ -13,16 +13,16 @@
 
 namespace vat {
 
-/// Stored data of a token.
+/// Stored data of an access token.
 struct StoredToken {
   std::array<std::uint8_t, 32> hash{};
   std::string role;
-  std::string session;              ///< the only accessible session; empty: all
+  std::string session;              ///< the only accessible session; empty: all sessions
   std::optional<std::size_t> uses;  ///< remaining uses; absent: unlimited
-  double ends = 0;                  ///< [s] since 1970
+  double ends = 0;                  ///< time of expiry [s since 1970]
 };
 
-/// Tokens that remain valid after the server ends. Safe to use from any thread; throws
+/// Store of tokens that remain valid after the server ends. Thread-safe. Functions throw
 /// StorageError.
 class TokenStore {
  public:
@@ -32,7 +32,7 @@ class TokenStore {
   void set_uses(std::span<const std::uint8_t> hash, std::size_t uses);
   void remove(std::span<const std::uint8_t> hash);
   void remove_session(const std::string& session);
-  /// Removes tokens that expired before this time.
+  /// Removes tokens that expired before the time `now`.
   void remove_old(double now);
   std::vector<StoredToken> all();
 

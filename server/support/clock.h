@@ -7,12 +7,12 @@
 
 namespace vat {
 
-/// Time at which the server schedules. `Clock` reads it.
+/// Type of the times that `Clock` returns and that the server uses for scheduling.
 using SteadyClock = std::chrono::steady_clock;
-/// Measures the cost of work. Tests do not control it. Scheduling uses `Clock`.
+/// Clock for measurements of computing cost. Tests cannot control this clock.
 using CostClock = std::chrono::steady_clock;
 
-/// Runs one task at a given time on one executor. Used by one thread at a time.
+/// Timer that runs one task at a given time on an executor. Not thread-safe.
 class Timer {
  public:
   Timer() = default;
@@ -20,14 +20,14 @@ class Timer {
   Timer(const Timer&) = delete;
   Timer& operator=(const Timer&) = delete;
 
-  /// Replaces the waiting task, if any.
+  /// Sets the task and its time. Replaces the waiting task, if any.
   virtual void start(SteadyClock::time_point time, std::function<void()> task) = 0;
-  /// Drops the waiting task. A task that is due may already be queued and then still runs.
+  /// Drops the waiting task. A due task may already be queued, and is then executed.
   virtual void cancel() = 0;
 };
 
-/// Source of time and timers of a server. Tests control the time (`ManualClock`). Safe to use from
-/// any thread. A clock must outlive its timers.
+/// Source of time and timers of a server. Tests control the time with `ManualClock`. Thread-safe. A
+/// clock must outlive its timers.
 class Clock {
  public:
   Clock() = default;
@@ -36,12 +36,12 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
 
   virtual SteadyClock::time_point now() const = 0;
-  /// Seconds since 1970.
+  /// Returns the time [s since 1970].
   virtual double wall_time() const = 0;
   virtual std::unique_ptr<Timer> make_timer(boost::asio::any_io_executor executor) = 0;
 };
 
-/// The clock of the system.
+/// Clock of the system.
 class SystemClock final : public Clock {
  public:
   SteadyClock::time_point now() const override { return SteadyClock::now(); }

@@ -10,17 +10,17 @@
 
 namespace vat {
 
-/// Runs tasks at given times on a thread pool. Safe to use from any thread.
+/// Scheduler that runs tasks at given times on a thread pool. Thread-safe.
 class DeferredTasks : public std::enable_shared_from_this<DeferredTasks> {
  public:
   DeferredTasks(boost::asio::thread_pool& pool, Clock& clock);
 
   void add(SteadyClock::time_point time, std::function<void()> task);
-  /// Drops all tasks that have not begun. Later tasks are dropped too.
+  /// Drops all tasks that have not begun, and all tasks that are added later.
   void stop();
 
  private:
-  void wait();  // with the mutex held
+  void wait();  // the caller must hold the mutex
   void run_due_tasks();
 
   Clock& clock_;

@@ -5,9 +5,9 @@
 
 namespace vat {
 
-/// The limit that a request would exceed.
+/// Limit that a request would exceed.
 struct LimitExcess {
-  std::string_view limit;  ///< its name in server.info's `limits`
+  std::string_view limit;  ///< name in server.info's `limits`
   std::size_t maximum = 0;
 };
 

@@ -6,8 +6,8 @@
 
 namespace vat {
 
-/// A mutex that can tell whether the calling thread holds it. Functions that need the lock check
-/// this. Use with std::lock_guard and std::unique_lock.
+/// Mutex that can determine whether the calling thread has locked it. Functions that require the
+/// lock check is_held(). Use with std::lock_guard and std::unique_lock.
 class OwnedMutex {
  public:
   void lock() {

@@ -11,26 +11,26 @@
 
 namespace vat {
 
-/// Numbers of a simulation that determine its memory.
+/// Properties of a simulation that determine its memory.
 struct Resources {
   std::size_t particles = 0;
   std::size_t springs = 0;
 };
 
-/// No limit, for repeated logs: what was accepted before is accepted again.
+/// No limit. Recoveries and replays use the value to accept all previously accepted commands.
 inline constexpr Resources kUnlimitedResources{std::numeric_limits<std::size_t>::max() / 2,
                                                std::numeric_limits<std::size_t>::max() / 2};
 
 class ResourceShare;
 
-/// Particles and springs of all sessions together. Checks and takes them in one step. Safe to use
-/// from any thread.
+/// Budget for the particles and springs of all sessions. A check and the reservation are one atomic
+/// operation. Thread-safe.
 class ResourceBudget {
  public:
   explicit ResourceBudget(const Resources& most) : most_(most) {}
 
   std::variant<ResourceShare, LimitExcess> take(const Resources& wanted);
-  /// Takes them even beyond the limits, for sessions from before the server's start.
+  /// Reserves resources even beyond the limits, for sessions from an earlier run of the server.
   ResourceShare take_anyway(const Resources& wanted);
   Resources used() const;
 
@@ -43,7 +43,7 @@ class ResourceBudget {
   Resources used_;
 };
 
-/// Part of the budget, which must outlive it. Returned when it is destroyed.
+/// Reserved part of a budget. The destructor returns the part. The budget must outlive the share.
 class ResourceShare {
  public:
   ResourceShare(ResourceShare&& other) noexcept
@@ -56,10 +56,10 @@ class ResourceShare {
   ~ResourceShare();
 
   const Resources& amount() const { return amount_; }
-  /// Returns the limit if the amount does not fit, and changes nothing. A smaller amount always
-  /// fits.
+  /// Changes the amount. If a limit would be exceeded, returns the limit and changes nothing. A
+  /// smaller amount never exceeds a limit.
   std::optional<LimitExcess> resize(const Resources& amount);
-  /// Resizes even beyond the limits.
+  /// Changes the amount, even beyond the limits.
   void resize_anyway(const Resources& amount);
 
  private:

@@ -11,8 +11,8 @@
 
 namespace vat {
 
-/// Measures the wall time of a simulation's stages. Reads the clock only once per stage, so that
-/// the measurement can always be enabled.
+/// Measurement of the wall time of a simulation's stages. A stage is a part of a step. Reads the
+/// clock only once per stage, so that the measurement can always be enabled.
 class StageClock final : public StageObserver {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,15 +24,15 @@ class StageClock final : public StageObserver {
     double seconds() const { return std::chrono::duration<double>(time).count(); }
   };
 
-  /// `now` reads the time.
+  /// `now` returns the current time.
   explicit StageClock(Clock::time_point (*now)() = Clock::now) : now_(now) {}
 
   void stage_begins(std::string_view stage) override;
   void stages_end() override;
 
-  /// Returns the stages in the order of their first runs.
+  /// Returns the stages in the order of their first execution.
   const std::vector<Stage>& stages() const { return stages_; }
-  /// Sets all times to zero. Stages keep their names and indices.
+  /// Sets all times to zero. The names and indices of stages do not change.
   void clear();
 
  private:
@@ -41,12 +41,12 @@ class StageClock final : public StageObserver {
   std::size_t find(std::string_view name);
 
   Clock::time_point (*now_)();
-  std::vector<Stage> stages_;    // about twenty
+  std::vector<Stage> stages_;    // about twenty elements
   std::size_t running_ = kNone;  // index into stages_
   Clock::time_point since_;      // start of the running stage
 };
 
-/// Returns the processor time of this thread.
+/// Returns the processor time of the calling thread.
 inline std::chrono::duration<double> thread_time() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

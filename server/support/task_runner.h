@@ -13,22 +13,22 @@
 
 namespace vat {
 
-/// A TaskRunner whose threads help the callers of run(), several at a time. A caller works itself,
-/// and waits only for helpers that have started a block.
+/// TaskRunner with helper threads for callers of run(). Several threads can call run() at the same
+/// time. A caller executes blocks itself, and waits only for helpers that have started a block.
 ///
-/// Helpers poll for some microseconds before they sleep, because passes of a step follow each other
-/// faster than a thread wakes. A run wakes sleeping helpers only if it is long enough to gain from
-/// them.
+/// Helpers poll for some microseconds before they sleep, because consecutive passes of a step have
+/// shorter gaps than the wake-up time of a thread. A run wakes sleeping helpers only if the run is
+/// long enough.
 ///
-/// If a block throws, blocks that have not started are skipped, and run() throws the same
-/// exception. The runner stays usable. A run() inside a block uses only its own thread.
+/// If a block throws an exception, blocks that have not started are skipped, and run() throws the
+/// same exception. The runner remains usable. A run() inside a block uses only the calling thread.
 class ThreadPoolRunner final : public TaskRunner {
  public:
-  /// Name of the helpers in the system's list of threads.
+  /// Name of the helper threads in the system's list of threads.
   static constexpr const char* kThreadName = "vat-helper";
 
-  /// `thread_count` includes one calling thread, so 1 (or 0) starts none. Throws std::system_error
-  /// if the system refuses a thread.
+  /// `thread_count` includes the calling thread, so that 1 (or 0) starts no helpers. Throws
+  /// std::system_error if a thread cannot be started.
   explicit ThreadPoolRunner(std::size_t thread_count);
   ~ThreadPoolRunner() override;
   ThreadPoolRunner(const ThreadPoolRunner&) = delete;
@@ -38,12 +38,13 @@ class ThreadPoolRunner final : public TaskRunner {
   std::size_t thread_count() const override { return thread_count_; }
 
   using Clock = std::chrono::steady_clock;
-  /// Whether to wake a sleeping helper after `done` blocks of a run took `elapsed` and `left`
-  /// blocks have not started.
+  /// Returns whether to wake a sleeping helper. `done` blocks of the run took the time `elapsed`,
+  /// and `left` blocks have not started.
   static bool is_worth_waking(Clock::duration elapsed, std::size_t done, std::size_t left);
 
-  /// Limits this runner's helpers while a thread of another pool is busy: helpers beyond
-  /// thread_count() minus the reservations stop after their current block.
+  /// Limit of this runner's helpers while a thread of another pool is busy. The number of active
+  /// helpers is thread_count() minus the number of reservations. Other helpers stop after their
+  /// current block.
   class HelperReservation {
    public:
     explicit HelperReservation(ThreadPoolRunner& host) : host_(host) { ++host_.reservations_; }
@@ -70,11 +71,11 @@ class ThreadPoolRunner final : public TaskRunner {
   void stop();
 
   const std::size_t thread_count_;
-  std::vector<std::unique_ptr<Job>> jobs_;  // as many as can run at once
-  // Number of opened jobs. Helpers wait for its change.
+  std::vector<std::unique_ptr<Job>> jobs_;  // as many jobs as can run at the same time
+  // Number of opened jobs. Helpers wait for a change of the number.
   alignas(64) std::atomic<std::uint32_t> calls_ = 0;
-  alignas(64) std::atomic<std::uint32_t> sleepers_ = 0;  // helpers
-  std::atomic<std::uint32_t> busy_ = 0;                  // helpers at work
+  alignas(64) std::atomic<std::uint32_t> sleepers_ = 0;  // sleeping helpers
+  std::atomic<std::uint32_t> busy_ = 0;                  // working helpers
   std::atomic<std::uint32_t> reservations_ = 0;
   std::atomic<bool> stopping_ = false;
   std::vector<std::thread> helpers_;

@@ -7,11 +7,12 @@
 
 namespace vat {
 
-/// The thread that may use an object at present. Without a holder, any one thread may use it: for
-/// example before a session starts. Checks cost one relaxed load.
+/// Record of the thread that may use an object (the holder). Without a holder, any single thread
+/// may use the object, for example before a session starts. A check costs one relaxed load.
 class ThreadOwner {
  public:
-  /// Makes the calling thread the holder until the end of the scope. At most one may exist.
+  /// Makes the calling thread the holder until the end of the scope. At most one Hold may exist per
+  /// owner.
   class Hold {
    public:
     explicit Hold(ThreadOwner& owner) : owner_(owner) {
@@ -26,7 +27,7 @@ class ThreadOwner {
     ThreadOwner& owner_;
   };
 
-  /// False if another thread is the holder.
+  /// Returns false if another thread is the holder.
   bool allows_this_thread() const {
     const std::thread::id holder = holder_.load(std::memory_order_relaxed);
     return holder == std::thread::id() || holder == std::this_thread::get_id();

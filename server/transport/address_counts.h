@@ -9,13 +9,13 @@
 
 namespace vat {
 
-/// Counts items per network address. Safe to use from any thread.
+/// Counter of items per network address. Thread-safe.
 class AddressCounts {
  public:
-  /// One counted item, counted until the last copy is destroyed. Null: refused.
+  /// One counted item. The item is counted until the last copy is destroyed. Null: refused.
   using Place = std::shared_ptr<void>;
 
-  /// Adds an item of the address. Refuses if the address has `most` items.
+  /// Adds an item of the address. Returns null if the address already has `most` items.
   Place take(const std::string& address, std::size_t most) {
     const std::lock_guard lock(table_->mutex);
     std::size_t& count = table_->counts[address];
@@ -43,7 +43,7 @@ class AddressCounts {
     }
     Held(const Held&) = delete;
     Held& operator=(const Held&) = delete;
-    std::shared_ptr<Table> table;  // places may outlive the counts
+    std::shared_ptr<Table> table;  // a Place may outlive the AddressCounts
     std::string address;
   };
   std::shared_ptr<Table> table_ = std::make_shared<Table>();

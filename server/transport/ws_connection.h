@@ -12,7 +12,7 @@
 
 namespace vat {
 
-/// Passes every call to the endpoint's thread, which is the only one to use the stream.
+/// Connection that forwards all calls to the endpoint's thread. Only this thread uses the stream.
 class WsConnection final : public Connection {
  public:
   WsConnection(ConnectionId id, std::string address, std::shared_ptr<WsTaskQueue> tasks,
@@ -25,7 +25,7 @@ class WsConnection final : public Connection {
   std::size_t queued_bytes() const override { return *queued_bytes_; }
   void close(std::uint16_t code, std::string_view reason) override;
 
-  /// Marks the peer as disconnected. Later calls do nothing.
+  /// Marks the peer as disconnected. Later calls have no effect.
   void set_gone() { open_ = false; }
 
  private:

@@ -21,7 +21,7 @@
 
 namespace vat {
 
-/// State that the endpoints of a transport share. Limits apply to all of them together.
+/// State that the endpoints of a transport share. Limits apply to all endpoints together.
 struct WsShared {
   WsShared(TransportSettings settings_in, ConnectionHandler& connections_in, HttpHandler http_in)
       : settings(std::move(settings_in)), connections(connections_in), http(std::move(http_in)) {}
@@ -31,15 +31,15 @@ struct WsShared {
   ConnectionHandler& connections;
   const HttpHandler http;
   std::atomic<ConnectionId> last_id = 0;
-  std::atomic<std::size_t> open_count = 0;  ///< WebSockets
+  std::atomic<std::size_t> open_count = 0;  ///< number of open WebSockets
   AddressCounts open_by_address;
   AddressCounts sockets_by_address;
-  /// All sockets; shared with the streams, which may outlive the transport.
+  /// Number of all sockets. Shared with the streams, which may outlive the transport.
   const std::shared_ptr<std::atomic<std::size_t>> socket_count =
       std::make_shared<std::atomic<std::size_t>>(0);
 };
 
-/// An endpoint of websocketpp with its thread. Only this thread calls the library for the endpoint.
+/// Endpoint of websocketpp with its thread. Only this thread calls the library for the endpoint.
 class WsEndpoint {
  public:
   explicit WsEndpoint(WsShared& shared);
@@ -48,16 +48,16 @@ class WsEndpoint {
   WsEndpoint(const WsEndpoint&) = delete;
   WsEndpoint& operator=(const WsEndpoint&) = delete;
 
-  /// Throws like listen() if another program listens on the port. Endpoints that share the port
-  /// would not detect the other program.
+  /// Throws like listen() if another program listens on the port. Endpoints that share the port do
+  /// not detect another program.
   void check_free(std::uint16_t port);
-  /// Listens on the port (0: any), together with other endpoints if `shares_port`. Returns the
-  /// port. Throws std::runtime_error with a message that names host and port if the endpoint cannot
-  /// listen.
+  /// Listens on the port (0: any free port). If `shares_port`, other endpoints can listen on the
+  /// same port. Returns the port. Throws std::runtime_error on failure, with a message that names
+  /// host and port.
   std::uint16_t listen(std::uint16_t port, bool shares_port);
   /// Starts the thread.
   void start();
-  /// Starts the shutdown of Transport::stop(). join() waits for its end.
+  /// Starts the shutdown for Transport::stop(). join() waits for the end of the shutdown.
   void begin_stop();
   void join();
 
@@ -99,7 +99,7 @@ class WsEndpoint {
   boost::asio::steady_timer stop_timer_;
   std::thread thread_;
 
-  // Used on the endpoint's thread only, once it runs.
+  // Members that only the endpoint's thread uses while it runs.
   std::unordered_map<ConnectionId, std::weak_ptr<WsStream>> open_;
   bool stopping_ = false;
 };

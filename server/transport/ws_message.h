@@ -10,8 +10,8 @@
 
 namespace vat {
 
-/// Message of the library, with the members that the library needs. Connections can share its
-/// payload. Its token exists as long as the message waits for the socket.
+/// Message type with the members that websocketpp requires. Several connections can share the
+/// payload of a message. The token is destroyed when the message no longer waits for the socket.
 class WsMessage {
  public:
   using ptr = std::shared_ptr<WsMessage>;
@@ -22,7 +22,7 @@ class WsMessage {
   WsMessage(const std::shared_ptr<Manager>&, Opcode opcode, std::size_t size) : opcode_(opcode) {
     own_payload_.reserve(size);
   }
-  /// A complete unmasked frame.
+  /// Creates a complete unmasked frame.
   WsMessage(Opcode opcode, std::shared_ptr<const std::string> payload, std::shared_ptr<void> token)
       : shared_payload_(std::move(payload)),
         token_(std::move(token)),

@@ -17,20 +17,20 @@ namespace vat {
 
 class WsConnection;
 
-/// Transport data of each websocketpp connection.
+/// Data of the transport in each websocketpp connection.
 struct WsPeer {
-  ConnectionId id = 0;  ///< 0: not an open WebSocket
+  ConnectionId id = 0;  ///< 0: no open WebSocket
   std::shared_ptr<WsConnection> peer;
   std::shared_ptr<void> socket_slot;   ///< counts the open sockets
   std::string address;                 ///< see Connection::address()
-  std::shared_ptr<void> address_slot;  ///< counts the address's sockets
-  std::shared_ptr<void> peer_slot;     ///< counts the WebSockets of this address
+  std::shared_ptr<void> address_slot;  ///< counts the sockets of the address
+  std::shared_ptr<void> peer_slot;     ///< counts the WebSockets of the address
   std::weak_ptr<void> unsent_pong;
   std::optional<boost::asio::steady_timer> response_deadline;
   int unanswered_pings = 0;
 };
 
-/// Configuration of the library for one thread: no locks, log or compression.
+/// Configuration of websocketpp for one thread: no locks, log or compression.
 struct WsConfig : websocketpp::config::asio {
   using type = WsConfig;
   using base = websocketpp::config::asio;
@@ -58,6 +58,6 @@ struct WsConfig : websocketpp::config::asio {
 };
 
 using WsServer = websocketpp::server<WsConfig>;
-using WsStream = WsServer::connection_type;  ///< a TCP connection, with WebSocket or HTTP
+using WsStream = WsServer::connection_type;  ///< TCP connection with WebSocket or HTTP
 
 }  // namespace vat

@@ -16,7 +16,8 @@
 
 namespace vat {
 
-/// A socket, or TLS on a socket, selected at run time. The library is thus compiled once for both.
+/// Socket with or without TLS, selected at run time. websocketpp is therefore compiled once for
+/// both.
 class WsByteStream {
  public:
   using Socket = boost::asio::ip::tcp::socket;
@@ -54,10 +55,10 @@ class WsByteStream {
   std::optional<Tls> tls_;
 };
 
-/// Socket policy of the library. At the end it stops sending, then reads and discards the peer's
-/// data until the peer has closed too. Closing with unread data would reset the connection, and a
-/// peer in a large message would lose the close frame or error page. The library's timers limit the
-/// waits, including the TLS handshake.
+/// Socket policy of websocketpp. A shutdown first stops sending. It then reads and discards the
+/// peer's data until the peer closes the connection. Closing with unread data would reset the
+/// connection, and the peer could lose the close frame or the error page. Timers of websocketpp
+/// limit the waiting times, including the TLS handshake.
 class WsSocket : public std::enable_shared_from_this<WsSocket> {
  public:
   using type = WsSocket;
@@ -125,7 +126,7 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
   void async_shutdown(Done done) {
     WsByteStream::Tls* const tls = stream_->tls();
     if (tls == nullptr) return end_sending(std::move(done));
-    // Fails if the peer still sends or has disconnected. The next step is the same.
+    // Fails if the peer still sends data or has disconnected. The next step is the same.
     tls->async_shutdown([this, self = get_shared(),
                          done = std::move(done)](boost::system::error_code) { end_sending(done); });
   }
@@ -135,7 +136,7 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
     boost::system::error_code error;
     get_raw_socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, error);
     if (error) return end(error, done);
-    cancel_socket();  // cancels the library's read, which could be informed of the end instead
+    cancel_socket();  // otherwise the library's read could receive the end of the stream
     drain(std::move(done));
   }
   void drain(Done done) {
@@ -149,10 +150,10 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
           }
         });
   }
-  /// Closes the socket. The library may have started to read again. The system informs only one of
-  /// two readers of the end of a stream, and the other would keep the socket forever.
+  /// Closes the socket. The library may have started another read. The system reports the end of a
+  /// stream to only one of two readers. The other reader would retain the socket indefinitely.
   void end(boost::system::error_code error, const Done& done) {
-    boost::system::error_code ignored;  // ended in either case
+    boost::system::error_code ignored;  // the connection has ended in either case
     get_raw_socket().close(ignored);
     done(error);
   }
@@ -169,7 +170,7 @@ class WsSocketEndpoint {
   using socket_con_ptr = std::shared_ptr<WsSocket>;
 
   bool is_secure() const { return context_ != nullptr; }
-  /// Sets the context of all later connections.
+  /// Sets the TLS context of all later connections.
   void set_tls_context(std::shared_ptr<boost::asio::ssl::context> context) {
     context_ = std::move(context);
   }

@@ -11,22 +11,22 @@
 
 namespace vat {
 
-/// Sends and closes of other threads, which the endpoint's thread executes in order. Calls that
-/// arrive before it runs become one task, so that a frame for a thousand clients wakes it once.
-/// Safe to use from any thread.
+/// Queue of sends and closes from other threads. The endpoint's thread executes the tasks in order.
+/// All tasks that arrive before the thread runs wake the thread only once, for example for a frame
+/// to a thousand clients. Thread-safe.
 class WsTaskQueue : public std::enable_shared_from_this<WsTaskQueue> {
  public:
   explicit WsTaskQueue(boost::asio::io_context& io) : io_(&io) {}
 
   void send(std::weak_ptr<WsStream> stream, WsMessage::ptr message);
   void close(std::weak_ptr<WsStream> stream, std::uint16_t code, std::string reason);
-  /// Drops all tasks, because the endpoint has ended. Later calls do nothing.
+  /// Drops all tasks, because the endpoint has ended. Later calls have no effect.
   void shut();
 
  private:
   struct Task {
     std::weak_ptr<WsStream> stream;
-    WsMessage::ptr message;  // null: close
+    WsMessage::ptr message;  // null: close the connection
     std::uint16_t code = 0;
     std::string reason;
   };
@@ -38,8 +38,8 @@ class WsTaskQueue : public std::enable_shared_from_this<WsTaskQueue> {
   std::vector<Task> tasks_;
 };
 
-/// Starts the closing handshake, or drops the connection if that is not possible. Must run on the
-/// endpoint's thread.
+/// Starts the closing handshake, or drops the connection if a handshake is not possible. Must be
+/// called on the endpoint's thread.
 void close_stream(WsStream& stream, std::uint16_t code, const std::string& reason);
 
 }  // namespace vat

@@ -9,8 +9,8 @@
 
 namespace vat {
 
-/// Transport with websocketpp. The library has races if several threads run one endpoint. Each
-/// thread therefore has its own endpoint, and all listen on one port.
+/// Transport that uses websocketpp. The library has data races if several threads run one endpoint.
+/// Each thread therefore has a separate endpoint, and all endpoints listen on one port.
 class WsTransport final : public Transport {
  public:
   WsTransport(TransportSettings settings, ConnectionHandler& connections, HttpHandler http);

@@ -9,7 +9,7 @@ namespace vat {
 
 inline constexpr const char* kSubprotocol = "vat.v1";
 
-/// Headers of a WebSocket upgrade; missing ones are empty.
+/// Headers of a WebSocket upgrade. Missing headers are empty.
 struct UpgradeRequest {
   std::string_view target;
   std::string_view host;
@@ -23,8 +23,8 @@ struct UpgradeRefusal {
   const char* message;
 };
 
-/// Returns the reason for a refusal, or no value. Only pages of this server and of allowed origins
-/// may connect. Otherwise any site could control a user's server.
+/// Returns the reason for a refusal, or nothing. Only pages of this server and of allowed origins
+/// may connect. Otherwise, pages of other sites could control a user's server.
 std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
                                              const std::vector<std::string>& allowed_origins);
 

@@ -6,13 +6,14 @@
 
 namespace vat {
 
-/// Accepts a finite number in [min, max]. CLI::Range accepts NaN.
+/// Returns a validator for finite numbers in [min, max]. CLI::Range accepts NaN.
 CLI::Validator real_in(double min, double max);
 
-/// Accepts a file name that ends in ".csv".
+/// Returns a validator for file names that end in ".csv".
 CLI::Validator csv_file_name();
 
-/// Adds `--isa`: an instruction set of this machine, by default the best.
+/// Adds the option `--isa`: an instruction set of this machine. The default is the best instruction
+/// set.
 void add_isa_option(CLI::App& command, InstructionSet& instructions);
 
 }  // namespace vat

@@ -12,10 +12,10 @@ namespace vat {
 inline constexpr const char* kSceneHelp =
     "A scene file (a path with '/' or ending in '.json') or the name of a scene of the catalogue";
 
-/// Loads a scene file, or the scene with this name in the catalogue of `scenes_folder`.
+/// Returns the scene of a file, or the scene with this name in the catalogue of `scenes_folder`.
 Result<Scene> load_scene(const std::string& argument, const std::string& scenes_folder);
 
-/// Returns the sorted names of the catalogue. Fails if the folder cannot be read.
+/// Returns the sorted names of the catalogue, or an error if the folder cannot be read.
 Result<std::vector<std::string>> catalogue_names(const std::string& scenes_folder);
 
 }  // namespace vat

@@ -2,9 +2,8 @@
 
 namespace vat {
 
-/// While an InterruptWatch exists, SIGINT and SIGTERM are only recorded, so that a run can end
-/// cleanly. A second signal ends the program at once. Ignored signals stay ignored. One may exist
-/// at a time.
+/// Recorder of SIGINT and SIGTERM, so that a run can end cleanly. A second signal ends the program
+/// immediately. Ignored signals remain ignored. At most one InterruptWatch may exist at a time.
 class InterruptWatch {
  public:
   InterruptWatch();
@@ -12,7 +11,7 @@ class InterruptWatch {
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
-  /// Returns the number of the received signal; 0: none.
+  /// Returns the number of the received signal, or 0.
   int signal() const;
 };
 

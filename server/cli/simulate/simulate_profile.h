@@ -7,8 +7,8 @@
 
 namespace vat {
 
-/// Prints the stages by descending time, with their share of `stepping` (time of all steps), and a
-/// row for the remaining time.
+/// Prints the stages in descending order of time, with their share of `stepping` (time of all
+/// steps). The last row contains the remaining time.
 void print_profile(const StageClock& profile, std::chrono::duration<double> stepping,
                    std::ostream& out);
 

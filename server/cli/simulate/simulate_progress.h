@@ -7,7 +7,7 @@
 
 namespace vat {
 
-/// Progress bar on stderr, if it is a terminal. Cleared at the end.
+/// Progress bar on stderr. Visible only if stderr is a terminal, and cleared at the end.
 class ProgressBar {
  public:
   ProgressBar();
@@ -17,7 +17,7 @@ class ProgressBar {
 
   /// `time` is the simulated time [s].
   void show(std::uint64_t step, std::uint64_t total_steps, Real time);
-  /// Clears the line for other text.
+  /// Clears the line for other output.
   void clear() const;
 
  private:

@@ -8,14 +8,14 @@
 
 namespace vat {
 
-/// Log entry of a command.
+/// Log entry of a command, and the action to execute.
 struct CommandEntry {
   LogEntry entry;
-  std::optional<SessionAction> action;  ///< replaces the command's own action
+  std::optional<SessionAction> action;  ///< if present, replaces the command's action
 };
 
-/// Returns the entry of a logged command. The entry does not depend on the catalogue or on saved
-/// scenes and states, which can change later: it contains their content in place of their name.
+/// Returns the log entry of a command. The entry contains the content of scenes and saved states
+/// instead of their names, because the named content can change later.
 std::variant<CommandEntry, RpcError> make_command_entry(const SessionContext& context,
                                                         const SessionHistory& history,
                                                         const ParticipantCommand& command);

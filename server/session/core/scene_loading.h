@@ -11,36 +11,37 @@
 
 namespace vat {
 
-/// Method that loads a scene. The first entry of a log has this name.
+/// Name of the method that loads a scene. The first entry of a log has this method.
 inline constexpr std::string_view kLoadMethod = "scene.load";
-/// Method that loads a saved state.
+/// Name of the method that loads a saved state.
 inline constexpr std::string_view kLoadStateMethod = "session.load";
 
-/// Refuses every file: scenes and bodies of clients contain their meshes.
+/// Returns an error for every file, because scenes and bodies from clients contain their meshes.
 Result<std::string> refuse_mesh_file(const std::string& name);
 
-/// Reads a scene of the catalogue by its name, or a written scene. Errors point into the parameter
-/// `scene`.
+/// Returns a scene, given by its catalogue name or as JSON. Paths of errors begin with the
+/// parameter `scene`.
 std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue);
 
-/// Returns the saved scene with this name.
+/// Returns the saved scene with this name, or an error.
 std::variant<Json, RpcError> find_saved_scene(const std::string& name,
                                               const SessionEnvironment& environment);
-/// Reads a scene by its name in the catalogue or among the saved scenes, or a written scene. Errors
-/// point into the parameter `scene`.
+/// Returns a scene, given by JSON or by its name in the catalogue or among the saved scenes. Paths
+/// of errors begin with the parameter `scene`.
 std::variant<Scene, RpcError> read_named_scene(const Json& value,
                                                const SessionEnvironment& environment);
 
-/// Returns the error if the simulation exceeds a limit of one session.
+/// Returns an error if the simulation exceeds a limit of one session.
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits);
 
-/// Returns the greatest size of a simulation's state within the limits.
+/// Returns the greatest size [bytes] of a simulation's state within the limits.
 std::size_t max_state_bytes(const ServerLimits& limits);
 
-/// Returns the budget that a simulation needs, including particles that its emitters may add.
+/// Returns the resources that a simulation needs, including particles that its emitters may add.
 Resources resources_of(const Simulation& simulation);
 
-/// Creates a simulation within the limits of one session. Errors point into the parameter `scene`.
+/// Returns a simulation within the limits of one session, or an error. Paths of errors begin with
+/// the parameter `scene`.
 std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
                                                    const SessionEnvironment& environment,
                                                    InstructionSet instructions);

@@ -17,7 +17,7 @@ namespace vat {
 
 class SessionCore;
 
-/// Ticks that control.step runs before it is answered.
+/// Number of ticks that control.step runs before the reply.
 struct RunTicks {
   std::uint64_t count = 0;
 };
@@ -36,37 +36,38 @@ struct SaveState {
   std::string saved_by;
 };
 
-/// Reply of a command, or work that the session does before it replies. A result gets its `tick`
-/// afterwards.
+/// Result of an action: content of the reply, an error, or work before the reply. The session adds
+/// the member `tick` to the content.
 using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState>;
 
-/// Effect of a command whose parameters are valid.
+/// Function that executes a command with valid parameters.
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
 
-/// Call of a session's method with valid parameters.
+/// Call of a session method with valid parameters.
 // NOLINTNEXTLINE(bugprone-exception-escape): the library says that moves of JSON do not throw
 struct SessionCommand {
   const MethodRow* row = nullptr;
-  Json params;  ///< an object
+  Json params;  ///< a JSON object
   SessionAction action;
 };
 
-/// Command of one participant.
+/// Command, and the participant that sent it.
 struct ParticipantCommand {
   ParticipantNumber participant = 0;
   const SessionCommand& command;
 };
 
-/// The method table, as sessions use it. Implemented by server/rpc/.
+/// Method table as sessions use it. Implemented in server/rpc/.
 struct SessionMethods {
-  /// Names of all methods, in the order of PROTOCOL.md.
+  /// Returns the names of all methods, in the order of PROTOCOL.md.
   std::span<const std::string_view> names;
-  /// Returns null if no method has this name.
+  /// Returns the properties of a method, or null if no method has this name.
   const MethodRow* (*find)(std::string_view method) = nullptr;
-  /// Returns the command, or errors if no session method has this name or `params` are invalid.
+  /// Returns the command. Returns errors if no session method has this name or `params` are
+  /// invalid.
   std::variant<SessionCommand, Errors> (*parse)(std::string_view method, Json params) = nullptr;
 
-  /// Returns a command that the server itself gives. `params` must be valid.
+  /// Returns a command that the server itself issues. `params` must be valid.
   SessionCommand make(std::string_view method, Json params) const {
     VAT_CHECK(parse != nullptr);
     auto command = parse(method, std::move(params));

@@ -10,13 +10,13 @@ namespace vat {
 
 class Playback;
 
-/// State that all parts of one session use.
+/// State that all parts of a session share.
 struct SessionContext {
   std::string id;
   SessionSettings settings;
   const SessionEnvironment* environment = nullptr;
   Playback* playback = nullptr;  ///< null: the session is not a replay
-  ThreadOwner owner;             ///< held by the session's strand during a turn
+  ThreadOwner owner;             ///< held by the strand's thread during a turn, see Session
 };
 
 }  // namespace vat

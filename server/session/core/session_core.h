@@ -11,15 +11,15 @@ namespace vat {
 
 class Playback;
 
-/// A session without its threads: simulation, clock, participants, history and notifications, and
-/// the operations that concern several of them. Used by one thread at a time.
+/// Session without its threads: simulation, clock, participants, history and notifications.
+/// Contains the operations that concern several of these parts. Not thread-safe.
 class SessionCore {
  public:
-  /// `share` is the session's part of the budget of all sessions. The environment must outlive
-  /// this.
+  /// `share` is the session's part of the server's resource budget. The environment must outlive
+  /// the session.
   SessionCore(std::string id, SessionSettings settings, Simulation simulation, ResourceShare share,
               const SessionEnvironment& environment);
-  /// Takes the share that the simulation needs, even beyond the limits.
+  /// Reserves the resources that the simulation needs, even beyond the server's limits.
   SessionCore(std::string id, SessionSettings settings, Simulation simulation,
               const SessionEnvironment& environment);
   SessionCore(const SessionCore&) = delete;
@@ -28,10 +28,11 @@ class SessionCore {
   const std::string& id() const { return context_.id; }
   const SessionEnvironment& environment() const { return *context_.environment; }
   void set_environment(const SessionEnvironment& environment);
-  /// Null unless the session is a replay.
+  /// Returns the playback of a replay. Returns null for other sessions.
   Playback* playback() const { return context_.playback; }
   void set_playback(Playback* playback) { context_.playback = playback; }
-  /// The session's strand holds this ownership during a turn. All functions check it.
+  /// Returns the ownership of the session, which the strand's thread holds during a turn (see
+  /// Session). The functions of the session's parts check the ownership.
   ThreadOwner& owner() { return context_.owner; }
 
   SessionRun& run() { return run_; }
@@ -40,7 +41,8 @@ class SessionCore {
   const SessionClock& clock() const { return clock_; }
   Participants& participants() { return participants_; }
   const Participants& participants() const { return participants_; }
-  /// Participants of a replay's recording. participants() are its viewers.
+  /// Returns the participants of a replay's recording. participants() returns the viewers of the
+  /// replay.
   Participants& recorded() { return recorded_; }
   const Participants& recorded() const { return recorded_; }
   SessionHistory& history() { return history_; }
@@ -50,27 +52,27 @@ class SessionCore {
 
   void set_playing(bool playing);
   void set_speed(double speed);
-  /// Replaces the simulation; ticks count from 0.
+  /// Replaces the simulation and sets the tick count to 0.
   void load(Simulation simulation);
-  /// Replaces the simulation by `simulation`, which has run `tick` ticks since the state
-  /// `as_loaded`.
+  /// Replaces the simulation. The new simulation has run `tick` ticks since the state `as_loaded`.
   void restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick);
   void reset();
-  /// Starts an epoch because bodies were added, removed or changed. `moved`: some bodies were moved
-  /// by a command and not by a tick, so that their accelerations are unknown.
+  /// Starts an epoch because bodies were added, removed or changed. An epoch is a period with one
+  /// description of the bodies. `moved` must be true if a command moved bodies, because their
+  /// accelerations are then unknown.
   void start_epoch(bool moved = false);
-  /// Runs one tick, whose frame is then due. Returns false if the guard failed, which pauses the
-  /// session. The rate is measured only if `timed` is true, because ticks of control.step are not
-  /// timed.
+  /// Runs one tick without publishing its frame. If the guard (core/guard/guard.h) fails, pauses
+  /// the session and returns false. Measures the rate only if `timed` is true, because ticks of
+  /// control.step are not timed.
   bool tick(SteadyClock::time_point now, bool timed);
 
-  /// Logs and executes commands between two ticks. If they cannot be logged, all are refused.
+  /// Logs and executes commands between two ticks. Refuses all commands if logging fails.
   std::vector<ActionResult> execute(std::span<const ParticipantCommand> commands);
-  /// Executes a logged command, either when it is issued or when a log is replayed. Adds the
-  /// participant if it is missing.
+  /// Executes a logged command, either a new command or a command of a replayed log. Adds the
+  /// participant if the session does not have it.
   ActionResult execute(const LogEntry& entry, const SessionAction& action);
-  /// Ends grabs without `grab.move` during the idle time. Logs each end as a command of the grab's
-  /// participant.
+  /// Ends each grab without a `grab.move` during the idle time. A grab is a spring by which a
+  /// participant moves a body. Logs each end as a command of the grab's participant.
   void end_idle_grabs(SteadyClock::time_point now);
 
  private:

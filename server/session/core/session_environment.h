@@ -23,15 +23,15 @@ struct SessionEnvironment {
   const Catalogue& catalogue;
   const ServerLimits& limits;
   InstructionSet instructions;
-  ThreadPoolRunner& runner;  ///< runs the blocks of all sessions' steps
+  ThreadPoolRunner& runner;  ///< runs the blocks of the simulation steps of all sessions
   ServerMetrics& metrics;
   ResourceBudget& resources;
-  boost::asio::thread_pool& frame_threads;  ///< quantise, encode and send frames
+  boost::asio::thread_pool& frame_threads;  ///< threads that quantise, encode and send frames
   AccessTokens& tokens;
   Clock& clock;
   const SessionMethods& methods;
-  Downloads* downloads = nullptr;  ///< null: no downloads
-  // Null: nothing can be saved.
+  Downloads* downloads = nullptr;  ///< null: downloads are disabled
+  // Null if the server cannot save states and scenes.
   SavedStates* states = nullptr;
   SavedScenes* scenes = nullptr;
 };

@@ -9,62 +9,63 @@
 
 namespace vat {
 
-/// Request of a connection to take part in a session.
+/// Request of a connection to join a session.
 struct JoinRequest {
-  std::string name;                   ///< empty: the server chooses one
+  std::string name;                   ///< empty: the server chooses a name
   std::optional<std::string> resume;  ///< token of the participant to resume
-  std::optional<Role> role;           ///< by invitation; absent: the session's default
+  std::optional<Role> role;           ///< role of an invitation; absent: default role
   bool passes_lock = false;
 };
 
-/// Result of a join.
+/// Result of a successful join.
 struct JoinedParticipant {
   const Participant& participant;
   std::string resume;  ///< token with which another connection can resume the participant
   bool resumed = false;
 };
 
-/// Manages joining, leaving and the roles of a session's participants. Departures and released
-/// grabs are logged. Used by one thread at a time.
+/// Management of a session's participants: joining, leaving and roles. Logs departures and ends of
+/// grabs. Not thread-safe.
 class SessionPeople {
  public:
   SessionPeople(SessionContext& context, SessionRun& run, Participants& participants,
                 SessionHistory& history, SessionNotifier& notifier);
 
-  /// Adds a participant, or resumes one and closes its other connection. Ends the connection's
-  /// earlier participation in the session.
+  /// Adds a participant, or resumes a participant and closes its other connection. Removes another
+  /// participant of the same connection.
   std::variant<JoinedParticipant, RpcError> join(const std::shared_ptr<ClientOutbox>& outbox,
                                                  std::uint64_t membership,
                                                  const JoinRequest& request,
                                                  SteadyClock::time_point now);
-  /// The connection's participant, if any, is away: it can be resumed for a limited time.
+  /// Marks the connection's participant, if any, as away. The participant can be resumed for a
+  /// limited time.
   void disconnect(ConnectionId client, SteadyClock::time_point now);
-  /// Ends the participant's grabs and removes it. If that cannot be logged, the participant is away
-  /// and leaves later.
+  /// Ends the participant's grabs and removes the participant. If logging fails, marks the
+  /// participant as away and removes it later.
   void leave(ParticipantNumber number);
-  /// Executes an entry kLeaveEntry.
+  /// Executes a log entry with the method kLeaveEntry.
   void execute_leave(const LogEntry& entry);
-  /// Executes an entry kReleaseGrabsEntry.
+  /// Executes a log entry with the method kReleaseGrabsEntry.
   void execute_release(const LogEntry& entry);
-  /// Removes the participant and closes its connection with the reason.
+  /// Removes the participant and closes its connection with `reason`.
   void kick(ParticipantNumber number, const std::string& reason);
   void rename(Participant& participant, std::string name);
-  /// A participant that becomes a viewer loses its grabs. A new owner replaces the current one, who
-  /// becomes a controller.
+  /// Sets the role of a participant. A participant that becomes a viewer loses its grabs. A new
+  /// owner replaces the current owner, who becomes a controller.
   void set_role(Participant& participant, Role role);
-  /// Stores the settings, applies them and sends session.configured.
+  /// Stores and applies the settings, and sends session.configured.
   void configure(SessionSettings settings);
   const SessionSettings& settings() const { return context_.settings; }
   Json describe_settings() const;
-  /// Removes participants that have been away for the resume time.
+  /// Removes participants that were away longer than the resume time.
   void end_absences(SteadyClock::time_point now);
-  /// Marks all participants as away after a recovery. Removes participants that cannot resume.
+  /// Marks all participants as away after a recovery. Removes participants without a resume token.
   void recover(SteadyClock::time_point now);
 
  private:
   Participant& add(const ClientOutbox& outbox, const JoinRequest& request, std::string& token);
   void release_connection(const Participant& participant, ConnectionId next);
-  /// Limits the number of participants that are away.
+  /// Limits the number of absent participants by removing the longest absent participant.
   void bound_absences();
   void release_grabs(const Participant& participant);
 

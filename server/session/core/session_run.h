@@ -11,50 +11,54 @@
 
 namespace vat {
 
-/// Simulation of a session, its counts of ticks, and the state of a reset.
+/// Simulation of a session, its tick counts, and the state that a reset restores.
 class SessionRun {
  public:
-  /// `share`: part of the budget of all sessions.
+  /// `share` is the session's part of the server's resource budget.
   SessionRun(Simulation simulation, ResourceShare share, ServerMetrics& metrics);
 
-  /// Continues from another moment of the session's history. `as_loaded` is the state of a reset.
+  /// Continues from another moment of the session's history. `as_loaded` is the state that a reset
+  /// restores.
   void resume(Simulation simulation, Snapshot as_loaded, const SessionMoment& moment);
-  /// Takes the budget that another simulation needs. Returns the limit if it would be exceeded.
+  /// Reserves the resources of another simulation. Returns the limit that would be exceeded, if
+  /// any.
   std::optional<LimitExcess> admit(const Simulation& next);
-  /// Takes the greater budget of both simulations.
+  /// Reserves the greater resources of both simulations. Returns the limit that would be exceeded,
+  /// if any.
   std::optional<LimitExcess> admit(const Simulation& next, const Simulation& as_loaded);
-  /// Takes the budget that the changed simulation needs, at least that of a reset.
+  /// Reserves the resources of the changed simulation, and at least the resources of the reset
+  /// state.
   std::optional<LimitExcess> admit_change();
-  /// Moves the share to another budget, even beyond its limits.
+  /// Moves the reservation to another budget, even beyond its limits.
   void move_share(ResourceBudget& budget) { share_ = budget.take_anyway(share_.amount()); }
-  /// Takes the budget that the simulation needs, even beyond the limits.
+  /// Reserves the resources of the simulation, even beyond the limits.
   void resize_share_anyway();
-  /// Returns the budget. The simulation does not run any more.
+  /// Releases all resources. The simulation must not run afterwards.
   void end() { share_.resize({}); }
-  /// Replaces the simulation. Starts at tick 0 of a new epoch, with a new profile.
+  /// Replaces the simulation and clears the profile. Starts a new epoch at tick 0.
   void load(Simulation simulation);
-  /// Replaces the simulation by one that has run `tick` ticks since it was `as_loaded`.
+  /// Replaces the simulation. The new simulation has run `tick` ticks since the state `as_loaded`.
   void restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick);
-  /// Restores the loaded state, at tick 0 of a new epoch.
+  /// Restores the loaded state. Starts a new epoch at tick 0.
   void reset();
   const Snapshot& as_loaded() const { return as_loaded_; }
-  /// Runs the steps of one tick. If they fail, state and tick are unchanged.
+  /// Runs the steps of one tick. If a step fails, state and tick count are unchanged.
   AdvanceReport advance();
   /// Starts an epoch because the bodies have changed.
   void start_epoch() { ++epoch_; }
   void set_epoch(std::uint32_t epoch) { epoch_ = epoch; }
-  /// Skips epochs that clients may have seen before a recovery.
+  /// Skips epochs that clients may have received before a recovery.
   void skip_epochs(std::uint32_t count) { epoch_ += count; }
 
   Simulation& simulation() { return simulation_; }
   const Simulation& simulation() const { return simulation_; }
-  /// Of the ticks since the scene was loaded.
+  /// Returns the profile of all ticks since the scene was loaded.
   const TickProfile& profile() const { return profile_; }
   std::uint64_t tick() const { return tick_; }  ///< ticks since the scene was loaded or reset
-  /// All ticks of the session, including those before loads and resets.
+  /// Returns the number of all ticks of the session, including ticks before loads and resets.
   std::uint64_t position() const { return position_; }
   std::uint32_t epoch() const { return epoch_; }
-  /// Greatest id of a grab so far.
+  /// Returns the greatest grab id that was used.
   std::uint64_t last_grab() const { return last_grab_; }
   void set_last_grab(std::uint64_t grab) { last_grab_ = grab; }
   double tick_seconds() const { return simulation_.scene().numerics.tick; }

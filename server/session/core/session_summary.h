@@ -11,7 +11,7 @@
 
 namespace vat {
 
-/// A participant as `server.sessions` lists it.
+/// Participant in the result of `server.sessions`.
 struct PersonSummary {
   ParticipantNumber number = 0;
   std::string name;
@@ -19,7 +19,7 @@ struct PersonSummary {
   std::string address;  ///< empty: disconnected
 };
 
-/// A session as `session.list` lists it.
+/// Session in the result of `session.list`.
 struct SessionSummary {
   std::string name;
   std::string scene;
@@ -27,10 +27,10 @@ struct SessionSummary {
   bool playing = false;
   std::uint64_t tick = 0;
   std::size_t particles = 0;
-  ConnectionId creator = 0;  ///< becomes the owner when it joins; 0: none
+  ConnectionId creator = 0;  ///< connection that becomes the owner when it joins; 0: none
   bool is_replay = false;
-  bool hibernating = false;                            ///< plays, but has no participants
-  std::optional<SteadyClock::time_point> empty_since;  ///< set while there are no participants
+  bool hibernating = false;  ///< playing, but stopped without participants
+  std::optional<SteadyClock::time_point> empty_since;  ///< start of the time without participants
   std::shared_ptr<const std::vector<PersonSummary>> people;  ///< null: unknown
 };
 

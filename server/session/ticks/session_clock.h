@@ -7,21 +7,21 @@
 
 namespace vat {
 
-/// Playing state and speed of a session, as set and as measured. Used by one thread at a time.
+/// Playing state, requested speed and measured rate of a session. Not thread-safe.
 class SessionClock {
  public:
   bool playing() const { return playing_; }
-  double speed() const { return speed_; }       ///< simulated seconds per second, as set
+  double speed() const { return speed_; }       ///< requested simulated seconds per second
   double rate() const { return rate_.rate(); }  ///< measured simulated seconds per second
-  /// True while a playing session is slower than its speed.
+  /// Returns true if a playing session is slower than its requested speed.
   bool is_slow() const { return playing_ && rate_.slower_than(speed_); }
 
-  /// Sets playing state and speed from a log or recording, without interrupting control.step.
+  /// Sets playing state and speed from a log or a recording. Does not interrupt control.step.
   void set(bool playing, double speed) {
     playing_ = playing;
     speed_ = speed;
   }
-  /// Interrupts control.step. A change restarts the measurement.
+  /// Sets the playing state and interrupts control.step. A change restarts the rate measurement.
   void set_playing(bool playing) {
     interrupt();
     if (playing != playing_) restart_rate();
@@ -37,10 +37,10 @@ class SessionClock {
   }
   void restart_rate() { rate_ = {}; }
 
-  /// Ends the ticks of control.step because of another control command, another scene, or a failed
+  /// Ends the ticks of control.step after another control command, another scene, or a failed
   /// guard.
   void interrupt() { interrupted_ = true; }
-  /// Returns true once after interrupt().
+  /// Returns true for the first call after interrupt().
   bool take_interruption() { return std::exchange(interrupted_, false); }
 
  private:

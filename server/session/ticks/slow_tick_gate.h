@@ -8,17 +8,17 @@
 
 namespace vat {
 
-/// A semaphore that limits concurrent slow ticks to fewer than the pool's threads, so that a thread
-/// remains free for fast ticks. Sessions without a place wait in a queue. Safe to use from any
-/// thread. Must outlive all places.
+/// Semaphore for concurrent slow ticks. The gate has fewer places than the pool has threads, so
+/// that one thread remains free for fast ticks. Sessions without a place wait in a queue.
+/// Thread-safe. Must outlive all places.
 class SlowTickGate {
  public:
-  using Place = std::shared_ptr<void>;  ///< returned when the last copy is destroyed
+  using Place = std::shared_ptr<void>;  ///< released when the last copy is destroyed
 
   explicit SlowTickGate(std::size_t places) : free_(places) {}
 
-  /// Returns a place, or null if none is free. In that case, `wake` is called later with the first
-  /// released place, on the releasing thread. It must not block.
+  /// Returns a place, or null if no place is free. If no place is free, the releasing thread later
+  /// calls `wake` with the first released place. `wake` must not block.
   Place take(std::function<void(Place)> wake);
 
  private:

@@ -6,14 +6,14 @@
 
 namespace vat {
 
-/// Due times of the ticks of a playing session. A late tick is made up for by at most one period;
-/// beyond that the schedule is delayed, and the session runs in slow motion.
+/// Schedule of the ticks of a playing session. The schedule recovers a delay of at most one period.
+/// A longer delay shifts the schedule, and the session runs in slow motion.
 class TickClock {
  public:
-  /// The first tick is due one period from now. The period must be above 0.
+  /// Starts the schedule. The first tick is due after one period. The period must be above 0.
   void start(SteadyClock::time_point now, SteadyClock::duration period);
   SteadyClock::time_point due() const { return due_; }
-  /// Sets the next tick's time; `now` is the end of the tick that was due.
+  /// Sets the time of the next tick. `now` is the end of the previous tick.
   void tick_done(SteadyClock::time_point now);
 
  private:
@@ -21,22 +21,23 @@ class TickClock {
   SteadyClock::duration period_{};
 };
 
-/// Returns the wall time of one tick of `tick_seconds` at `speed` simulated seconds per second.
+/// Returns the wall time of one tick. `tick_seconds` is simulated time [s], and `speed` is in
+/// simulated seconds per second.
 SteadyClock::duration tick_period(double tick_seconds, double speed);
 
-/// Measures simulated seconds per second, over about the last second.
+/// Meter of simulated seconds per second, over about the last second.
 class RateMeter {
  public:
   void tick_done(SteadyClock::time_point now, double tick_seconds);
-  /// Returns 0 before the second tick.
+  /// Returns the rate, or 0 before the second tick.
   double rate() const;
-  /// Whether the rate was below `speed` by more than a tenth over the whole window.
+  /// Returns whether the rate in the window is below 0.9 * `speed`.
   bool slower_than(double speed) const;
 
  private:
   struct Sample {
     SteadyClock::time_point at;
-    double seconds;  // simulated, since the first sample
+    double seconds;  // simulated time since the first sample
   };
   std::deque<Sample> samples_;
 };

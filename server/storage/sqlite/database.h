@@ -16,20 +16,19 @@ namespace vat {
 
 class Statement;
 
-/// Connection to an SQLite database. Used by one thread at a time. All functions throw
-/// StorageError.
+/// Connection to an SQLite database. Not thread-safe. Functions throw StorageError.
 class Database {
  public:
   enum class Mode {
-    create,  ///< read and write; created if missing
-    read     ///< read only
+    create,  ///< reads and writes; creates a missing file
+    read     ///< reads only
   };
 
   Database(const std::string& path, Mode mode);
 
   const std::string& path() const { return path_; }
 
-  /// Runs statements without results.
+  /// Runs SQL statements without results.
   void execute(const char* sql);
   Statement prepare(std::string_view sql);
   /// Returns the number in the only row of a query.
@@ -38,12 +37,12 @@ class Database {
   /// Rolls back the current transaction, if any.
   void roll_back() noexcept;
 
-  /// Uses a write-ahead log, which survives the end of the process at any moment. Only move_log()
-  /// copies it into the file.
+  /// Uses a write-ahead log, which survives a crash of the process at any moment. Only move_log()
+  /// copies the log into the database file.
   void use_log();
-  /// Runs a checkpoint: copies the part of the log that no reader uses into the file. If `wait` is
-  /// true, writers wait and the log restarts from its beginning. Returns the size of the log in
-  /// bytes.
+  /// Runs a checkpoint of SQLite: copies the part of the write-ahead log that no reader uses into
+  /// the database file. If `wait` is true, blocks writers and restarts the log from its beginning.
+  /// Returns the size of the log [bytes].
   std::size_t move_log(bool wait);
 
  private:
@@ -55,8 +54,8 @@ class Database {
   std::unique_ptr<sqlite3, Close> connection_;
 };
 
-/// A prepared statement. Parameters and columns count from 0. Bound texts and bytes must live until
-/// the statement has run.
+/// A prepared SQL statement. Indices of parameters and columns start at 0. Bound texts and bytes
+/// must exist until the statement has run.
 class Statement {
  public:
   Statement(Database& database, std::string_view sql);
@@ -67,17 +66,18 @@ class Statement {
   Statement& bind(int parameter, std::string_view text);
   Statement& bind(int parameter, std::span<const std::uint8_t> bytes);
 
-  /// Runs to the next row. Returns false at the end; the statement can then be bound again.
+  /// Runs the statement to the next row. Returns false at the end. The parameters can then be bound
+  /// again.
   bool step();
   /// Runs a statement without rows.
   void run();
 
-  // Column of the current row.
+  // Return the value of a column in the current row.
   std::int64_t integer(int column) const;
   std::uint64_t count(int column) const { return static_cast<std::uint64_t>(integer(column)); }
   double real(int column) const;
   bool is_null(int column) const;
-  /// Valid until the next step.
+  /// Returns a text that is valid until the next step.
   std::string_view text(int column) const;
   std::span<const std::uint8_t> bytes(int column) const;
 
@@ -93,7 +93,7 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-/// Writes between construction and commit() are stored together or not at all.
+/// Transaction of a database. Without commit(), none of the writes is stored.
 class Transaction {
  public:
   explicit Transaction(Database& database);

@@ -7,13 +7,13 @@
 
 namespace vat {
 
-/// Database of small data that must not be lost: sessions, their logs, hashes of tokens, saved
-/// scenes. Its users share the connection and hold the mutex while they use it.
+/// Database of small data that must not be lost: sessions, their logs, hashes of tokens, and saved
+/// scenes. The stores share the connection and lock the mutex during each use.
 struct MainDatabase {
-  /// Name of a database in memory.
+  /// Name of an in-memory database.
   static constexpr const char* kInMemory = ":memory:";
 
-  /// Opens, creates or upgrades it; see open_database().
+  /// Opens, creates or upgrades the database, see open_database().
   explicit MainDatabase(const std::string& path);
 
   std::mutex mutex;

@@ -8,16 +8,17 @@
 
 namespace vat {
 
-/// Content of a database file, and upgrades from older versions.
+/// Schema of a database file, and upgrades from older versions.
 struct Schema {
   std::uint32_t application = 0;  ///< identifies the kind of file
-  /// Statements that upgrade from each version to the next. An empty file has version 0; the
-  /// current version is their number.
+  /// SQL statements of each upgrade to the next version. An empty file has version 0, and the
+  /// current version is the number of upgrades.
   std::span<const char* const> steps;
 };
 
-/// Opens a database of the current version. Creates a missing one, and upgrades an older one in one
-/// transaction. Throws StorageError for a damaged, newer or other file, and leaves it unchanged.
+/// Opens a database of the current version. Creates a missing file, and upgrades an older version
+/// in one transaction. Throws StorageError for a damaged, newer or unknown file, and does not
+/// change the file.
 Database open_database(const std::string& path, const Schema& schema);
 
 }  // namespace vat

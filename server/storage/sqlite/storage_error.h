@@ -5,14 +5,14 @@
 
 namespace vat {
 
-/// Failed read or write of stored data. The operation is then undone as a whole.
+/// Failed read or write of stored data. The failed operation has no effect.
 class StorageError : public std::runtime_error {
  public:
   enum class Kind {
     full,       ///< no space on the disk, or a limit is reached
     read_only,  ///< the folder or a file in it is read-only
     corrupt,    ///< a file is damaged, or is not a database of this program
-    newer,      ///< a database of a later version of this program
+    newer,      ///< database of a later version of this program
     locked,     ///< another server uses the folder
     failed      ///< all other system errors
   };
