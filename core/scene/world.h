@@ -18,8 +18,8 @@ struct SlideMotion {
 
 /// Motion of a vat by a user, in addition to its SlideMotion. Along each axis, the vat moves from
 /// `offset` and `velocity` to rest at `target`. The motion takes the shortest time that
-/// kMaxHandSpeed and kMaxHandAcceleration permit. Commands set this motion, not
-/// scene files; see HostInterface::move_vat().
+/// kMaxHandSpeed and kMaxHandAcceleration permit. Commands set this motion, not scene files; see
+/// HostInterface::move_vat().
 struct HandMotion {
   Real start = 0;                ///< [s]
   Vec3 offset = Vec3::Zero();    ///< initial offset [m]
