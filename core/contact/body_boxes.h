@@ -9,15 +9,16 @@
 
 namespace vat {
 
-/// Boxes around the particles of bodies, and the pairs of bodies whose boxes are near each other.
-/// Coupled liquids have none, because they interact with solids by SPH.
+/// Bounding boxes of the particle centres of bodies, and the pairs of bodies with near boxes.
+/// Coupled liquids have no boxes, because they interact with solids by SPH.
 class BodyBoxes {
  public:
-  /// `reach` [m]: the distance of near boxes.
+  /// Finds the boxes and the pairs of boxes within the distance `reach` [m].
   void build(const Model& model, const std::vector<Vec3>& positions, Real reach,
              TaskRunner* runner);
 
-  /// The bodies whose boxes are within the reach of that of `body`, unordered.
+  /// Returns the bodies whose boxes are within the reach of the box of `body`, in no particular
+  /// order.
   std::span<const Index> near(Index body) const {
     return std::span(near_).subspan(near_begin_[body], near_begin_[body + 1] - near_begin_[body]);
   }
@@ -29,12 +30,13 @@ class BodyBoxes {
   using Box = Eigen::AlignedBox<Real, 3>;
 
   void find_pairs();
-  /// The axis with the largest variance of the centres of the boxes in by_left_.
+  /// Returns the axis along which the box centres of the bodies in by_left_ have the largest
+  /// variance.
   int longest_axis() const;
 
   std::vector<Box> boxes_;      ///< by body
   std::vector<Box> wide_;       ///< boxes_ extended by the reach
-  std::vector<Index> by_left_;  ///< bodies, by the lower end of their boxes
+  std::vector<Index> by_left_;  ///< bodies, sorted by the lower end of their boxes
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<Index> near_begin_;
   std::vector<Index> near_;
