@@ -53,7 +53,7 @@ class DampingMatrix {
   std::vector<Index> rigid_;
   std::vector<std::vector<Real>>
       viscosities_;            ///< mu V_i V_j laplacian W, in the order of liquid_pairs [N s/m]
-  std::vector<Vec3> by_slot_;  ///< w by liquid slot (index in cell order)
+  std::vector<Vec3> by_slot_;  ///< w, indexed by liquid slot (index in cell order)
 };
 
 }  // namespace vat

@@ -44,8 +44,8 @@ struct DampingScratch {
   Motion direction;
   Motion product;                     ///< D times the direction
   std::vector<Vec3> friction_torque;  ///< see DampingMatrix::multiply()
-  std::vector<Real> partial_sums;     ///< by block
-  std::vector<DampingSums> sums;      ///< by block
+  std::vector<Real> partial_sums;     ///< indexed by block
+  std::vector<DampingSums> sums;      ///< indexed by block
 };
 
 /// Returns an upper bound of the oscillations of springs, liquids and the contacts of the last

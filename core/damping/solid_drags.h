@@ -31,7 +31,7 @@ class SolidDrags {
   };
   struct Block {
     std::vector<Drag> drags;
-    std::array<Index, kBlockSize + 1> begin;  ///< by slot (index in cell order)
+    std::array<Index, kBlockSize + 1> begin;  ///< indexed by slot (index in cell order)
   };
   /// Collects the forces on the points `from` by their neighbours in `to`, which are listed in
   /// `near`. `first` is the first particle of `from`.

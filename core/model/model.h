@@ -177,7 +177,7 @@ struct Model {
   /// belongs to particle free_count.
   std::vector<Vec3> local_position;
 
-  std::vector<std::optional<LiquidModel>> liquids;  ///< by material
+  std::vector<std::optional<LiquidModel>> liquids;  ///< indexed by material
   std::vector<RigidModel> rigid_bodies;
 
   // Static springs of free particles. The spring ends at particle i have the indices
@@ -200,8 +200,8 @@ struct Model {
   bool springs_change = false;
 
   std::vector<ContactLaw> contact_laws;                       ///< materials x materials
-  std::vector<ContactLaw> wall_laws;                          ///< by material
-  std::vector<std::optional<SpringConstants>> self_contacts;  ///< by material
+  std::vector<ContactLaw> wall_laws;                          ///< indexed by material
+  std::vector<std::optional<SpringConstants>> self_contacts;  ///< indexed by material
   // Sorted pairs of particles of one deformable body that never collide. The particles of such a
   // pair are joined by a spring, or start closer than their contact distance. `exclusion_begin` has
   // one entry for each free particle, and one for the end.

@@ -11,7 +11,7 @@ namespace vat {
 struct SolidScratch {
   static constexpr Method kMethod = Method::solid;
 
-  std::vector<Real> cell_pressure;  ///< by cell [Pa]
+  std::vector<Real> cell_pressure;  ///< indexed by cell [Pa]
   /// Unit vector n of (Boldt eq. 3), by spring end. Only if Scratch::keep_dampers is set.
   std::vector<Vec3> spring_directions;
 };

@@ -24,7 +24,7 @@ struct SpringSystemScratch {
   std::vector<Vec3> remaining;  ///< residual after the preceding iterations
   std::vector<Vec3> direction;
   std::vector<Vec3> product;
-  std::vector<Real> partial_sums;  ///< by block
+  std::vector<Real> partial_sums;  ///< indexed by block
 
   void resize(const Model& model);
 };
