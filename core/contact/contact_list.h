@@ -20,9 +20,8 @@ struct StepContext;
 /// order depend only on positions and indices, and not on the time of the search.
 class ContactList {
  public:
-  /// Updates the list so that it contains all pairs up to `slack` [m] beyond their threshold.
-  /// Searches only if the list is not current. A search requires the column liquid_cells (see
-  /// Column).
+  /// Updates the list to contain all pairs up to `slack` [m] beyond their threshold. Searches only
+  /// if the list is not current. A search requires the column liquid_cells (see Column).
   void update(StepContext& context, Real slack);
   /// Returns whether the list is valid for `slack` [m], so that update() would not search.
   bool is_current(const StepContext& context, Real slack);

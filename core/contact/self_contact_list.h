@@ -10,15 +10,15 @@ namespace vat {
 
 struct StepContext;
 
-/// A list of the pairs of particles of one deformable body that are or may soon be in contact, in a
-/// world that is not periodic. Rigid motions of the body do not invalidate the list. The list is
+/// A list of the particle pairs of one deformable body that are or may soon be in contact, for a
+/// world without periodic axes. Rigid motions of the body do not invalidate the list. The list is
 /// invalid when the shape of the body has changed too much.
 class SelfContactList {
  public:
   explicit SelfContactList(const IndexRange& particles) : particles_(particles) {}
 
-  /// Updates the list so that it contains all pairs up to `slack` [m] beyond their threshold.
-  /// Returns whether a search was necessary. If a search throws an exception, the list is invalid.
+  /// Updates the list to contain all pairs up to `slack` [m] beyond their threshold. Returns
+  /// whether a search was necessary. If a search throws an exception, the list is invalid.
   bool update(const StepContext& context, Real slack);
   /// Returns whether the list is valid for `slack` [m], so that update() would not search.
   /// Recomputes the rotation of the body if necessary.

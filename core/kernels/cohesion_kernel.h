@@ -45,7 +45,8 @@ class CohesionKernel {
   }
 
   /// Returns the integral of z W(r, 1) over the half space z > 0, with the distance z from its
-  /// plane. This integral is the work of separating two half spaces, in units of the reach.
+  /// plane. This integral is the work of separating two half spaces, in units of the support
+  /// radius.
   static Real first_moment(int dimensions);
 
  private:

@@ -21,8 +21,8 @@
 /// ratio of the radii. If one particle is free, the friction point is the centre of the free
 /// particle, because a free particle has no spin. At a wall, the friction point of a rigid particle
 /// is in the plane of the wall. In these cases, the two forces are equal and opposite and act at
-/// the same point, so that they conserve angular momentum. Between two free particles, the forces
-/// act at the two centres. Their torque is not balanced, so that angular momentum is not conserved.
+/// the same point, which conserves angular momentum. Between two free particles, the forces act at
+/// the two centres. Their torque is not balanced, so that angular momentum is not conserved.
 namespace vat {
 
 /// Returns the constant c_t [N s/m] of a contact with `stiffness` [N/m] and the reduced mass `mass`

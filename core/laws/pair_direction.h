@@ -7,7 +7,7 @@
 namespace vat {
 
 /// Returns a unit vector for two particles at the same position, for which x_ij / |x_ij| is
-/// undefined. The vector is a hash of the pair, so that it is equal in all runs. The vector of (j,
+/// undefined. The vector is a hash of the pair, and therefore equal in all runs. The vector of (j,
 /// i) is opposite to that of (i, j). In two dimensions, the vector is in the plane y = 0.
 inline Vec3 coincident_direction(Index i, Index j, int dimensions = 3) {
   const Index low = i < j ? i : j;

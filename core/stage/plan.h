@@ -63,8 +63,8 @@ struct StepPlan {
   std::vector<Stage> stages;
 };
 
-/// Collects the stages of a plan. A stage may read only columns that are given or that an earlier
-/// stage writes.
+/// Collects the stages of a plan. A stage may read only columns that are arguments of the
+/// constructor or that an earlier stage writes.
 class PlanBuilder {
  public:
   explicit PlanBuilder(std::initializer_list<Column> given);

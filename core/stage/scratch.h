@@ -13,9 +13,9 @@ enum class Method : std::uint8_t { liquid, surface, contact, solid, incompressib
 inline constexpr std::size_t kMethodCount = 5;
 
 /// The buffers of all methods. Each method defines the type of its buffers, with a constant
-/// `kMethod`. A method accesses only its own buffers and those of the methods on which it depends.
-/// The buffers persist between evaluations to avoid allocations. Their content is valid during one
-/// evaluation, except for lists that detect when they are out of date.
+/// `kMethod`. A method accesses only its own buffers and the buffers of methods on which it
+/// depends. The buffers persist between evaluations to avoid allocations. The content of the
+/// buffers is valid during one evaluation, except for lists with a check for validity.
 class Scratch {
  public:
   InstructionSet instructions = InstructionSet::baseline;  ///< used by the vectorised loops

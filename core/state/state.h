@@ -35,17 +35,17 @@ struct SpringState {
   bool is_torn = false;
 };
 
-/// The integrated variables. Positions and velocities of rigid particles follow from the rigid
-/// states, and are stored so that all forces use the same geometry.
+/// The integrated variables. The positions and velocities of rigid particles are functions of the
+/// rigid states, and are stored so that all forces use the same geometry.
 struct Configuration {
   std::vector<Vec3> position;
   std::vector<Vec3> velocity;
   std::vector<RigidState> rigid;
-  std::vector<ContactImpulse>
-      contacts{};                      ///< contacts by projection, ordered by particle and other
+  /// Contacts by projection, ordered by particle and other.
+  std::vector<ContactImpulse> contacts{};
   std::vector<SpringState> springs{};  ///< by spring end; empty without plastic or tearable springs
-  std::vector<Real>
-      pressure{};  ///< of incompressible liquids; initial value of the next solve [Pa]
+  /// Pressure of incompressible liquids, which is the initial value of the next solve [Pa].
+  std::vector<Real> pressure{};
 };
 
 /// Copies `from` to `to` in parallel.
@@ -59,8 +59,8 @@ struct Forces {
   /// Torque of friction on rigid particles about their centres [N m]; empty without friction. This
   /// torque affects only rigid_torque.
   std::vector<Vec3> friction_torque{};
-  std::vector<Vec3>
-      transport;  ///< of liquids that fill their world, see core/liquid/tait/transport.h
+  /// Transport velocities w of liquids that fill their world; see core/liquid/tait/transport.h.
+  std::vector<Vec3> transport;
 };
 
 /// Data that adaptive step control uses in the next step.
@@ -77,7 +77,7 @@ struct LocalLevels {
   Real skin = 0;            ///< distance beyond the threshold up to which contacts are listed [m]
 };
 
-/// All variables of a simulation that are needed to continue it with bitwise equal results.
+/// All variables that are needed to continue a simulation with bitwise equal results.
 struct State {
   Configuration now;
   std::uint64_t step_count = 0;  ///< nominal steps since time 0
@@ -86,19 +86,19 @@ struct State {
   Forces forces;
   /// Upper bound of the oscillations of `forces`; used by velocity Verlet.
   Oscillation bound;
-  bool forces_current =
-      false;  ///< false: the state has changed outside a step since the last evaluation
+  /// Whether the state has changed only by steps since the last evaluation.
+  bool forces_current = false;
   StepHistory history;
-  VolumeReport volume;        ///< of the last step, for diagnostics
+  VolumeReport volume;        ///< report of the last step, for diagnostics
   LocalLevels levels;         ///< levels of the forces; local control only
-  std::uint64_t emitted = 0;  ///< number of particles, since time 0
-  std::uint64_t drained = 0;  ///< number of particles, since time 0
+  std::uint64_t emitted = 0;  ///< number of emitted particles since time 0
+  std::uint64_t drained = 0;  ///< number of drained particles since time 0
   /// For each body, the number of consecutive checks in which the body was slow; only in scenes
   /// with sleeping.
   std::vector<std::uint32_t> slow_looks{};
 };
 
-/// The state at time 0.
+/// Returns the state at time 0.
 State initial_state(const Model& model);
 
 /// Writes the initial configuration of one body to its part of `configuration`.

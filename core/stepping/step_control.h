@@ -33,9 +33,9 @@ struct PresentSteps {
 /// - Stability with a margin, for springs, contacts, sound and viscosity together; see
 ///   find_step_limits() and ContactPrediction.
 /// - Resolution of contacts that act, or may act before the end of the step, to the tolerance.
-/// - Travel at the present speed and force by at most half the distance that the guard allows. In a
-///   liquid, the limit is a quarter of the support radius relative to the mean motion of the
-///   liquids; in an incompressible liquid, the limit is a fifth.
+/// - Travel at the present speed and force by at most half the distance that the guard allows. For
+///   liquids, the limit is a quarter of the support radius relative to the mean motion of the
+///   liquids, or a fifth for incompressible liquids.
 /// - The pressure in an incompressible liquid, except for the highest 1 % of the values; see
 ///   pressed_lattice_omega2().
 /// - Rotation of rigid bodies by at most half a radian.
@@ -54,13 +54,13 @@ void find_present_steps(const ForceModel& force_model, State& state, Real time, 
 
 /// Returns the longest whole step for local control [s]. The limits are the prediction of contacts,
 /// and grabs and the central field, which have no separate level. In this step, two particles
-/// farther apart than twice the reach of contacts do not come into contact.
+/// farther apart than twice Model::contact_reach do not come into contact.
 Real greatest_base_step(const ForceModel& force_model, const State& state,
                         const StepBounds& bounds);
 
-/// Returns the longest step in which an incompressible liquid needs no viscosity solve, if this
-/// step is shorter than `step` and longer than half of `step`. Otherwise returns `step`. A
-/// viscosity solve costs about as much as the rest of a step.
+/// Returns the longest step without a viscosity solve for an incompressible liquid, if this step is
+/// between half of `step` and `step`. Otherwise returns `step`. A viscosity solve costs about as
+/// much as the rest of a step.
 Real without_viscosity_solve(const Model& model, Real step);
 
 /// Returns the lowest level l with nominal / 2^l <= step, at most kMaxStepLevel.

@@ -9,7 +9,8 @@
 
 namespace vat {
 
-/// The contacts of a particle or a rigid body that act or may soon act, including those with walls.
+/// The contacts of a particle or a rigid body that act or may soon act, including contacts with
+/// walls.
 ///
 /// A step that ends before the first contact acts need not resolve the contacts. Acting contacts
 /// must be stable, and their oscillation must be resolved to the tolerance of the scene. The
@@ -38,7 +39,7 @@ struct ContactScratch {
   std::vector<Real> inverse_mass;             ///< for forces on the particle [1/kg]
 };
 
-/// Bounds of the steps of a model that hold for all states.
+/// Bounds of the steps of a model that are valid for all states.
 struct StepBounds {
   std::vector<Oscillation> own;  ///< by free particle: bound by springs or liquid
   std::vector<Real> own_step;    ///< by free particle: stable step for `own` [s]

@@ -3,7 +3,7 @@
 #include "core/stepping/integrator.h"
 
 /// The parts of a step that consists of kicks and a drift; see Stepper::take_step(). A part has no
-/// effect in a scene that does not need it.
+/// effect if the scene does not need the part.
 namespace vat {
 
 /// Evaluates the forces at the start of the step. Integrators with a closing kick reuse the forces

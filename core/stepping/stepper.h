@@ -46,7 +46,7 @@ class Stepper {
 
  private:
   bool take_varied_step(const StepInput& input);
-  /// Takes a step. If the step fails, repeats it in two, four and eight parts. Returns false if all
+  /// Takes a step. A failed step is repeated in two, four and eight parts. Returns false if all
   /// attempts fail.
   bool take_guarded_step(const StepInput& input, Real start, Real dt);
   /// Takes one step and checks the result. Returns the fault of a failed step, after which the

@@ -54,7 +54,7 @@ class Complementarity {
     keep_start(runner);
     find_gradient(runner, report);
     const auto is_open = [&] {
-      // A NaN ends the solve; the guard detects it.
+      // A NaN ends the solve; the guard (core/guard/guard.h) detects the NaN.
       return !std::isnan(report.mean) &&
              (report.mean > limits.mean || report.greatest > limits.greatest);
     };

@@ -22,8 +22,8 @@ struct ResponseScratch {
   Forces unused;  ///< placeholder for the forces of a StepContext
 };
 
-/// The linear response of a liquid and its solids at fixed positions: the accelerations by given
-/// pressures, and the rate of the liquid's density by given velocities or accelerations.
+/// The linear response of a liquid and its solids at fixed positions. The response consists of the
+/// accelerations by pressures, and of the density rates by velocities or accelerations.
 ///
 /// With the rest volumes V, the relative density s_i = sum_j V_j W_ij and the pressures p of liquid
 /// particles:
@@ -46,7 +46,7 @@ class PressureResponse {
   PressureResponse(const ForceModel& force_model, Configuration& at, ResponseScratch& scratch,
                    bool solids_move);
 
-  /// Sets the motion to the accelerations by `pressure` [Pa], given by liquid slot.
+  /// Sets the motion to the accelerations by `pressure` [Pa], which is by liquid slot.
   void accelerate(std::span<const Real> pressure);
   /// Sets the motion to the velocities relative to walls with the velocity `wall_velocity` [m/s].
   void see_velocities(const Vec3& wall_velocity);
@@ -69,7 +69,7 @@ class PressureResponse {
   void shift(Real share);
 
  private:
-  /// Doubles the weights of solids, because they count as mirror images.
+  /// Doubles the weights of solids, because solids count as mirror images.
   void weigh_solids();
   /// Sets the motion of a liquid slot and of its source.
   void set_liquid_motion(std::size_t slot, const Vec3& motion);

@@ -18,13 +18,13 @@ struct VolumeScratch {
 /// Stage that sets the pressure to the pressure at the end of the last step.
 void recall_pressure(StepContext& context);
 
-// A step of an incompressible liquid contains a solve for velocities and a solve for positions.
-// They correspond to the divergence-free solve and the constant-density solve of J. Bender, D.
-// Koschier, IEEE Trans. Vis. Comput. Graph. 23 (2017) 1193. Both solves are unilateral, because the
-// liquid may separate.
+// A step of an incompressible liquid contains a solve for velocities and a solve for positions. The
+// solves correspond to the divergence-free and constant-density solves of J. Bender, D. Koschier,
+// IEEE Trans. Vis. Comput. Graph. 23 (2017) 1193. Both solves are unilateral, because the liquid
+// may separate.
 
-/// Projects the velocities onto those of an incompressible liquid, for a step of `dt` [s] from
-/// `time` [s] at the present positions. Sets the velocity report in State::volume.
+/// Makes the velocities of liquids free of divergence, for a step of `dt` [s] from `time` [s] at
+/// the present positions. Sets the velocity report in State::volume.
 ///
 /// Let s = rho / rho_0, and let D and F be the rate and the force of PressureResponse. Impulses dt
 /// F(p) with p >= 0 change the velocities of liquid and solids so that dt D_i(v) <= r_i. For s_i <

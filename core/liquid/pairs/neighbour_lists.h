@@ -7,10 +7,10 @@ struct StepContext;
 class Scratch;
 class TaskRunner;
 
-/// Lists the liquid and solid neighbours of each liquid particle, and the liquid neighbours of each
-/// solid particle, for stages and solves of coupled liquids that visit single pairs. Also sets the
-/// positions and volumes of LiquidScratch::liquid_records. The cells must be those of the present
-/// positions.
+/// Lists the liquid and solid neighbours of liquid particles, and the liquid neighbours of solid
+/// particles. The lists are for stages and solves of coupled liquids that visit single pairs. Also
+/// sets the positions and volumes of LiquidScratch::liquid_records. The cells must be those of the
+/// present positions.
 void list_neighbours(const Model& model, Scratch& work, TaskRunner* runner);
 
 /// Stage that calls list_neighbours().

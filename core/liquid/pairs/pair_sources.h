@@ -61,9 +61,10 @@ struct WeightFactors {
   WeightFactors() { liquid.fill(1); }
 };
 
-/// All sources of the sums over pairs of coupled liquids, in this order: liquid and solid particles
-/// in the order of their cells; periodic images of solids and of liquid; images of solids and of
-/// liquid in walls; and one source without effect, used as padding.
+/// All sources of the sums over pairs of coupled liquids. The first sources are the liquid
+/// particles and then the solid particles, in the order of their cells. The next sources are the
+/// periodic images of solids and of liquid, and the images of solids and of liquid in walls. The
+/// last source has no effect and is used as padding.
 class PairSources {
  public:
   /// Collects the sorted particles of the workspace, and the images of particles within `reach` [m]
@@ -87,7 +88,7 @@ class PairSources {
     });
     set_other_motions(runner, solid, image);
   }
-  /// Sets the motions of solids and images, after those of liquid have been set by set_motion().
+  /// Sets the motions of solids and images. Must be called after set_motion() for all liquid slots.
   template <class Solid, class Image>
   void set_other_motions(TaskRunner* runner, Solid&& solid, Image&& image) {
     for_blocks(runner, images_begin_ - solids_, [&](std::size_t begin, std::size_t end) {
@@ -204,7 +205,7 @@ class PairSources {
       });
     }
   }
-  /// Allocates space for `count` sources and the padding. The content is invalid until it is set.
+  /// Allocates space for `count` sources and the padding. The content of this space is undefined.
   void make_room(std::size_t count);
   void set_place(std::size_t n, const Vec3& place);
   void set_places(const StepContext& c);

@@ -53,7 +53,7 @@ struct PositionGrid {
     const Real c = (x - origin[axis]) * inverse_unit;
     if (!(c > 0)) return 0;
     if (!(c < kCount)) return kCount;
-    // NOLINTNEXTLINE(bugprone-incorrect-roundings): not below 0, and lround() would be a call
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): c > 0, and lround() would be a function call
     return static_cast<std::int32_t>(c + 0.5);
   }
   Vec3 place(const PackedPlace& p) const {
@@ -92,8 +92,8 @@ struct PairInputs {
   const PackedPlace* packed_places = nullptr;
   const PackedMotion* packed_motions = nullptr;  ///< null if not read
   PositionGrid grid;                             ///< grid of packed_places
-  const PairViscosity* viscosities =
-      nullptr;  ///< null: mu for all sources, except 0 for images in walls
+  /// If null, the viscosity is mu for all sources, except 0 for images in walls.
+  const PairViscosity* viscosities = nullptr;
   const Real* target_viscosities = nullptr;  ///< mu by target; null: `viscosity`
   Real viscosity = 0;                        ///< mu of all targets
   Real inverse_support = 0;                  ///< [1/m]
@@ -114,8 +114,8 @@ struct PairInputs {
 /// weight of a source, p is the pressure, and v = v_i - v_j is the relative velocity. x is the
 /// vector from source to target in units of the support radius, and q = |x|. w(q) is the kernel
 /// divided by its scale. g(q) is w'(q) / q divided by a constant factor; see
-/// SmoothingKernel::slope_scale(). Sources beyond the support radius add 0. A target itself adds 0
-/// to terms with the factor x.
+/// SmoothingKernel::slope_scale(). Sources beyond the support radius add 0. As a source, a target
+/// adds 0 to its own terms with the factor x.
 struct PairSums {
   using Function = void (*)(const PairInputs&, std::span<const TargetCluster>, Real* sums);
   /// The sum_j a_j w; one number for each target.
@@ -127,8 +127,8 @@ struct PairSums {
   /// (2005) 1703, sec. 4).
   Function force;
   /// The sum_j a_j mu_ij max(p_i, p_j) / (q^2 + 0.01/4) g x_a^2 v_a for each axis a; three numbers.
-  /// The sum is over candidates from TargetCluster::mirrored_begin on. If no viscosities are given,
-  /// the sources must also be at or after first_mirrored.
+  /// The sum is over candidates from TargetCluster::mirrored_begin on. Without viscosities by
+  /// source, the sum includes only sources from first_mirrored on.
   Function drag;
   /// The sum_j a_j g x; three numbers.
   Function gradient;
@@ -168,8 +168,8 @@ struct CullBox {
   float reach;
 };
 
-/// A function that writes the sources in the slots [begin, end) that are near the box to `found`
-/// from index `count` on, and returns the new count. `found` must have space for all slots, plus
+/// A function that writes the sources near `box` in the slots [begin, end) to `found` from index
+/// `count` on. The function returns the new count. `found` must have space for all slots, plus
 /// lane_count() elements.
 using CullFunction = std::size_t (*)(const CullSlots& slots, Index begin, Index end,
                                      const CullBox& box, Index* found, std::size_t count);

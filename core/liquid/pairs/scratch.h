@@ -38,7 +38,7 @@ struct LiquidScratch {
   static constexpr Method kMethod = Method::liquid;
 
   CellSortedPoints liquid;
-  // Coupled liquids (tait, incompressible):
+  // Members for coupled liquids (solvers `tait` and `incompressible`):
   PairSources sources;
   PairClusters liquid_clusters;            ///< pairs of liquid with all sources
   PairClusters solid_clusters;             ///< pairs of solids with liquid and its images
@@ -46,7 +46,7 @@ struct LiquidScratch {
   std::vector<VolumeSlope> volume_slopes;  ///< by liquid slot; only for incompressible liquids
   std::vector<PairViscosity> viscosities;  ///< by source; only if viscosities differ
   std::vector<Real> target_viscosities;    ///< by target; only if viscosities differ
-  // The solver `gas`, and coupled liquids if a stage needs neighbour lists:
+  // Members for the solver `gas`, and for coupled liquids if a stage needs neighbour lists:
   std::vector<LiquidRecord> liquid_records;  ///< by slot
   std::vector<PairBlock> liquid_pairs;
   bool too_many_pairs = false;  ///< more than max_pairs(): lists are incomplete, a density is NaN
@@ -56,7 +56,7 @@ struct LiquidScratch {
   std::vector<Real> filled_density;
   std::vector<Real> filling;   ///< by liquid slot: density / filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
-  // Solids in coupled liquids: neighbour lists between liquid and solid slots.
+  // Members for solids in coupled liquids: neighbour lists between liquid and solid slots.
   CellSortedPoints solids_in_liquid;  ///< index 0 is the first solid particle
   std::vector<PairBlock> solids_of_liquid;
   std::vector<PairBlock> liquid_of_solids;

@@ -29,7 +29,7 @@ struct StepContext;
 /// Without negative pressure, a surface has no cohesion. Particles at the surface therefore attract
 /// each other by central forces with the energy V_i e (1 - s_i)^2 for s_i < 1, with e = kCohesion
 /// sigma / h. Like the energy of an equation of state, this energy depends on the local density.
-/// The attraction does not change the inner pressure of a drop.
+/// The attraction does not change the surface tension that determines the inner pressure of a drop.
 ///
 /// The images in walls cause a contact angle of 90 degrees. For another contact angle theta,
 /// measured in the liquid, the normals of particles near a wall are interpolated to the contact

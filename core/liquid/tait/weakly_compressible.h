@@ -4,9 +4,9 @@ namespace vat {
 
 struct StepContext;
 
-/// Stages of weakly compressible liquids. The method uses one kernel for density and force, Tait's
-/// equation of state, a pressure force derived from an energy, and viscous forces along the line
-/// between two particles.
+/// Stages of weakly compressible liquids. The method uses one kernel for density and force, and
+/// Tait's equation of state. The pressure force derives from an energy. The viscous force acts
+/// along the line between two particles.
 ///
 /// The rest volume is V_i = m_i / rho_0, and the relative density is s_i = rho_i / rho_0 = sum_j
 /// V_j W_ij. The sum is over liquid, solids and images in walls. The energy sum_i V_i u(s_i) with
