@@ -15,26 +15,26 @@ namespace vat {
 
 struct StepContext;
 
-/// The pairs of particles that are or may soon be in contact. The list remains valid until a
-/// particle has moved so far that a pair may be missing. The pairs that it visits, and their order,
-/// depend on positions and indices only, not on the time of the search.
+/// A list of the pairs of particles that are or may soon be in contact. The list remains valid
+/// until a pair may be missing because a particle has moved too far. The visited pairs and their
+/// order depend only on positions and indices, and not on the time of the search.
 class ContactList {
  public:
-  /// Extends the list to pairs up to `slack` [m] beyond their threshold. Searches only if a
-  /// particle has moved too far since the last search; this requires the column liquid_cells.
+  /// Updates the list to contain all pairs up to `slack` [m] beyond their threshold. Searches only
+  /// if the list is not current. A search requires the column liquid_cells (see Column).
   void update(StepContext& context, Real slack);
-  /// Returns whether update() would not search.
+  /// Returns whether the list is valid for `slack` [m], so that update() would not search.
   bool is_current(const StepContext& context, Real slack);
 
-  /// The number of entries: two for each pair, including pairs beyond the slack.
+  /// Returns the number of entries: two for each pair, including pairs beyond the slack.
   std::size_t size() const;
 
-  /// The particles of a block that have entries, in ascending order.
+  /// Returns the particles of a block that have entries, in ascending order.
   std::span<const Index> particles(std::size_t block) const { return particles_[block]; }
 
-  /// Calls f(contact) for each dynamic connection of particle i: first those with other bodies,
-  /// then those within its body, both ordered by the other particle. Includes pairs up to `slack`
-  /// beyond their threshold.
+  /// Calls f(contact) for each contact of particle i, including pairs up to `slack` [m] beyond
+  /// their threshold. The contacts with other bodies precede those within the body. Both groups are
+  /// ordered by the other particle.
   template <class F>
   void for_each(const Model& model, const Configuration& at, Index i, F&& f, Real slack = 0) const {
     model.periodic.any() ? visit<true>(model, at, i, slack, f)
@@ -71,7 +71,7 @@ class ContactList {
     if (!within_.empty()) look_at(within(model, i));
   }
 
-  /// The entries of particle i within its body that are not in between_.
+  /// Returns the entries of particle i in within_, the lists of pairs within a body.
   std::span<const Index> within(const Model& model, Index i) const {
     if (own_list_[model.body[i]] == kNoList) return {};
     return within_[own_list_[model.body[i]]].of(i);
@@ -79,7 +79,7 @@ class ContactList {
 
   bool is_between_current(const StepContext& context, Real slack);
   void search_between(StepContext& context, Real skin);
-  /// Finds the particles that may touch another body, for a search up to `skin` beyond the
+  /// Finds the particles that may contact another body, for a search up to `skin` [m] beyond the
   /// thresholds.
   void find_candidates(const StepContext& context, Real skin);
   void find_between(const StepContext& context, Index i, Real skin,
@@ -89,9 +89,9 @@ class ContactList {
 
   static constexpr Index kNoList = ~Index{0};
 
-  PairTable between_;  ///< pairs of different bodies; in a periodic world all pairs
+  PairTable between_;  ///< pairs of different bodies; in a periodic world, all pairs
   std::vector<Vec3> built_at_;
-  Real skin_ = 0;  ///< skin of that table; 0: no table [m]
+  Real skin_ = 0;  ///< range of between_ beyond the thresholds; 0: no table [m]
   std::vector<SelfContactList> within_;
   std::vector<Index> own_list_;                ///< by body: index in within_
   std::vector<std::vector<Index>> particles_;  ///< particles with entries, by block

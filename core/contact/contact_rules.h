@@ -9,28 +9,29 @@
 
 namespace vat {
 
-/// A dynamic connection (Boldt def. 0.2), seen from particle `self`, with distance < threshold.
+/// A contact (dynamic connection, Boldt def. 0.2) of particle `self` with particle `other`.
 struct Contact {
   Index self = 0;
   Index other = 0;
   Vec3 x;              ///< position of self minus position of other [m]
   Real distance;       ///< |x| [m]
-  Real threshold;      ///< also the rest length l of a spring [m]
+  Real threshold;      ///< the contact acts below this distance; rest length of its spring [m]
   Real stiffness;      ///< [N/m]
   Real damping;        ///< [N s/m]
-  Real damping_ratio;  ///< for a restitution, in place of damping
+  Real damping_ratio;  ///< for a coefficient of restitution; replaces `damping` if above 0
   Real layer;          ///< width of the attracting part of a layer [m]; 0: a spring
 };
 
-/// Finds the law of the contact of particles i and j, as a Contact without geometry. There is no
-/// contact between particles of one rigid body or of liquids of one material (which interact by
-/// SPH), and between excluded pairs of a deformable body, including their images.
+/// The laws of the contacts of a particle i with other particles. There are no contacts between
+/// particles of one rigid body, and between excluded pairs of a deformable body and their images.
+/// There are no contacts between liquid particles of one material, which interact by SPH.
 class ContactRules {
  public:
   ContactRules(const Model& model, Index i)
       : model_(model), i_(i), body_(model.body[i]), material_(model.material[i]) {}
 
-  /// Returns whether there is a law, and sets threshold and constants.
+  /// Returns whether there is a contact law for particles i and j. If so, sets the threshold and
+  /// the constants of `contact`, but not its geometry.
   bool find_law(Index j, Contact& contact) const {
     if (model_.body[j] == body_) return find_self_law(j, contact);
     const ContactLaw& law = model_.contact_law(material_, model_.material[j]);
@@ -43,7 +44,8 @@ class ContactRules {
     return true;
   }
 
-  /// Returns whether the pair is excluded. Call it for pairs in reach only, because it searches.
+  /// Returns whether the pair of particles i and j is excluded from contacts. Intended for near
+  /// pairs only, because of the cost of a binary search.
   bool excluded(Index j) const {
     if (model_.body[j] != body_) return false;
     const auto begin = model_.exclusions.begin();
@@ -70,8 +72,8 @@ class ContactRules {
   Index material_;
 };
 
-/// Friction of a contact of particles i and j with this stiffness [N/m]. Zero within a
-/// body.
+/// Returns the friction constants of a contact of particles i and j with `stiffness` [N/m].
+/// Contacts within a body have no friction.
 inline Friction pair_friction(const Model& model, Index i, Index j, Real stiffness) {
   if (model.body[i] == model.body[j]) return {};
   const Real coefficient = model.contact_law(model.material[i], model.material[j]).friction;
@@ -80,21 +82,22 @@ inline Friction pair_friction(const Model& model, Index i, Index j, Real stiffne
   return {coefficient, sticking_drag(stiffness, mass)};
 }
 
-/// The arms of particles i and j; `way` [m] points from j to i.
+/// Returns the arms of particles i and j. `way` is the vector from j to i [m].
 inline ContactArms pair_arms(const Model& model, Index i, Index j, const Vec3& way) {
   return contact_arms(way, i >= model.free_count, model.radius[i], j >= model.free_count,
                       model.radius[j]);
 }
 
-/// The velocity of the point at `arm` from particle i, relative to the particle, by the rotation of
-/// its body. `spins` are by rigid body.
+/// Returns the velocity, relative to particle i, of the body point at `arm` [m] from the particle.
+/// `spins` are the angular velocities of the rigid bodies [rad/s]. The result is 0 for a free
+/// particle.
 inline Vec3 turning_velocity(const Model& model, const std::vector<Vec3>& spins, Index i,
                              const Vec3& arm) {
   if (i >= model.free_count) return spins[model.bodies[model.body[i]].rigid].cross(arm);
   return Vec3::Zero();
 }
 
-/// Friction of particle i at a wall.
+/// Returns the friction constants of particle i at a wall.
 inline Friction wall_friction(const Model& model, Index i) {
   const ContactLaw& law = model.wall_laws[model.material[i]];
   if (law.friction == 0) return {};

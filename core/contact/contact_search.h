@@ -9,7 +9,7 @@
 
 namespace vat {
 
-/// Particles in cell order, with their coordinates in separate columns.
+/// Particles in the order of the cells of a grid, with a separate array for each coordinate.
 struct SortedParticles {
   UniformGrid grid;
   std::vector<Index> particle;  ///< by slot
@@ -18,16 +18,17 @@ struct SortedParticles {
   std::vector<Real> y;
   std::vector<Real> z;
 
-  /// `cell_size` [m] should be the search radius. In a periodic world, the coordinates are those of
-  /// the images in the box.
+  /// Sorts `particles` into cells of at least `cell_size` [m], which should be the search radius.
+  /// In a periodic world, the particles are replaced by their images in the box.
   void build(const Model& model, const std::vector<Vec3>& positions,
              std::span<const Index> particles, Real cell_size);
 
  private:
-  std::vector<Vec3> places_;  ///< in input order
+  std::vector<Vec3> places_;  ///< positions in input order
 };
 
-/// Finds the particles that particle i touches, or that are up to `slack` [m] from contact.
+/// A search for the particles in contact with particle i, including pairs up to `slack` [m] beyond
+/// their threshold.
 class ContactSearch {
  public:
   ContactSearch(const Model& model, const Configuration& at, Index i, Real slack)
@@ -37,8 +38,8 @@ class ContactSearch {
         slack_(slack),
         reach_(model.contact_reach + slack) {}
 
-  /// Calls f(j) for the near points with wanted(slot), with j = index_of(slot). In a periodic world
-  /// it uses the nearest images, and may visit a point more than once.
+  /// Calls f(j) with j = index_of(slot) for each near point for which wanted(slot) is true. In a
+  /// periodic world, a point may be visited more than once.
   template <class Points, class Wanted, class IndexOf, class F>
   void look_in(const Points& points, Wanted&& wanted, IndexOf&& index_of, F&& f) const {
     const Real reach2 = reach_ * reach_;

@@ -6,12 +6,13 @@ namespace vat {
 
 struct StepContext;
 
-/// Stage: finds the pairs that may be in contact.
+/// Stage that finds the pairs of particles that may be in contact.
 void find_contacts(StepContext& context);
 
-/// Stage: adds the forces of dynamic connections between bodies (interfaces, Boldt def. 0.6) and
-/// within deformable bodies: Boldt eq. 3 with l = threshold, a dashpot, no attraction, and the
-/// friction of core/laws/friction.h.
+/// Stage that adds the contact forces between bodies (interfaces, Boldt def. 0.6) and within
+/// deformable bodies. The normal force is that of Boldt eq. 3 with l = threshold and a dashpot,
+/// limited to repulsion. Adhesive layers and friction follow core/laws/lennard_jones.h and
+/// core/laws/friction.h.
 void add_contacts(StepContext& context);
 
 }  // namespace vat

@@ -11,12 +11,12 @@
 
 namespace vat {
 
-/// For each particle, a list of other particles in ascending order. Each block has its own buffer,
-/// so that blocks are filled in parallel.
+/// A table with a list of other particles for each particle, in ascending order. Each block of
+/// particles has a separate buffer, so that blocks can be filled in parallel.
 class PairTable {
  public:
-  /// Fills the table for `count` particles. find(i, found) adds the others of particle i, in any
-  /// order, possibly twice.
+  /// Fills the table for `count` particles. find(i, found) must append the list of particle i to
+  /// `found`. The list may be unordered and contain duplicates.
   template <class Find>
   void fill(TaskRunner* runner, std::size_t count, Find&& find) {
     blocks_.resize(block_count(count));
@@ -42,7 +42,7 @@ class PairTable {
     return {block.others.data() + begin, block.begin[i % kBlockSize + 1] - begin};
   }
 
-  /// The total number of entries.
+  /// Returns the total number of entries.
   std::size_t size() const {
     std::size_t size = 0;
     for (const Block& block : blocks_) size += block.others.size();

@@ -9,23 +9,23 @@ namespace vat {
 struct StepContext;
 class Scratch;
 
-/// Stage: computes the mobilities of contacts that act on a body simultaneously. Their springs add
-/// up, and their dashpots must add up to those of one impact: each contact gets the mass that it
-/// would move if all acted alike. The result is the velocity that unit impulses of all contacts,
-/// walls included, give to each particle.
+/// Stage that computes the mobilities of contacts that act on a body simultaneously, walls
+/// included. The mobility vector of a particle is its velocity change by simultaneous unit impulses
+/// of all contacts of the particle or of its rigid body. With these mobilities, the dashpots of
+/// simultaneous contacts have the combined damping that the restitution of one impact requires.
 void find_contact_mobilities(StepContext& context);
 
-/// The result of this stage.
+/// The result of find_contact_mobilities().
 struct ContactMobility {
   const Model& model;
   const Scratch& work;
   const Configuration& at;
   std::uint64_t step;  ///< the present nominal step
 
-  /// The speed along the unit vector `normal` that a unit impulse along it at particle i causes,
-  /// together with those of the body's other contacts [1/kg]. At least that without other contacts.
+  /// Returns the speed of particle i along the unit vector `normal` per unit impulse of all
+  /// contacts of its body [1/kg]. The result is at least the mobility without other contacts.
   Real along(Index i, const Vec3& normal) const;
-  /// The damping c [N s/m] between particle i and the wall with this normal.
+  /// Returns the damping c [N s/m] between particle i and the wall with the normal `normal`.
   Real wall_damping(Index i, const Vec3& normal) const;
 };
 

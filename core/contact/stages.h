@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// Adds the stages of contacts between particles, and the mobilities that contacts with walls need.
+/// Adds the stages of contacts between particles, including the mobilities for contacts with walls.
 void add_contact_stages(const Model& model, PlanBuilder& plan);
 
 /// Adds the stage of contacts with walls.

@@ -12,22 +12,24 @@ namespace vat {
 
 struct ForceModel;
 
-/// Forces that depend on velocities, at one configuration, as a symmetric, negative semi-definite
-/// matrix D: if velocities change by w, forces change by D w. It does not include contacts without
-/// a force, and grabs. Friction keeps its drag coefficient, so that the solution loses energy and
-/// does not reverse; it may exceed mu F_n by the growth of the slip within half a step.
+/// The symmetric, negative semi-definite matrix D of all velocity-dependent forces at one
+/// configuration. A change w of the velocities changes the forces by D w. D excludes grabs, and
+/// contacts that exert no force. Friction has a constant drag coefficient during the solve, so that
+/// the solution loses energy and does not reverse. Friction may exceed mu F_n if the slip speed
+/// grows within half a step.
 class DampingMatrix {
  public:
   /// Collects the forces of the configuration at which `force_model` was last evaluated with
-  /// keep_dampers. `viscosity`: includes viscosity and settling drag of liquids.
+  /// Scratch::keep_dampers. `viscosity` includes the viscosity and the settling drag of liquids.
   void collect(const ForceModel& force_model, const Configuration& at, Real time, bool viscosity);
 
-  /// The rigid particles with nonzero rows of D, in ascending order.
+  /// Returns the rigid particles with nonzero rows of D, in ascending order.
   const std::vector<Index>& rigid_particles() const { return rigid_; }
 
-  /// force = D w, by particle. Among rigid particles, only the entries of rigid_particles() are
-  /// read in w. `spins` are the angular velocities of w by rigid body. `torque` is that of friction
-  /// on rigid particles about their centres, if there is friction.
+  /// Computes force = D w, by particle. In `w`, the entries of rigid particles are read only for
+  /// rigid_particles(). `spins` are the angular velocities of w, by rigid body. `torque` is the
+  /// torque of friction on rigid particles about their centres; it is written only if there is
+  /// friction.
   void multiply(const ForceModel& force_model, const std::vector<Vec3>& w,
                 const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                 std::vector<Vec3>& torque);
@@ -47,11 +49,11 @@ class DampingMatrix {
   ViscousImages images_;
   bool has_solid_drags_ = false;
   SolidDrags solid_drags_;
-  std::vector<DamperBlock> own_;  ///< of liquid particles, without viscosity
+  std::vector<DamperBlock> own_;  ///< liquid particles, without viscosity
   std::vector<Index> rigid_;
   std::vector<std::vector<Real>>
       viscosities_;            ///< mu V_i V_j laplacian W, in the order of liquid_pairs [N s/m]
-  std::vector<Vec3> by_slot_;  ///< w of liquid slots
+  std::vector<Vec3> by_slot_;  ///< w, indexed by liquid slot (index in cell order)
 };
 
 }  // namespace vat

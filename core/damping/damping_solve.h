@@ -6,14 +6,15 @@
 namespace vat {
 
 /// Velocities or forces, with one entry for each particle and for each rigid body. Velocities of
-/// rigid particles follow from those of bodies, and forces on bodies from those on particles.
+/// rigid particles follow from the velocities of their bodies. Forces on rigid bodies follow from
+/// the forces on their particles.
 struct Motion {
   std::vector<Vec3> particle;
   std::vector<Vec3> linear;
   std::vector<Vec3> angular;
 };
 
-/// A rigid body in the solve, in world axes. A held body has no inverse mass and inertia.
+/// A rigid body in the solve, in world axes. The inverse mass and inertia of a held body are zero.
 struct DampedBody {
   Real mass;
   Real inverse_mass;
@@ -43,35 +44,35 @@ struct DampingScratch {
   Motion direction;
   Motion product;                     ///< D times the direction
   std::vector<Vec3> friction_torque;  ///< see DampingMatrix::multiply()
-  std::vector<Real> partial_sums;     ///< by block
-  std::vector<DampingSums> sums;      ///< by block
+  std::vector<Real> partial_sums;     ///< indexed by block
+  std::vector<DampingSums> sums;      ///< indexed by block
 };
 
-/// An upper bound of the oscillations of springs, liquids and the contacts of the last evaluation:
-/// the maximum over particles and rigid bodies of the sum of their own bound and those of their
-/// contacts.
+/// Returns an upper bound of the oscillations of springs, liquids and the contacts of the last
+/// evaluation. For each particle and rigid body, its own bound and the bounds of its contacts are
+/// added. The result is the maximum of these sums.
 Oscillation find_bound(const ForceModel& force_model, const Configuration& at);
 
-/// Returns whether velocity Verlet must solve for the damping in a step of `dt`. Forces at
-/// predicted velocities are stable as well if (omega dt)^2 + 4 rate dt <= 4.
+/// Returns whether velocity Verlet must solve for the damping in a step of `dt` [s]. A solve is not
+/// needed if (omega dt)^2 + 4 rate dt <= 4, because forces at predicted velocities are then stable.
 bool must_solve_damping(const Oscillation& bound, Real dt);
 
-/// Changes `forces`, evaluated at `at` with velocities close to those at the end of a step, into
-/// the forces at the resulting velocities v: M (v - from) = dt (f + D (v - at)). `from` are the
-/// velocities before the forces act for `dt`: half a step of velocity Verlet, or a whole step of
-/// symplectic Euler. The equation is linear in w = v - at, and solved by conjugate gradients. D w
-/// is a sum of equal and opposite forces, so that momentum is conserved after any number of
-/// iterations. Needs the dampers of an evaluation with keep_dampers. The rigid bodies of `at` have
-/// the motion of those of `from`.
+/// Converts `forces` to the forces at the velocities v after the step: M (v - from) = dt (f + D (v
+/// - at)). The forces f were evaluated at `at`, with velocities close to v. `from` has the
+/// velocities before the forces act for `dt` [s]: half a step of velocity Verlet, or a whole step
+/// of symplectic Euler. The equation is linear in w = v - at, and is solved by conjugate gradients.
+/// D w is a sum of equal and opposite forces, so that momentum is conserved after any number of
+/// iterations. Requires the dampers of an evaluation with Scratch::keep_dampers. Rigid bodies must
+/// have the same motion in `at` and `from`.
 void solve_damping(const ForceModel& force_model, const Configuration& from,
                    const Configuration& at, Real time, Real dt, bool viscosity, Forces& forces,
                    DampingScratch& scratch);
 
-/// Returns whether the viscosity of some liquid must be solved in a step of `dt`.
+/// Returns whether the viscosity of any liquid requires a solve in a step of `dt` [s].
 bool must_solve_viscosity(const Model& model, Real dt);
 
-/// Returns whether the own damping of some body must be solved in a step of `dt`, including that of
-/// solids in liquids.
+/// Returns whether the own damping of any body requires a solve in a step of `dt` [s]. Own damping
+/// includes the drag of solids in liquids.
 bool must_solve_own_damping(const Model& model, Real dt);
 
 }  // namespace vat

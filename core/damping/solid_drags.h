@@ -11,30 +11,30 @@ namespace vat {
 
 struct ForceModel;
 
-/// The viscous forces between a weakly compressible liquid and its solids, those of
-/// add_tait_forces() and add_tait_forces_on_solids(), as a symmetric, negative semi-definite matrix
-/// D; see DampingMatrix.
+/// The matrix D of the viscous forces between a weakly compressible liquid and its solids; see
+/// DampingMatrix. D is symmetric and negative semi-definite. The forces are those of
+/// add_tait_forces() and add_tait_forces_on_solids().
 class SolidDrags {
  public:
   /// Collects the forces of the configuration at which `force_model` was last evaluated.
   void collect(const ForceModel& force_model);
-  /// force += D w, with an entry for each particle.
+  /// Adds D w to `force`, with one entry for each particle.
   void add(const ForceModel& force_model, const std::vector<Vec3>& w,
            std::vector<Vec3>& force) const;
 
  private:
-  /// f = -strength x x^T (w - w_other).
+  /// Drag force f = -strength x x^T (w - w_other).
   struct Drag {
-    Index other;    ///< particle
-    Real strength;  ///< divided by |x|^2 [N s/m^3]
-    Vec3 x;         ///< [m]
+    Index other;    ///< index of the other particle
+    Real strength;  ///< drag coefficient / |x|^2 [N s/m^3]
+    Vec3 x;         ///< separation of the particles [m]
   };
   struct Block {
     std::vector<Drag> drags;
-    std::array<Index, kBlockSize + 1> begin;  ///< by slot
+    std::array<Index, kBlockSize + 1> begin;  ///< indexed by slot (index in cell order)
   };
-  /// Collects the forces on `from`, whose first particle is `first`, by its neighbours in `to`,
-  /// listed in `near`.
+  /// Collects the forces on the points `from` by their neighbours in `to`, which are listed in
+  /// `near`. `first` is the first particle of `from`.
   static void collect_of(const ForceModel& f, const CellSortedPoints& from, Index first,
                          const CellSortedPoints& to, Index other_first,
                          const std::vector<PairBlock>& near, std::vector<Block>& blocks);

@@ -12,22 +12,23 @@
 
 namespace vat {
 
-/// Evaluates all forces by running the plan of the model.
+/// Evaluates all forces by running the plan of the model, which lists the stages of an evaluation.
 struct ForceModel {
   const Model& model;
   const Controls& controls;
   Scratch& work;
   TaskRunner* runner = nullptr;
   StageObserver* observer = nullptr;
-  std::uint64_t step = 0;           ///< the present nominal step
-  AdvanceReport* report = nullptr;  ///< counts evaluations; may be null
-  MotionProbe* probe = nullptr;     ///< observes evaluations; may be null
+  std::uint64_t step = 0;           ///< current nominal step
+  AdvanceReport* report = nullptr;  ///< counter of evaluations; may be null
+  MotionProbe* probe = nullptr;     ///< observer of evaluations; may be null
 
-  /// Tells the observer that `stage` begins.
+  /// Notifies the observer that `stage` begins.
   void enter(std::string_view stage) const {
     if (observer != nullptr) observer->stage_begins(stage);
   }
-  /// Computes the forces at `configuration` and `time`. Moves rigid particles to their poses.
+  /// Computes the forces at `configuration` and `time` [s]. Moves rigid particles to the poses of
+  /// their bodies.
   void evaluate(Configuration& configuration, Real time, Forces& forces) const;
 };
 

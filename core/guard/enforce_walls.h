@@ -7,21 +7,23 @@
 
 namespace vat {
 
-/// The end of a step.
+/// Time at the end of a step.
 struct StepEnd {
   Real time;           ///< [s]
-  std::uint64_t step;  ///< the nominal step to which it belongs
+  std::uint64_t step;  ///< nominal step that contains the step
 };
 
-/// Moves back particles and bodies that a step took beyond a wall of the vat. They lose the outward
-/// part of their velocity relative to the wall: the wall is hard, inelastic and frictionless, so
-/// that kinetic energy relative to the vat never increases.
+/// Moves particles and bodies that a step moved beyond a wall of the vat back inside. Removes the
+/// outward part of their velocity relative to the wall. The wall is hard, inelastic and
+/// frictionless, so that kinetic energy relative to the vat never increases.
 ///
-/// A free particle is moved onto the wall. A rigid body is moved back as a whole by its maximum
-/// depth. An impulse along the normal stops the mean point of its particles beyond the wall,
-/// weighted by their depths. A body that has rotated too far to fit between two walls gets its
-/// orientation of `before`, the start of the step, and no spin. Fixed particles and held bodies are
-/// not moved.
+/// A free particle is moved onto the wall. A particle of a coupled liquid is reflected to the
+/// mirror image of its position. Its outward velocity is reversed if the liquid is weakly
+/// compressible. A rigid body is translated by its maximum depth. An impulse along the normal stops
+/// the depth-weighted mean point of the particles of the body beyond the wall. A body that has
+/// rotated too far to fit between two walls gets its orientation from `before`, and zero angular
+/// velocity. `before` is the configuration at the start of the step. Fixed particles and held
+/// bodies are not moved.
 ///
 /// Returns the number of particles and rigid bodies that were moved. If this number is 0, `now` is
 /// unchanged, except that positions and velocities of rigid particles may be updated from the
@@ -29,7 +31,8 @@ struct StepEnd {
 std::uint64_t enforce_walls(const Model& model, const GuardBounds& bounds, const StepEnd& end,
                             const Configuration& before, TaskRunner* runner, Configuration& now);
 
-/// Moves back the free particles with indices below `count`.
+/// Moves the free particles with indices below `count` back inside. Returns the number of moved
+/// particles.
 std::uint64_t enforce_walls_on_particles(const Model& model, Real time, std::size_t count,
                                          TaskRunner* runner, Configuration& now);
 

@@ -4,7 +4,7 @@
 
 namespace vat {
 
-/// The kernels of core/kernels/smoothing_kernel.h.
+/// Identifiers of the kernels in core/kernels/smoothing_kernel.h.
 enum class KernelId : std::uint8_t { wendland_c2, cubic_spline };
 
 }  // namespace vat

@@ -6,9 +6,10 @@
 
 namespace vat {
 
-/// The sum of f(x, r), times the volume of a cell, over the points of a cubic (in two dimensions
-/// square) lattice that are closer than h to one of its points. r is the distance from this point,
-/// and x its component along an axis.
+/// Returns a sum over a cubic lattice (in two dimensions a square lattice). The terms are f(x, r)
+/// times the cell volume, for all points within the distance h of one lattice point, including this
+/// point. r is the distance from the lattice point, and x is the component of the offset along an
+/// axis.
 template <class F>
 Real sum_over_lattice(Real h, Real spacing, int dimensions, F&& f) {
   const int reach = static_cast<int>(h / spacing);

@@ -7,8 +7,9 @@
 
 namespace vat {
 
-/// W(r) = C (h^2 - r^2)^3 for r <= h, in three dimensions with C = 315/(64 pi h^9) [MCG03] eq. 20;
-/// Boldt, section "Kernels". In two, C = 4/(pi h^8) for a unit integral over the plane.
+/// The density kernel W(r) = C (h^2 - r^2)^3 for r <= h ([MCG03] eq. 20; Boldt, section "Kernels").
+/// In three dimensions, C = 315/(64 pi h^9). In two dimensions, C = 4/(pi h^8), so that the
+/// integral over the plane is 1.
 class Poly6 {
  public:
   /// `dimensions`: 3 or 2.
@@ -17,7 +18,7 @@ class Poly6 {
         scale_(dimensions == 3 ? 315 / (64 * std::numbers::pi * h2_ * h2_ * h2_ * h2_ * h)
                                : 4 / (std::numbers::pi * h2_ * h2_ * h2_ * h2_)) {}
 
-  /// `r2`: squared distance, at most h^2.
+  /// Returns W for the squared distance `r2` <= h^2.
   Real value(Real r2) const {
     const Real d = h2_ - r2;
     return scale_ * (d * d * d);
@@ -28,9 +29,10 @@ class Poly6 {
   Real scale_;
 };
 
-/// W(r) = C (h - r)^3 for r <= h, in three dimensions with C = 15/(pi h^6) [MCG03] eq. 21 after
-/// [DC96]; in two, C = 10/(pi h^5) for a unit integral over the plane. Its gradient does not vanish
-/// at the centre, so pressure keeps particles apart.
+/// The pressure kernel W(r) = C (h - r)^3 for r <= h ([MCG03] eq. 21 after [DC96]). In three
+/// dimensions, C = 15/(pi h^6). In two dimensions, C = 10/(pi h^5), so that the integral over the
+/// plane is 1. The gradient does not vanish at the centre, so that pressure separates close
+/// particles.
 class Spiky {
  public:
   /// `dimensions`: 3 or 2.
@@ -43,7 +45,7 @@ class Spiky {
     const Real d = h_ - r;
     return scale_ * (d * d * d);
   }
-  /// dW/dr, negative; the gradient at x_ij is slope(|x_ij|) x_ij / |x_ij|.
+  /// Returns dW/dr <= 0. The gradient at x_ij is slope(|x_ij|) x_ij / |x_ij|.
   Real slope(Real r) const {
     const Real d = h_ - r;
     return -3 * scale_ * (d * d);
@@ -54,11 +56,11 @@ class Spiky {
   Real scale_;
 };
 
-/// The kernel with the Laplacian C (h - r) for r <= h; its value and its slope are zero at h. In
-/// three dimensions W(r) = 15/(2 pi h^3) (-r^3/(2h^3) + r^2/h^2 + h/(2r) - 1), C = 45/(pi h^6)
-/// [MCG03] eq. 22. Boldt prints 2h/r for h/(2r); only the latter has a unit integral, and a zero
-/// value and slope at h. In two, W(r) = C (h r^2/4 - r^3/9 - 5h^3/36 - h^3/6 ln(r/h)), C = 40/(pi
-/// h^5).
+/// The viscosity kernel, with the Laplacian C (h - r) for r <= h, and with value and slope 0 at h.
+/// In three dimensions, W(r) = 15/(2 pi h^3) (-r^3/(2h^3) + r^2/h^2 + h/(2r) - 1) with C = 45/(pi
+/// h^6) ([MCG03] eq. 22). Boldt prints 2h/r instead of h/(2r). With 2h/r, the integral would not be
+/// 1, and the value and slope at h would not be 0. In two dimensions, W(r) = C (h r^2/4 - r^3/9 -
+/// 5h^3/36 - h^3/6 ln(r/h)) with C = 40/(pi h^5).
 class ViscosityKernel {
  public:
   /// `dimensions`: 3 or 2.
@@ -68,7 +70,7 @@ class ViscosityKernel {
                                          : 40 / (std::numbers::pi * h * h * h * h * h)),
         dimensions_(dimensions) {}
 
-  /// W(r) for r > 0.
+  /// Returns W(r) for 0 < r <= h.
   Real value(Real r) const {
     const Real q = r / h_;
     const Real h3 = h_ * h_ * h_;
@@ -77,9 +79,10 @@ class ViscosityKernel {
     }
     return laplacian_scale_ * h3 * (q * q / 4 - q * q * q / 9 - Real{5} / 36 - std::log(q) / 6);
   }
-  /// C (h - r), never negative: viscosity only slows relative motion.
+  /// Returns the Laplacian C (h - r) for r <= h. The Laplacian is not negative, so that viscosity
+  /// never accelerates relative motion.
   Real laplacian(Real r) const { return laplacian_scale_ * (h_ - r); }
-  /// The constant C.
+  /// Returns the constant C.
   Real laplacian_scale() const { return laplacian_scale_; }
 
  private:

@@ -5,27 +5,30 @@
 
 namespace vat {
 
-/// A kernel W(r) = C w(q), q = r/h <= 1, for both the density and the pressure force of a liquid:
+/// A kernel W(r) = C w(q) with q = r/h <= 1, for both the density and the pressure force of a
+/// liquid.
 ///
-/// wendland_c2: w = (1 - q)^4 (1 + 4q), C = 21/(2 pi h^3) in three dimensions and 7/(pi h^2) in two
-/// (H. Wendland, Adv. Comput. Math. 4 (1995) 389; its Fourier transform is positive, so that
-/// particles do not pair: W. Dehnen, H. Aly, Mon. Not. R. Astron. Soc. 425 (2012) 1068).
+/// The kernel wendland_c2 is w = (1 - q)^4 (1 + 4q), with C = 21/(2 pi h^3) in three dimensions and
+/// C = 7/(pi h^2) in two dimensions (H. Wendland, Adv. Comput. Math. 4 (1995) 389). The Fourier
+/// transform of this kernel is positive, so that particles do not pair (W. Dehnen, H. Aly, Mon.
+/// Not. R. Astron. Soc. 425 (2012) 1068).
 ///
-/// cubic_spline: w = 1 - 6 q^2 (1 - q) up to q = 1/2 and 2 (1 - q)^3 beyond, C = 8/(pi h^3) and
-/// 40/(7 pi h^2) (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543); particles pair if a
-/// support holds more than about 60.
+/// The kernel cubic_spline is w = 1 - 6 q^2 (1 - q) for q < 1/2 and w = 2 (1 - q)^3 for q >= 1/2,
+/// with C = 8/(pi h^3) in three dimensions and C = 40/(7 pi h^2) in two dimensions (J. J. Monaghan,
+/// Annu. Rev. Astron. Astrophys. 30 (1992) 543). With this kernel, particles pair if a particle has
+/// more than about 60 neighbours within the support radius.
 class SmoothingKernel {
  public:
-  /// `h`: support radius [m]; `dimensions`: 3 or 2; `scale`: factor of C.
+  /// `h`: support radius [m]; `dimensions`: 3 or 2; `scale`: additional factor of C.
   SmoothingKernel(KernelId id, Real h, int dimensions, Real scale = 1);
 
   KernelId id() const { return id_; }
-  /// C, and slope_over_r() / g(q). g is (1 - q)^3 for wendland_c2. For cubic_spline it is 2 - 3q,
-  /// and (1 - q)^2 / q from q = 1/2 on.
+  /// scale() returns C. slope_scale() returns slope_over_r() / g(q). For wendland_c2, g is (1 -
+  /// q)^3. For cubic_spline, g is 2 - 3q for q < 1/2, and (1 - q)^2 / q for q >= 1/2.
   Real scale() const { return scale_; }
   Real slope_scale() const { return slope_scale_; }
 
-  /// W(r) for r <= h.
+  /// Returns W(r) for r <= h.
   Real value(Real r) const {
     const Real q = r * inverse_h_;
     const Real rest2 = (1 - q) * (1 - q);
@@ -34,7 +37,8 @@ class SmoothingKernel {
     }
     return scale_ * rest2 * rest2 * (1 + 4 * q);
   }
-  /// dW/dr / r, which is finite at the centre. The gradient at x_ij is slope_over_r(|x_ij|) x_ij.
+  /// Returns dW/dr / r for r <= h. This quotient is finite at r = 0. The gradient at x_ij is
+  /// slope_over_r(|x_ij|) x_ij.
   Real slope_over_r(Real r) const {
     const Real q = r * inverse_h_;
     const Real rest = 1 - q;
@@ -51,12 +55,12 @@ class SmoothingKernel {
   Real slope_scale_;
 };
 
-/// -sum_j V_j x dW/dx over the lattice of lattice_sum(): the slope that the kernel yields for a
-/// unit slope along an axis.
+/// Returns -sum_j V_j x dW/dx over the lattice of lattice_sum(). This sum is the SPH estimate of
+/// the slope of a field with slope 1 along an axis.
 Real lattice_slope(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions);
 
-/// The sum of W over the points of a cubic (in two dimensions square) lattice around one of them,
-/// times the volume of a cell: the density that the kernel yields for density 1.
+/// Returns the sum of W times the cell volume over a cubic lattice (in two dimensions a square
+/// lattice) around one of its points. This sum is the SPH estimate of a density of 1.
 Real lattice_sum(const SmoothingKernel& kernel, Real h, Real spacing, int dimensions);
 
 }  // namespace vat

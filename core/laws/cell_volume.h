@@ -8,14 +8,16 @@
 
 namespace vat {
 
-/// Volume, and its slope, of cells whose corners are numbered as those of SampledCell. Faces are
-/// bilinear: the mean of both divisions into triangles. All terms are differences of positions, so
-/// that no digits are lost far from the origin.
+/// The following functions compute the volume of a cell and its derivatives. The corners of a cell
+/// are numbered as in SampledCell. Faces are bilinear: the volume is the mean over both divisions
+/// of the faces into triangles. All terms are differences of positions, so that rounding errors do
+/// not increase with the distance from the origin.
 
 namespace cell {
 
-/// The other corners of a face at the corner c, in order, seen from outside. The face is along the
-/// two axes that follow `axis`.
+/// Returns the other three corners of the face at the corner `c` that is perpendicular to `axis`,
+/// in their order along the boundary of the face. The order has the same orientation for all faces,
+/// seen from outside.
 inline std::array<Index, 3> face_of(Index c, Index axis) {
   const Index i = Index{1} << (axis + 1) % 3;
   const Index j = Index{1} << (axis + 2) % 3;
@@ -29,8 +31,8 @@ inline Vec3 quarter_turn(const Vec3& v) {
 
 }  // namespace cell
 
-/// The derivative of the volume by the position of one corner [m^2]; in two dimensions that of the
-/// area [m].
+/// Returns the derivative of the volume with respect to the position of the corner `c` [m^2]; in
+/// two dimensions, the derivative of the area [m].
 inline Vec3 cell_slope(std::span<const Vec3> at, const std::array<Index, 8>& corners, Index c,
                        int dimensions) {
   VAT_ASSERT(c < (dimensions == 2 ? 4U : 8U));
@@ -52,7 +54,8 @@ inline Vec3 cell_slope(std::span<const Vec3> at, const std::array<Index, 8>& cor
   return sum / 12;
 }
 
-/// The volume [m^3], negative for an inverted cell; in two dimensions the area [m^2].
+/// Returns the volume [m^3], or in two dimensions the area [m^2]. The result is negative for an
+/// inverted cell.
 inline Real cell_volume(std::span<const Vec3> at, const std::array<Index, 8>& corners,
                         int dimensions) {
   const Vec3& origin = at[corners[0]];

@@ -6,9 +6,9 @@
 
 namespace vat {
 
-/// A unit vector for two particles at the same position, for which x_ij / |x_ij| is undefined: a
-/// hash of the pair, equal in all runs, and opposite for (j, i). In two dimensions it is in the
-/// plane y = 0.
+/// Returns a unit vector for two particles at the same position, for which x_ij / |x_ij| is
+/// undefined. The vector is a hash of the pair, and therefore equal in all runs. The vector of (j,
+/// i) is opposite to that of (i, j). In two dimensions, the vector is in the plane y = 0.
 inline Vec3 coincident_direction(Index i, Index j, int dimensions = 3) {
   const Index low = i < j ? i : j;
   const Index high = i < j ? j : i;
@@ -24,7 +24,7 @@ inline Vec3 coincident_direction(Index i, Index j, int dimensions = 3) {
   return i < j ? direction : Vec3(-direction);
 }
 
-/// x_ij / r, or coincident_direction() for r = 0.
+/// Returns x_ij / r, or coincident_direction() for r = 0.
 inline Vec3 pair_direction(const Vec3& x_ij, Real r, Index i, Index j, int dimensions = 3) {
   return r > 0 ? Vec3(x_ij / r) : coincident_direction(i, j, dimensions);
 }

@@ -6,17 +6,17 @@
 
 namespace vat {
 
-/// Constants of surface tension by curvature; core/liquid/surface/surface_tension.h derives them.
+/// Constants of surface tension by curvature, derived in core/liquid/surface/surface_tension.h.
 inline constexpr double kSurfaceThreshold = 0.6;
 inline constexpr double kCohesion = 4;
 inline constexpr double kSurfaceDepth = 0.34;
 inline constexpr double kSurfaceBulge = 0.105;
 
-/// Constants of the cohesion of liquids; core/liquid/surface/cohesion.h derives them.
+/// Constants of the cohesion of liquids, derived in core/liquid/surface/cohesion.h.
 inline constexpr Real kTensileShare = 0.4;
 inline constexpr Real kRelaxation = 1.52;
 
-/// The attraction A [Pa] for a surface tension [N/m] and a support radius [m].
+/// Returns the attraction A [Pa] of a liquid with `surface_tension` [N/m] and `support_radius` [m].
 inline Real attraction_of(Real surface_tension, Real support_radius, int dimensions) {
   VAT_ASSERT(support_radius > 0);
   const Real moment = CohesionKernel::first_moment(dimensions) *
@@ -24,7 +24,8 @@ inline Real attraction_of(Real surface_tension, Real support_radius, int dimensi
   return 2 * surface_tension / (kRelaxation * moment);
 }
 
-/// The share of the attraction by a wall, for the cosine of the contact angle.
+/// Returns the attraction by a wall relative to the attraction by the liquid, for the cosine of the
+/// contact angle.
 inline Real adhesion_share(Real cosine) {
   return 0.796 + cosine * (0.321 - 0.021 * cosine);
 }

@@ -5,26 +5,27 @@
 
 namespace vat {
 
-/// Position and motion of a moving vat, a function of time only.
+/// Displacement, velocity and acceleration of a moving vat.
 struct VatMotion {
-  Vec3 offset = Vec3::Zero();        ///< from the position at time 0 [m]
+  Vec3 offset = Vec3::Zero();        ///< displacement from the position at time 0 [m]
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
   Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 };
 VatMotion vat_motion(const Vat& vat, Real time);
-/// Returns the part of the motion that users cause. `time` must not be before its start.
+/// Returns the part of the vat's motion that users cause. `time` must not be before `hand.start`.
 VatMotion hand_motion(const HandMotion& hand, Real time);
-/// Returns whether the motion that users cause has not ended at `time`.
+/// Returns whether the motion caused by users continues at `time`.
 bool is_moving(const HandMotion& hand, Real time);
 
-/// Returns whether a wall of the vat moves at any time, in its normal or a tangential direction.
-/// Motions that users cause count until they end.
+/// Returns whether a wall of the vat moves at or after `time`, in its normal or a tangential
+/// direction.
 bool moves_walls(const Vat& vat, Real time);
-/// An upper bound of the normal speeds of the walls at and after `time` [m/s].
+/// Returns an upper bound of the normal speeds of the walls at and after `time` [m/s].
 Real greatest_vat_speed(const Vat& vat, Real time);
 
-/// wall_normal(): the inward normal of a wall. wall_distance(): the signed distance of `p` from a
-/// wall [m], negative outside. The last wall is the lid.
+/// wall_normal() returns the inward normal of a wall. wall_distance() returns the signed distance
+/// of `p` from a wall [m], negative outside the vat. wall_count() returns the number of walls of
+/// `vat`. The last of the kWallCount walls is the lid.
 inline constexpr int kWallCount = 6;
 inline Vec3 wall_normal(int wall) {
   return wall % 2 == 0 ? Vec3(Vec3::Unit(wall / 2)) : Vec3(-Vec3::Unit(wall / 2));

@@ -5,20 +5,20 @@ namespace vat {
 struct LiquidModel;
 struct Model;
 
-/// Returns whether a liquid of the model is viscous.
+/// Returns whether any liquid of the model is viscous.
 bool has_viscosity(const Model& model);
 
-/// Returns whether the plan has the stage "contacts": particles repel each other by springs or
-/// layers.
+/// Returns whether the plan contains the stage "contacts", in which springs or layers exert contact
+/// forces between particles.
 bool has_contact_forces(const Model& model);
 
-/// Returns whether the plan has the stage "walls".
+/// Returns whether the plan contains the stage "walls".
 bool has_wall_forces(const Model& model);
 
-/// Returns whether walls take part in the viscosity of liquids; see
+/// Returns whether walls contribute to the viscosity of liquids; see
 /// core/liquid/pairs/viscous_images.h.
 bool has_viscous_images(const Model& model);
-/// Returns whether slip walls take part in the viscosity of this liquid.
+/// Returns whether slip walls contribute to the viscosity of this liquid.
 bool is_thick(const LiquidModel& liquid, int dimensions);
 
 }  // namespace vat

@@ -9,11 +9,11 @@
 
 namespace vat {
 
-/// Images of points in a world that is periodic along some axes. Searches need lengths of at least
-/// twice their radius.
+/// The images of points in a world that is periodic along some axes. The length along a periodic
+/// axis must be at least twice the radius of each search.
 class PeriodicBox {
  public:
-  /// A world without periodic axes.
+  /// Constructs the box of a world without periodic axes.
   PeriodicBox() = default;
   explicit PeriodicBox(const Periodicity& periodicity) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -29,34 +29,35 @@ class PeriodicBox {
 
   bool any() const { return any_; }
   bool repeats(int axis) const { return repeats_[static_cast<std::size_t>(axis)]; }
-  /// Length along a periodic axis [m].
+  /// Returns the length along a periodic axis [m].
   Real length(int axis) const { return length_[axis]; }
 
-  /// The image in the box, with min <= x < max along periodic axes. A point in the box is returned
-  /// unchanged, bit for bit.
+  /// Returns the image of `p` in the box: min <= x < max along each periodic axis. A point in the
+  /// box is returned with the same bits.
   Vec3 wrap(Vec3 p) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (!repeats(axis) || (p[axis] >= min_[axis] && p[axis] < max_[axis])) continue;
       p[axis] -= length_[axis] * std::floor((p[axis] - min_[axis]) / length_[axis]);
-      // Rounding may move it out of the box.
+      // Rounding may move the image out of the box.
       if (p[axis] < min_[axis] || p[axis] >= max_[axis]) p[axis] = min_[axis];
     }
     return p;
   }
 
-  /// The shortest image of a difference of two points of the box. For -x it is the exact opposite.
+  /// Returns the shortest image of the difference `x` of two points in the box. nearest(-x) is
+  /// exactly -nearest(x).
   Vec3 nearest(const Vec3& x) const {
     return {nearest(x.x(), 0), nearest(x.y(), 1), nearest(x.z(), 2)};
   }
-  /// The shortest image of one component.
+  /// Returns the shortest image of the component `x` along `axis`.
   Real nearest(Real x, int axis) const {
     if (x > half_[axis]) return x - length_[axis];
     if (x < -half_[axis]) return x + length_[axis];
     return x;
   }
 
-  /// Calls f(shift) for all images p + shift of a point of the box from which a ball of `radius`
-  /// reaches into the box, including the zero shift.
+  /// Calls f(shift) for each image p + shift of a point of the box that is within `radius` of the
+  /// box. The zero shift is included.
   template <class F>
   void for_each_image(const Vec3& p, Real radius, F&& f) const {
     const Real reach = radius * (1 + 1e-6);  // more than the rounding error of a difference

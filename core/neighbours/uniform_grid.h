@@ -10,22 +10,23 @@
 
 namespace vat {
 
-/// Points sorted into cubic cells (counting sort, stable: by cell, then by index). Cells are
-/// ordered with x fastest, so that a search visits few contiguous runs of slots. Accepts all
-/// positions, finite or not. Memory is linear in the number of points, because the cells of sparse
-/// points are larger.
+/// A grid of cubic cells with points sorted by cell, then by index. A slot is the position of a
+/// point in this order. The x coordinate of the cells varies fastest, so that a search visits few
+/// contiguous runs of slots. Non-finite positions are accepted. Sparse points get larger cells, so
+/// that memory is linear in the number of points.
 class UniformGrid {
  public:
-  /// `cell_size` > 0 [m] should be the search radius.
+  /// Sorts `points` into cells of at least `cell_size` > 0 [m], which should be the search radius.
   void build(std::span<const Vec3> points, Real cell_size, TaskRunner* runner = nullptr);
 
-  /// The index of the point in each slot. The slots of a cell are contiguous.
+  /// Returns the index of the point in each slot. The slots of a cell are contiguous.
   std::span<const Index> order() const { return order_; }
-  /// The first slot of each cell, and the total number of slots. A cell may be empty.
+  /// Returns the first slot of each cell, followed by the total number of slots. A cell may be
+  /// empty.
   std::span<const Index> cell_begin() const { return cell_begin_; }
-  /// The corner with the lowest coordinates of the box of all cells.
+  /// Returns the corner of the grid with the lowest coordinates [m].
   const Vec3& origin() const { return origin_; }
-  /// The corner with the highest coordinates.
+  /// Returns the corner of the grid with the highest coordinates [m].
   Vec3 end() const { return origin_ + Vec3(count_[0], count_[1], count_[2]) / inverse_cell_size_; }
 
   /// Calls f(begin, end) for disjoint runs of slots that contain every point closer to `p` than
@@ -36,7 +37,8 @@ class UniformGrid {
     for_each_run(p.array() - reach, p.array() + reach, f);
   }
 
-  /// Calls f(begin, end) for the points in a box, including its faces.
+  /// Calls f(begin, end) for disjoint runs of slots that contain every point in a box, faces
+  /// included. The runs may contain other points.
   template <class F>
   void for_each_run(const Vec3& lowest, const Vec3& highest, F&& f) const {
     if (order_.empty()) return;
@@ -59,8 +61,8 @@ class UniformGrid {
   }
 
  private:
-  /// The cell coordinate along an axis, clamped to the grid. It is monotonic in `x`, and 0 for a
-  /// NaN.
+  /// Returns the cell coordinate along `axis`, clamped to the grid. The result increases
+  /// monotonically with `x`, and is 0 for a NaN.
   Index coordinate(Real x, std::size_t axis) const {
     const Real c = (x - origin_[static_cast<Eigen::Index>(axis)]) * inverse_cell_size_;
     if (!(c > 0)) return 0;
@@ -72,10 +74,10 @@ class UniformGrid {
   Vec3 origin_ = Vec3::Zero();
   Real inverse_cell_size_ = 1;
   std::array<Index, 3> count_{1, 1, 1};
-  std::vector<Index> cell_begin_;  // by cell, and the total number of slots
-  std::vector<Index> cell_of_;     // by point
+  std::vector<Index> cell_begin_;  // first slot by cell, then the total number of slots
+  std::vector<Index> cell_of_;     // cell of each point
   std::vector<Index> order_;
-  std::vector<std::array<Vec3, 2>> boxes_;  // boxes of the blocks of points
+  std::vector<std::array<Vec3, 2>> boxes_;  // lowest and highest corner of each block of points
 };
 
 }  // namespace vat

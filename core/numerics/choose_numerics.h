@@ -7,28 +7,28 @@
 
 namespace vat {
 
-/// The scene's numerics, with the integrator, step and control for which the relative error of its
-/// fastest motion stays below its accuracy during kAccurateRadians. Unchanged if the scene has no
-/// accuracy. `samples` are the scene's bodies.
+/// Returns the numerics of the scene, with a chosen integrator, step and step control. The relative
+/// error of the fastest motion stays below the accuracy of the scene during kAccurateRadians.
+/// Numerics of a scene without an accuracy are unchanged. `samples` are the bodies of the scene.
 ///
-/// For an error e per radian, a step is `resolving_phase` / omega (core/numerics/error_model.h), at
-/// most 0.9 of the stable step, for the bounds of omega from find_oscillating_parts() and for the
-/// central field:
+/// For an error e per radian, the step is `resolving_phase` / omega (core/numerics/error_model.h),
+/// but at most 0.9 of the stable step. The bounds of omega include those of
+/// find_oscillating_parts() and that of the central field:
 ///
-/// - If liquids flow or bodies can touch: velocity Verlet, because forces with kinks limit all
-///   methods to order 2, in adaptive steps with the tolerance e. The step is the longest that
-///   springs and the central field allow, and that is stable for sound.
+/// - If liquids flow or bodies can touch: velocity Verlet with adaptive steps and the tolerance e.
+///   Forces with kinks limit all methods to order 2. The step is the longest that springs, the
+///   central field and the stability of sound allow.
 /// - With an incompressible liquid: the same with symplectic Euler, which this solver requires.
-/// - Otherwise fixed steps of velocity Verlet or Runge-Kutta 4, whichever evaluates forces less
-///   often: 1 / step or 4 / step. If a material has implicit springs or an elongation limit,
-///   velocity Verlet.
+/// - Otherwise: fixed steps of the method that needs fewer force evaluations per time. Velocity
+///   Verlet needs 1 / step, and Runge-Kutta 4 needs 4 / step. Implicit springs or an elongation
+///   limit require velocity Verlet.
 ///
-/// The step is the tick divided by a whole number, which may exceed kMaxStepsPerTick; a scene with
-/// such an accuracy is invalid.
+/// The step is the tick divided by an integer. If the integer exceeds kMaxStepsPerTick, the scene
+/// is invalid.
 Numerics choose_numerics(const Scene& scene, std::span<const SampledBody* const> samples);
 inline constexpr Real kAccurateRadians = 100;
 
-/// Replaces the numerics of a valid scene by the chosen ones.
+/// Replaces the numerics of a valid scene by the result of choose_numerics().
 void resolve_accuracy(Scene& scene);
 
 }  // namespace vat

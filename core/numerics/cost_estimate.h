@@ -7,14 +7,14 @@
 
 namespace vat {
 
-/// The expected cost of a scene, within a factor of two or three. It assumes one core of a current
-/// processor, steps of the nominal length, and no contacts between bodies.
+/// Expected cost of a scene, accurate to a factor of two or three. The estimate assumes one core of
+/// a current processor, steps of the nominal length, and no contacts between bodies.
 struct CostEstimate {
   Real memory = 0;   ///< [bytes]
-  Real seconds = 0;  ///< of one core, for one simulated second
+  Real seconds = 0;  ///< time on one core per simulated second
 };
 
-/// `samples` are the scene's bodies.
+/// Returns the cost estimate of `scene`. `samples` are the bodies of the scene.
 CostEstimate estimate_cost(const Scene& scene, std::span<const SampledBody* const> samples);
 
 }  // namespace vat

@@ -7,27 +7,29 @@
 
 namespace vat {
 
-/// A simple cubic lattice, centred on the bounding box of a shape. The number of points on each
-/// axis is floor(extent / spacing), and at least one. In two dimensions, it is one on y. Not for
-/// explicit particles.
+/// Simple cubic lattice, centred on the bounding box of a shape. The number of points on each axis
+/// is floor(extent / spacing), and at least 1. In two dimensions, the number of points along y is
+/// 1. Shapes of explicit particles have no lattice.
 struct Lattice {
   Vec3 first = Vec3::Zero();
-  Real spacing = 0;                   ///< [m]
-  std::array<Real, 3> size{0, 0, 0};  ///< number of points on each axis; of type Real because an
-                                      ///< invalid scene can exceed the range of an integer
+  Real spacing = 0;  ///< [m]
+  /// Number of points on each axis. The type is Real because the number of an invalid scene can
+  /// exceed the range of an integer.
+  std::array<Real, 3> size{0, 0, 0};
   Real point_count() const { return size[0] * size[1] * size[2]; }
 };
 Lattice make_lattice(const Shape& shape, Real spacing, int dimensions = 3);
 
-/// The number of pairs of a triangle and a column of the lattice that fill_lattice() tests.
+/// Returns the number of pairs of a triangle and a lattice column that fill_lattice() tests. A
+/// column is the set of lattice points with the same x and y.
 Real lattice_work(const MeshShape& mesh, const Lattice& lattice);
 
-/// A lattice point inside the shape.
+/// Lattice point inside the shape.
 struct LatticePoint {
   std::array<Index, 3> at{};
-  Vec3 position;  ///< in the frame of the shape
+  Vec3 position;  ///< position in the frame of the shape
 };
-/// The lattice points inside the shape, x fastest.
+/// Returns the lattice points inside the shape. The index along x varies fastest.
 std::vector<LatticePoint> fill_lattice(const Shape& shape, const Lattice& lattice);
 
 }  // namespace vat

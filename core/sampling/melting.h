@@ -5,15 +5,15 @@
 #include "core/sampling/sampling.h"
 #include "core/scene/scene.h"
 
-/// The liquid body into which a deformable body melts: the same particles with the same masses,
-/// without springs and fixed particles.
+/// Each overload returns the liquid body that results from melting a deformable body. The particles
+/// and their masses are unchanged. Springs and fixed particles are removed.
 namespace vat {
 
-/// `mass`: of the whole body [kg].
+/// `mass` is the mass of the whole body [kg].
 BodyDescription melted(BodyDescription body, const std::string& into, Real mass);
 SampledBody melted(SampledBody sample);
 
-/// The scene in which all bodies that will melt are liquid at time 0.
+/// Returns the scene with all bodies that will melt converted to liquid at time 0.
 Scene with_all_melted(Scene scene, const std::vector<SampledBody>& samples);
 
 }  // namespace vat

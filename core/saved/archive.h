@@ -13,19 +13,19 @@
 #include "core/support/result.h"
 #include "core/types.h"
 
-/// Conversion of values to little-endian bytes and back. A struct takes the bytes of its members in
-/// the order of declaration. To save only some members, or in another order, define this function,
-/// which passes the saved members to the archive:
+/// Conversion of values to little-endian bytes and back. The bytes of a struct are the bytes of its
+/// members in the order of declaration. To save only some members, or to change their order, define
+/// the following function. The function passes the saved members to the archive:
 ///
 ///     template <class Archive>
 ///     void describe(Archive& archive, Of<Archive, Struct>& value);
 ///
-/// passes the saved members to the archive. Numbers take their size; bools and enumerations take
-/// one byte. Texts and lists are prefixed by their length in four bytes, an optional by a bool, and
-/// a variant by its index in one byte.
+/// Numbers have the size of their type. Bools and enumerations have one byte. Strings and lists are
+/// prefixed by their length in four bytes, an optional by a bool, and a variant by its index in one
+/// byte.
 namespace vat {
 
-/// The type of the argument of describe(). Saving does not change the value.
+/// Type of the value argument of describe(). The value is const when it is saved.
 template <class Archive, class T>
 using Of = std::conditional_t<Archive::kLoads, T, const T>;
 
@@ -39,11 +39,11 @@ void describe_struct(Archive& archive, T& value) {
   }
 }
 
-/// The last value of an enumeration. Values begin with 0 and have no gaps.
+/// Last value of an enumeration. Values begin with 0 and have no gaps.
 template <class Enumeration>
 inline constexpr auto kLastOf = static_cast<Enumeration>(kNamesOf<Enumeration>.size() - 1);
 
-/// Appends values to bytes.
+/// Archive that appends values to a byte vector.
 class SavingArchive {
  public:
   static constexpr bool kLoads = false;
@@ -105,9 +105,9 @@ class SavingArchive {
   ByteWriter writer_;
 };
 
-/// Reads values. After invalid bytes it returns zeros and empty lists, and failed() stays true, so
-/// that a caller can read all values and check once. The memory for a list is limited by the number
-/// of remaining bytes.
+/// Archive that reads values from bytes. After invalid bytes, all reads return zeros and empty
+/// lists, and failed() remains true. A caller can therefore read all values and check once. The
+/// memory for a list is limited by the number of remaining bytes.
 class LoadingArchive {
  public:
   static constexpr bool kLoads = true;
@@ -126,7 +126,8 @@ class LoadingArchive {
     failed_ = true;
     reader_ = ByteReader({});
   }
-  /// The length of a list whose elements take at least `least` bytes each.
+  /// Reads the length of a list whose elements have at least `least` bytes each. Fails if too few
+  /// bytes remain.
   std::size_t get_length(std::size_t least) {
     const auto length = reader_.get<std::uint32_t>();
     if (length <= reader_.left() / least) return length;

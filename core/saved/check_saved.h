@@ -11,25 +11,24 @@
 #include "core/state/state.h"
 #include "core/support/result.h"
 
-/// Checks of values that were read from bytes, which may be damaged in any way. Code of all errors:
-/// bad_value.
+/// Checks of values that were read from possibly damaged bytes. All errors have the code bad_value.
 namespace vat {
 
-/// A saved body.
+/// Saved data of a body.
 struct SavedBody {
   BodyId id = 0;
   Oscillation damping;                ///< see ModelDamping
-  std::optional<SampledBody> sample;  ///< if it does not follow from the description
+  std::optional<SampledBody> sample;  ///< only if the description does not determine the sample
 };
 
-/// Checks that the scene can be compiled with these bodies, and their ids.
+/// Checks the ids, and that the scene can be compiled with these bodies.
 Status check_saved_scene(const Scene& scene, const std::vector<SavedBody>& bodies, BodyId next_id);
 Status check_saved_sleepers(const Model& model, const Configuration& at,
                             const std::vector<Index>& islands);
-/// Checks that the columns are those of the model.
+/// Checks that the arrays of the state have the sizes that the model requires.
 Status check_saved_state(const Model& model, const State& state);
 Status check_saved_controls(const Model& model, const Controls& controls);
-/// Checks that this motion of a vat is possible.
+/// Checks that the motion of a vat by a user is within its limits.
 Status check_saved_hand(const HandMotion& hand);
 
 }  // namespace vat

@@ -4,9 +4,9 @@
 
 namespace vat {
 
-/// Returns the maximum size in bytes of Snapshot::to_bytes() for these numbers of particles and
-/// springs. It is computed from their saved fields and the limits of all other data. Meshes count
-/// with three vertices for each triangle.
+/// Returns the maximum size of Snapshot::to_bytes() [bytes] for these numbers of particles and
+/// springs. The size follows from the saved fields of particles and springs, and from the limits of
+/// all other data. Meshes are assumed to have three vertices for each triangle.
 std::size_t greatest_saved_size(std::size_t particles, std::size_t springs);
 
 }  // namespace vat

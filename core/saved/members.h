@@ -6,7 +6,7 @@
 
 namespace vat {
 
-/// Converts to a member of any type.
+/// Placeholder that converts to a member of any type.
 struct AnyMember {
   std::size_t index;
   template <class T>
@@ -20,7 +20,7 @@ constexpr bool has_members(std::index_sequence<indices...>) {
   };
 }
 
-/// The number of members of an aggregate.
+/// Returns the number of members of an aggregate.
 template <class T, std::size_t count = 1>
 constexpr std::size_t member_count() {
   static_assert(std::is_aggregate_v<T>);
@@ -31,8 +31,8 @@ constexpr std::size_t member_count() {
   }
 }
 
-/// Calls `visit` with all members of an aggregate, in the order of declaration. Each number of
-/// members has its branch.
+/// Calls `visit` once with all members of an aggregate, in the order of declaration. The function
+/// has one branch for each supported number of members.
 template <class T, class Visit>
 void visit_members(T& value, Visit& visit) {
   constexpr std::size_t count = member_count<std::remove_const_t<T>>();

@@ -4,7 +4,7 @@
 #include "core/saved/archive.h"
 #include "core/state/state.h"
 
-/// Structs that are not saved as a whole.
+/// Definitions of describe() for structs that are saved in part.
 namespace vat {
 
 /// Describes the fields of a vat except `hand`, which is not part of a scene.
@@ -13,21 +13,22 @@ void describe(Archive& archive, Of<Archive, Vat>& v) {
   auto& [min, max, lid, motion, walls, hand] = v;
   archive(min, max, lid, motion, walls);
 }
-/// Fields of a liquid, which has no springs, cells and fixed particles.
+/// Describes the fields of a liquid sample. Liquids have no springs, cells and fixed particles.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, SampledBody>& v) {
   auto& [positions, velocities, masses, radii, fixed, springs, cells, in_nozzles, numbers,
          next_number] = v;
   archive(positions, velocities, masses, radii, in_nozzles, numbers, next_number);
 }
-/// Describes the fields of the forces except `friction_torque`, which is read only during an
+/// Describes the fields of the forces except `friction_torque`, which is used only during an
 /// evaluation.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, Forces>& v) {
   auto& [particle, rigid_force, rigid_torque, friction_torque, transport] = v;
   archive(particle, rigid_force, rigid_torque, transport);
 }
-/// Omits the forces and their levels if they are not current, because they are then never read.
+/// Describes the state. Forces and their levels are omitted if they are not current, because they
+/// are then never read.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, State>& v) {
   auto& [now, step_count, forces, bound, forces_current, history, volume, levels, emitted, drained,

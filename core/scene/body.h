@@ -16,32 +16,33 @@ enum class BodyKind : std::uint8_t { liquid = 0, deformable = 1, rigid = 2 };
 template <>
 inline constexpr std::array kNamesOf<BodyKind>{"liquid", "deformable", "rigid"};
 
-/// A box along the axes of the body.
+/// Box aligned with the axes of the body.
 struct BoxShape {
   Vec3 center = Vec3::Zero();  ///< [m]
-  Vec3 size = Vec3::Zero();    ///< whole edges [m]
+  Vec3 size = Vec3::Zero();    ///< edge lengths [m]
 };
-/// A ball.
+/// Solid sphere.
 struct SphereShape {
   Vec3 center = Vec3::Zero();  ///< [m]
   Real radius = 0;             ///< [m]
 };
-/// A solid circular cylinder with flat ends.
+/// Solid circular cylinder with flat ends.
 struct CylinderShape {
-  Vec3 center = Vec3::Zero();  ///< of its volume [m]
-  Vec3 axis = Vec3::UnitZ();   ///< of any length except zero
+  Vec3 center = Vec3::Zero();  ///< centre of the volume [m]
+  Vec3 axis = Vec3::UnitZ();   ///< direction; any length except zero
   Real radius = 0;             ///< [m]
-  Real height = 0;             ///< along the axis, from end to end [m]
+  Real height = 0;             ///< length along the axis, from end to end [m]
 };
 /// Closed triangle mesh. Triangles are counter-clockwise, seen from outside.
 struct MeshShape {
-  std::string source;                           ///< origin of the mesh, for messages only
+  std::string source;                           ///< origin of the mesh, only for error messages
   std::vector<Vec3> vertices;                   ///< [m]
-  std::vector<std::array<Index, 3>> triangles;  ///< indices of vertices
+  std::vector<std::array<Index, 3>> triangles;  ///< indices into vertices
 };
-/// Explicit particles. `velocities`, `masses` and `radii` are empty or as long as `positions`.
-/// Empty masses: the mass of the body in equal parts, or density times spacing cubed. Empty radii:
-/// the radius of the body. `fixed` lists particles that never move (deformable bodies only).
+/// Explicit particles. `velocities`, `masses` and `radii` are empty or have the same length as
+/// `positions`. If `masses` is empty, the mass of the body is divided equally, or each mass is
+/// density times spacing cubed. If `radii` is empty, all particles have the radius of the body.
+/// `fixed` lists particles that never move (deformable bodies only).
 struct ParticleShape {
   std::vector<Vec3> positions;   ///< [m]
   std::vector<Vec3> velocities;  ///< [m/s]
@@ -51,7 +52,7 @@ struct ParticleShape {
 };
 using Shape = std::variant<BoxShape, SphereShape, CylinderShape, MeshShape, ParticleShape>;
 
-/// One static connection (Boldt def. 0.2) between two particles of its body.
+/// Static connection (Boldt def. 0.2), a spring between two particles of one body.
 struct SpringDescription {
   Index a = 0;
   Index b = 0;
@@ -59,53 +60,54 @@ struct SpringDescription {
   std::optional<Real> rest_length;  ///< l [m]; default: the distance at the start
 };
 
-/// A plane wave amplitude * sin(wave_vector . x + phase).
+/// Plane wave amplitude * sin(wave_vector . x + phase).
 struct PlaneWave {
   Vec3 amplitude = Vec3::Zero();
   Vec3 wave_vector = Vec3::Zero();  ///< [rad/m]
   Real phase = 0;                   ///< [rad]
 };
 
-/// A vector for each point x of the world: gradient (x - center) + the sum of the waves.
+/// Vector field at world positions x: gradient (x - center) + the sum of the waves.
 struct VectorField {
   Vec3 center = Vec3::Zero();    ///< [m]
-  Mat3 gradient = Mat3::Zero();  ///< row i: the derivatives of component i
+  Mat3 gradient = Mat3::Zero();  ///< row i contains the derivatives of component i
   std::vector<PlaneWave> waves;
 };
 
-/// Melting of a deformable body. It becomes liquid at the first step that begins at the time `at`
-/// or later.
+/// Melting of a deformable body. The body becomes liquid at the first step that begins at or after
+/// the time `at`.
 struct Melting {
-  std::string into;  ///< a material with liquid constants
+  std::string into;  ///< name of a material with liquid constants
   Real at = 0;       ///< [s]
 };
 
-/// One body. `shape` is in the frame of the body; `position` and `orientation` are those of this
-/// frame in the world. `velocity` and `angular_velocity` (world axes, about the centre of mass) are
-/// those at the start. Rigid bodies have neither fields nor jitter, and only rigid bodies are held.
+/// Description of one body. `shape` is defined in the frame of the body. `position` and
+/// `orientation` place this frame in the world. `velocity` and `angular_velocity` are the initial
+/// velocities. `angular_velocity` is in world axes, about the centre of mass. Rigid bodies have
+/// neither fields nor jitter, and only rigid bodies can be held.
 struct BodyDescription {
   std::string name;
   BodyKind kind = BodyKind::liquid;
   std::string material;
   Shape shape;
   Real spacing = 0;              ///< lattice spacing of the sampler [m]; unused by ParticleShape
-  std::optional<Real> mass{};    ///< whole body [kg]; default: from the material's density
+  std::optional<Real> mass{};    ///< whole body [kg]; default: from the density of the material
   std::optional<Real> radius{};  ///< particle radius [m]; default: half the spacing
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
-  std::vector<SpringDescription>
-      springs{};  ///< deformable bodies only, in addition to lattice springs
-  std::optional<VectorField> velocity_field{};  ///< added to the velocities of the particles [m/s]
-  std::optional<VectorField>
-      displacement_field{};  ///< added to the positions, not to default rest lengths [m]
-  Real jitter = 0;           ///< maximum random shift along each axis, in spacings
-  std::uint32_t seed = 0;    ///< of the jitter
-  /// Until the time `release` [s], a held rigid body moves as if no force acted on it.
+  /// Only for deformable bodies; in addition to lattice springs.
+  std::vector<SpringDescription> springs{};
+  std::optional<VectorField> velocity_field{};  ///< added to the particle velocities [m/s]
+  /// Added to the particle positions, but not to default rest lengths [m].
+  std::optional<VectorField> displacement_field{};
+  Real jitter = 0;         ///< maximum random shift along each axis, in spacings
+  std::uint32_t seed = 0;  ///< random seed of the jitter
+  /// Release time [s] of a held rigid body. Until then, the body moves as if no force acted on it.
   Real release = 0;
-  bool fixed = false;                ///< held for all time
-  std::optional<Melting> melting{};  ///< deformable bodies only
+  bool fixed = false;                ///< true: held for all time
+  std::optional<Melting> melting{};  ///< only for deformable bodies
 };
 
 }  // namespace vat

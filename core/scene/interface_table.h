@@ -8,14 +8,14 @@
 
 namespace vat {
 
-/// The interfaces of a scene by pairs of materials, or a material and the walls. Materials are
-/// identified by their index.
+/// Table of the interfaces of a scene, by pairs of materials, or by a material and the walls.
+/// Materials are identified by their index.
 class InterfaceTable {
  public:
   InterfaceTable(const std::vector<Material>& materials,
                  const std::vector<InterfaceDescription>& interfaces);
 
-  /// Index of the interface; empty: the default interface.
+  /// Returns the index of the interface. An empty result means the default interface.
   std::optional<std::size_t> between(std::size_t material_a, std::size_t material_b) const {
     VAT_ASSERT(material_a < side_ && material_b < side_);
     return table_[material_a * side_ + material_b];
@@ -26,11 +26,12 @@ class InterfaceTable {
   }
 
  private:
-  std::size_t side_;  // the number of materials, and one for the walls
+  std::size_t side_;  // number of materials plus one for the walls
   std::vector<std::optional<std::size_t>> table_;
 };
 
-/// Index of the material with this name; the number of materials if there is none.
+/// Returns the index of the material with this name, or the number of materials if the name is
+/// unknown.
 std::size_t material_index(const std::vector<Material>& materials, const std::string& name);
 
 }  // namespace vat

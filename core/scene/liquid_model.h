@@ -9,23 +9,24 @@
 
 namespace vat {
 
-/// The solver that conserves the volume of liquids.
+/// Solver that computes the pressure of liquids.
 enum class PressureSolver : std::uint8_t {
-  /// Boldt eq. 14 with the kernels of [MCG03]; bodies and walls push liquids with springs.
+  /// Boldt eq. 14 with the kernels of [MCG03]. Bodies and walls exert spring forces on liquids.
   gas,
-  /// Weakly compressible, see core/liquid/tait/weakly_compressible.h; bodies and walls take part in
-  /// density and pressure.
+  /// Weakly compressible; see core/liquid/tait/weakly_compressible.h. Bodies and walls contribute
+  /// to density and pressure.
   tait,
-  /// See core/liquid/incompressible/volume_solve.h; bodies and walls take part as in tait.
+  /// Incompressible; see core/liquid/incompressible/volume_solve.h. Bodies and walls contribute as
+  /// in tait.
   incompressible,
 };
 template <>
 inline constexpr std::array kNamesOf<PressureSolver>{"gas", "tait", "incompressible"};
 
-/// The model of surface tension.
+/// Model of surface tension.
 enum class SurfaceModel : std::uint8_t {
-  curvature,  ///< a force at the surface, see core/liquid/surface/surface_tension.h
-  cohesion,   ///< attraction of all pairs, see core/liquid/surface/cohesion.h
+  curvature,  ///< force at the surface; see core/liquid/surface/surface_tension.h
+  cohesion,   ///< attraction of all pairs; see core/liquid/surface/cohesion.h
 };
 template <>
 inline constexpr std::array kNamesOf<SurfaceModel>{"curvature", "cohesion"};
@@ -35,13 +36,13 @@ inline constexpr std::array kNamesOf<KernelId>{"wendland_c2", "cubic_spline"};
 template <>
 inline constexpr std::array kNamesOf<PairPrecision>{"single", "double"};
 
-/// Tolerances of the solves of an incompressible liquid: relative changes of density, as means over
-/// its particles. For a single particle, the density error may be 36 × density_tolerance, and the
-/// density change 200 × divergence_tolerance.
+/// Tolerances of the linear solves of an incompressible liquid. Each tolerance is a relative change
+/// of density, averaged over the particles. The density error of a single particle may be 36 ×
+/// density_tolerance. The density change of a single particle may be 200 × divergence_tolerance.
 struct IncompressibleSolve {
-  Real density_tolerance = 5e-4;     ///< density above that at rest, at the end of a step
-  Real divergence_tolerance = 1e-5;  ///< change of density by the velocities within a step
-  int most_iterations = 100;         ///< of each linear solve
+  Real density_tolerance = 5e-4;     ///< excess over the rest density at the end of a step
+  Real divergence_tolerance = 1e-5;  ///< density change in a step due to the velocities
+  int most_iterations = 100;         ///< maximum number of iterations of each linear solve
 };
 
 }  // namespace vat

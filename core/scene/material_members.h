@@ -7,15 +7,15 @@
 #include "core/limits.h"
 #include "core/scene/material.h"
 
-/// The numbers and switches of materials. Validation, the reader and the writer of scene files, and
-/// the tests of protocol/SCENE.md and of the schema read these tables.
+/// Tables of the numbers and switches of materials. The tables are used by validation, by the
+/// reader and the writer of scene files, and by the tests of protocol/SCENE.md and of the schema.
 namespace vat {
 
-/// A member of a part of a material: a number with its range, ends included, or a switch. Its
-/// default is that of the struct.
+/// Member of a part of a material: a number with its inclusive range, or a switch. The default
+/// value is that of the struct.
 template <class Part>
 struct Member {
-  const char* name;  ///< in scene files
+  const char* name;  ///< name in scene files
   std::variant<Real Part::*, std::optional<Real> Part::*, bool Part::*> value;
   bool is_required = false;
   Real min = 0;
@@ -24,7 +24,7 @@ struct Member {
   const char* meaning = "";  ///< as in SCENE.md
   const char* note = "";     ///< text after the range in SCENE.md
 
-  /// The number in `part`; empty for a switch and for an absent number.
+  /// Returns the number in `part`. The result is empty for a switch and for an absent number.
   std::optional<Real> number_in(const Part& part) const {
     if (const auto* real = std::get_if<Real Part::*>(&value)) return part.**real;
     if (const auto* optional = std::get_if<std::optional<Real> Part::*>(&value)) {

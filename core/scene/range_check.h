@@ -12,17 +12,17 @@ inline bool are_at_most(const Vec3& value, Real limit) {
   return value.allFinite() && value.cwiseAbs().maxCoeff() <= limit;
 }
 
-/// Checks of single values of a scene. Each adds one error that names the range. Codes:
-/// out_of_range, bad_text.
+/// Checks of single values of a scene. Each failed check adds one error that names the permitted
+/// range. Codes: out_of_range, bad_text.
 class RangeCheck {
  public:
   explicit RangeCheck(Errors& errors) : errors_(errors) {}
 
   void add(std::string code, std::string path, std::string message);
-  /// Returns whether the value is in the range, ends included. A NaN is outside.
+  /// Returns whether the value is in the inclusive range. A NaN is outside.
   bool real(Real value, Real min, Real max, const std::string& path);
   bool vector(const Vec3& value, Real min, Real max, const std::string& path);
-  /// Checks the length of a text. The reader checks UTF-8.
+  /// Checks the length of a text. The reader of scene files checks UTF-8.
   bool text(const std::string& value, std::size_t max_bytes, bool empty_allowed,
             const std::string& path);
 

@@ -12,11 +12,11 @@
 #include "core/scene/world.h"
 #include "core/types.h"
 
-/// A scene as plain values, as a user writes it, in SI units. The values are not checked; see
-/// core/validation/validate.h for their ranges and core/model/compile.h for the compiled scene.
+/// A scene as plain values in SI units, as in a scene file. The values are not checked.
+/// core/validation/validate.h defines their ranges, and core/model/compile.h compiles the scene.
 namespace vat {
 
-/// All that a simulation starts from.
+/// All initial data of a simulation.
 struct Scene {
   std::string name;
   std::string title;
@@ -24,26 +24,28 @@ struct Scene {
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
   std::vector<Material> materials;
   std::vector<InterfaceDescription> interfaces;
-  InterfaceConstants default_interface{1000, 1};  ///< for pairs that `interfaces` does not list
+  InterfaceConstants default_interface{1000, 1};  ///< for pairs that are not in `interfaces`
   std::vector<BodyDescription> bodies;
   std::optional<Vat> vat;
   std::optional<Periodicity> periodic;
   std::optional<CentralField> central_field;
   std::optional<Settling> settling;
-  std::optional<Sleeping> sleeping;  ///< nothing ever sleeps without
+  std::optional<Sleeping> sleeping;  ///< if absent, bodies never sleep
   std::vector<Emitter> emitters;
   std::vector<Drain> drains;
   ForceSwitches forces;
   PressureSolver pressure_solver = PressureSolver::tait;
-  IncompressibleSolve incompressible;  ///< used by that solver
-  /// For the solver gas: half of the pressure force, as in Boldt and [MCG03], for comparison.
+  IncompressibleSolve incompressible;  ///< only for the incompressible solver
+  /// For the solver gas: whether the pressure force is halved, as in Boldt and [MCG03], for
+  /// comparison.
   bool printed_pressure_force = false;
-  KernelId kernel = KernelId::wendland_c2;  ///< of liquids; gas uses those of [MCG03]
-  /// Precision of the sums over pairs of liquids; the solver gas uses double precision.
+  KernelId kernel = KernelId::wendland_c2;  ///< kernel of liquids; gas uses those of [MCG03]
+  /// Precision of the sums over pairs of liquid particles. The solver gas uses double precision.
   PairPrecision pair_precision = PairPrecision::single_precision;
   SurfaceModel surface_model = SurfaceModel::curvature;
-  /// 3, or 2: everything stays in the plane y = 0, kernels and sampled masses are those of two
-  /// dimensions, and masses, forces and energies are per metre of depth.
+  /// Number of dimensions, 3 or 2. In two dimensions, all motion is in the plane y = 0, with
+  /// two-dimensional kernels and sampled masses. Masses, forces and energies are then per metre of
+  /// depth.
   int dimensions = 3;
   Numerics numerics;
 };

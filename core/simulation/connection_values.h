@@ -8,33 +8,33 @@
 
 namespace vat {
 
-/// A particle of a body, by its number; see BodyView.
+/// Particle of a body, identified by its number; see BodyView.
 struct ConnectedParticle {
   BodyId body = 0;
   Index particle = 0;
   bool operator==(const ConnectedParticle&) const = default;
 };
 
-/// A spring or a contact between two particles.
+/// Spring or contact between two particles.
 struct ConnectedPair {
   ConnectedParticle a;
   ConnectedParticle b;
   /// Static spring: strain, length / rest length - 1. Contact: force along the line between the
-  /// particles [N], negative for attraction.
+  /// particles [N]; an attractive force is negative.
   Real value = 0;
 };
 
-/// A sample of `total` connections: every `every`-th, starting with the first.
+/// Sample of `total` connections: every `every`-th connection, starting with the first.
 struct ConnectionList {
   std::size_t total = 0;
   std::size_t every = 1;
   std::vector<ConnectedPair> sample;
 };
 
-/// The connections to list.
+/// Selection of the connections to list.
 struct ConnectionQuery {
-  std::optional<BodyId> body{};  ///< those of this body only
-  std::size_t max_count = 0;     ///< of each list
+  std::optional<BodyId> body{};  ///< if present, connections of this body only
+  std::size_t max_count = 0;     ///< maximum length of each list
 };
 
 /// Intact static springs, and contacts that exert a force, within and between bodies.

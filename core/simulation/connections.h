@@ -5,10 +5,10 @@
 
 namespace vat {
 
-/// Static springs and contacts of a configuration; see HostInterface::connections(). If contact
-/// forces are possible, the function runs the plan in the force model's workspace. This workspace
-/// must not be the one used for steps. `projected` are the contacts by projection of the stepped
-/// bodies, whose model is `stepped`.
+/// Returns static springs and contacts of a configuration; see HostInterface::connections(). If
+/// contact forces are possible, the function runs the plan in the workspace of the force model,
+/// which must be separate from the workspace of the steps. `projected` are the contacts by
+/// projection of the stepped bodies, and `stepped` is the model of these bodies.
 Connections find_connections(const ForceModel& force_model, Configuration configuration, Real time,
                              const std::vector<ContactImpulse>& projected, const Model& stepped,
                              const ConnectionQuery& query);

@@ -22,9 +22,9 @@
 
 namespace vat {
 
-/// A particle simulation of one scene. It is not thread-safe: two threads must not use it at the
-/// same time. For the same scene, commands and instruction set it computes the same bits with every
-/// TaskRunner. HostInterface has the commands that change a running scene.
+/// Particle simulation of one scene. It is not thread-safe: two threads must not use it at the same
+/// time. With the same scene, commands and instruction set, results are bitwise equal with every
+/// TaskRunner. HostInterface provides the commands that change a running scene.
 ///
 ///     Result<Simulation> created = Simulation::create(scene);
 ///     if (!created) return created.errors();
@@ -32,18 +32,19 @@ namespace vat {
 ///     while (simulation.time() < 1) simulation.advance(simulation.steps_per_tick());
 class Simulation : public HostInterface {
  public:
-  /// Creates the simulation of a scene at time 0. Fails with all errors of the scene, and if this
-  /// machine does not have the instruction set (see check_available()). `runner` may be null
-  /// (serial) and must outlive the simulation. If the scene has an accuracy, it chooses the
-  /// numerics once; commands do not change them.
+  /// Returns the simulation of a scene at time 0. Fails with all errors of the scene, and if the
+  /// machine does not support the instruction set (see check_available()). `runner` may be null for
+  /// serial execution; otherwise, it must outlive the simulation. If the scene has an accuracy,
+  /// create() chooses the numerics once. Commands do not change this choice.
   static Result<Simulation> create(const Scene& scene, TaskRunner* runner = nullptr,
                                    InstructionSet instructions = best_instruction_set());
 
-  /// Continues from the bytes of a snapshot with the same bits, in any process on any machine that
-  /// has the instruction set. Without `instructions` it uses the instruction set of the bytes.
-  /// Fails if the bytes are incomplete, damaged, of another version of the format, or were saved
-  /// with another instruction set. Codes: other_format, other_version, wrong_length, damaged,
-  /// bad_value, other_instruction_set, not_available.
+  /// Returns the simulation of a snapshot's bytes, which continues bitwise equal. The bytes can be
+  /// loaded by any process, on any machine that supports the instruction set. Without
+  /// `instructions`, the simulation uses the instruction set of the bytes. Fails if the bytes are
+  /// incomplete, damaged, in another version of the format, or saved with another instruction set.
+  /// Codes: other_format, other_version, wrong_length, damaged, bad_value, other_instruction_set,
+  /// not_available.
   static Result<Simulation> load(std::span<const std::uint8_t> bytes, TaskRunner* runner = nullptr,
                                  std::optional<InstructionSet> instructions = {});
 
@@ -51,51 +52,55 @@ class Simulation : public HostInterface {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Takes `steps` steps of step_size(), in the parts that the scene's StepControl chooses. Each
-  /// part is checked; see GuardEvent. After a failure or an exception the state is that before the
-  /// call.
+  /// Advances the simulation by `steps` steps of step_size(). The StepControl of the scene may
+  /// divide each step. After each part, the state is checked; see GuardEvent. After a failure or an
+  /// exception, the state is that before the call.
   AdvanceReport advance(std::uint32_t steps);
 
   Real time() const;       ///< [s]
   Real step_size() const;  ///< nominal step [s]
   std::uint32_t steps_per_tick() const;
-  InstructionSet instruction_set() const;  ///< of the vectorised loops
-  const Scene& scene() const;              ///< the present scene; commands change it
+  InstructionSet instruction_set() const;  ///< set of the vectorised loops
+  const Scene& scene() const;              ///< current scene, including changes by commands
 
   std::size_t particle_count() const;
-  /// The number of particles if all emitters add as many as they may.
+  /// Returns the number of particles if all emitters add as many as permitted.
   std::size_t greatest_particle_count() const;
   std::size_t spring_count() const;
-  /// The number of bodies that sleep; see Scene::sleeping.
+  /// Returns the number of sleeping bodies; see Scene::sleeping.
   std::size_t sleeping_body_count() const;
 
-  /// All bodies in the order of the scene, and then added ones in the order of their addition.
+  /// Returns all bodies: the bodies of the scene in order, then added bodies in the order of their
+  /// addition.
   std::vector<BodyView> bodies() const;
-  /// The body with this id; empty if there is none. The id of a body never changes.
+  /// Returns the body with this id, or an empty optional if no body has this id. The id of a body
+  /// never changes.
   std::optional<BodyView> find_body(BodyId id) const;
-  /// The id of the body with this name; empty if there is none.
+  /// Returns the id of the body with this name, or an empty optional if no body has this name.
   std::optional<BodyId> find_body(std::string_view name) const;
-  /// The present displacement of the vat [m]; zero without a vat or motion.
+  /// Returns the current displacement of the vat [m]. The result is zero without a vat or motion.
   Vec3 vat_offset() const;
-  /// The SPH fields of a liquid body. Costs about one force evaluation. Fails if the body does not
-  /// exist or is not liquid.
+  /// Returns the SPH fields of a liquid body. The cost is about one force evaluation. Fails if the
+  /// body does not exist or is not liquid.
   Result<LiquidFields> liquid_fields(BodyId id) const;
-  /// Measures the present state. Costs about one force evaluation.
+  /// Measures the current state. The cost is about one force evaluation.
   Diagnostics diagnostics() const;
 
-  /// 64-bit hash of the data from which the next steps start: state, kept forces, gravity, open
-  /// emitters, grabs and applied forces. Within one scene, equal hashes mean an equal future.
+  /// Returns a 64-bit hash of all data that determine the next steps: state, stored forces,
+  /// gravity, open emitters, grabs and applied forces. Within one scene, equal hashes mean equal
+  /// future states.
   std::uint64_t state_hash() const;
-  /// A copy of the present state, with the bodies and the commands in force.
+  /// Returns a copy of the current state, with the bodies and the active commands.
   Snapshot snapshot() const;
-  /// Restores a snapshot of this simulation, or of another one with the same instruction set, with
-  /// its bodies and commands. Ids of bodies are not reused.
+  /// Restores a snapshot of this simulation, or of another simulation with the same instruction
+  /// set, including bodies and commands. Ids of bodies are not reused.
   void restore(const Snapshot& snapshot);
 
-  /// The stages of one force evaluation with the columns that they read and write, as text.
+  /// Returns a text that lists the stages of one force evaluation, with the columns (particle
+  /// arrays) that each stage reads and writes.
   std::string plan_text() const;
-  /// Sets the observer of the stages of all following steps, which must outlive its use; null:
-  /// no observer.
+  /// Sets the observer of the stages of all following steps. The observer must outlive its use;
+  /// null removes the observer.
   void set_observer(StageObserver* observer);
 
  private:

@@ -12,8 +12,8 @@ namespace vat {
 
 struct SimulationContent;
 
-/// The content of a simulation at one time, sufficient to continue with the same bits. It is
-/// constant: copies share their content, and all threads may read it.
+/// Content of a simulation at one time, sufficient to continue bitwise equal. A snapshot is
+/// constant: copies share the content, and all threads may read it.
 class Snapshot {
  public:
   Snapshot(const Snapshot&);
@@ -22,13 +22,13 @@ class Snapshot {
   Snapshot& operator=(Snapshot&&) noexcept;
   ~Snapshot();
 
-  /// Simulation::state_hash() at the time of the snapshot.
+  /// Returns Simulation::state_hash() at the time of the snapshot.
   std::uint64_t state_hash() const;
-  /// Simulation::scene() at the time of the snapshot.
+  /// Returns Simulation::scene() at the time of the snapshot.
   const Scene& scene() const;
-  /// Bytes for Simulation::load(): scene, state and commands in force. A particle takes 48 bytes;
-  /// 8 more in incompressible liquids, 24 more with velocity Verlet, 64 more in scenes with inflow,
-  /// outflow or melting. If some bodies sleep, the others count twice.
+  /// Returns bytes for Simulation::load(): scene, state and active commands. A particle needs 48
+  /// bytes. Incompressible liquids need 8 more, velocity Verlet 24 more, and scenes with inflow,
+  /// outflow or melting 64 more bytes. If any body sleeps, the other bodies count twice.
   std::vector<std::uint8_t> to_bytes() const;
 
  private:

@@ -12,28 +12,29 @@ namespace vat {
 /// Spatial index of resting bodies, for fast search of bodies near given points.
 class RestingBodies {
  public:
-  /// `distance` [m] should be that of the searches.
+  /// Builds the index. `distance` [m] should be the distance of later searches.
   void build(const Model& model, const std::vector<Vec3>& positions,
              const std::vector<Index>& bodies, Real distance);
 
-  /// The bodies, in ascending order, whose boxes are within `distance` of the box of `points`.
+  /// Finds the bodies whose boxes are within `distance` of the box of `points`, in ascending order.
   void find_candidates(std::span<const Vec3> points, Real distance,
                        std::vector<Index>& candidates) const;
-  /// Removes candidates without a particle closer than `distance` to one of `points`.
+  /// Removes candidates with no particle closer than `distance` to one of `points`.
   void keep_near(std::span<const Vec3> points, Real distance, std::vector<Index>& candidates) const;
 
  private:
   using Box = Eigen::AlignedBox<Real, 3>;
 
-  /// The box of the points, unbounded along periodic axes.
+  /// Returns the bounding box of the points, unbounded along periodic axes.
   Box box_of(std::span<const Vec3> points) const;
   const Box& box(Index body) const { return boxes_[place_[body]]; }
 
   PeriodicBox periodic_;
-  std::vector<Index> bodies_;  ///< by the lower x of their boxes
+  std::vector<Index> bodies_;  ///< sorted by the lower x of their boxes
   std::vector<Box> boxes_;
-  std::vector<Real> furthest_;  ///< maximum upper x of this box and the preceding ones
-  std::vector<Index> place_;    ///< by body, index in the lists above
+  /// Maximum upper x of this box and the preceding boxes.
+  std::vector<Real> furthest_;
+  std::vector<Index> place_;  ///< index in the lists above, by body
   SortedParticles particles_;
 };
 

@@ -9,23 +9,24 @@
 
 namespace vat {
 
-/// All bodies of a simulation in which some sleep. Constant as long as the same bodies sleep; the
-/// others are stepped in a separate model.
+/// All bodies of a simulation in which some bodies sleep. The value is constant while the same
+/// bodies sleep. Awake bodies are stepped in a separate model.
 struct Sleepers {
-  /// `islands`: the sleeping islands, by body. At least one sleeps, or all bodies are still.
+  /// `islands` contains the sleeping islands, by body. At least one body sleeps, or all bodies are
+  /// still.
   Sleepers(std::shared_ptr<const Model> model, Configuration all, std::vector<Index> islands);
 
-  std::shared_ptr<const Model> model;  ///< of all bodies
-  Configuration configuration;         ///< of all bodies; out of date for those that are awake
-  std::vector<Index> islands;          ///< by body; kAwake if it is stepped
-  RestingBodies resting;               ///< the sleeping bodies
+  std::shared_ptr<const Model> model;  ///< all bodies
+  Configuration configuration;         ///< all bodies; out of date for awake bodies
+  std::vector<Index> islands;          ///< by body; kAwake for stepped bodies
+  RestingBodies resting;               ///< only the sleeping bodies
 };
 
-/// Puts each still body to sleep as a separate island, if no body is stepped. Otherwise still
-/// bodies are awake.
+/// Puts each still body (see is_still()) to sleep as a separate island, if all other bodies sleep.
+/// Otherwise, still bodies are awake.
 void settle_still_bodies(const Model& model, const Configuration& at, std::vector<Index>& islands);
 
-/// The model of the bodies that are awake.
+/// Returns the model of the awake bodies.
 std::shared_ptr<const Model> compile_awake(const Model& model, const std::vector<Index>& islands);
 
 /// Sets the velocities of the bodies in islands to zero.

@@ -11,9 +11,9 @@ namespace vat {
 struct ImplicitSpringsScratch {
   SpringSystemScratch system;
   std::vector<Vec3> position;        ///< at the start
-  std::vector<Vec3> start_velocity;  ///< at the start; after the drift that at the end
+  std::vector<Vec3> start_velocity;  ///< at the start; after the drift, at the end
   std::vector<Vec3> mean_velocity;   ///< over the whole drift
-  std::vector<Vec3> velocity;        ///< mean velocity, the unknown of the solve
+  std::vector<Vec3> velocity;        ///< mean velocity: unknown of the solve
   std::vector<Vec3> last_velocity;
 };
 
@@ -25,20 +25,21 @@ struct ImplicitSpringsScratch {
 ///
 ///     f = -k (r - l + q (r1 - r0) / 2) (x0 + x1) / (2 r),   r = (r0 + r1) / 2
 ///
-/// with the differences x of its ends, and their lengths r0 and r1. For all steps, its work is k
-/// (r0 - l)^2 / 2 - k (r1 - l)^2 / 2 - q k (r1 - r0)^2 / 2, and it acts along x0 + x1, so that
-/// angular momentum is conserved (q = 0: R. A. LaBudde, D. Greenspan, Numer. Math. 25 (1976) 323;
-/// J. C. Simo, N. Tarnow, K. K. Wong, Comput. Methods Appl. Mech. Eng. 100 (1992) 63; q > 0: F.
-/// Armero, I. Romero, Comput. Methods Appl. Mech. Eng. 190 (2001) 2603). Undamped springs have q =
-/// 0. For others, q damps the lengths that would oscillate although dashpots end all motion within
-/// a step: q = s^2 / (1 + s^2), s = dt c (1/m_a + 1/m_b). The equations are solved by Newton's
-/// method, without the transverse slopes of compressed springs. If it does not converge, the drift
-/// is taken in two halves, down to 64 parts.
+/// x is the difference of the two ends, and r0 and r1 are their distances before and after the
+/// drift. For all steps, the work of a spring is k (r0 - l)^2 / 2 - k (r1 - l)^2 / 2 - q k (r1 -
+/// r0)^2 / 2. The force acts along x0 + x1, so that angular momentum is conserved (q = 0: R. A.
+/// LaBudde, D. Greenspan, Numer. Math. 25 (1976) 323; J. C. Simo, N. Tarnow, K. K. Wong, Comput.
+/// Methods Appl. Mech. Eng. 100 (1992) 63; q > 0: F. Armero, I. Romero, Comput. Methods Appl. Mech.
+/// Eng. 190 (2001) 2603). Undamped springs have q = 0. For damped springs, q = s^2 / (1 + s^2) with
+/// s = dt c (1/m_a + 1/m_b). This value damps lengths that would otherwise oscillate although
+/// dashpots end all motion within a step. The equations are solved by Newton's method, without the
+/// transverse slopes of compressed springs. If Newton's method does not converge, the drift is
+/// divided into two halves, down to 64 parts.
 ///
-/// Between the half kicks of all other forces, only these limit the step (A. Stern, E. Grinspun,
-/// Multiscale Model. Simul. 7 (2009) 1779).
+/// Forces other than springs are applied in half kicks before and after the drift. Only these
+/// forces limit the step (A. Stern, E. Grinspun, Multiscale Model. Simul. 7 (2009) 1779).
 ///
-/// Starts from the positions of store_implicit_positions(), with the velocities of the
+/// The drift starts from the positions of store_implicit_positions() and from the velocities of the
 /// configuration.
 void drift_implicit_springs(const ForceModel& force_model, Configuration& configuration, Real dt,
                             ImplicitSpringsScratch& scratch);
@@ -46,14 +47,15 @@ void drift_implicit_springs(const ForceModel& force_model, Configuration& config
 void store_implicit_positions(const Model& model, const Configuration& configuration,
                               ImplicitSpringsScratch& scratch);
 
-/// Applies the dashpots to velocities over `dt`, by an L-stable method of order 2 (R. Alexander,
-/// SIAM J. Numer. Anal. 14 (1977) 1006). It never adds energy, and conserves linear and angular
-/// momentum up to rounding. It is applied half a step before the first kick and half a step after
-/// the last one, where it does not disturb the equilibrium of loads and springs in between.
+/// Applies the dashpots to the velocities over `dt` [s], by an L-stable method of order 2 (R.
+/// Alexander, SIAM J. Numer. Anal. 14 (1977) 1006). The method never adds energy, and conserves
+/// linear and angular momentum up to rounding. It is applied half a step before the first kick and
+/// half a step after the last kick. At these times, dashpots do not disturb the equilibrium of
+/// loads and springs.
 void damp_implicit_springs(const ForceModel& force_model, Configuration& configuration, Real dt,
                            ImplicitSpringsScratch& scratch);
 
-/// Tolerance of the solve, relative to the change of velocities in the norm of the masses. The
+/// Tolerance of the solve, relative to the change of velocities in the mass-weighted norm. The
 /// rounding errors of very stiff springs may exceed it.
 inline constexpr Real kSpringTolerance = 1e-6;
 

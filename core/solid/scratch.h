@@ -11,8 +11,8 @@ namespace vat {
 struct SolidScratch {
   static constexpr Method kMethod = Method::solid;
 
-  std::vector<Real> cell_pressure;  ///< by cell [Pa]
-  /// n of Boldt eq. 3, by spring end; if Scratch::keep_dampers.
+  std::vector<Real> cell_pressure;  ///< indexed by cell [Pa]
+  /// Unit vector n of (Boldt eq. 3), by spring end. Only if Scratch::keep_dampers is set.
   std::vector<Vec3> spring_directions;
 };
 

@@ -6,8 +6,8 @@
 
 namespace vat {
 
-/// Returns the spring in its present state: with its plastic rest length, and with zero constants
-/// if it is torn.
+/// Returns the spring in its current state, with its plastic rest length. A torn spring has zero
+/// stiffness and damping.
 inline SpringEnd present_spring(const Model& model, const Configuration& at, Index end) {
   SpringEnd spring = model.spring_ends[end];
   if (at.springs.empty()) return spring;
@@ -17,16 +17,16 @@ inline SpringEnd present_spring(const Model& model, const Configuration& at, Ind
   return spring;
 }
 
-/// The rest length [m] after plastic flow of a spring with the rest length `rest` and the length
-/// `length` at the end of `dt`. `start` is the rest length at time 0. Springs of rest length 0 have
-/// no strain.
+/// Returns the rest length [m] after plastic flow of a spring over `dt` [s]. `rest` is the rest
+/// length before the flow, `length` is the length after `dt`, and `start` is the rest length at
+/// time 0. Springs with an initial rest length of 0 have no strain.
 Real flown_length(const Plasticity& plasticity, Real start, Real rest, Real length, Real dt);
 
-/// Applies plastic flow and tearing after a motion of `dt`. Both ends of a spring get the same
-/// bits. Returns whether a spring has changed.
+/// Applies plastic flow and tearing after a motion of `dt` [s]. Both ends of a spring store bitwise
+/// equal values. Returns whether any spring has changed.
 bool change_springs(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt);
 
-/// The number of torn springs.
+/// Returns the number of torn springs.
 std::size_t count_torn(const Configuration& configuration);
 
 }  // namespace vat

@@ -23,8 +23,9 @@ void for_spring_blocks(const Model& model, TaskRunner* runner, Body&& body) {
 }
 
 /// Sums the forces of springs on the particles [begin, end) of one block. `at_particle(e)` returns
-/// a function of the ends of particle e that returns the force on e; the other particle gets the
-/// opposite force. Each spring is evaluated once in each block in which it has an end.
+/// a function that maps a spring end of particle e to the force on e. The other particle of the
+/// spring gets the opposite force. Each spring is evaluated once in each block that contains one of
+/// its ends.
 template <class F>
 void sum_over_springs(const Model& model, Index begin, Index end, BlockSums& sums,
                       F&& at_particle) {
@@ -33,7 +34,8 @@ void sum_over_springs(const Model& model, Index begin, Index end, BlockSums& sum
   std::fill_n(sums.begin(), end - begin, Vec3::Zero());
   for (Index e = begin; e < end; ++e) {
     const IndexRange own{model.spring_own_begin[e], model.spring_begin[e + 1]};
-    IndexRange from_before{model.spring_begin[e], model.spring_begin[e]};  // from earlier blocks
+    // springs from earlier blocks
+    IndexRange from_before{model.spring_begin[e], model.spring_begin[e]};
     while (from_before.end < own.begin && ends[from_before.end].other < begin) ++from_before.end;
     const auto at_end = at_particle(e);
     Vec3 sum = sums[e - begin];

@@ -9,39 +9,39 @@
 
 namespace vat {
 
-/// The derivative of the impulse of a spring by velocities, seen from one end [kg].
+/// Derivative of the impulse of a spring by the velocities, as seen from one end [kg].
 struct SpringSlope {
   Vec3 direction;
   Real along;
   Real across;
 };
 
-/// Buffers of SpringSystem, for the particles and ends from Model::implicit_begin on.
+/// Buffers of SpringSystem, for the particles and spring ends from Model::implicit_begin on.
 struct SpringSystemScratch {
   std::vector<SpringSlope> slopes;
-  std::vector<Vec3> residual;   ///< impulses, zero for fixed particles [N s]
-  std::vector<Vec3> change;     ///< of velocities
-  std::vector<Vec3> remaining;  ///< residual after the steps so far
+  std::vector<Vec3> residual;   ///< impulses [N s]; zero for fixed particles
+  std::vector<Vec3> change;     ///< change of velocities
+  std::vector<Vec3> remaining;  ///< residual after the preceding iterations
   std::vector<Vec3> direction;
   std::vector<Vec3> product;
-  std::vector<Real> partial_sums;  ///< by block
+  std::vector<Real> partial_sums;  ///< indexed by block
 
   void resize(const Model& model);
 };
 
-/// The linear equations (M + slopes) change = residual for the velocities of one body with implicit
-/// springs. Slopes are equal at both ends with opposite effects, so that every iterate conserves
-/// linear momentum, and angular momentum if they have no transverse part.
+/// Linear equations (M + slopes) change = residual for the velocities of one body with implicit
+/// springs. Slopes are equal at both ends, with opposite effects. Every iterate therefore conserves
+/// linear momentum. Angular momentum is also conserved if the slopes have no transverse part.
 class SpringSystem {
  public:
   SpringSystem(const Model& model, TaskRunner* runner, const IndexRange& particles,
                SpringSystemScratch& scratch);
 
-  /// Solves by conjugate gradients with the preconditioner M, to `tolerance` of the residual in the
-  /// norm of M^-1, with a limited number of iterations.
+  /// Solves by conjugate gradients with the preconditioner M. The solve ends at `tolerance` of the
+  /// residual in the norm of M^-1, or after a limited number of iterations.
   void solve(Real tolerance);
 
-  /// The number of passes over all springs of the body.
+  /// Returns the number of passes over all springs of the body.
   std::uint64_t passes() const { return passes_; }
   void count_pass() { ++passes_; }
 
@@ -51,14 +51,14 @@ class SpringSystem {
     return scratch_.slopes[end - model_.spring_begin[model_.implicit_begin]];
   }
 
-  /// Calls f(particle), in parallel.
+  /// Calls f(particle) for each particle, in parallel.
   template <class F>
   void for_particles(F&& f) {
     for_blocks(runner_, particles_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) f(particles_.begin + static_cast<Index>(k));
     });
   }
-  /// The sum of f(particle), in an order that depends on the body only.
+  /// Returns the sum of f(particle), in an order that depends only on the body.
   template <class F>
   Real sum(F&& f) {
     std::vector<Real>& sums = scratch_.partial_sums;

@@ -8,48 +8,50 @@
 
 namespace vat {
 
-/// A failed step, or a failed part of one. A step fails if it ends with a non-finite value, outside
-/// the domain, too fast (see core/guard/guard.h), or with too many pairs of liquid particles or
-/// projected contacts. It is undone and repeated in two, four and finally eight parts.
+/// A failed step, or a failed part of a step. A step fails if a value is non-finite, or if a
+/// particle or body is outside the domain or too fast (see core/guard/guard.h). A step also fails
+/// with too many pairs of liquid particles or too many projected contacts. A failed step is undone
+/// and repeated in two, four and finally eight parts.
 struct GuardEvent {
   enum class Cause { non_finite, outside_domain, too_fast, too_many_pairs };
   Cause cause;
-  Real time;  ///< [s] end of the failed step, or part of one
+  Real time;  ///< end of the failed step or part [s]
   BodyId body;
-  Index particle;  ///< number of the particle within the body, see BodyView
+  Index particle;  ///< index of the particle within the body, see BodyView
   Real step;       ///< length of the failed step or part [s]
-  bool recovered;  ///< false: eight parts failed too, and the simulation should pause
+  bool recovered;  ///< false: also eight parts failed, and the simulation should pause
 };
 template <>
 inline constexpr std::array kNamesOf<GuardEvent::Cause>{"non_finite", "outside_domain", "too_fast",
                                                         "too_many_pairs"};
 
-/// The result of a call of advance().
+/// The result of one call of advance().
 struct AdvanceReport {
-  /// An unstable scene may have an event in each step. A report keeps the first ones and the last.
+  /// Maximum number of stored events: the first events and the last event. The number is limited
+  /// because an unstable scene may have an event in each step.
   static constexpr std::size_t kMaxEvents = 16;
 
-  std::uint64_t steps = 0;         ///< steps taken, including parts and undone ones
-  std::uint64_t undone_steps = 0;  ///< each has an event
-  /// Number of times that a wall of the vat moved back a particle or a rigid body (see
-  /// core/guard/enforce_walls.h), including undone steps. The springs of the wall are then too soft
-  /// for the load.
+  std::uint64_t steps = 0;         ///< steps taken, including parts of steps and undone steps
+  std::uint64_t undone_steps = 0;  ///< failed steps; each causes an event
+  /// Number of times that a particle or a rigid body beyond a wall of the vat was moved back (see
+  /// core/guard/enforce_walls.h), including undone steps. A positive number means that the springs
+  /// of the wall are too soft for the load.
   std::uint64_t wall_stops = 0;
-  /// Number of times that the implicit springs of a body were not solved to their tolerance (see
-  /// core/solid/implicit_springs.h). The result is then less accurate, but stable.
+  /// Number of times that the solve of a body's implicit springs did not converge to the tolerance
+  /// (see core/solid/implicit_springs.h). The result of such a solve is less accurate, but stable.
   std::uint64_t unsolved_drifts = 0;
-  Real least_step = 0;                  ///< shortest step, of particles with local control [s]
-  Real greatest_step = 0;               ///< longest step, of particles with local control [s]
-  std::uint64_t force_evaluations = 0;  ///< evaluations of all particles
-  /// Number of evaluations of the forces on single particles, whole or in part. It makes the cost
-  /// of local control and implicit springs comparable with that of full evaluations.
+  Real least_step = 0;                  ///< shortest step; with local control, of any particle [s]
+  Real greatest_step = 0;               ///< longest step; with local control, of any particle [s]
+  std::uint64_t force_evaluations = 0;  ///< evaluations of the forces on all particles
+  /// Number of evaluations of the forces on single particles, complete or partial. This number
+  /// makes the cost of local control and implicit springs comparable with that of full evaluations.
   std::uint64_t particle_evaluations = 0;
-  bool bodies_changed = false;             ///< some bodies have melted
-  std::vector<std::uint64_t> ended_grabs;  ///< grabs of removed or melted particles
-  bool failed = false;                     ///< the state is that before the call
+  bool bodies_changed = false;             ///< true if a body has melted
+  std::vector<std::uint64_t> ended_grabs;  ///< ids of grabs with removed or melted particles
+  bool failed = false;                     ///< true: the state is that before the call
   std::vector<GuardEvent> events;          ///< in the order of their detection
 
-  /// Adds an event. If there are kMaxEvents already, it replaces the last one.
+  /// Adds `event`. If the report already has kMaxEvents events, `event` replaces the last of them.
   void add(const GuardEvent& event);
   void count_evaluation(std::size_t particles) {
     ++force_evaluations;

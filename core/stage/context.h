@@ -13,7 +13,7 @@ struct Controls;
 struct Forces;
 struct Model;
 
-/// The arguments of a stage.
+/// The arguments of a stage function; see Stage.
 struct StepContext {
   const Model& model;
   const Controls& controls;

@@ -4,14 +4,14 @@
 
 namespace vat {
 
-/// Is notified when a stage of the plan, or another part of advance(), starts. The core has no
-/// clock: an observer can measure times.
+/// An observer that is notified when a stage of the StepPlan or another part of advance() starts.
+/// An observer can measure times; the core has no clock.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;
-  /// The preceding stage has ended, and `stage` begins. The name is a literal.
+  /// Called when `stage` starts; the preceding stage has ended. `stage` is a string literal.
   virtual void stage_begins(std::string_view stage) = 0;
-  /// The last stage has ended: advance() returns or throws.
+  /// Called after the last stage, before advance() returns or throws.
   virtual void stages_end() = 0;
 };
 

@@ -12,7 +12,8 @@ namespace vat {
 
 struct StepContext;
 
-/// The columns that stages exchange.
+/// The columns that stages exchange. A column is an array of one quantity of all particles or
+/// bodies, or a data structure derived from such arrays.
 enum class Column : std::uint8_t {
   position,
   velocity,
@@ -46,7 +47,7 @@ inline constexpr std::array kNamesOf<Column>{
     "rigid_force",    "kept_pressure"};
 inline constexpr std::size_t kColumnCount = kNamesOf<Column>.size();
 
-/// One pass over whole arrays.
+/// A function that reads and writes columns for all particles or bodies.
 using StageFunction = void (*)(StepContext&);
 
 struct Stage {
@@ -56,12 +57,14 @@ struct Stage {
   StageFunction run;
 };
 
-/// The stages of one force evaluation, in order. It contains only stages that the scene needs.
+/// The stages of one force evaluation, in order. A plan contains only the stages that the scene
+/// needs.
 struct StepPlan {
   std::vector<Stage> stages;
 };
 
-/// Collects stages. A stage must not read a column before another stage has written it.
+/// Collects the stages of a plan. A stage may read only columns that are arguments of the
+/// constructor or that an earlier stage writes.
 class PlanBuilder {
  public:
   explicit PlanBuilder(std::initializer_list<Column> given);
@@ -74,7 +77,8 @@ class PlanBuilder {
   bool written_[kColumnCount] = {};
 };
 
-/// The name of each stage, the columns that it reads, and the columns that it writes.
+/// Returns a text with each stage's name, the columns that the stage reads, and the columns that
+/// the stage writes.
 std::string to_text(const StepPlan& plan);
 
 }  // namespace vat

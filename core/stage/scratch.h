@@ -8,18 +8,18 @@
 
 namespace vat {
 
-/// The methods that keep buffers from one force evaluation to the next.
+/// The methods whose buffers persist between force evaluations.
 enum class Method : std::uint8_t { liquid, surface, contact, solid, incompressible };
 inline constexpr std::size_t kMethodCount = 5;
 
-/// The buffers of all methods. A method defines their type, with `kMethod`, and reaches only its
-/// own and those of methods below it. The buffers are kept so that a steady step allocates nothing.
-/// Their content is valid during one evaluation, except lists that detect when they are out of
-/// date.
+/// The buffers of all methods. Each method defines the type of its buffers, with a constant
+/// `kMethod`. A method accesses only its own buffers and the buffers of methods on which it
+/// depends. The buffers persist between evaluations to avoid allocations. The content of the
+/// buffers is valid during one evaluation, except for lists with a check for validity.
 class Scratch {
  public:
-  InstructionSet instructions = InstructionSet::baseline;  ///< of the vectorised loops
-  bool keep_dampers = false;  ///< stages keep the dampers of their forces, for an implicit solve
+  InstructionSet instructions = InstructionSet::baseline;  ///< used by the vectorised loops
+  bool keep_dampers = false;  ///< stages store the dampers of their forces for an implicit solve
 
   template <class Buffers>
   Buffers& of() {

@@ -7,13 +7,14 @@
 
 namespace vat {
 
-/// A particle tied to a target by a damped spring. The held particles share its force.
+/// A damped spring between a particle and a target. The force of the spring is distributed over the
+/// particles in `held`.
 struct Grab {
   std::uint64_t id = 0;
   BodyId body_id = 0;
   Index body = 0;           ///< index into Model::bodies
-  Index particle = 0;       ///< within the body
-  std::vector<Index> held;  ///< within the body; includes `particle`
+  Index particle = 0;       ///< index within the body
+  std::vector<Index> held;  ///< indices within the body; includes `particle`
   Vec3 target = Vec3::Zero();
   Real stiffness = 0;  ///< [N/m]
   Real damping = 0;    ///< [N s/m]
@@ -21,8 +22,8 @@ struct Grab {
   Real held_mass = 0;  ///< [kg]
 };
 
-/// An equal acceleration of all particles of a body. It is constant over whole steps, so that its
-/// impulse is equal for all integrators.
+/// An equal acceleration of all particles of a body. The acceleration is constant over whole
+/// nominal steps, so that its impulse is equal for all integrators.
 struct AppliedForce {
   BodyId body_id = 0;
   Index body = 0;  ///< index into Model::bodies

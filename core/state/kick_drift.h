@@ -4,12 +4,13 @@
 
 namespace vat {
 
-/// Free particles: x += dt v. Rigid bodies: motion without torque.
+/// Moves free particles by x += dt v, and rigid bodies without torque.
 void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt);
-/// Liquids that fill their world: x += dt w; see core/liquid/tait/transport.h.
+/// Moves the particles of liquids that fill their world by x += dt w; see
+/// core/liquid/tait/transport.h.
 void move_with_transport(const Model& model, TaskRunner* runner, const Forces& forces,
                          Configuration& configuration, Real dt);
-/// v += dt f / m, P += dt f_res, L += dt tau.
+/// Changes velocities and momenta by the forces: v += dt f / m, P += dt f_res, L += dt tau.
 void kick(const Model& model, TaskRunner* runner, const Forces& forces,
           Configuration& configuration, Real dt);
 

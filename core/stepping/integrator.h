@@ -9,17 +9,16 @@
 
 namespace vat {
 
-/// Buffers of integrators, kept between steps.
+/// Buffers of integrators that persist between steps.
 struct IntegratorScratch {
   Configuration start;
-  Configuration increment;  ///< weighted sum of the rates of a Runge-Kutta method
+  Configuration increment;  ///< weighted sum of the rates of a Runge-Kutta step
   DampingScratch damping;
   ImplicitSpringsScratch implicit_springs;
   ContactProjection projection;
 };
 
-/// The arguments of a step of an integrator. Each stage of a step evaluates forces that are
-/// functions of its configuration and time.
+/// The arguments of a step of an integrator.
 struct StepArguments {
   const ForceModel& force_model;
   State& state;
@@ -28,8 +27,8 @@ struct StepArguments {
   IntegratorScratch& scratch;
 };
 
-/// A time integrator: kicks around a drift, or a function that takes the whole step. Free particles
-/// and rigid bodies advance together.
+/// A time integrator. A step is a sequence of kicks (changes of velocities by forces) and a drift
+/// (change of positions by velocities), or one call of `take_step`.
 ///
 /// | integrator | force evaluations | order |
 /// |---|---|---|
@@ -40,16 +39,19 @@ struct StepArguments {
 /// | runge_kutta_4 | 4 | 4 |
 struct Integrator {
   IntegratorId id;
-  Real opening_kick = 0;  ///< before the drift, in step lengths
-  Real closing_kick = 0;  ///< after the drift, in step lengths; its forces open the next step
-  void (*take_step)(const StepArguments& step) = nullptr;  ///< null: a step is kicks and a drift
+  Real opening_kick = 0;  ///< duration of the kick before the drift, in step lengths
+  /// Duration of the kick after the drift, in step lengths. The forces of the closing kick are also
+  /// the forces of the opening kick of the next step.
+  Real closing_kick = 0;
+  void (*take_step)(const StepArguments& step) = nullptr;  ///< null: kicks and a drift
 
   bool keeps_forces() const { return closing_kick > 0; }
 };
 
 const Integrator& integrator_of(IntegratorId id);
 
-/// Explicit Runge-Kutta methods in which each stage needs only the preceding one.
+/// The following functions take a step of an explicit Runge-Kutta method. In these methods, each
+/// stage depends only on the start of the step and the preceding stage.
 void take_explicit_euler_step(const StepArguments& step);
 void take_heun_step(const StepArguments& step);
 void take_runge_kutta_4_step(const StepArguments& step);

@@ -6,22 +6,23 @@
 
 namespace vat {
 
-/// A liquid solver: its stages of a force evaluation, and its solves within a step.
+/// A pressure solver for liquids: its stages of a force evaluation, and its solves within a step.
 struct LiquidSolver {
   PressureSolver id;
-  /// Adds the stages of a model that has liquids.
+  /// Adds the stages of the solver to the plan of a model with liquids.
   void (*add_stages)(const Model& model, PlanBuilder& plan);
-  /// Changes the velocities between the kick and the drift of a step of `dt` from `time`; null: no
-  /// such solve.
+  /// Changes the velocities between the kick and the drift of a step of length `dt` [s] from `time`
+  /// [s]. Null if the solver does not change velocities.
   void (*solve_velocities)(const ForceModel& force_model, State& state, Real time,
                            Real dt) = nullptr;
-  /// Changes the positions after the drift to `time`; null: no such solve.
+  /// Changes the positions after the drift, at `time` [s]. Null if the solver does not change
+  /// positions.
   void (*solve_density)(const ForceModel& force_model, State& state, Real time) = nullptr;
 };
 
 const LiquidSolver& liquid_solver_of(PressureSolver id);
 
-/// The solver of a model with liquids and their pressure; null without.
+/// Returns the solver of a model, or null if the model has no liquids or no pressure forces.
 const LiquidSolver* acting_liquid_solver(const Model& model);
 
 }  // namespace vat

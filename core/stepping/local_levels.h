@@ -4,12 +4,13 @@
 
 namespace vat {
 
-/// Chooses the levels of local step control for a step of `dt`: a particle of level l takes steps
-/// of dt / 2^l. The particles of a rigid body have the finest level that one of them needs. The
-/// levels of neighbours along springs differ by at most kMaxLevelDifference (after T. R. Saitoh, J.
-/// Makino, Astrophys. J. Lett. 697 (2009) L99, who allow 2; for springs of different levels in
-/// equilibrium, 1 has a quarter of the error for a third more work). Particles that do not move
-/// have level 0.
+/// Chooses the levels of local step control for a step of `dt` [s]. A particle of level l takes
+/// steps of dt / 2^l; a finer level is a higher level. All particles of a rigid body have the
+/// finest level that any particle of the body needs. The levels of particles joined by a spring
+/// differ by at most kMaxLevelDifference (after T. R. Saitoh, J. Makino, Astrophys. J. Lett. 697
+/// (2009) L99, with a difference of 2). For springs in equilibrium between particles of different
+/// levels, a difference of 1 has a quarter of the error of 2 for a third more work. Particles that
+/// do not move have level 0.
 void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
                          LocalLevels& levels);
 inline constexpr int kMaxLevelDifference = 1;

@@ -5,31 +5,34 @@
 
 namespace vat {
 
-/// Local step control: steps of a power of two for each particle (L. Hernquist, N. Katz, Astrophys.
-/// J. Suppl. Ser. 70 (1989) 419), as nested kick-drift-kick steps. The force of a connection has
-/// the finer level of its particles and kicks both ends at once, over the step of this level.
-/// Between kicks all particles drift on the finest level. The nesting is that of the reversible
-/// multiple-time-step method (M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992)
-/// 1990) with a level for each connection: order 2, symplectic for constant levels, with momentum
-/// and angular momentum conserved up to rounding. Dashpots use the velocities before the kick, so
+/// Local step control: particles take steps of different lengths, which are a common step divided
+/// by powers of two (L. Hernquist, N. Katz, Astrophys. J. Suppl. Ser. 70 (1989) 419). The steps are
+/// nested kick-drift-kick steps. A connection has the finer level of its two particles, and changes
+/// the velocities of both ends simultaneously over the step of this level. Between kicks, all
+/// particles drift with the finest step. The scheme is the reversible multiple-time-step method (M.
+/// Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97 (1992) 1990), with a level for each
+/// connection. The method has order 2 and is symplectic for constant levels. Momentum and angular
+/// momentum are conserved up to rounding. Dashpots depend on the velocities before the kick, so
 /// that damping has order 1.
 ///
-/// Springs and contacts have the level of their connection, and walls that of their particle. All
-/// forces of liquids have one common level. Gravity, fields and forces of users have level 0.
+/// The force of a wall has the level of the particle. All forces of liquids have one common level.
+/// Gravity, the central field and forces of users have level 0.
 class LocalStepper {
  public:
-  /// Takes a step of `dt` seconds from `time`. The levels were chosen at the end of the last step;
-  /// they are chosen again if the forces of the state are not current.
+  /// Takes a step of `dt` [s] from `time` [s], with the levels that were chosen at the end of the
+  /// last step. If the forces of the state are not current, the levels are chosen again.
   void take_step(const ForceModel& force_model, State& state, Real time, Real dt,
                  const StepBounds& bounds, const GuardBounds& guard);
-  /// The first particle or rigid body that moved further in a step of its level than the guard
-  /// allows, after a step of `dt`.
+  /// Returns the first particle or rigid body that was too fast for `guard` in a step of its level,
+  /// after a whole step of `dt` [s].
   std::optional<Fault> find_fast(const Model& model, const Configuration& at, Real dt,
                                  const GuardBounds& guard) const;
-  /// Call it after a change of the state by something other than a step.
+  /// Discards the list of connections. Must be called after any change of the state outside
+  /// take_step().
   void forget() { pairs_current_ = false; }
 
-  /// The finest and the coarsest level of particles in the last step; 0 before the first.
+  /// Return the finest and the coarsest level of particles in the last step; 0 before the first
+  /// step.
   int finest() const { return finest_; }
   int coarsest() const { return coarsest_; }
 
@@ -52,7 +55,7 @@ class LocalStepper {
   PresentSteps present_;
   LocalLevels closing_levels_;
   Forces closing_;  ///< forces at the end of a step
-  Forces due_;      ///< forces of a sub-step; zero in between
+  Forces due_;      ///< forces of a sub-step; zero between sub-steps
   Forces liquid_;   ///< forces of liquids
   int finest_ = 0;
   int coarsest_ = 0;

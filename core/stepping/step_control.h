@@ -7,65 +7,70 @@
 #include "core/numerics/stable_step.h"
 #include "core/stepping/step_control_contacts.h"
 
-/// The steps that a state allows, and the choice of parts of the nominal step.
+/// Functions that compute the step lengths that a state allows, and divide nominal steps into
+/// parts.
 namespace vat {
 
-/// The bounds of a model; empty for fixed steps.
+/// Returns the step bounds of `model`. The bounds are empty for fixed steps.
 StepBounds find_step_bounds(const Model& model);
-/// Updates the bounds of a model in which only the initial position of one body and the gravity on
-/// liquids have changed.
+/// Returns `bounds`, updated for a model in which only the initial position of `body` and the
+/// gravity on liquids have changed.
 StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds bounds);
 
-/// The maximum steps that a state allows [s]; infinite without a limit.
+/// The maximum step lengths that a state allows [s]; infinite without a limit.
 struct PresentSteps {
-  std::vector<Real> particle;  ///< by free particle; of liquids, without their forces
+  std::vector<Real> particle;  ///< by free particle; forces of liquids excluded
   std::vector<Real> rigid;     ///< by rigid body
-  Real liquid = 0;             ///< by the forces of liquids
+  Real liquid = 0;             ///< limit by the forces of liquids
   ContactScratch contacts;
   std::vector<Real> pressures;  ///< buffer
 
   Real least() const;
 };
 
-/// Fills `steps` for the present state, for local and adaptive control:
+/// Fills `steps` for the present state, for local and adaptive control. The criteria are:
 ///
-/// - stability, with a margin, of the springs, contacts, sound and viscosity together: see
-///   find_step_limits() for springs and liquids, and ContactPrediction;
-/// - contacts that act, or may act before the end of the step, are resolved to the tolerance;
-/// - travel, at the present speed and force: half the distance that the guard allows. In a liquid a
-///   quarter of its support radius, in an incompressible one a fifth, relative to the mean motion
-///   of the liquids;
-/// - the pressure of an incompressible liquid, except for its highest hundredth: see
-///   pressed_lattice_omega2();
-/// - rigid bodies rotate by at most half a radian;
-/// - grabs are stable, and the central field is resolved to the tolerance.
+/// - Stability with a margin, for springs, contacts, sound and viscosity together; see
+///   find_step_limits() and ContactPrediction.
+/// - Resolution of contacts that act, or may act before the end of the step, to the tolerance.
+/// - Travel at the present speed and force by at most half the distance that the guard allows. For
+///   liquids, the limit is a quarter of the support radius relative to the mean motion of the
+///   liquids, or a fifth for incompressible liquids.
+/// - The pressure in an incompressible liquid, except for the highest 1 % of the values; see
+///   pressed_lattice_omega2().
+/// - Rotation of rigid bodies by at most half a radian.
+/// - Stability of grabs, and resolution of the central field to the tolerance.
 ///
-/// The usual criteria of SPH, 0.4 h_s / (c + |v|), 0.25 sqrt(h_s / |a|) and 0.125 h_s^2 / nu with
-/// h_s = h / 2 (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; J. P. Morris, P. J.
-/// Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214), are four times below the stable step, for all
-/// tolerances. Here sound is stable, with the accuracy that the estimate of MotionProbe requires.
+/// The usual criteria of SPH are 0.4 h_s / (c + |v|), 0.25 sqrt(h_s / |a|) and 0.125 h_s^2 / nu
+/// with h_s = h / 2 (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; J. P. Morris, P.
+/// J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214). Steps by these criteria are a quarter of the
+/// stable step, and independent of the tolerance. The criterion for sound is therefore only
+/// stability here; the accuracy follows from the estimate of MotionProbe.
 ///
-/// `longest` [s]: the longest step of interest. Sorts the cells of the workspace.
+/// `longest` is the longest step of interest [s]. The function also sorts the cells of the
+/// workspace.
 void find_present_steps(const ForceModel& force_model, State& state, Real time, Real longest,
                         const StepBounds& bounds, const GuardBounds& guard, PresentSteps& steps);
 
-/// The longest step in which local control can predict contacts, and that grabs and the central
-/// field allow, which have no separate level [s]. Two particles that are not within twice the reach
-/// of contacts do not touch in it.
+/// Returns the longest whole step for local control [s]. The limits are the prediction of contacts,
+/// and grabs and the central field, which have no separate level. In this step, two particles
+/// farther apart than twice Model::contact_reach do not come into contact.
 Real greatest_base_step(const ForceModel& force_model, const State& state,
                         const StepBounds& bounds);
 
-/// The longest step that needs no viscosity solve for an incompressible liquid, if it exceeds half
-/// of `step`; such a solve costs about as much as the rest of a step. Otherwise `step`.
+/// Returns the longest step without a viscosity solve for an incompressible liquid, if this step is
+/// between half of `step` and `step`. Otherwise returns `step`. A viscosity solve costs about as
+/// much as the rest of a step.
 Real without_viscosity_solve(const Model& model, Real step);
 
-/// The lowest level l with nominal / 2^l <= step, at most kMaxStepLevel.
+/// Returns the lowest level l with nominal / 2^l <= step, at most kMaxStepLevel.
 std::uint32_t level_of(Real step, Real nominal);
 
-/// The number of equal steps for the remaining part `left` of a nominal step. Each is at most
-/// `wanted`, and at least nominal / 2^kMaxStepLevel. Stores their length. Steps get shorter
-/// immediately. They get longer by at most a factor of two, and not within kHeldSteps steps of the
-/// last change: frequent changes gain or lose energy even with symplectic methods.
+/// Returns the number of equal steps for the remaining part `left` of a nominal step, and stores
+/// the step length in `history`. A step is at most `wanted` long, and at least nominal /
+/// 2^kMaxStepLevel. The step length decreases immediately. The step length increases at most by a
+/// factor of two, and only if the last change is at least kHeldSteps steps ago. Frequent changes
+/// would change the energy, even with symplectic methods.
 std::uint32_t choose_step_count(Real wanted, Real left, Real nominal, StepHistory& history);
 inline constexpr std::uint32_t kHeldSteps = 4;
 

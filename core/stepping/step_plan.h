@@ -8,10 +8,10 @@
 
 namespace vat {
 
-/// The plan for a model whose bodies and contact tables are complete.
+/// Returns the plan of a model with complete bodies and contact tables.
 StepPlan make_step_plan(const Model& model);
 
-/// compile_model() with the plan of the model.
+/// Returns the result of compile_model(), including the plan of the model.
 std::shared_ptr<Model> compile(Scene scene, const std::vector<BodyId>& ids,
                                std::vector<std::shared_ptr<const SampledBody>> samples,
                                const Model* whole = nullptr);

@@ -17,7 +17,7 @@ class Workspace : public Scratch {
   Workspace() { set_all(); }
   Workspace(const Workspace& other) : Scratch(other), buffers_(other.buffers_) { set_all(); }
 
-  /// Deletes all content, except the instruction set.
+  /// Clears all members except the instruction set.
   void clear() {
     keep_dampers = false;
     buffers_ = {};

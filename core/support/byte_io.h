@@ -11,14 +11,14 @@
 
 namespace vat {
 
-/// Unsigned integer with the size of T, for its bits.
+/// Unsigned integer type with the size of T, for the bits of T.
 template <class T>
 using BitsOf = std::conditional_t<
     sizeof(T) == 1, std::uint8_t,
     std::conditional_t<sizeof(T) == 2, std::uint16_t,
                        std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
 
-/// Writes `value` little-endian at `offset`. The bytes must exist.
+/// Writes `value` in little-endian order at `offset`. The bytes must exist.
 template <class T>
 void store(std::span<std::uint8_t> bytes, std::size_t offset, T value) {
   VAT_ASSERT(offset + sizeof(T) <= bytes.size());
@@ -28,7 +28,7 @@ void store(std::span<std::uint8_t> bytes, std::size_t offset, T value) {
   }
 }
 
-/// Appends little-endian numbers.
+/// Appends numbers in little-endian order to a byte vector.
 class ByteWriter {
  public:
   explicit ByteWriter(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
@@ -44,8 +44,8 @@ class ByteWriter {
   std::vector<std::uint8_t>& bytes_;
 };
 
-/// Reads little-endian numbers. Past the end it returns zeros, and ended_early() stays true, so
-/// that a caller can read a group of fields and check once.
+/// Reads numbers in little-endian order. Reads past the end return zeros, and ended_early() remains
+/// true. A caller can therefore read a group of fields and check once.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

@@ -7,12 +7,12 @@ namespace vat {
 
 }  // namespace vat
 
-/// Aborts if a condition is false that only a programming error can violate. Active in every build.
+/// Aborts if `condition` is false, in every build. Only a programming error may make the condition
+/// false.
 #define VAT_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::vat::check_failed(#condition, __FILE__, __LINE__))
 
-/// Like VAT_CHECK, for inner loops. If NDEBUG is defined, the condition is compiled but not
-/// evaluated.
+/// VAT_CHECK for inner loops. If NDEBUG is defined, the condition is compiled but not evaluated.
 #ifdef NDEBUG
 #define VAT_ASSERT(condition) static_cast<void>(sizeof((condition) ? 1 : 0))
 #else

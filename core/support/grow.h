@@ -6,8 +6,8 @@
 
 namespace vat {
 
-/// Resizes a column whose length varies between steps. If it must grow, its capacity grows by an
-/// eighth, or to the required size if this is more. A vector would double it.
+/// Resizes a vector whose length varies between steps. If the capacity is too small, it grows by an
+/// eighth, or to the required size if that is more. std::vector would double the capacity.
 template <class T>
 void resize_closely(std::vector<T>& column, std::size_t size) {
   if (size > column.capacity()) {
@@ -16,7 +16,8 @@ void resize_closely(std::vector<T>& column, std::size_t size) {
   column.resize(size);
 }
 
-/// Appends a value. The capacity grows by an eighth.
+/// Appends a value. If the capacity is exhausted, it grows by an eighth, or by 8 elements if that
+/// is more.
 template <class T>
 void add_closely(std::vector<T>& column, const T& value) {
   constexpr std::size_t kLeast = 8;

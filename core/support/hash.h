@@ -7,14 +7,15 @@
 
 namespace vat {
 
-/// FNV-1a over 64-bit words in place of bytes, with the published 64-bit offset basis and prime. It
-/// hashes bits: -0.0 and 0.0 differ.
+/// FNV-1a hash over 64-bit words instead of bytes, with the published 64-bit offset basis and
+/// prime. Values are hashed by their bits, so that -0.0 and 0.0 differ.
 class StateHash {
  public:
   void add(std::uint64_t word) {
     value_ ^= word;
     value_ *= 0x100000001b3ULL;
-    value_ ^= value_ >> 32;  // multiplication never moves high bits down
+    // The multiplication alone would not propagate high bits to low bits.
+    value_ ^= value_ >> 32;
   }
   void add(Real value) { add(std::bit_cast<std::uint64_t>(value)); }
   void add(const Vec3& v) {

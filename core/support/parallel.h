@@ -6,8 +6,9 @@
 
 namespace vat {
 
-/// Runs independent blocks of work; core creates no threads. `run` calls `block(0) … block(n-1)`,
-/// each exactly once, in any order and from any thread, and returns when all have ended.
+/// Runs independent blocks of work. The core creates no threads itself. run() calls `block(0) …
+/// block(n-1)`, each exactly once, in any order and from any thread. run() returns when all calls
+/// have ended.
 class TaskRunner {
  public:
   virtual ~TaskRunner() = default;
@@ -15,17 +16,18 @@ class TaskRunner {
   virtual std::size_t thread_count() const = 0;
 };
 
-/// Block size of all parallel passes and reductions. It is fixed, so that the order of every sum,
-/// and all bits of the result, do not depend on the number of threads.
+/// Block size of all parallel passes and reductions. The size is constant, so that the order of
+/// sums, and therefore every bit of a result, does not depend on the number of threads.
 inline constexpr std::size_t kBlockSize = 256;
 
-/// The number of blocks of `size` elements that hold `count` elements.
+/// Returns the number of blocks of `size` elements for `count` elements.
 constexpr std::size_t block_count(std::size_t count, std::size_t size = kBlockSize) {
   return (count + size - 1) / size;
 }
 
-/// Calls `body(begin, end)` for the blocks of [0, count). Runs serially if `runner` is null or
-/// there is only one block. `body` may write only to its own range.
+/// Calls `body(begin, end)` for the blocks of [0, count). Runs serially if `runner` is null, if it
+/// has fewer than two threads, or if there is only one block. `body` may write only to its own
+/// range.
 template <std::size_t size = kBlockSize, class Body>
 void for_blocks(TaskRunner* runner, std::size_t count, Body&& body) {
   static_assert(size > 0);

@@ -9,8 +9,8 @@
 
 namespace vat {
 
-/// An error of an input. `path` is a JSON pointer such as "/bodies/3/radius", empty for the whole
-/// input. `message` names the allowed range of the field.
+/// Error of an input. `path` is a JSON pointer such as "/bodies/3/radius", or empty for the whole
+/// input. `message` states the permitted range of the field.
 struct Error {
   std::string code;
   std::string path;

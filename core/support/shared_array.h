@@ -9,7 +9,7 @@
 
 namespace vat {
 
-/// A constant array that all copies share. Copying costs the same for any size.
+/// Constant array that all copies share. The cost of a copy does not depend on its size.
 template <class T>
 class SharedArray {
  public:

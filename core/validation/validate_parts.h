@@ -24,13 +24,13 @@ void check_members(const Part& part, const std::string& path, RangeCheck& check)
   }
 }
 
-/// Checks values, names, the threshold against the spacing of the bodies, and whether the law suits
-/// them.
+/// Checks values, names and the threshold against the spacing of the bodies. Also checks whether
+/// the law suits the bodies.
 void check_interface(const Scene& scene, const InterfaceDescription& interface,
                      const std::string& path, RangeCheck& check);
 /// Checks all interfaces of a scene.
 void check_interfaces(const Scene& scene, RangeCheck& check);
-/// Checks that a body to be added meets no other solid at an interface with a law for liquids.
+/// Checks that a body to be added has no interface to another solid with a law for liquids.
 void check_new_solid(const Scene& scene, const BodyDescription& body, const std::string& path,
                      RangeCheck& check);
 /// Checks that the numerics support the law of an interface.
@@ -50,24 +50,26 @@ void check_sleeping(const Sleeping& sleeping, RangeCheck& check);
 /// Checks emitters and drains.
 void check_flow(const Scene& scene, Errors& errors);
 void check_numerics(const Numerics& numerics, RangeCheck& check);
-/// Checks that the accuracy, if any, can be reached. The scene must have no other errors.
+/// Checks that the accuracy of the scene, if given, can be reached. The scene must have no other
+/// errors.
 void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check);
 
 /// Checks that a two-dimensional scene, except its bodies, is in its plane. Code: off_plane.
 void check_plane(const Scene& scene, RangeCheck& check);
 void check_body_in_plane(const BodyDescription& body, const std::string& path, RangeCheck& check);
 
-/// The budget of a scene's bodies. A body that alone exceeds it is not sampled. If the bodies
-/// together exceed it, sampling ends: one excess suffices to reject the scene.
+/// Budget of particles, springs and meshes for the bodies of a scene. A body that alone exceeds the
+/// budget is not sampled. If the bodies together exceed the budget, sampling ends, because the
+/// scene is invalid.
 class Allowance {
  public:
   bool is_exceeded() const { return exceeded_; }
   std::size_t particles() const { return particles_; }
   std::size_t springs() const { return springs_; }
 
-  /// The reason why the mesh exceeds the budget; null if it does not.
+  /// Returns the reason why the mesh exceeds the budget, or null.
   const char* take_mesh(const MeshShape& mesh);
-  /// The reason why the lattice exceeds the budget; null if it does not.
+  /// Returns the reason why the lattice exceeds the budget, or null.
   const char* take_lattice(const Shape& shape, const Lattice& lattice);
   void take_particles(std::size_t count);
   void take_springs(std::size_t count);
@@ -83,35 +85,36 @@ class Allowance {
   Real mesh_work_ = 0;
 };
 
-/// Checks that a body can melt into a material. `path` and `into_path` are those of the request and
-/// of the name of the material.
+/// Checks that a body can melt into a material. `path` and `into_path` are the paths of the request
+/// and of the name of the material.
 void check_melting(const Scene& scene, const BodyDescription& body, const std::string& into,
                    const std::string& path, const std::string& into_path, RangeCheck& check);
 
-/// Checks a body, except that its name is unique, and its relations to other bodies. Returns its
+/// Checks a body, except the uniqueness of its name and its relations to other bodies. Returns its
 /// particles if it was sampled and has no errors.
 std::optional<SampledBody> check_body(const Scene& scene, const Vec3& vat_offset,
                                       const BodyDescription& body, const std::string& path,
                                       Allowance& allowance, RangeCheck& check);
 
-/// Returns whether a point is inside the walls of the vat. There are no walls across periodic axes.
+/// Returns whether a point is inside the walls of the vat. A vat has no walls across periodic axes.
 bool is_inside_vat(const Scene& scene, const Vec3& point);
-/// Checks that all positions are inside the walls of the vat, moved by `offset`.
+/// Checks that all positions are inside the walls of the vat, displaced by `offset` [m].
 void check_inside_vat(const Scene& scene, const Vec3& offset, std::span<const Vec3> positions,
                       const std::string& path, RangeCheck& check);
 
-/// Checks the initial position and motion of a body: ranges, and the settings for its kind.
+/// Checks the initial position and motion of a body: their ranges, and whether the kind of body
+/// supports them.
 void check_motion(const BodyDescription& body, const std::string& path, RangeCheck& check);
 
 /// Checks the effect of fields on the particles of a body.
 void check_start(const BodyDescription& body, const SampledBody& sample, const std::string& path,
                  RangeCheck& check);
 
-/// Checks the values of a shape, and whether a mesh can be filled. Returns whether the shape can be
-/// sampled.
+/// Checks the values of a shape, and whether a mesh can be filled with particles. Returns whether
+/// the shape can be sampled.
 bool check_shape(const BodyDescription& body, const std::string& path, RangeCheck& check);
 
-/// Adds a warning, code no_effect, for each setting that has no effect in this scene.
+/// Adds a warning with the code no_effect for each setting that has no effect in this scene.
 void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings);
 
 }  // namespace vat

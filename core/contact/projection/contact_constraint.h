@@ -10,17 +10,18 @@
 
 namespace vat {
 
-/// The part that moves with one end of a contact. The contact point of a free particle is its
-/// centre, that of a rigid body is at its surface, so that angular momentum is conserved.
+/// One end of a contact: a free particle, a rigid body or a wall. The contact point of a free
+/// particle is its centre. The contact point of a rigid body is at its surface, so that angular
+/// momentum is conserved.
 struct ContactEnd {
   Index particle = kNoParticle;  ///< kNoParticle: a wall
-  Index rigid = kNoParticle;     ///< index of the rigid body; kNoParticle: a free particle
-  Real inverse_mass = 0;         ///< of the particle or the body; 0: it does not move [1/kg]
-  Vec3 arm = Vec3::Zero();       ///< from the centre of mass of the body to the contact point [m]
+  Index rigid = kNoParticle;     ///< index of the rigid body; kNoParticle: no rigid body
+  Real inverse_mass = 0;         ///< of the particle or body; 0: the end does not move [1/kg]
+  Vec3 arm = Vec3::Zero();       ///< from the body's centre of mass to the contact point [m]
 };
 
-/// A contact by projection between two particles, or a particle and a wall: their distance must be
-/// at least the threshold.
+/// A contact by projection between two particles, or between a particle and a wall. The constraint
+/// is that their distance is at least the threshold.
 struct ContactConstraint {
   std::array<ContactEnd, 2> ends{};
   int wall = -1;
@@ -29,14 +30,14 @@ struct ContactConstraint {
   Real restitution = 0;
 
   Vec3 normal = Vec3::Zero();  ///< direction of impulses on the first end
-  Real mobility = 0;           ///< separation speed by a unit impulse along the normal [1/kg]
+  Real mobility = 0;           ///< separation speed per unit impulse along the normal [1/kg]
   Real approach = 0;           ///< separation speed before the impulses of the step [m/s]
   Real parting = 0;            ///< required separation speed at the end of the step [m/s]
   Real push = 0;               ///< impulse along the normal [N s]
-  Vec3 friction_impulse = Vec3::Zero();  ///< impulse across the normal [N s]
-  ContactImpulse last{};                 ///< of the last step
+  Vec3 friction_impulse = Vec3::Zero();  ///< impulse perpendicular to the normal [N s]
+  ContactImpulse last{};                 ///< forces of the last step
   Vec3 drift = Vec3::Zero();             ///< impulse at the start of the step [N s]
-  // Vectors of the conjugate gradients [N s]:
+  // Vectors of the conjugate gradient method [N s]:
   Vec3 gradient = Vec3::Zero();
   Vec3 direction = Vec3::Zero();
 
@@ -49,19 +50,20 @@ struct ContactConstraint {
 
 /// The motion and inertia of a rigid body for contacts.
 struct RigidMotion {
-  Vec3 velocity;         ///< of the centre of mass [m/s]
+  Vec3 velocity;         ///< velocity of the centre of mass [m/s]
   Vec3 spin;             ///< [rad/s]
-  Mat3 inverse_inertia;  ///< in world axes; zero for a held body, like its inverse mass
+  Mat3 inverse_inertia;  ///< in world axes; zero for a held body, like inverse_mass
   Real inverse_mass;     ///< [1/kg]
 };
 
-/// The motion of a body with the orientation and momenta of `state`.
+/// Returns the motion and inertia of a rigid body in `state`. `is_held`: whether the body is fixed.
 RigidMotion rigid_motion(const RigidModel& rigid, const RigidState& state, bool is_held);
 
-/// Finds the contacts by projection with at least one end that moves, including those with a small
-/// gap, in an order that depends on the configuration only. Needs the list of contacts. `vat` is
-/// the motion of the walls. Returns false, without contacts, if there are more than
-/// kMaxProjections.
+/// A search for the contacts by projection with at least one end that moves. find() includes
+/// contacts with a gap of up to kContactMargin. The order of the contacts depends on the
+/// configuration only. find() requires the contact list of the workspace; `vat` is the motion of
+/// the walls. If there are more than kMaxProjections contacts, find() returns false, without
+/// contacts.
 class ConstraintSearch {
  public:
   bool find(const ForceModel& force_model, const Configuration& at, const VatMotion& vat,
@@ -71,13 +73,16 @@ class ConstraintSearch {
   std::vector<std::vector<ContactConstraint>> blocks_;  ///< by block of particles
 };
 
-/// Sets the impulses of the last step. Both lists are ordered by particle and other.
+/// Sets ContactConstraint::last from the forces of the last step. Both lists must be ordered by
+/// particle and other.
 void recall(const std::vector<ContactImpulse>& last, std::vector<ContactConstraint>& constraints);
-/// Stores the impulses of this step of length `dt` [s].
+/// Stores the forces of the present step, which are the impulses divided by the step length `dt`
+/// [s].
 void record(const std::vector<ContactConstraint>& constraints, Real dt,
             std::vector<ContactImpulse>& contacts);
 
-/// The gap up to which contacts are included, in thresholds: impulses may close it.
+/// The gap up to which ConstraintSearch includes contacts, in thresholds. Impulses may close such a
+/// gap.
 inline constexpr Real kContactMargin = 0.1;
 
 }  // namespace vat

@@ -4,29 +4,29 @@ namespace vat {
 
 struct StepContext;
 
-/// Stage: sorts the liquid particles into cells.
+/// Stage that sorts the liquid particles into cells.
 void sort_liquid(StepContext& context);
 
-/// Stage: computes the density by summation, Boldt eq. 10 with poly6, and stores the neighbours. If
-/// a collapsed liquid has more than max_pairs(), sets too_many_pairs and one density to NaN, so
-/// that the step fails.
+/// Stage that computes the density by summation (Boldt eq. 10 with the kernel Poly6), and stores
+/// the neighbours. If a collapsed liquid has more than max_pairs() pairs, the stage sets
+/// too_many_pairs, and one density to NaN, so that the step fails.
 void compute_liquid_density(StepContext& context);
 
-/// Stage: p = k (rho - rho_0), Boldt eq. 14, at least zero. A free surface has few neighbours, and
-/// particles with a negative pressure there would form clumps.
+/// Stage that sets the pressure to max(0, k (rho - rho_0)) (Boldt eq. 14). The summed density is
+/// low at a free surface, and negative pressures would cause clumps of particles there.
 void compute_liquid_pressure(StepContext& context);
 
-/// The forces of a liquid, chosen when a scene is compiled, so that loops over pairs have no
+/// The force terms of a liquid. Terms are template arguments, so that loops over pairs contain no
 /// conditions.
 struct LiquidTerms {
   bool pressure = true;
   bool viscosity = true;
-  /// Viscosity uses volumes of the filled density: at a no-slip wall, the summed density does not
-  /// include the liquid beyond the wall.
+  /// Whether viscosity uses the volumes of the filled density (LiquidScratch::filled_density). At a
+  /// no-slip wall, the summed density does not include the liquid beyond the wall.
   bool filled = false;
 };
 
-/// Stage: pressure force and viscosity, as forces on particles.
+/// Stage that adds the pressure and viscosity forces on particles.
 template <LiquidTerms terms>
 void add_liquid_forces(StepContext& context);
 

@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// Adds the stages of liquids with the solver `gas`.
+/// Adds the stages of liquids with the pressure solver `gas`.
 void add_gas_stages(const Model& model, PlanBuilder& plan);
 
 }  // namespace vat

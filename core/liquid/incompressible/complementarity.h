@@ -11,40 +11,41 @@
 
 namespace vat {
 
-/// Stopping criteria of a Complementarity. Residuals are |excess| / scale of the unknowns whose
-/// excess or x is above 0.
+/// Stopping criteria of a Complementarity. The residual of an unknown with x > 0 or excess > 0 is
+/// |excess| / scale; other residuals are 0.
 struct SolveLimits {
   Real mean = 0;
   Real greatest = 0;
   int most_iterations = 0;
   Real row = 0;  ///< upper bound of the row sums of |A| / diagonal
-  /// Mean residual above which a solve makes at least one iteration.
+  /// Initial mean residual above which a solve makes at least one iteration.
   Real start = std::numeric_limits<Real>::infinity();
 };
 
-/// Finds x >= 0 with the excess e(x) = e(0) - A x <= 0, and e = 0 where x > 0, for a symmetric,
-/// positive semi-definite A.
+/// A linear complementarity problem with a symmetric, positive semi-definite matrix A: find x >= 0
+/// with the excess e(x) = e(0) - A x <= 0, and e_i = 0 if x_i > 0.
 ///
-/// Uses conjugate gradients with the diagonal as preconditioner (E. Polak, G. Ribiere, Rev. Franc.
-/// Inform. Rech. Oper. 16 (1969) 35) for the unknowns whose x or excess is above 0. After their
-/// solution, negative x are set to 0. If the mean excess may then exceed its limit, it is computed
-/// again and the search restarts (an active set that is updated as a whole, as by M. Hintermueller,
-/// K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865). The result has the same bits for all numbers
-/// of threads.
+/// The method is the conjugate gradient method with the diagonal as preconditioner (E. Polak, G.
+/// Ribiere, Rev. Franc. Inform. Rech. Oper. 16 (1969) 35), for the unknowns with x > 0 or excess >
+/// 0. After convergence, negative x are set to 0. If the mean residual may then exceed its limit,
+/// the excess is recomputed and the iteration restarts. The active set is thus updated as a whole,
+/// as in M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865. The result is bitwise
+/// independent of the number of threads.
 class Complementarity {
  public:
   std::vector<Real> x;
-  std::vector<Real> excess;    ///< e(x), kept up to date
-  std::vector<Real> diagonal;  ///< of A, or an upper bound; above 0
-  std::vector<Real> scale;     ///< of the residuals; above 0
+  std::vector<Real> excess;    ///< e(x)
+  std::vector<Real> diagonal;  ///< diagonal of A, or an upper bound; above 0
+  std::vector<Real> scale;     ///< scale of the residuals; above 0
 
   void resize(std::size_t count);
 
-  /// Solves from the present x >= 0 and its excess. `system.act(d)` and then
-  /// `system.find_product(product)` compute product = A d. `system.add(share)` adds this share of
-  /// the effect of d to the total effect, and `system.replace()` replaces the total effect by that
-  /// of d. At the end no x is negative. The total effect is that of the change of x before negative
-  /// x were set to 0; the mean includes the difference.
+  /// Solves the problem, starting from the present `x` >= 0 and its `excess`. `system.act(d)`
+  /// followed by `system.find_product(product)` must compute product = A d. `system.add(share)`
+  /// must add `share` times the effect of d to the total effect. `system.replace()` must replace
+  /// the total effect by the effect of d. The final x is not negative. The final total effect is
+  /// that of the change of x before negative x were set to 0. The reported mean includes this
+  /// difference.
   template <class System>
   SolveReport solve(const SolveLimits& limits, TaskRunner* runner, System& system) {
     VAT_CHECK(excess.size() == x.size() && diagonal.size() == x.size() && scale.size() == x.size());
@@ -53,12 +54,12 @@ class Complementarity {
     keep_start(runner);
     find_gradient(runner, report);
     const auto is_open = [&] {
-      // A NaN ends the solve; the guard detects it.
+      // A NaN ends the solve; the guard (core/guard/guard.h) detects the NaN.
       return !std::isnan(report.mean) &&
              (report.mean > limits.mean || report.greatest > limits.greatest);
     };
     const bool must_begin = report.mean > limits.start;
-    // The last iteration closes the solve.
+    // The last of the allowed iterations is reserved for recomputing the excess.
     while ((is_open() || (must_begin && report.iterations == 0)) &&
            report.iterations + 2 <= limits.most_iterations) {
       const Real slope = choose_direction(is_new, runner);
@@ -89,30 +90,31 @@ class Complementarity {
   struct Sums {
     Real residual = 0;
     Real greatest = 0;
-    Real square = 0;  ///< g.D g of the gradient g = D^-1 e for the x that may change
-    Real mixed = 0;   ///< g.D g_last with the preceding gradient
+    Real square = 0;  ///< g.D g of the gradient g = D^-1 e over the active unknowns
+    Real mixed = 0;   ///< g.D g_last, with the preceding gradient g_last
   };
 
   void keep_start(TaskRunner* runner);
   void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
   /// Sets negative x to 0, and the direction to the change of x since the start. Returns the mean
-  /// of these changes times diagonal / scale.
+  /// over all unknowns of the negative part of x times diagonal / scale.
   Real clamp(TaskRunner* runner);
-  /// Updates the excess at x by the product of the matrix and the change since the start, and the
-  /// gradient and residuals there.
+  /// Computes the excess at x from the product of A and the change of x since the start, and then
+  /// the gradient and the residuals.
   void find_excess(TaskRunner* runner, SolveReport& report);
-  /// d = g + beta d, or g if that is no descent direction. Returns the slope d.e.
+  /// Sets the direction d to g + beta d, or to g if g + beta d is not a descent direction. Returns
+  /// the slope d.e.
   Real choose_direction(bool is_new, TaskRunner* runner);
   Real follow(Real share, TaskRunner* runner);
-  /// The length to the minimum of x.A x / 2 - e(0).x along the direction.
+  /// Returns the step length to the minimum of x.A x / 2 - e(0).x along the direction.
   Real length_of_step(TaskRunner* runner, Real slope);
-  /// Moves x by this length along the direction, and computes gradient and residuals.
+  /// Moves x by `length` times the direction, and computes the gradient and the residuals.
   void take_step(Real length, TaskRunner* runner, SolveReport& report);
   template <class F>
   Real sum(TaskRunner* runner, F&& f);
 
   std::vector<Real> start_;         ///< x at the start
-  std::vector<Real> start_excess_;  ///< its excess
+  std::vector<Real> start_excess_;  ///< excess at the start
   std::vector<Real> gradient_;
   std::vector<Real> direction_;
   std::vector<Real> product_;

@@ -11,7 +11,7 @@ namespace vat {
 /// Buffers of PressureResponse.
 struct ResponseScratch {
   std::vector<Vec3> liquid_motion;  ///< by liquid slot: velocity [m/s] or acceleration [m/s^2]
-  std::vector<Vec3> liquid_whole;   ///< sum of accelerations, by liquid slot
+  std::vector<Vec3> liquid_whole;   ///< by liquid slot: total acceleration [m/s^2]
   std::vector<Vec3> solid_motion;   ///< by solid slot: velocity [m/s] or acceleration [m/s^2]
   std::vector<Vec3> solid_force;    ///< by solid particle [N]
   std::vector<Vec3> rigid_force;    ///< by rigid body [N]
@@ -19,45 +19,47 @@ struct ResponseScratch {
   std::vector<Vec3> solid_force_whole;
   std::vector<Vec3> rigid_force_whole;
   std::vector<Vec3> rigid_torque_whole;
-  Forces unused;  ///< required by StepContext
+  Forces unused;  ///< placeholder for the forces of a StepContext
 };
 
-/// Computes the accelerations of a liquid and its solids by pressures, and the density rate of the
-/// liquid by motions, at the positions of one step.
+/// The linear response of a liquid and its solids at fixed positions. The response consists of the
+/// accelerations by pressures, and of the density rates by velocities or accelerations.
 ///
-/// With rest volumes V, s_i = sum_j V_j W_ij and pressures p, both at liquid particles:
+/// With the rest volumes V, the relative density s_i = sum_j V_j W_ij and the pressures p of liquid
+/// particles:
 ///
 ///   D_i(v) = sum_j V_j grad_i W_ij . (v_i - v_j)                      ds_i/dt
 ///   F_i = -V_i sum_j V_j (p_i + p_j) G grad_i W_ij                    G: the kernel's slope_scale
 ///
-/// so that F = -G (V D)^T p, and -V D M^-1 F is symmetric and positive semi-definite. Images in
-/// walls take part with the values of their particles. For particle i, a solid particle b has the
-/// pressure p_i and the velocity 2 v_b - v_i, as a mirror of i: F_i = -2 V_i V_b p_i G grad_i W_ib
-/// = -F_b.
+/// The force is F = -G (V D)^T p, so that the matrix of -V D M^-1 F is symmetric and positive
+/// semi-definite for the masses M. The sums include images in walls, with the values of their
+/// particles. For particle i, a solid particle b counts as a mirror image of i, with the pressure
+/// p_i and the velocity 2 v_b - v_i: F_i = -2 V_i V_b p_i G grad_i W_ib = -F_b.
 ///
-/// The present motion is stored in the scratch. Uses the pairs in the workspace. Changes the
-/// weights and motions of the workspace's sources.
+/// The term motion denotes the velocities or accelerations in ResponseScratch::liquid_motion and
+/// solid_motion. The sums use the pairs of the workspace. The functions change the weights and
+/// motions of the workspace's PairSources.
 class PressureResponse {
  public:
-  /// `at` has the positions for which pairs and densities were found. `solids_move`: whether solids
-  /// move or are held.
+  /// `at` must have the positions of the pairs and densities of the workspace. If `solids_move` is
+  /// false, solids are fixed.
   PressureResponse(const ForceModel& force_model, Configuration& at, ResponseScratch& scratch,
                    bool solids_move);
 
-  /// Sets the motion to the accelerations by `pressure`, by slot.
+  /// Sets the motion to the accelerations by `pressure` [Pa], which is by liquid slot.
   void accelerate(std::span<const Real> pressure);
-  /// Sets the motion to the velocities relative to walls that move with `wall_velocity`.
+  /// Sets the motion to the velocities relative to walls with the velocity `wall_velocity` [m/s].
   void see_velocities(const Vec3& wall_velocity);
 
-  /// rate = D of the motion, by slot.
+  /// Sets `rate` to D of the motion, by liquid slot.
   void compress(std::span<Real> rate);
-  /// product[slot] = factor * scale[slot] * D(motion)[slot].
+  /// Sets product[slot] to factor * scale[slot] * D(motion)[slot].
   void compress(std::span<Real> product, std::span<const Real> scale, Real factor);
-  /// Computes an upper bound of the diagonal of -V D M^-1 F, by slot.
+  /// Computes an upper bound of the diagonal of the matrix of -V D M^-1 F, by liquid slot.
   void find_diagonal(std::span<Real> diagonal);
 
-  /// Adds `share` of the present accelerations to the total, or replaces the total by them. The
-  /// total is zero at first.
+  /// add() adds `share` times the present accelerations to the total accelerations. replace() sets
+  /// the total accelerations to the present accelerations. The initial total is zero.
   void add(Real share);
   void replace();
 
@@ -67,9 +69,9 @@ class PressureResponse {
   void shift(Real share);
 
  private:
-  /// Gives solids double weight, because they mirror the liquid.
+  /// Doubles the weights of solids, because solids count as mirror images.
   void weigh_solids();
-  /// Sets the motion of a liquid slot, also as a source.
+  /// Sets the motion of a liquid slot and of its source.
   void set_liquid_motion(std::size_t slot, const Vec3& motion);
   void charge(std::span<const Real> pressure);
   PairInputs charged_inputs() const;
@@ -80,7 +82,7 @@ class PressureResponse {
   void sum_solid_forces();
   void sum_rigid_forces();
   Vec3 solid_acceleration(Index particle) const;
-  /// Computes the slopes of the volumes, if the density stage has not.
+  /// Computes LiquidScratch::volume_slopes, unless the density stage has computed them.
   void find_slopes();
   Real mobility_of_liquid(Index particle) const;
   Real mobility_of(Index particle) const;
@@ -95,7 +97,7 @@ class PressureResponse {
   const bool has_solids_;
   const bool solids_move_;
   bool has_whole_ = false;
-  const Real greatest_mobility_;  ///< of the liquids
+  const Real greatest_mobility_;  ///< maximum of 1/m over the liquids [1/kg]
 };
 
 }  // namespace vat

@@ -5,8 +5,9 @@
 
 namespace vat {
 
-/// Adds the stages of liquids with the solver `incompressible`: those of weakly compressible
-/// liquids, with the pressure of the last step. Without pressure forces, it is that of `tait`.
+/// Adds the stages of liquids with the pressure solver `incompressible`. The stages equal those of
+/// weakly compressible liquids, except that the pressure is that of the last step. Without pressure
+/// forces, the pressure is that of the solver `tait`.
 void add_incompressible_stages(const Model& model, PlanBuilder& plan);
 
 }  // namespace vat

@@ -15,34 +15,39 @@ struct VolumeScratch {
   std::vector<Real> relative_density;  ///< by slot
 };
 
-/// Stage: sets the pressure to that at the end of the last step.
+/// Stage that sets the pressure to the pressure at the end of the last step.
 void recall_pressure(StepContext& context);
 
-// A step of an incompressible liquid contains two solves, for velocities and for positions: the
-// divergence-free and the constant-density solve of J. Bender and D. Koschier (IEEE Trans. Vis.
-// Comput. Graph. 23 (2017) 1193). Both are unilateral, because the liquid may separate.
+// A step of an incompressible liquid contains a solve for velocities and a solve for positions. The
+// solves correspond to the divergence-free and constant-density solves of J. Bender, D. Koschier,
+// IEEE Trans. Vis. Comput. Graph. 23 (2017) 1193. Both solves are unilateral, because the liquid
+// may separate.
 
-/// Makes the velocities those of an incompressible liquid, for a step of `dt` from `time` at the
-/// present positions. Sets the report of the velocities.
+/// Makes the velocities of liquids free of divergence, for a step of `dt` [s] from `time` [s] at
+/// the present positions. Sets the velocity report in State::volume.
 ///
-/// With s = rho / rho_0 and the rate D of PressureResponse, impulses dt F(p), p >= 0, change the
-/// velocities of liquid and solids until dt D_i(v) <= r_i. For s_i < 1, r_i = (1 - s_i) / 2, which
-/// closes half of a gap. Let e_i be the part of s_i - 1 above a fifth of the density tolerance. If
-/// e_i > 0, r_i = -min(e_i, density tolerance, 0.0015). This removes the excess density of steps
-/// before positions must be corrected, with a speed that the tolerance limits. In liquid at rest, s
-/// fluctuates by less than this fifth of the tolerance; removing these fluctuations would cause
-/// noise in the pressure. The forces already include the impulses of the last step, so that only
-/// the difference is solved. A divergence tolerance is limited to a quarter of the density
-/// tolerance; this bound is at least 0.001 and at most 0.01.
+/// Let s = rho / rho_0, and let D and F be the rate and the force of PressureResponse. Impulses dt
+/// F(p) with p >= 0 change the velocities of liquid and solids so that dt D_i(v) <= r_i. For s_i <
+/// 1, the bound is r_i = (1 - s_i) / 2, which closes half of a gap. For s_i >= 1, let e_i be the
+/// excess of s_i - 1 over a fifth of the density tolerance. If e_i > 0, the bound is r_i =
+/// -min(e_i, density tolerance, 0.0015). This bound removes excess density before positions must be
+/// corrected, at a rate limited by the tolerance. In liquid at rest, s fluctuates by less than a
+/// fifth of the density tolerance. A removal of these fluctuations would cause noise in the
+/// pressure.
+///
+/// The forces already include the impulses of the last step, so that only the difference is solved.
+/// The divergence tolerance is at most a quarter of the density tolerance, with this limit in the
+/// range 0.001 to 0.01.
 void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
-/// Moves liquid with excess density at the end of a step, at `time`, until the measured s is at
-/// most 1 within the scene's density tolerance. Uses Newton's method; each round solves D_i(shift)
-/// = 1 - s_i for the shift. Sets the report of the positions.
+/// Moves liquid particles at the end of a step, at `time` [s], until s exceeds 1 by at most the
+/// scene's density tolerance. Each iteration of Newton's method solves D_i(shift) = 1 - s_i for the
+/// shift of the positions. Sets the position report in State::volume.
 ///
 /// The shifts do not change velocities (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)
-/// 264), so that excess density adds no energy: bodies that overlap at the start separate without
-/// an explosion. Liquid beyond a wall is moved back first, see enforce_walls_on_particles().
+/// 264), so that excess density adds no kinetic energy. Bodies that overlap initially therefore
+/// separate without high velocities. Before the shifts, liquid beyond a wall is moved back, see
+/// enforce_walls_on_particles().
 void correct_density(const ForceModel& force_model, State& state, Real time);
 
 }  // namespace vat

@@ -6,26 +6,28 @@
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
-/// Sums over the pairs of coupled liquids; see core/liquid/pairs/pair_sums.h.
+/// Functions for sums over the pairs of coupled liquids; see core/liquid/pairs/pair_sums.h. Coupled
+/// liquids interact with solids and walls by SPH (Model::is_coupled).
 namespace vat {
 
-/// The kernel whose scale is included in the weights of sources.
+/// Returns the kernel whose scale is a factor of the weights of sources.
 inline const SmoothingKernel& reference_kernel(const Model& model) {
   return model.liquids[model.material[0]]->kernel;
 }
 
-/// The factor from PairSums::density to the relative density s of a liquid.
+/// Returns the ratio of the relative density s of a liquid to the sum PairSums::density.
 inline Real scale_factor(const Model& model, const LiquidModel& liquid) {
   return liquid.kernel.scale() / reference_kernel(model).scale();
 }
 
-/// The factor from sums along g x to sums along G dW/dx, with the liquid's slope_scale G.
+/// Returns the ratio of sums with G dW/dx to sums with g x (see PairSums), with the liquid's
+/// slope_scale G.
 inline Real slope_factor(const Model& model, const LiquidModel& liquid) {
   return liquid.slope_scale * liquid.support_radius * liquid.kernel.slope_scale() /
          reference_kernel(model).scale();
 }
 
-/// f(liquid) of each material; 0 for other materials.
+/// Values by material: by_material() returns f(liquid) for each liquid, and 0 for other materials.
 using ByMaterial = std::array<Real, kMaxMaterials>;
 template <class F>
 ByMaterial by_material(const Model& model, F&& f) {
@@ -44,32 +46,33 @@ inline const PairSums& pair_sums_of(const StepContext& c) {
 /// Returns whether the liquid particles have several materials.
 bool has_several_liquids(const Model& model);
 
-/// Returns whether some liquid has viscosity, physical or artificial.
+/// Returns whether a liquid has physical or artificial viscosity.
 bool has_central_viscosity(const Model& model);
 
-/// Inputs of sums that depend on positions only.
+/// Returns the inputs of sums that depend on positions only.
 PairInputs pair_inputs(const StepContext& context);
 
-/// Inputs of sums with motions, with liquid or solids as targets.
+/// Return the inputs of sums that also depend on motions, with liquid or solids as targets.
 PairInputs force_inputs(const StepContext& context);
 PairInputs solid_force_inputs(const StepContext& context);
 
-/// Set the columns of viscosities for liquid or solids as targets. For solids, pairs have the
-/// viscosity of the liquid.
+/// Set LiquidScratch::viscosities and target_viscosities for liquid or solids as targets. A pair of
+/// liquid and solid has the viscosity of the liquid.
 void set_liquid_viscosities(const StepContext& context);
 void set_solid_viscosities(const StepContext& context);
-/// Sets the columns of viscosities with images of liquid as the only sources.
+/// Sets LiquidScratch::viscosities and target_viscosities with images of liquid as the only
+/// sources.
 void set_image_viscosities(const StepContext& context);
 
-/// Sets the weights of sources so that slope_factor() of the first liquid holds for all liquids.
+/// Sets the weights of sources so that slope_factor() of the first liquid is valid for all liquids.
 void set_slope_weights(const StepContext& context);
 
 inline PairMotion motion_of(Real pressure, const Vec3& velocity) {
   return {pressure, velocity.x(), velocity.y(), velocity.z()};
 }
 
-/// The motion of an image in walls, with the pressure of ImagePressure, or of an image in a
-/// periodic world.
+/// Computes the motion (pressure and velocity) of an image of a particle, in walls or in a periodic
+/// world. Images in walls have the pressure of ImagePressure.
 class ImageMotion {
  public:
   explicit ImageMotion(const StepContext& c);
@@ -79,7 +82,7 @@ class ImageMotion {
   const StepContext& c_;
   const VatMotion motion_;
   const ImagePressure pressure_;  ///< uniform without a central field
-  const bool is_same_liquid_;     ///< all liquid has one material
+  const bool is_same_liquid_;     ///< all liquids have one material
 };
 
 }  // namespace vat

@@ -10,14 +10,15 @@
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
-/// Search of the neighbours of liquid particles, and sums over them in the same pass.
+/// Functions that search the neighbours of liquid particles, and visit them in the same pass.
 namespace vat {
 
 inline const LiquidModel& liquid_of(const Model& model, std::size_t particle) {
   return *model.liquids[model.material[particle]];
 }
 
-/// Provides at least `wanted` slots. The size grows by a quarter; a vector would double it.
+/// Resizes `slots` to at least `wanted` elements. The size grows by at least a quarter; a
+/// std::vector would double the capacity.
 inline void make_room(std::vector<Index>& slots, std::size_t wanted) {
   if (slots.size() >= wanted) return;
   const std::size_t size = std::max(wanted, slots.size() + slots.size() / 4);
@@ -25,13 +26,13 @@ inline void make_room(std::vector<Index>& slots, std::size_t wanted) {
   slots.resize(size);
 }
 
-/// Appends the slots closer to `place` than `support`, except `self`, to `found` from `count` on,
-/// and returns the new count. Every candidate is written, and only neighbours advance the count,
-/// which avoids mispredicted branches.
+/// Writes the slots closer to `place` than `support` [m], except `self`, to `found` from index
+/// `count` on. Returns the new count. Every candidate is written, and only neighbours increase the
+/// count, which avoids mispredicted branches.
 inline std::size_t find_near(const CellSortedPoints& points, const Vec3& place, Index self,
                              Real support, std::vector<Index>& found, std::size_t count) {
-  constexpr Index kChunk = 1024;  // candidates for which space is provided at once: a crowded cell
-                                  // may contain all particles
+  // Number of candidates for which space is allocated at once. A cell may contain all particles.
+  constexpr Index kChunk = 1024;
   const Real x = place.x();
   const Real y = place.y();
   const Real z = place.z();
@@ -55,7 +56,8 @@ inline std::size_t find_near(const CellSortedPoints& points, const Vec3& place, 
   return count;
 }
 
-/// Appends the neighbours of slot `self`; in a periodic world, including images.
+/// Writes the neighbours of slot `self` to `found` from index `count` on, as find_near(). In a
+/// periodic world, the neighbours include images. Returns the new count.
 template <bool periodic>
 std::size_t find_neighbours(const PeriodicBox& box, const CellSortedPoints& points, Index self,
                             Real support, std::vector<Index>& found, std::size_t count) {
@@ -67,7 +69,8 @@ std::size_t find_neighbours(const PeriodicBox& box, const CellSortedPoints& poin
   return count;
 }
 
-/// Removes the slots of other materials than that of slot `self` from found[first, count).
+/// Removes slots whose material differs from that of slot `self` from found[first, count). Returns
+/// the new count.
 inline std::size_t keep_material(const Model& model, std::span<const Index> order, Index self,
                                  std::vector<Index>& found, std::size_t first, std::size_t count) {
   const Index material = model.material[order[self]];
@@ -78,8 +81,8 @@ inline std::size_t keep_material(const Model& model, std::span<const Index> orde
   return static_cast<std::size_t>(kept - begin);
 }
 
-/// Fills the pairs of one block, and calls visit(slot, slots of neighbours) for each slot. If the
-/// blocks together find more than `most` pairs, the remaining slots get no neighbours.
+/// Finds the pairs of one block of slots, and calls visit(slot, slots of neighbours) for each slot.
+/// When all blocks together have more than `most` pairs, the remaining slots get no neighbours.
 template <bool periodic, class Visit>
 void fill_block(const Model& model, Scratch& work, std::size_t begin, std::size_t end,
                 std::atomic<std::size_t>& pair_count, std::size_t most, Visit&& visit) {
@@ -106,8 +109,8 @@ void fill_block(const Model& model, Scratch& work, std::size_t begin, std::size_
 }
 
 /// Fills liquid_pairs, and calls visit(slot, slots of neighbours) for each slot. If a collapsed
-/// liquid has more than max_pairs(), sets too_many_pairs and one density to NaN, so that the step
-/// fails.
+/// liquid has more than max_pairs() pairs, sets too_many_pairs, and one density to NaN, so that the
+/// step fails.
 template <bool periodic, class Visit>
 void find_pairs(const Model& model, Scratch& work, TaskRunner* runner, Visit&& visit) {
   LiquidScratch& buffers = work.of<LiquidScratch>();
@@ -120,7 +123,8 @@ void find_pairs(const Model& model, Scratch& work, TaskRunner* runner, Visit&& v
     fill_block<periodic>(model, work, begin, end, pair_count, most, visit);
   });
   buffers.too_many_pairs = pair_count > most;
-  // One particle suffices for the guard. The incomplete blocks depend on the threads.
+  // One NaN suffices for the guard (core/guard/guard.h). Which blocks are incomplete depends on the
+  // threads.
   if (buffers.too_many_pairs) buffers.density[0] = std::numeric_limits<Real>::quiet_NaN();
 }
 

@@ -11,9 +11,9 @@ namespace vat {
 /// A reflection at one wall of the vat, or at two or three walls that meet in an edge or corner.
 struct Mirror {
   std::array<bool, 3> axes{};       ///< the reflected axes
-  Vec3 twice_plane = Vec3::Zero();  ///< along reflected axes: 2 w for the wall's position w [m]
+  Vec3 twice_plane = Vec3::Zero();  ///< 2 w for the wall position w [m]; 0 along other axes
 
-  /// The reflection of a direction.
+  /// Returns the reflection of the direction `x`.
   Vec3 turn(const Vec3& x) const {
     const auto turned = [&](std::size_t axis, Real along) { return axes[axis] ? -along : along; };
     return {turned(0, x.x()), turned(1, x.y()), turned(2, x.z())};
@@ -21,7 +21,7 @@ struct Mirror {
   Vec3 place(const Vec3& x) const { return twice_plane + turn(x); }
 };
 
-/// Calls f(mirror) for the reflections whose images may be within `radius` of `p`.
+/// Calls f(mirror) for each reflection whose images may be within `radius` [m] of `p`.
 template <class F>
 void for_each_mirror(const Model& model, const VatMotion& motion, const Vec3& p, Real radius,
                      F&& f) {

@@ -12,14 +12,14 @@
 
 namespace vat {
 
-/// Sources in the order of the cells of a grid: slot s is source first + s.
+/// A group of sources in the order of the cells of a grid: slot s of the grid is source first + s.
 struct SourceGroup {
   const UniformGrid* grid = nullptr;
   Index first = 0;
 };
 
-/// Coordinates of all sources for the search, relative to a common origin. They are rounded; the
-/// search adds a margin.
+/// Single-precision coordinates of all sources relative to a common origin, for the search. The
+/// search adds a margin for the rounding errors.
 struct SearchCoordinates {
   Vec3 origin = Vec3::Zero();
   std::vector<float> x;
@@ -27,27 +27,28 @@ struct SearchCoordinates {
   std::vector<float> z;
 };
 
-/// Parameters of the search of pairs.
+/// Parameters of the search for pairs.
 struct PairSearch {
   Real reach = 0;             ///< maximum distance of pairs [m]
   Index padding = 0;          ///< index of a source that adds nothing to sums
   Index first_mirrored = 0;   ///< sources from here on are images in walls
-  std::size_t most_work = 0;  ///< maximum of targets times candidates in total
+  std::size_t most_work = 0;  ///< maximum of the total of targets times candidates
   InstructionSet instructions = InstructionSet::baseline;
 };
 
-/// All pairs of targets and sources within a reach, stored as clusters of targets with their
-/// candidates. Memory grows with the number of clusters, not of pairs.
+/// All pairs of targets and sources within a maximum distance, stored as clusters of targets with a
+/// common list of candidate sources (TargetCluster). Memory is proportional to the number of
+/// clusters, not to the number of pairs.
 class PairClusters {
  public:
-  /// Finds the pairs of each target in `targets` with all sources of `groups`; the last group is
-  /// images of liquid in walls. Returns false if the work exceeds the limit. The clusters without
-  /// candidates then depend on the threads.
+  /// Finds the pairs of each target in `targets` with all sources of `groups`. The last group must
+  /// consist of images of liquid in walls. Returns false if the work exceeds search.most_work. Some
+  /// clusters then have no candidates; which clusters depends on the threads.
   bool build(const PairSearch& search, const SourceGroup& targets, const SearchCoordinates& places,
              std::span<const SourceGroup> groups, TaskRunner* runner);
 
-  /// Calls f(inputs, clusters) for parts of the clusters in parallel. `inputs` has the candidates
-  /// of the part.
+  /// Calls f(inputs, clusters) for each chunk of clusters in parallel. The first argument is
+  /// `inputs` with the candidates of the chunk.
   template <class F>
   void for_each_chunk(TaskRunner* runner, const PairInputs& inputs, F&& f) const {
     for_blocks<1>(runner, chunks_.size(), [&](std::size_t begin, std::size_t) {
@@ -58,8 +59,8 @@ class PairClusters {
     });
   }
 
-  /// Calls f(cluster, target, sums) for each target, in order within each part, with the `width`
-  /// numbers of `sum`.
+  /// Calls f(cluster, target, sums) for each target, in order within each chunk. `sums` points to
+  /// the `width` numbers that `sum` computes for the target.
   template <std::size_t width, class F>
   void for_each_sum(TaskRunner* runner, const PairInputs& inputs, PairSums::Function sum,
                     F&& f) const {
@@ -81,7 +82,7 @@ class PairClusters {
  private:
   static constexpr Index kTargetsAtOnce = 256;
 
-  /// The number of leading clusters that have at most kTargetsAtOnce targets together.
+  /// Returns the number of leading clusters with at most kTargetsAtOnce targets in total.
   static std::size_t size_of_batch(std::span<const TargetCluster> clusters) {
     const auto beyond = std::ranges::find_if(clusters, [&](const TargetCluster& cluster) {
       return cluster.end - clusters.front().begin > kTargetsAtOnce;
@@ -89,7 +90,7 @@ class PairClusters {
     return static_cast<std::size_t>(beyond - clusters.begin());
   }
 
-  /// The clusters of the cells that begin in one block of slots.
+  /// The clusters of those cells whose first slot is in one block of slots.
   struct Chunk {
     std::vector<TargetCluster> clusters;
     std::vector<Index> candidates;

@@ -1,5 +1,5 @@
-// The loops of PairSums for one instruction set. This file is included once for each set, hence the
-// toggling guard of Highway.
+// The loops of PairSums for one instruction set. This file is included once for each instruction
+// set, which requires the toggling include guard of Highway.
 #if defined(VAT_PAIR_LOOPS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VAT_PAIR_LOOPS_INL_H
 #undef VAT_PAIR_LOOPS_INL_H
@@ -16,12 +16,12 @@ HWY_BEFORE_NAMESPACE();
 namespace vat::HWY_NAMESPACE {
 namespace {
 
-/// Without vectors, several terms represent the lanes of 16 bytes, so that the sums have the same
-/// bits.
+/// Number of terms per sum. Without vectors, several terms represent the lanes of a vector of 16
+/// bytes, so that the sums are bitwise equal.
 template <class T>
 inline constexpr std::size_t kTerms = Simd<T>::kCount == 1 ? 16 / sizeof(T) : 1;
 
-/// The sum over all lanes of one sum.
+/// Returns the total over all lanes of the sum with index `sum`.
 template <class T, class Term>
 HWY_INLINE Real total(const Term* terms, std::size_t sum) {
   const typename Simd<T>::D d;
@@ -39,7 +39,8 @@ HWY_INLINE Real total(const Term* terms, std::size_t sum) {
   }
 }
 
-/// Sums over the candidates of the cluster from `first` on, a multiple of the number of lanes.
+/// Writes the sums over the candidates of the cluster from index `first` on to `sums`. `first` must
+/// be a multiple of the number of lanes.
 template <class T, class Term>
 void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile, Real* sums,
                  std::size_t first = 0) {

@@ -15,19 +15,19 @@ namespace vat {
 struct CellSortedPoints;
 struct StepContext;
 
-/// The image of a particle in walls or in a periodic world.
+/// The image of a particle by walls or periodicity.
 struct PairImage {
-  Vec3 offset;                 ///< from the reflected particle to the image [m]
+  Vec3 offset;                 ///< from the reflected position to the image [m]
   Index source;                ///< index of the particle
   std::array<bool, 3> axes{};  ///< the reflected axes
 
   Vec3 turn(const Vec3& x) const { return Mirror{axes, {}}.turn(x); }
   Vec3 place(const Vec3& p) const { return offset + turn(p); }
-  /// The reflection without periodic shifts, for an image in walls.
+  /// Returns the reflection without periodic shifts, for an image in walls.
   Mirror mirror() const;
 };
 
-/// A PairImage in few bytes: for each axis, the index of its offset.
+/// A compressed PairImage, with the index of the offset in ImageOffsets for each axis.
 struct PackedImage {
   Index source;
   std::array<std::uint8_t, 3> offsets;
@@ -61,24 +61,25 @@ struct WeightFactors {
   WeightFactors() { liquid.fill(1); }
 };
 
-/// All sources of the sums over pairs of coupled liquids: liquid and solids in the order of their
-/// cells; images of solids and of liquid in a periodic world; images of solids and of liquid in
-/// walls; and one source without effect, for padding.
+/// All sources of the sums over pairs of coupled liquids. The first sources are the liquid
+/// particles and then the solid particles, in the order of their cells. The next sources are the
+/// periodic images of solids and of liquid, and the images of solids and of liquid in walls. The
+/// last source has no effect and is used as padding.
 class PairSources {
  public:
-  /// Collects the sorted points of the workspace, with images of the points within `reach` [m] of
-  /// walls. The factors of the weights are 1.
+  /// Collects the sorted particles of the workspace, and the images of particles within `reach` [m]
+  /// of a wall or periodic boundary. Sets the weights with factors of 1.
   void build(const StepContext& context, Real reach);
-  /// Returns whether build() would find the same positions.
+  /// Returns whether build() would result in the same positions.
   bool is_current(const StepContext& context) const;
-  /// Increases with each build().
+  /// Returns a number that increases with each build().
   std::uint64_t version() const { return version_; }
-  /// Weights are rest volume times the scale of the first liquid's kernel times these factors.
+  /// Sets the weights to rest volume times the scale of the first liquid's kernel times `factors`.
   void set_weights(const StepContext& context, const WeightFactors& factors);
 
   void make_room_for_motions();
-  /// Sets motions: motion(s) for liquid slots, solid(s) for solid slots, and image(image, motion of
-  /// its source).
+  /// Sets the motions of all sources: liquid(s) for liquid slots, solid(s) for solid slots, and
+  /// image(i, motion of its source) for each image i.
   template <class Liquid, class Solid, class Image>
   void set_motions(TaskRunner* runner, Liquid&& liquid, Solid&& solid, Image&& image) {
     make_room_for_motions();
@@ -87,7 +88,7 @@ class PairSources {
     });
     set_other_motions(runner, solid, image);
   }
-  /// Sets the motions of solids and images, after those of liquid have been set by set_motion().
+  /// Sets the motions of solids and images. Must be called after set_motion() for all liquid slots.
   template <class Solid, class Image>
   void set_other_motions(TaskRunner* runner, Solid&& solid, Image&& image) {
     for_blocks(runner, images_begin_ - solids_, [&](std::size_t begin, std::size_t end) {
@@ -117,43 +118,45 @@ class PairSources {
     }
   }
 
-  /// Sets charges, the weights times charge(s) for liquid slots. Images have the charges of their
-  /// sources, and solids have 0.
+  /// Sets the charges: the weight times charge(s) for a liquid slot s, and 0 for solids. Images
+  /// have the charges of their sources.
   template <class Charge>
   void set_charges(TaskRunner* runner, Charge&& charge) {
     is_single_ ? charge_copies(runner, packed_places_, packed_charges_, charge)
                : charge_copies(runner, places_, charges_, charge);
   }
 
-  /// The number of sources for which motions can be stored.
+  /// Returns the number of sources for which motions can be stored.
   std::size_t motion_count() const { return std::max(packed_motions_.size(), motions_.size()); }
 
-  /// Inputs with positions and motions, or with charges in place of weights.
+  /// inputs() returns the inputs of sums with positions, weights and motions. charged_inputs()
+  /// returns inputs with charges in place of weights.
   PairInputs inputs() const;
   PairInputs charged_inputs() const;
   Real weight(std::size_t n) const {
     return is_single_ ? static_cast<Real>(packed_places_[n].weight) : places_[n].weight;
   }
-  /// Position [m], rounded as in the sums.
+  /// Returns the position of source n [m], rounded as in the sums.
   Vec3 place(std::size_t n) const {
     if (is_single_) return grid_.place(packed_places_[n]);
     return {places_[n].x, places_[n].y, places_[n].z};
   }
 
-  /// The precision of the sums: that of the scene, or double if the extent is too large.
+  /// Returns the precision of the sums: that of the scene, or double precision if the extent is too
+  /// large.
   PairPrecision precision() const {
     return is_single_ ? PairPrecision::single_precision : PairPrecision::double_precision;
   }
-  /// The number of sources, without the padding.
+  /// Returns the number of sources, without the padding.
   std::size_t count() const { return count_; }
   Index first_solid() const { return solids_; }
   Index first_image() const { return images_begin_; }
-  /// The particle of an image; for a particle, itself.
+  /// Returns the source that is the particle of image n, or n if source n is a particle.
   Index source_of(Index n) const;
-  /// The first image in a wall, and the first one of liquid.
+  /// Return the first image in a wall, and the first image of liquid in a wall.
   Index first_mirrored() const { return images_[mirrored_solids].first; }
   Index first_mirrored_liquid() const { return images_[mirrored_liquid].first; }
-  /// All groups of sources, and those of liquid.
+  /// Return all groups of sources, and the groups of liquid.
   std::array<SourceGroup, 6> groups(const UniformGrid& liquid, const UniformGrid& solids) const;
   std::array<SourceGroup, 3> liquid_groups(const UniformGrid& liquid) const;
   const SearchCoordinates& search_coordinates() const { return search_; }
@@ -165,7 +168,7 @@ class PairSources {
     Index first = 0;  ///< first source
 
     std::size_t count() const { return all.size(); }
-    /// The image in a slot.
+    /// Returns the image in a slot of `grid`.
     const PackedImage& image(std::size_t slot) const { return all[grid.order()[slot]]; }
   };
   enum Images : std::uint8_t { shifted_solids, shifted_liquid, mirrored_solids, mirrored_liquid };
@@ -202,15 +205,15 @@ class PairSources {
       });
     }
   }
-  /// Provides space for `count` sources and the padding. Existing content is overwritten later.
+  /// Allocates space for `count` sources and the padding. The content of this space is undefined.
   void make_room(std::size_t count);
   void set_place(std::size_t n, const Vec3& place);
   void set_places(const StepContext& c);
   void set_image_places(Images kind, TaskRunner* runner);
   void add_padding(Real reach);
 
-  bool is_single_ = true;           ///< whether the packed columns are used, or the others
-  std::vector<PairPlace> places_;   ///< by source, with the padding
+  bool is_single_ = true;           ///< true: the packed arrays are used; false: the others
+  std::vector<PairPlace> places_;   ///< by source, including the padding
   std::vector<PairPlace> charges_;  ///< places_ with charges in place of weights
   std::vector<PairMotion> motions_;
   PositionGrid grid_;
@@ -225,7 +228,7 @@ class PairSources {
   ImageOffsets offsets_;
   std::vector<std::vector<PackedImage>> found_;  ///< by block of particles
   std::vector<std::size_t> found_begin_;  ///< by block of particles: index of its first image
-  std::vector<Vec3> image_points_;        ///< of the group found last
+  std::vector<Vec3> image_points_;        ///< images of the last group that was found
   SearchCoordinates search_;
   std::uint64_t version_ = 0;
   std::uint64_t liquid_version_ = 0;

@@ -1,5 +1,5 @@
 // The terms of PairSums and the polynomials of kernels, for one instruction set. This file is
-// included once for each set, like pair_loops-inl.h.
+// included once for each instruction set, like pair_loops-inl.h.
 #if defined(VAT_PAIR_TERMS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VAT_PAIR_TERMS_INL_H
 #undef VAT_PAIR_TERMS_INL_H
@@ -20,7 +20,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr Real kSoftening = 0.01 / 4;  // (h/2)^2 / 100, divided by the squared support radius h^2
 
-/// The polynomials of the kernels. V: a vector, q <= 1. For the cubic spline, g is w' / q / -6.
+/// The polynomials of the kernels for a vector of q <= 1: value() returns w, and slope() returns g
+/// of PairSums. For the cubic spline, g is w' / q / -6.
 struct Wendland {
   template <class D, class V>
   static HWY_INLINE V value(D d, V q) {
@@ -48,7 +49,7 @@ struct CubicSpline {
   static HWY_INLINE V slope(D d, V q) {
     const V rest = hn::Sub(hn::Set(d, 1), q);
     const V inner = hn::Sub(hn::Set(d, 2), hn::Mul(hn::Set(d, 3), q));
-    // For small q the quotient is not used.
+    // For q < 1/2, the quotient is not used.
     const V outer = hn::Div(hn::Mul(rest, rest), hn::Max(q, half(d)));
     return hn::IfThenElse(hn::Lt(q, half(d)), inner, outer);
   }
@@ -60,7 +61,7 @@ struct CubicSpline {
   }
 };
 
-/// Vectors of numbers T.
+/// Vectors of elements of type T.
 template <class T>
 struct Simd {
   using D = hn::ScalableTag<T>;
@@ -70,7 +71,8 @@ struct Simd {
   static constexpr std::size_t kCount = hn::MaxLanes(D());
 };
 
-/// The position of a target relative to the cluster's centre, and its factors.
+/// The position of a target relative to the cluster's centre, and the motion and viscosity of the
+/// target.
 template <class T>
 struct Target {
   using V = typename Simd<T>::V;
@@ -110,7 +112,7 @@ HWY_INLINE Offset<T> offset_of(const Target<T>& target, const Tile<T>& tile, std
   at.y = hn::Sub(target.y, hn::Load(d, tile.y + k));
   at.z = hn::Sub(target.z, hn::Load(d, tile.z + k));
   at.square = hn::MulAdd(at.x, at.x, hn::MulAdd(at.y, at.y, hn::Mul(at.z, at.z)));
-  // At q = 1 all kernels are 0.
+  // At q = 1, all kernels are 0.
   at.q = hn::Min(hn::Sqrt(at.square), hn::Set(d, 1));
   return at;
 }
@@ -120,7 +122,7 @@ HWY_INLINE typename Simd<T>::V load(const T* column, std::size_t k) {
   return hn::Load(typename Simd<T>::D(), column + k);
 }
 
-/// v.x with v = v_i - v_j.
+/// Returns v.x with v = v_i - v_j.
 template <class T>
 HWY_INLINE typename Simd<T>::V approach(const Target<T>& i, const Tile<T>& tile, std::size_t k,
                                         const Offset<T>& at) {
@@ -129,7 +131,8 @@ HWY_INLINE typename Simd<T>::V approach(const Target<T>& i, const Tile<T>& tile,
                                hn::Mul(hn::Sub(i.vz, load(tile.vz, k)), at.z)));
 }
 
-/// The divisor of a pair's viscosity, for liquids with different viscosities.
+/// Returns the divisor of a pair's viscosity for liquids with different viscosities; see
+/// PairViscosity.
 template <class T>
 HWY_INLINE typename Simd<T>::V resistance(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
   return hn::MulAdd(i.viscosity, load(tile.own, k), load(tile.resistance, k));
@@ -144,7 +147,8 @@ HWY_INLINE void add_along(const Offset<T>& at, typename Simd<T>::V share,
   sums[2] = hn::MulAdd(share, at.z, sums[2]);
 }
 
-// A term has the sums of one target. Its add() adds a vector of sources.
+// A term contains the sums of one target. The function add() adds the contributions of a vector of
+// sources.
 
 template <class T, class Kernel>
 struct DensityTerm {

@@ -1,5 +1,5 @@
-// The candidates of a cluster as columns for vector loads, for one instruction set. This file is
-// included once for each set, like pair_loops-inl.h.
+// Tiles: candidates of a cluster as arrays for vector loads, for one instruction set. This file is
+// included once for each instruction set, like pair_loops-inl.h.
 #if defined(VAT_PAIR_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VAT_PAIR_TILE_INL_H
 #undef VAT_PAIR_TILE_INL_H
@@ -17,16 +17,15 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The number of candidates that are processed at once, relative to the cluster's centre and in
-/// units of the support radius.
+/// Maximum number of candidates in a tile.
 constexpr std::size_t kTile = 512;
 
-/// The columns of a tile that a loop reads in addition to x, y, z and weight.
+/// The arrays of a tile that a loop reads in addition to x, y, z and weight.
 struct TileColumns {
   bool velocity = false;
   bool pressure = false;
-  bool share = false;        ///< 0 for images, 1 for others
-  bool image_share = false;  ///< 1 for images, 0 for others
+  bool share = false;        ///< `share` is 0 for images in walls, 1 for others
+  bool image_share = false;  ///< `share` is 1 for images in walls, 0 for others
   bool viscosity = false;
 };
 
@@ -45,7 +44,7 @@ struct Tile {
   alignas(64) T resistance[kTile];
 };
 
-/// Coordinates relative to a cluster's centre, in units of the support radius.
+/// A converter to coordinates relative to a cluster's centre, in units of the support radius.
 template <class T>
 struct Frame;
 
@@ -128,7 +127,7 @@ HWY_INLINE void fill_tile(const PairInputs& in, const Frame<T>& frame, const Ind
 using Floats = hn::ScalableTag<float>;
 using FloatVec = hn::Vec<Floats>;
 
-/// Loads the records candidates[0], [4], ... of 16 bytes each.
+/// Loads the records of candidates[0], candidates[4], ..., of 16 bytes each.
 template <std::size_t lanes, class Record>
 HWY_INLINE auto load_records(const Record* records, const Index* candidates) {
   const hn::FixedTag<float, lanes> d;
@@ -140,7 +139,7 @@ HWY_INLINE auto load_records(const Record* records, const Index* candidates) {
   }
 }
 
-/// The four columns of as many records as a vector has lanes.
+/// The four members of one record per lane, with one vector for each member.
 struct Columns {
   FloatVec a, b, c, e;
 };
@@ -163,7 +162,7 @@ HWY_INLINE Columns load_columns(const Record* records, const Index* candidates) 
           hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23))};
 }
 
-/// `count` must be a multiple of the number of lanes.
+/// Vectorised version of fill_tile(). `count` must be a multiple of the number of lanes.
 template <TileColumns parts>
 HWY_INLINE void fill_tile(const PairInputs& in, const Frame<float>& frame, const Index* candidates,
                           std::size_t count, Tile<float>& tile) {

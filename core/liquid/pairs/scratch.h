@@ -11,7 +11,7 @@
 
 namespace vat {
 
-/// The data of a liquid particle for pressure and viscosity pairs, in one cache line.
+/// The data of a liquid particle for sums of pressure and viscosity over pairs, in one cache line.
 struct LiquidRecord {
   Vec3 position;
   Real volume;  ///< m / rho [m^3]
@@ -19,43 +19,44 @@ struct LiquidRecord {
   Real pressure;  ///< [Pa]
 };
 
-/// Neighbours of one block of liquid slots. The neighbours of the block's k-th slot are
-/// [begin[k], begin[k + 1]) of `slots`. Each block has its own buffer for parallel filling.
+/// The neighbours of one block of slots. The neighbours of the k-th slot of the block are the
+/// elements [begin[k], begin[k + 1]) of `slots`. Each block has a separate buffer, so that blocks
+/// can be filled in parallel.
 struct PairBlock {
   std::vector<Index> slots;
   std::array<Index, kBlockSize + 1> begin;
 };
 
-/// Derivatives of the sum s of a liquid particle with respect to positions.
+/// Derivatives of the relative density s of a liquid particle with respect to positions.
 struct VolumeSlope {
   Vec3 gradient;  ///< sum_j a_j g x of PairSums
   Real squares;   ///< sum_j a_j g^2 q^2
 };
 
-/// Buffers of liquids.
+/// Buffers of liquids. A slot is the position of a particle in the order of the cells.
 struct LiquidScratch {
   static constexpr Method kMethod = Method::liquid;
 
   CellSortedPoints liquid;
-  // Coupled liquids (tait, incompressible):
+  // Members for coupled liquids (solvers `tait` and `incompressible`):
   PairSources sources;
-  PairClusters liquid_clusters;            ///< pairs of liquid and all sources
-  PairClusters solid_clusters;             ///< pairs of solids and liquid with its images
-  std::uint64_t pairs_version = 0;         ///< version of the sources in the clusters
-  std::vector<VolumeSlope> volume_slopes;  ///< by liquid slot; incompressible liquids
-  std::vector<PairViscosity> viscosities;  ///< by source, if viscosities differ
-  std::vector<Real> target_viscosities;    ///< by target, if viscosities differ
-  // The gas, and coupled liquids if a stage needs neighbour lists:
+  PairClusters liquid_clusters;            ///< pairs of liquid with all sources
+  PairClusters solid_clusters;             ///< pairs of solids with liquid and its images
+  std::uint64_t pairs_version = 0;         ///< PairSources::version() of the clusters
+  std::vector<VolumeSlope> volume_slopes;  ///< by liquid slot; only for incompressible liquids
+  std::vector<PairViscosity> viscosities;  ///< by source; only if viscosities differ
+  std::vector<Real> target_viscosities;    ///< by target; only if viscosities differ
+  // Members for the solver `gas`, and for coupled liquids if a stage needs neighbour lists:
   std::vector<LiquidRecord> liquid_records;  ///< by slot
   std::vector<PairBlock> liquid_pairs;
-  bool too_many_pairs = false;  ///< above max_pairs(): the lists are incomplete, a density is NaN
+  bool too_many_pairs = false;  ///< more than max_pairs(): lists are incomplete, a density is NaN
   std::vector<Real> density;    ///< by liquid particle [kg/m^3]
-  std::uint64_t density_version = 0;  ///< version of the summed sources
-  /// Density, computed as if liquid of rest density filled all space beyond no-slip walls [kg/m^3].
+  std::uint64_t density_version = 0;  ///< PairSources::version() of `density`
+  /// Density for a space beyond no-slip walls that is filled with liquid of rest density [kg/m^3].
   std::vector<Real> filled_density;
   std::vector<Real> filling;   ///< by liquid slot: density / filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
-  // Solids in coupled liquids: neighbour lists between liquid and solid slots.
+  // Members for solids in coupled liquids: neighbour lists between liquid and solid slots.
   CellSortedPoints solids_in_liquid;  ///< index 0 is the first solid particle
   std::vector<PairBlock> solids_of_liquid;
   std::vector<PairBlock> liquid_of_solids;

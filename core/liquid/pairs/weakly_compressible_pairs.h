@@ -9,14 +9,14 @@
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
-/// Functions that the stages of weakly compressible liquids share.
+/// Functions used by several stages of weakly compressible liquids.
 namespace vat {
 
 inline Vec3 nearest_image(const Model& model, const Vec3& x) {
   return model.periodic.any() ? model.periodic.nearest(x) : x;
 }
 
-/// The acceleration of free fall at a position, in the frame of the vat.
+/// Returns the acceleration of free fall at `position` in the frame of the vat [m/s^2].
 inline Vec3 fall_in_vat(const Model& model, const VatMotion& motion, const Vec3& position) {
   Vec3 fall = -motion.acceleration;
   if (!model.scene.forces.gravity) return fall;
@@ -28,27 +28,30 @@ inline Vec3 fall_in_vat(const Model& model, const VatMotion& motion, const Vec3&
   return fall;
 }
 
-/// 2 (d + 2) mu between two liquids: the harmonic mean, with which both liquids have the same shear
-/// stress at their interface (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq.
-/// 22).
+/// Returns 2 (d + 2) mu for pairs of two liquids in d dimensions, with the harmonic mean mu of
+/// their viscosities. With this mean, both liquids have the same shear stress at their interface
+/// (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq. 22).
 inline Real mean_viscosity(const LiquidModel& a, const LiquidModel& b) {
   const Real sum = a.central_viscosity + b.central_viscosity;
   return sum > 0 ? 2 * a.central_viscosity * b.central_viscosity / sum : 0;
 }
 
-/// |x|^2 + 0.01 h^2 with the smoothing length h, half of the support radius, as in Monaghan's form.
-/// With the support radius in place of h, the viscosity would be a thirtieth too small.
+/// Returns r^2 + 0.01 h^2 with the smoothing length h, which is half of the support radius, as in
+/// Monaghan's form. With the support radius in place of h, the viscosity would be too small by a
+/// thirtieth.
 inline Real softened_square(const LiquidModel& liquid, Real r) {
   const Real h = liquid.support_radius / 2;
   return r * r + Real{0.01} * h * h;
 }
 
-/// Tait's equation (s^7 - 1) / 7, in units of rho_0 c^2, up to s = 1.03; beyond, it is linear in
-/// the volume 1 / s. Only impacts compress a liquid further, with pressures rho c v of the chosen
-/// speed of sound. The stable step decreases with the density of a lattice: with the linear part it
-/// stays above 0.77 h / c up to twice the density, the limit in find_step_limits(), and with s^7 it
-/// is 0.62 h / c at s = 1.1. From twice the density on, the pressure follows the tangent: the
-/// linear part is bounded, and a liquid that is too soft for its own weight would collapse.
+/// Returns the pressure in units of rho_0 c^2 at the relative density s. For s <= 1.03, the
+/// pressure is that of Tait's equation, (s^7 - 1) / 7. For 1.03 < s <= 2, the pressure is linear in
+/// 1 / s. Only impacts compress a liquid beyond 1.03, with pressures rho c v of the chosen speed of
+/// sound c. The stable step decreases with the density. With the part that is linear in 1 / s, the
+/// stable step of a lattice is above 0.77 h / c up to s = 2, which is the limit in
+/// find_step_limits(). With s^7, the stable step would be 0.62 h / c at s = 1.1. For s > 2, the
+/// pressure follows the tangent at s = 2. With a pressure linear in 1 / s, which is bounded, a
+/// liquid too soft for its weight would collapse.
 inline Real tait_pressure(Real s) {
   constexpr Real kEnd = 1.03;
   constexpr Real kPressure = (kEnd * kEnd * kEnd * kEnd * kEnd * kEnd * kEnd - 1) / 7;
@@ -62,7 +65,7 @@ inline Real tait_pressure(Real s) {
   return (s2 * s2 * s2 * s - 1) / 7;
 }
 
-/// The minimum pressure of a liquid with a free surface at the relative density s.
+/// Returns the minimum pressure of a liquid with a free surface at the relative density s [Pa].
 inline Real least_pressure(const LiquidModel& liquid, Real s) {
   return 0 - liquid.tensile_strength * s * s;
 }
@@ -71,13 +74,13 @@ inline bool has_solids(const Model& model) {
   return model.particle_count > model.liquid_count;
 }
 
-/// The support radius, which coupled liquids share.
+/// Returns the support radius, which is equal for all coupled liquids [m].
 inline Real support_of(const Model& model) {
   return model.liquids[model.material[0]]->support_radius;
 }
 
-/// Size of the cells of coupled liquids and of solids in them [m]. At rest a cell contains about
-/// eight particles, or nine in the plane.
+/// Returns the cell size for coupled liquids and solids in them [m]. At rest, a cell contains about
+/// eight particles in three dimensions, and nine in two.
 inline Real pair_cell_size(const Model& model) {
   const Real in_spacings = model.scene.dimensions == 3 ? 2 : 3;
   return in_spacings * model.liquids[model.material[0]]->spacing;
@@ -87,8 +90,8 @@ inline VatMotion motion_of(const StepContext& c) {
   return c.model.scene.vat ? vat_motion(*c.model.scene.vat, c.time) : VatMotion{};
 }
 
-/// Calls f(slot, x, mirror) for the images in walls of points within `radius` of `place`. x points
-/// from the image to the place.
+/// Calls f(slot, x, mirror) for each image in walls within `radius` [m] of `place`. `slot` is the
+/// slot of the reflected point, and x is the vector from the image to `place`.
 template <class F>
 void for_each_image(const Model& model, const VatMotion& motion, const CellSortedPoints& points,
                     const Vec3& place, Real radius, F&& f) {
@@ -107,9 +110,10 @@ void for_each_image(const Model& model, const VatMotion& motion, const CellSorte
   });
 }
 
-/// The pressure of a particle's image near a position. The mirror conserves energy, but reverses
-/// the component of gravity across the wall. The correction is the weight of the liquid beyond the
-/// wall; at a free surface it is limited by the pressure.
+/// Computes the pressure of images of particles near a position. A mirror conserves energy, but
+/// reverses the component of gravity perpendicular to the wall. The pressure of an image therefore
+/// includes the hydrostatic pressure difference between particle and image. At a free surface, this
+/// correction is reduced for low pressures.
 class ImagePressure {
  public:
   ImagePressure(const Model& model, const VatMotion& motion, const Vec3& place)
@@ -121,12 +125,12 @@ class ImagePressure {
                   const Mirror& mirror) const {
     return near(liquid, pressure, mirror.place(position) - position);
   }
-  /// `way`: from the particle to its image [m].
+  /// Returns the pressure of an image [Pa]. `way` is the vector from the particle to the image [m].
   Real near(const LiquidModel& liquid, Real pressure, const Vec3& way) const {
     const Real more = liquid.rest_density * fall_.dot(way);
     if (may_pull_) return pressure + more;
     if (pressure <= 0) return pressure;
-    // The pressure under one layer of particles.
+    // `layer` is the pressure under one layer of particles.
     const Real layer = liquid.rest_density * acceleration_ * liquid.spacing;
     return std::max(Real{0}, pressure + pressure / (pressure + layer) * more);
   }

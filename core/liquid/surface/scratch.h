@@ -10,17 +10,17 @@ namespace vat {
 /// The data of a liquid particle for surface tension; see core/liquid/surface/surface_tension.h.
 struct SurfaceRecord {
   Vec3 gradient;           ///< g [1/m]
-  Real kernel_deficiency;  ///< 1 - s, never below zero
+  Real kernel_deficiency;  ///< max(0, 1 - s)
 };
 
-/// Sums over one block of slots: the forces of curvature, and their balancing forces, about the
+/// Sums over one block of slots, for the balance of the curvature forces. Moments are about the
 /// origin.
 struct SurfaceSum {
   Vec3 force = Vec3::Zero();          ///< [N]
   Vec3 torque = Vec3::Zero();         ///< [N m]
-  Real share = 0;                     ///< sigma times surface [J]
-  Vec3 moment = Vec3::Zero();         ///< share times x
-  Mat3 second_moment = Mat3::Zero();  ///< share times x x^T
+  Real share = 0;                     ///< sum of weights: surface tension times area [J]
+  Vec3 moment = Vec3::Zero();         ///< sum of weights times x
+  Mat3 second_moment = Mat3::Zero();  ///< sum of weights times x x^T
 
   SurfaceSum& operator+=(const SurfaceSum& other) {
     force += other.force;
@@ -37,8 +37,8 @@ struct SurfaceScratch {
   static constexpr Method kMethod = Method::surface;
 
   std::vector<SurfaceRecord> surface;
-  std::vector<Vec3> surface_normals;  ///< unit vectors inwards; zero away from the surface
-  std::vector<Vec3> surface_forces;   ///< forces of curvature [N]
+  std::vector<Vec3> surface_normals;  ///< inward unit vectors; zero away from the surface
+  std::vector<Vec3> surface_forces;   ///< curvature forces [N]
   std::vector<SurfaceSum> surface_sums;
 };
 

@@ -5,7 +5,7 @@
 
 namespace vat {
 
-/// Adds the stages of surface tension: of curvature, and of cohesion and adhesion.
+/// Adds the stages of surface tension by curvature, and of cohesion and adhesion.
 void add_surface_stages(const Model& model, PlanBuilder& plan);
 
 }  // namespace vat

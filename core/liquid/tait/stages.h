@@ -5,14 +5,14 @@
 
 namespace vat {
 
-/// Adds the stages of liquids with the solver `tait`.
+/// Adds the stages of liquids with the pressure solver `tait`.
 void add_tait_stages(const Model& model, PlanBuilder& plan);
 
-/// Adds the stages that precede the pressure in liquids that interact with solids and walls by
+/// Adds the stages before the pressure for coupled liquids, which interact with solids and walls by
 /// SPH.
 void add_coupled_density_stages(const Model& model, PlanBuilder& plan);
 
-/// Adds the stages that follow the pressure.
+/// Adds the stages after the pressure for coupled liquids.
 void add_coupled_force_stages(const Model& model, PlanBuilder& plan);
 
 }  // namespace vat
