@@ -19,7 +19,7 @@ constexpr std::size_t kSampled = kDescribed + kIndex + sizeof(std::uint64_t);
 constexpr std::size_t kConfigured = 2 * kVector + kReal;  // including pressure
 constexpr std::size_t kForces = 2 * kVector + 1;          // including transport and level
 constexpr std::size_t kHeld = kMaxGrabs * kIndex;
-// Sleeping bodies are written twice.
+// A configuration is stored at most twice.
 constexpr std::size_t kParticleBytes = kDescribed + kSampled + 2 * kConfigured + kForces + kHeld;
 
 constexpr std::size_t kSpringDescribed = 2 * kIndex + 3 * kReal;

@@ -14,9 +14,10 @@ namespace vat {
 enum class InterfaceLaw : std::uint8_t {
   /// Repulsive spring and dashpot along the line between the particles, with Coulomb friction
   /// perpendicular to the line; see core/laws/friction.h.
-  penalty, lennard_jones,  ///< attractive layer; see core/laws/lennard_jones.h
-  sph,                     ///< solids contribute to the density and pressure of the liquid
-  projection,              ///< no overlap after a step; see core/contact/projection/projection.h
+  penalty,
+  lennard_jones,  ///< attractive layer; see core/laws/lennard_jones.h
+  sph,            ///< solids contribute to the density and pressure of the liquid
+  projection,     ///< no overlap after a step; see core/contact/projection/projection.h
 };
 
 template <>

@@ -23,7 +23,8 @@ inline constexpr std::array kNamesOf<IntegratorId>{"explicit_euler", "symplectic
 enum class StepControl : std::uint8_t {
   fixed,  ///< every step has the nominal length
   /// The step of the whole scene is halved as often as its fastest process requires.
-  adaptive, local,  ///< each particle has a separate step: nominal step / power of two
+  adaptive,
+  local,  ///< each particle has a separate step: nominal step / power of two
 };
 template <>
 inline constexpr std::array kNamesOf<StepControl>{"fixed", "adaptive", "local"};
