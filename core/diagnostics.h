@@ -18,10 +18,10 @@ struct BodyDiagnostics {
   Vec3 center_of_mass;    ///< [m]
   Vec3 linear_momentum;   ///< [kg m/s]
   Vec3 angular_momentum;  ///< angular momentum about the world origin [kg m^2/s]
-  /// Force of walls and other bodies [N]. Gravity, the central field and the forces of users are
-  /// excluded.
+  /// Force of walls and other bodies, without projected contacts [N]. Gravity, the central field
+  /// and the forces of users are excluded.
   Vec3 outer_force;
-  /// Torque about the centre of mass [N m] of `outer_force` and of viscosity.
+  /// Torque of `outer_force` and of the viscous forces, about the centre of mass [N m].
   Vec3 outer_torque;
   std::optional<Quat> orientation;       ///< only for rigid bodies
   std::optional<Vec3> angular_velocity;  ///< only for rigid bodies; world axes [rad/s]
@@ -47,7 +47,7 @@ struct Diagnostics {
   std::vector<BodyDiagnostics> bodies;
   Real kinetic_energy;  ///< all particles and rigid bodies [J]
   /// Sum over all particles of -m g.x and of the energy m Omega^2 |x - center|^2 / 2 of the central
-  /// field [J]. The value is 0 without gravity.
+  /// field [J]. The value is 0 if the force `gravity` is switched off.
   Real gravitational_energy;
   Real elastic_energy;                 ///< static springs, and cells with a bulk modulus [J]
   Real contact_energy;                 ///< dynamic connections (contacts) and walls [J]

@@ -19,12 +19,14 @@ struct Contact {
   Real stiffness;      ///< [N/m]
   Real damping;        ///< [N s/m]
   Real damping_ratio;  ///< for a coefficient of restitution; replaces `damping` if above 0
-  Real layer;          ///< width of the attracting part of a layer [m]; 0: a spring
+  /// width of the attractive range of an adhesive contact [m]; 0: no attraction (spring contact)
+  Real layer;
 };
 
-/// The laws of the contacts of a particle i with other particles. There are no contacts between
-/// particles of one rigid body, and between excluded pairs of a deformable body and their images.
-/// There are no contacts between liquid particles of one material, which interact by SPH.
+/// The laws of the contacts of a particle i with other particles. Two particles of one rigid body
+/// have no contact. An excluded pair of particles of a deformable body, or of their periodic
+/// images, has no contact either. There are no contacts between liquid particles of one material,
+/// which interact by SPH.
 class ContactRules {
  public:
   ContactRules(const Model& model, Index i)

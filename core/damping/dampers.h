@@ -14,22 +14,23 @@ struct ForceModel;
 
 /// The symmetric, negative semi-definite matrix D of all velocity-dependent forces at one
 /// configuration. A change w of the velocities changes the forces by D w. D excludes grabs, and
-/// contacts that exert no force. Friction has a constant drag coefficient during the solve, so that
-/// the solution loses energy and does not reverse. Friction may exceed mu F_n if the slip speed
-/// grows within half a step.
+/// contacts that exert no force. The drag coefficient of friction is constant during the solve, so
+/// that friction dissipates energy and does not reverse the slip. Friction may exceed mu F_n if the
+/// slip speed grows within half a step.
 class DampingMatrix {
  public:
   /// Collects the forces of the configuration at which `force_model` was last evaluated with
-  /// Scratch::keep_dampers. `viscosity` includes the viscosity and the settling drag of liquids.
+  /// Scratch::keep_dampers. If `viscosity` is true, D includes the viscosity and the settling drag
+  /// of liquids.
   void collect(const ForceModel& force_model, const Configuration& at, Real time, bool viscosity);
 
   /// Returns the rigid particles with nonzero rows of D, in ascending order.
   const std::vector<Index>& rigid_particles() const { return rigid_; }
 
-  /// Computes force = D w, by particle. In `w`, the entries of rigid particles are read only for
-  /// rigid_particles(). `spins` are the angular velocities of w, by rigid body. `torque` is the
-  /// torque of friction on rigid particles about their centres; it is written only if there is
-  /// friction.
+  /// Computes force = D w, by particle. Of the entries of rigid particles in `w`, only those of
+  /// rigid_particles() are used. `spins` are the angular velocities of w, by rigid body. `torque`
+  /// is the torque of friction on rigid particles about their centres; it is written only if there
+  /// is friction.
   void multiply(const ForceModel& force_model, const std::vector<Vec3>& w,
                 const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                 std::vector<Vec3>& torque);

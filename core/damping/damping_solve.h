@@ -48,9 +48,9 @@ struct DampingScratch {
   std::vector<DampingSums> sums;      ///< indexed by block
 };
 
-/// Returns an upper bound of the oscillations of springs, liquids and the contacts of the last
-/// evaluation. For each particle and rigid body, its own bound and the bounds of its contacts are
-/// added. The result is the maximum of these sums.
+/// Returns an upper bound of the frequencies and damping rates of springs, of liquids, and of the
+/// contacts of the last evaluation. For each particle and rigid body, its own bound and the bounds
+/// of its contacts are added. The result is the maximum of these sums.
 Oscillation find_bound(const ForceModel& force_model, const Configuration& at);
 
 /// Returns whether velocity Verlet must solve for the damping in a step of `dt` [s]. A solve is not
@@ -59,11 +59,11 @@ bool must_solve_damping(const Oscillation& bound, Real dt);
 
 /// Converts `forces` to the forces at the velocities v after the step: M (v - from) = dt (f + D (v
 /// - at)). The forces f were evaluated at `at`, with velocities close to v. `from` has the
-/// velocities before the forces act for `dt` [s]: half a step of velocity Verlet, or a whole step
-/// of symplectic Euler. The equation is linear in w = v - at, and is solved by conjugate gradients.
-/// D w is a sum of equal and opposite forces, so that momentum is conserved after any number of
-/// iterations. Requires the dampers of an evaluation with Scratch::keep_dampers. Rigid bodies must
-/// have the same motion in `at` and `from`.
+/// velocities before the forces act. `dt` is the duration of the action [s]: half a step for
+/// velocity Verlet, a whole step for symplectic Euler. The equation is linear in w = v - at, and is
+/// solved by conjugate gradients. D w is a sum of equal and opposite forces, so that momentum is
+/// conserved after any number of iterations. Requires the dampers of an evaluation with
+/// Scratch::keep_dampers. Rigid bodies must have the same motion in `at` and `from`.
 void solve_damping(const ForceModel& force_model, const Configuration& from,
                    const Configuration& at, Real time, Real dt, bool viscosity, Forces& forces,
                    DampingScratch& scratch);
@@ -71,8 +71,8 @@ void solve_damping(const ForceModel& force_model, const Configuration& from,
 /// Returns whether the viscosity of any liquid requires a solve in a step of `dt` [s].
 bool must_solve_viscosity(const Model& model, Real dt);
 
-/// Returns whether the own damping of any body requires a solve in a step of `dt` [s]. Own damping
-/// includes the drag of solids in liquids.
+/// Returns whether the damping of any body, without its contacts, requires a solve in a step of
+/// `dt` [s]. This damping includes the drag of solids in liquids.
 bool must_solve_own_damping(const Model& model, Real dt);
 
 }  // namespace vat

@@ -4,9 +4,9 @@
 
 namespace vat {
 
-/// The function U(r) = W(r, H) - b W(r, H') of the energy -A V_i V_j U of two cohesive particles at
-/// the distance r, with the attraction A [Pa] and the volumes V. W is Wendland's C4 kernel (1 -
-/// q)^6 (1 + 6q + 35/3 q^2) times 495/(32 pi H^3) in space and 9/(pi H^2) in the plane (H.
+/// Two cohesive particles at the distance r have the energy -A V_i V_j U(r), with the attraction A
+/// [Pa] and the volumes V_i and V_j. U(r) = W(r, H) - b W(r, H'). W is Wendland's C4 kernel (1
+/// - q)^6 (1 + 6q + 35/3 q^2) times 495/(32 pi H^3) in space and 9/(pi H^2) in the plane (H.
 /// Wendland, Adv. Comput. Math. 4 (1995) 389). The far part W(r, H) has the support radius H =
 /// kReach h, and the near part W(r, H') has H' = kCore h. Distant particles attract each other, and
 /// near particles repel each other. The factor b, about 1, is chosen so that particles on a lattice

@@ -15,9 +15,9 @@ namespace vat {
 
 namespace cell {
 
-/// Returns the other three corners of the face at the corner `c` that is perpendicular to `axis`,
-/// in their order along the boundary of the face. The order has the same orientation for all faces,
-/// seen from outside.
+/// For the face that contains the corner `c` and is perpendicular to `axis`: returns its other
+/// three corners, in their order along the boundary. The order has the same orientation for all
+/// faces, seen from outside.
 inline std::array<Index, 3> face_of(Index c, Index axis) {
   const Index i = Index{1} << (axis + 1) % 3;
   const Index j = Index{1} << (axis + 2) % 3;

@@ -7,9 +7,8 @@
 /// The adhesive layer of a body after [MM04], with the force of M. Mueller, S. Schirm, M. Teschner,
 /// B. Heidelberger, M. Gross, Computer Animation and Virtual Worlds 15 (2004) 159. Like a
 /// Lennard-Jones force, this force is repulsive below the distance l and attractive above l. The
-/// force is finite at distance 0, and decreases to 0 at the threshold h = l + a with slope 0. The
-/// slope at l is that of a spring with the stiffness k. With u = h - r and the width a of the
-/// layer:
+/// force is finite at distance 0, and decreases to 0 at the reach h = l + a with slope 0. The slope
+/// at l is that of a spring with the stiffness k. With u = h - r and the width a of the layer:
 ///
 ///   F(r) = k u^2 (u^2 - a^2) / (2 a^3).
 ///

@@ -34,7 +34,7 @@ constexpr ErrorRow kRows[] = {
     {ErrorKind::rate_limited, 1009, "rate_limited",
      "Send less often; try again after data.retry_after seconds."},
     {ErrorKind::storage_failed, 1010, "storage_failed",
-     "Nothing was changed; free space on the server's disk, or ask the operator, and try again."},
+     "Nothing was changed; delete files on the server's disk, or ask the operator, and try again."},
     {ErrorKind::not_recovered, 1011, "not_recovered",
      "Wait while the session is recovering; for a lost session, the server's log contains the "
      "cause."},

@@ -126,7 +126,8 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
   void async_shutdown(Done done) {
     WsByteStream::Tls* const tls = stream_->tls();
     if (tls == nullptr) return end_sending(std::move(done));
-    // Fails if the peer still sends data or has disconnected. The next step is the same.
+    // Fails if the peer still sends data or has disconnected. The next step does not depend on the
+    // result.
     tls->async_shutdown([this, self = get_shared(),
                          done = std::move(done)](boost::system::error_code) { end_sending(done); });
   }
@@ -151,7 +152,8 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
         });
   }
   /// Closes the socket. The library may have started another read. The system reports the end of a
-  /// stream to only one of two readers. The other reader would retain the socket indefinitely.
+  /// stream to only one of two readers. Without the close, the other read would never complete and
+  /// would keep the socket open.
   void end(boost::system::error_code error, const Done& done) {
     boost::system::error_code ignored;  // the connection has ended in either case
     get_raw_socket().close(ignored);

@@ -9,7 +9,7 @@ void sort_liquid(StepContext& context);
 
 /// Stage that computes the density by summation (Boldt eq. 10 with the kernel Poly6), and stores
 /// the neighbours. If a collapsed liquid has more than max_pairs() pairs, the stage sets
-/// too_many_pairs, and one density to NaN, so that the step fails.
+/// too_many_pairs to true and one density to NaN, so that the step fails.
 void compute_liquid_density(StepContext& context);
 
 /// Stage that sets the pressure to max(0, k (rho - rho_0)) (Boldt eq. 14). The summed density is
@@ -21,8 +21,8 @@ void compute_liquid_pressure(StepContext& context);
 struct LiquidTerms {
   bool pressure = true;
   bool viscosity = true;
-  /// Whether viscosity uses the volumes of the filled density (LiquidScratch::filled_density). At a
-  /// no-slip wall, the summed density does not include the liquid beyond the wall.
+  /// Whether viscosity uses the particle volumes m / LiquidScratch::filled_density. At a no-slip
+  /// wall, the summed density does not include the liquid beyond the wall.
   bool filled = false;
 };
 

@@ -43,9 +43,9 @@ class Complementarity {
   /// Solves the problem, starting from the present `x` >= 0 and its `excess`. `system.act(d)`
   /// followed by `system.find_product(product)` must compute product = A d. `system.add(share)`
   /// must add `share` times the effect of d to the total effect. `system.replace()` must replace
-  /// the total effect by the effect of d. The final x is not negative. The final total effect is
-  /// that of the change of x before negative x were set to 0. The reported mean includes this
-  /// difference.
+  /// the total effect by the effect of d. The final x is not negative. The final total effect does
+  /// not include the last change of negative x to 0. The reported mean residual
+  /// includes the effect of this change.
   template <class System>
   SolveReport solve(const SolveLimits& limits, TaskRunner* runner, System& system) {
     VAT_CHECK(excess.size() == x.size() && diagonal.size() == x.size() && scale.size() == x.size());
@@ -96,8 +96,8 @@ class Complementarity {
 
   void keep_start(TaskRunner* runner);
   void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
-  /// Sets negative x to 0, and the direction to the change of x since the start. Returns the mean
-  /// over all unknowns of the negative part of x times diagonal / scale.
+  /// Sets negative x to 0. Then sets direction_ to the change of x since the start of the solve.
+  /// Returns the mean over all unknowns of the negative part of x times diagonal / scale.
   Real clamp(TaskRunner* runner);
   /// Computes the excess at x from the product of A and the change of x since the start, and then
   /// the gradient and the residuals.

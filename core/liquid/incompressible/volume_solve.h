@@ -35,13 +35,13 @@ void recall_pressure(StepContext& context);
 /// fifth of the density tolerance. A removal of these fluctuations would cause noise in the
 /// pressure.
 ///
-/// The forces already include the impulses of the last step, so that only the difference is solved.
-/// The divergence tolerance is at most a quarter of the density tolerance, with this limit in the
-/// range 0.001 to 0.01.
+/// The forces already include the impulses of the last step. The solve therefore computes only the
+/// change of the impulses. The divergence tolerance is at most a quarter of the density tolerance,
+/// clamped to the range 0.001 to 0.01.
 void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
-/// Moves liquid particles at the end of a step, at `time` [s], until s exceeds 1 by at most the
-/// scene's density tolerance. Each iteration of Newton's method solves D_i(shift) = 1 - s_i for the
+/// Moves liquid particles at the end of a step, at `time` [s], until the mean excess of s over 1 is
+/// at most the density tolerance of the scene, and the greatest excess at most 36 times this value. Each iteration of Newton's method solves D_i(shift) = 1 - s_i for the
 /// shift of the positions. Sets the position report in State::volume.
 ///
 /// The shifts do not change velocities (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)

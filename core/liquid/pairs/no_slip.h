@@ -8,8 +8,9 @@ struct Model;
 struct StepContext;
 class Scratch;
 
-/// Stage that computes LiquidScratch::filled_density, the density with liquid at rest density
-/// beyond no-slip walls. The space behind two walls counts twice.
+/// Stage that computes LiquidScratch::filled_density, the density that a particle would have if
+/// liquid at rest density filled the space beyond no-slip walls. The space behind two walls counts
+/// twice.
 void fill_liquid_density(StepContext& context);
 
 /// Stage that adds the drag of no-slip walls, which is the viscous force of a half space of liquid

@@ -12,7 +12,8 @@
 
 namespace vat {
 
-/// A group of sources in the order of the cells of a grid: slot s of the grid is source first + s.
+/// A group of sources, which are particles or images, sorted by grid cell: slot s is source first +
+/// s.
 struct SourceGroup {
   const UniformGrid* grid = nullptr;
   Index first = 0;
@@ -31,8 +32,8 @@ struct SearchCoordinates {
 struct PairSearch {
   Real reach = 0;             ///< maximum distance of pairs [m]
   Index padding = 0;          ///< index of a source that adds nothing to sums
-  Index first_mirrored = 0;   ///< sources from here on are images in walls
-  std::size_t most_work = 0;  ///< maximum of the total of targets times candidates
+  Index first_mirrored = 0;   ///< sources with this index or a greater one are images in walls
+  std::size_t most_work = 0;  ///< upper limit of the sum over clusters of (targets × candidates)
   InstructionSet instructions = InstructionSet::baseline;
 };
 
@@ -42,8 +43,9 @@ struct PairSearch {
 class PairClusters {
  public:
   /// Finds the pairs of each target in `targets` with all sources of `groups`. The last group must
-  /// consist of images of liquid in walls. Returns false if the work exceeds search.most_work. Some
-  /// clusters then have no candidates; which clusters depends on the threads.
+  /// consist of images of liquid in walls. Returns false if the work exceeds search.most_work. In
+  /// this case, some clusters have no candidates. The selection of these clusters depends on the
+  /// thread schedule.
   bool build(const PairSearch& search, const SourceGroup& targets, const SearchCoordinates& places,
              std::span<const SourceGroup> groups, TaskRunner* runner);
 
@@ -90,7 +92,7 @@ class PairClusters {
     return static_cast<std::size_t>(beyond - clusters.begin());
   }
 
-  /// The clusters of those cells whose first slot is in one block of slots.
+  /// The clusters of one block of slots. A cell belongs to the block that contains its first slot.
   struct Chunk {
     std::vector<TargetCluster> clusters;
     std::vector<Index> candidates;

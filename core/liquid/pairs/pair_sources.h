@@ -15,7 +15,7 @@ namespace vat {
 struct CellSortedPoints;
 struct StepContext;
 
-/// The image of a particle by walls or periodicity.
+/// A mirror image of a particle in walls, or a periodic image.
 struct PairImage {
   Vec3 offset;                 ///< from the reflected position to the image [m]
   Index source;                ///< index of the particle
@@ -61,10 +61,10 @@ struct WeightFactors {
   WeightFactors() { liquid.fill(1); }
 };
 
-/// All sources of the sums over pairs of coupled liquids. The first sources are the liquid
-/// particles and then the solid particles, in the order of their cells. The next sources are the
-/// periodic images of solids and of liquid, and the images of solids and of liquid in walls. The
-/// last source has no effect and is used as padding.
+/// All sources of the pair sums of coupled liquids (solvers `tait` and `incompressible`). The first
+/// sources are the liquid particles and then the solid particles, in the order of their cells. The
+/// next sources are the periodic images of solids and of liquid, and the images of solids and of
+/// liquid in walls. The last source has no effect and is used as padding.
 class PairSources {
  public:
   /// Collects the sorted particles of the workspace, and the images of particles within `reach` [m]
@@ -78,8 +78,8 @@ class PairSources {
   void set_weights(const StepContext& context, const WeightFactors& factors);
 
   void make_room_for_motions();
-  /// Sets the motions of all sources: liquid(s) for liquid slots, solid(s) for solid slots, and
-  /// image(i, motion of its source) for each image i.
+  /// Sets the motion (pressure and velocity) of each source: the result of liquid(slot) for a
+  /// liquid slot, of solid(slot) for a solid slot, and of image(i, source_motion) for image i.
   template <class Liquid, class Solid, class Image>
   void set_motions(TaskRunner* runner, Liquid&& liquid, Solid&& solid, Image&& image) {
     make_room_for_motions();
@@ -118,8 +118,8 @@ class PairSources {
     }
   }
 
-  /// Sets the charges: the weight times charge(s) for a liquid slot s, and 0 for solids. Images
-  /// have the charges of their sources.
+  /// Sets the charges, which are weights times an arbitrary factor: charge(s) for liquid slot s, 0
+  /// for solids. Images have the charges of their sources.
   template <class Charge>
   void set_charges(TaskRunner* runner, Charge&& charge) {
     is_single_ ? charge_copies(runner, packed_places_, packed_charges_, charge)

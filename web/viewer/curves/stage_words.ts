@@ -108,6 +108,6 @@ export function profileInWords(
   const enough = seconds <= allowed;
   const verdict = enough
     ? 'so the speed is reached.'
-    : `so it runs ${(seconds / allowed).toPrecision(2)} times slower than set: fewer particles or a lower speed help.`;
+    : `so the simulation runs ${(seconds / allowed).toPrecision(2)} times slower than the set speed. Use fewer particles or a lower speed.`;
   return `A tick takes ${milliseconds(seconds)} of the ${milliseconds(allowed)} that it may take, ${verdict}${most}`;
 }

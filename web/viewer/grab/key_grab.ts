@@ -47,7 +47,7 @@ export class KeyGrab {
     keys.add({
       keys: ['escape', 'enter'],
       sign: 'Esc',
-      words: 'let it go',
+      words: 'release the body',
       act: () => this.letGo(),
       isEnabled: isHeld,
     });

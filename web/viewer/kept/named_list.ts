@@ -31,7 +31,7 @@ export class NamedList {
       id: `${id}-name`,
       maxLength: 48,
       placeholder: 'Name',
-      ariaLabel: `Name for it: ${title}`,
+      ariaLabel: `New name in “${title}”`,
       disabled: true,
     });
     this.keepButton = make('button', { id: `${id}-keep`, disabled: true }, 'Save');

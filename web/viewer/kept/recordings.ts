@@ -7,7 +7,7 @@ import { faultOfRecording, sendRecording } from './recording_file';
 /** Recordings: the session's as a file or a replay, and replays of files. */
 export class Recordings {
   private readonly exporter = makeButton('Download', () => void this.export());
-  private readonly watcher = makeButton('Watch it again', () => void this.openOwn());
+  private readonly watcher = makeButton('Replay this session', () => void this.openOwn());
   private readonly opener = makeButton('Open a recording', () => this.input.click());
   private readonly input = make('input', {
     type: 'file',

@@ -10,7 +10,7 @@ const kMostFaults = 3;
 const kAdvice: Readonly<Record<string, string>> = {
   disconnected: 'Try again once the page is connected.',
   internal_error: 'The server has failed. Nothing was changed. Inform the operator of the server.',
-  limit_reached: 'Request less, or remove something, and try again.',
+  limit_reached: 'Reduce the request, or remove bodies or saved items, and try again.',
   no_such_body: 'It may have been removed.',
   no_such_scene: 'Choose another one.',
   no_such_session: 'The session may have ended.',

@@ -50,7 +50,7 @@ const kCauses: Readonly<Record<GuardEvent['cause'], string>> = {
   non_finite: 'has a position or velocity that is not a number',
   outside_domain: 'left the domain',
   too_fast: 'moved too fast',
-  too_many_pairs: 'was crushed',
+  too_many_pairs: 'had too many neighbours',
 };
 
 /** Returns an event of the simulation's guard as text. */

@@ -115,6 +115,6 @@ export class ReplayBar {
     this.timeline.showDivergence(divergence?.position);
     if (!divergence) return;
     const at = formatSeconds((divergence.position - replay.begin) * tickSeconds);
-    words.textContent = `At ${at}, the replay differs from the recording: ${divergence.reason}. It is paused there. Play continues from the computed state, and the time line leads to all other positions.`;
+    words.textContent = `At ${at}, the replay differs from the recording: ${divergence.reason}. It is paused there. The Play button continues from the computed state. Use the time line to go to another position.`;
   }
 }

@@ -48,7 +48,7 @@ function absent({ isEnded, hasPicture }: State): string {
   const what = 'This is the last frame.';
   return isEnded
     ? `${what} You have left this session. “Come back” joins it again.`
-    : `${what} It continues when the server answers.`;
+    : `${what} The display continues when the server answers.`;
 }
 
 function playing({ speed, slow, factor }: State): string {
