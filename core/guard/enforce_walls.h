@@ -13,17 +13,17 @@ struct StepEnd {
   std::uint64_t step;  ///< nominal step that contains the step
 };
 
-/// Moves particles and bodies that a step moved beyond a wall of the vat back inside. Removes the
+/// Returns particles and bodies into the vat if a step has moved them beyond a wall. Removes the
 /// outward part of their velocity relative to the wall. The wall is hard, inelastic and
 /// frictionless, so that kinetic energy relative to the vat never increases.
 ///
 /// A free particle is moved onto the wall. A particle of a coupled liquid is reflected to the
 /// mirror image of its position. Its outward velocity is reversed if the liquid is weakly
-/// compressible. A rigid body is translated by its maximum depth. An impulse along the normal stops
-/// the depth-weighted mean point of the particles of the body beyond the wall. A body that has
-/// rotated too far to fit between two walls gets its orientation from `before`, and zero angular
-/// velocity. `before` is the configuration at the start of the step. Fixed particles and held
-/// bodies are not moved.
+/// compressible. A rigid body is translated by its maximum depth. The contact point is the depth-
+/// weighted mean position of its particles beyond the wall. An impulse sets the normal velocity of
+/// this point to zero. A body that has rotated too far to fit between two walls gets its
+/// orientation from `before`, and zero angular velocity. `before` is the configuration at the start
+/// of the step. Fixed particles and held bodies are not moved.
 ///
 /// Returns the number of particles and rigid bodies that were moved. If this number is 0, `now` is
 /// unchanged, except that positions and velocities of rigid particles may be updated from the

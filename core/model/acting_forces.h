@@ -8,8 +8,8 @@ struct Model;
 /// Returns whether any liquid of the model is viscous.
 bool has_viscosity(const Model& model);
 
-/// Returns whether the plan contains the stage "contacts", in which springs or layers exert contact
-/// forces between particles.
+/// Returns whether the plan contains the stage "contacts", in which penalties or Lennard-Jones
+/// layers exert contact forces between particles.
 bool has_contact_forces(const Model& model);
 
 /// Returns whether the plan contains the stage "walls".

@@ -122,8 +122,8 @@ struct SimulationImpl : SimulationContent {
   void wake_near();
   /// Updates `shown` if any body sleeps.
   void show();
-  /// Continues with the bodies that are awake in `islands`, from the configuration `now` of all
-  /// bodies.
+  /// Continues with the bodies for which `islands` has the value kAwake. `now` is the configuration
+  /// of all bodies.
   void step_others_than(std::vector<Index> islands, std::shared_ptr<const Model> whole,
                         Configuration now);
 

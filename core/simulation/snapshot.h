@@ -12,8 +12,8 @@ namespace vat {
 
 struct SimulationContent;
 
-/// Content of a simulation at one time, sufficient to continue bitwise equal. A snapshot is
-/// constant: copies share the content, and all threads may read it.
+/// State of a simulation at one time, from which the simulation continues with bitwise equal
+/// results. A snapshot is constant: copies share the content, and all threads may read it.
 class Snapshot {
  public:
   Snapshot(const Snapshot&);
@@ -28,7 +28,8 @@ class Snapshot {
   const Scene& scene() const;
   /// Returns bytes for Simulation::load(): scene, state and active commands. A particle needs 48
   /// bytes. Incompressible liquids need 8 more, velocity Verlet 24 more, and scenes with inflow,
-  /// outflow or melting 64 more bytes. If any body sleeps, the other bodies count twice.
+  /// outflow or melting 64 more bytes. If any body sleeps, the bytes of the awake bodies are stored
+  /// twice.
   std::vector<std::uint8_t> to_bytes() const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace vat {
 
-/// Derivative of the impulse of a spring by the velocities, as seen from one end [kg].
+/// Derivative of a spring's impulse on one of its ends with respect to the velocities [kg].
 struct SpringSlope {
   Vec3 direction;
   Real along;
@@ -37,8 +37,9 @@ class SpringSystem {
   SpringSystem(const Model& model, TaskRunner* runner, const IndexRange& particles,
                SpringSystemScratch& scratch);
 
-  /// Solves by conjugate gradients with the preconditioner M. The solve ends at `tolerance` of the
-  /// residual in the norm of M^-1, or after a limited number of iterations.
+  /// Solves by conjugate gradients with the preconditioner M. The solve ends when the M^-1 norm of
+  /// the residual is at most `tolerance` times its initial value, or after a limited number of
+  /// iterations.
   void solve(Real tolerance);
 
   /// Returns the number of passes over all springs of the body.

@@ -18,7 +18,7 @@ struct StepContext {
   const Model& model;
   const Controls& controls;
   Real time;           ///< [s]
-  std::uint64_t step;  ///< the present nominal step
+  std::uint64_t step;  ///< index of the current nominal step
   Configuration& configuration;
   Forces& forces;
   Scratch& work;

@@ -23,8 +23,8 @@ class LocalStepper {
   /// last step. If the forces of the state are not current, the levels are chosen again.
   void take_step(const ForceModel& force_model, State& state, Real time, Real dt,
                  const StepBounds& bounds, const GuardBounds& guard);
-  /// Returns the first particle or rigid body that was too fast for `guard` in a step of its level,
-  /// after a whole step of `dt` [s].
+  /// Returns the first particle or rigid body whose motion in a step of its own level exceeded the
+  /// bounds of `guard`. Must be called after a whole step of `dt` [s].
   std::optional<Fault> find_fast(const Model& model, const Configuration& at, Real dt,
                                  const GuardBounds& guard) const;
   /// Discards the list of connections. Must be called after any change of the state outside

@@ -57,15 +57,15 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_gauge(text, "vat_connections", "Open WebSockets.", now.connections);
   append_gauge(text, "vat_clients", "Connections that have joined a session.", now.clients);
   append_gauge(text, "vat_particles", "Particles of all sessions.", now.particles);
-  append_gauge(text, "vat_heap_bytes", "Memory in use, without what is free and not given back.",
+  append_gauge(text, "vat_heap_bytes", "Memory in use, without freed memory.",
                now.heap);
   append_counter(text, "vat_storage_failures_total",
-                 "How often something could not be written to the data folder.",
+                 "Failed writes to the data folder.",
                  now.storage.failures);
-  append_counter(text, "vat_checkpoints_total", "Checkpoints of sessions that were written.",
+  append_counter(text, "vat_checkpoints_total", "Written checkpoints of sessions.",
                  now.storage.checkpoints);
   append_head(text, "vat_checkpoint_seconds_total", "counter",
-              "Processor time that writing them took.");
+              "Processor time of the writing of checkpoints.");
   append_sample(text, "vat_checkpoint_seconds_total", "", now.storage.checkpoint_time.count());
 }
 

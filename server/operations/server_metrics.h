@@ -58,7 +58,8 @@ class ServerMetrics {
   /// Adds the number of encodings of one state.
   void add_frame_groups(std::size_t count);
   void add_sent_frames(std::size_t count, std::size_t bytes_each);
-  /// Adds due frames of clients that were not ready or not served.
+  /// Adds frames that were due but not sent, because the client's frame window was full or the
+  /// limit of encodings was reached.
   void add_missed_frames(std::size_t count);
   /// Counts a refusal because of a limit. `limit` is the name in server.info's `limits`.
   void add_refusal(std::string_view limit);

@@ -34,7 +34,8 @@ class SessionInbox {
     refused      ///< the inbox is closed; the item is unchanged
   };
   Added add(Item& item);
-  /// Removes and returns the first item. If there is no item, the next added item needs a new turn.
+  /// Removes and returns the first item. If the queue is empty, the next add() returns
+  /// Added::first, and its caller must schedule a turn of the strand.
   std::optional<Item> take();
   /// Closes the inbox and returns the remaining items. A closed inbox refuses new items.
   std::deque<Item> close();

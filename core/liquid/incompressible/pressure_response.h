@@ -41,8 +41,8 @@ struct ResponseScratch {
 /// motions of the workspace's PairSources.
 class PressureResponse {
  public:
-  /// `at` must have the positions of the pairs and densities of the workspace. If `solids_move` is
-  /// false, solids are fixed.
+  /// The positions of `at` must be those for which the pairs and densities of the workspace were
+  /// computed. If `solids_move` is false, solids are fixed.
   PressureResponse(const ForceModel& force_model, Configuration& at, ResponseScratch& scratch,
                    bool solids_move);
 

@@ -41,8 +41,9 @@ void recall_pressure(StepContext& context);
 void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
 /// Moves liquid particles at the end of a step, at `time` [s], until the mean excess of s over 1 is
-/// at most the density tolerance of the scene, and the greatest excess at most 36 times this value. Each iteration of Newton's method solves D_i(shift) = 1 - s_i for the
-/// shift of the positions. Sets the position report in State::volume.
+/// at most the density tolerance of the scene, and the greatest excess at most 36 times this value.
+/// Each iteration of Newton's method solves D_i(shift) = 1 - s_i for the shift of the positions.
+/// Sets the position report in State::volume.
 ///
 /// The shifts do not change velocities (as in X. Y. Hu, N. A. Adams, J. Comput. Phys. 227 (2007)
 /// 264), so that excess density adds no kinetic energy. Bodies that overlap initially therefore

@@ -17,7 +17,7 @@ namespace vat::HWY_NAMESPACE {
 namespace {
 
 /// Number of terms per sum. Without vectors, several terms represent the lanes of a vector of 16
-/// bytes, so that the sums are bitwise equal.
+/// bytes, so that the sums are bitwise equal to those of a 16-byte vector.
 template <class T>
 inline constexpr std::size_t kTerms = Simd<T>::kCount == 1 ? 16 / sizeof(T) : 1;
 
@@ -39,8 +39,8 @@ HWY_INLINE Real total(const Term* terms, std::size_t sum) {
   }
 }
 
-/// Writes the sums over the candidates of the cluster from index `first` on to `sums`. `first` must
-/// be a multiple of the number of lanes.
+/// Sums over the candidates of the cluster from index `first`. Writes the result to `sums`. `first`
+/// must be a multiple of the number of lanes.
 template <class T, class Term>
 void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile, Real* sums,
                  std::size_t first = 0) {

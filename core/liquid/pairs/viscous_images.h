@@ -15,8 +15,9 @@ struct ForceModel;
 /// that the velocity midway is zero (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997)
 /// 214, sec. 3.5). At a slip wall, an image has the mirrored velocity, so that the viscous force
 /// resists compression against the wall. The force is the liquid's viscous force without the terms
-/// that couple two axes. These terms cancel between the images on both sides. Without the terms,
-/// the force is symmetric in the two particles and never adds energy.
+/// that couple two axes. The contributions of the images on opposite sides of a particle to these
+/// terms cancel. Without the terms, the force is symmetric in the two particles and never adds
+/// energy.
 ///
 /// Slip walls have viscous forces only if a liquid's viscosity exceeds its artificial viscosity,
 /// whose purpose is the damping of sound.

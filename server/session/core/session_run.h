@@ -23,8 +23,8 @@ class SessionRun {
   /// Reserves the resources of another simulation. Returns the limit that would be exceeded, if
   /// any.
   std::optional<LimitExcess> admit(const Simulation& next);
-  /// Reserves the greater resources of both simulations. Returns the limit that would be exceeded,
-  /// if any.
+  /// Reserves, for each resource, the maximum of both simulations. Returns the limit that would be
+  /// exceeded, if any.
   std::optional<LimitExcess> admit(const Simulation& next, const Simulation& as_loaded);
   /// Reserves the resources of the changed simulation, and at least the resources of the reset
   /// state.

@@ -84,7 +84,7 @@ export class BodyEdits {
       return;
     }
     this.edits.add({
-      words: `made ${name} of ${material}`,
+      words: `changed the material of ${name} to ${material}`,
       undo: () => swap(before),
       redo: () => swap(after),
     });

@@ -58,7 +58,7 @@ export class Inspector {
       ['Material', body.material],
       ...(this.known ?? []),
       ['Particles', formatCount(sample.particles)],
-      ['Place', `${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)} m`],
+      ['Position', `${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)} m`],
       ['Speed', this.speed === undefined ? '–' : `${this.speed.toFixed(2)} m/s`],
       ['Radius', `${(1000 * sample.radius).toFixed(1)} mm`],
     ]);

@@ -82,7 +82,7 @@ export class ViewOptions {
 
   private showDelay(): void {
     const { delaySeconds } = this.view;
-    const text = `Shown with a delay of ${formatMilliseconds(delaySeconds)}, for even motion.`;
+    const text = `Shown with a delay of ${formatMilliseconds(delaySeconds)}, for smooth motion.`;
     write(this.delay, delaySeconds > 0 ? text : undefined);
   }
 

@@ -81,6 +81,6 @@ function changeInWords(
   if (before === undefined || after === undefined || before === after) return undefined;
   if (after === 'viewer')
     return 'You are a viewer now. To change the scene, ask for control under People.';
-  if (before === 'viewer') return 'You are a controller now.';
-  return after === 'owner' ? 'You are the owner of this session now.' : undefined;
+  if (after === 'owner') return 'You are the owner of this session now.';
+  return before === 'viewer' ? 'You are a controller now.' : undefined;
 }

@@ -77,7 +77,7 @@ void run_tait_held(Sheet& sheet) {
   // The position of the ball in the lattice changes the result by one percent. The mean over
   // positions is compared.
   const int places = sheet.quick() ? 2 : 8;
-  Row row{.metric = "buoyant force / (rho g V), mean of " + std::to_string(places) + " places",
+  Row row{.metric = "buoyant force / (rho g V), mean of " + std::to_string(places) + " positions",
           .reference = 1,
           .tolerance = within(0.015, kTaitAsked)};
   for (int i = 1; i <= places; ++i) {

@@ -101,7 +101,7 @@ void check_dam_break(Sheet& sheet, int layers) {
   const bool fine = layers >= 40;
   const std::string coarse =
       "the viscosity that stabilises the method slows the front at low resolution";
-  sheet.add("RMS error of the front, experiment 0.175 later" + of, 0,
+  sheet.add("RMS error of the front, experiment delayed by 0.175" + of, 0,
             front_error(seen.front, 0.175), fine ? target : reported(coarse), run);
   sheet.add("RMS error of the front, best delay up to 0.35" + of, 0, best_front_error(seen.front),
             target, run);

@@ -130,7 +130,7 @@ void run_interpolation(Sheet& sheet) {
       errors.push_back(std::abs(row.measured / sum - 1));
       sheet.add(row);
     }
-    sheet.add({.metric = std::string("order of convergence of the wave over the lattice sum, "
+    sheet.add({.metric = std::string("order of convergence of the ratio wave / lattice sum, "
                                      "H/dx = ") +
                          reach,
                .reference = 2,

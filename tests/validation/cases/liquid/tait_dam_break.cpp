@@ -130,7 +130,7 @@ void check_tank(Sheet& sheet, Real spacing) {
   Run run = sheet.start(scene);
   const std::vector<Real> errors = height_errors(run, gauges, spacing);
   for (std::size_t i = 0; i < gauges.size(); ++i) {
-    sheet.add(std::string("mean error of the height over its maximum, ") + gauges[i].name + of,
+    sheet.add(std::string("mean error of the height / maximum height, ") + gauges[i].name + of,
               0.06, errors[i], at_most(kTaitDamAsked), run);
   }
 }

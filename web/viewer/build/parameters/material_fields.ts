@@ -21,7 +21,7 @@ const kFields: readonly MaterialField[] = [
     max: 1e12,
   },
   { path: ['liquid', 'viscosity'], label: 'Viscosity', unit: 'Pa s', min: 0, max: 1e9 },
-  { path: ['liquid', 'surface_tension'], label: 'Surface tension', unit: 'N/m', min: 0, max: 1e9 },
+  { path: ['liquid', 'surface_tension'], label: 'Surface tension', unit: 'N/m', min: 0, max: 1e6 },
   ...(['structural', 'shear', 'bend'] as const).flatMap((kind) => [
     {
       path: ['springs', kind, 'stiffness'],
@@ -39,7 +39,7 @@ const kFields: readonly MaterialField[] = [
     },
   ]),
   { path: ['bulk_modulus'], label: 'Bulk modulus', unit: 'Pa', min: 0, max: 1e12 },
-  { path: ['tearing_strain'], label: 'Tearing strain', unit: '', min: 1e-6, max: 1e6 },
+  { path: ['tearing_strain'], label: 'Tearing strain', unit: '', min: 1e-6, max: 1000 },
 ];
 
 /** Returns the constants that this material has. */
