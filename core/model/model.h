@@ -53,7 +53,7 @@ struct LiquidModel {
   Real support_radius;
   Real rest_density;
   Real stiffness;
-  Real pressure_share;  ///< factor of the gas pressure force; 1/2 in (Boldt eq. 14)
+  Real pressure_share;  ///< factor of the gas pressure force; 1/2 in the article
   Real viscosity;
   Real surface_tension;  ///< [N/m]
   Poly6 density_kernel;
