@@ -22,8 +22,8 @@ struct Sleepers {
   RestingBodies resting;               ///< only the sleeping bodies
 };
 
-/// Puts each still body (see is_still()) to sleep as a separate island, if all other bodies sleep.
-/// Otherwise, still bodies are awake.
+/// If all bodies that are not still sleep (see is_still()), puts each still body to sleep as a
+/// separate island. Otherwise, still bodies are awake.
 void settle_still_bodies(const Model& model, const Configuration& at, std::vector<Index>& islands);
 
 /// Returns the model of the awake bodies.

@@ -48,7 +48,7 @@ class WsEndpoint {
   WsEndpoint(const WsEndpoint&) = delete;
   WsEndpoint& operator=(const WsEndpoint&) = delete;
 
-  /// Throws like listen() if another program listens on the port. Endpoints that share the port do
+  /// Throws like listen() if another program listens on the port. listen() with `shares_port` does
   /// not detect another program.
   void check_free(std::uint16_t port);
   /// Listens on the port (0: any free port). If `shares_port`, other endpoints can listen on the

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "core/simulation/simulation.h"
 #include "protocol/scene/scene_json.h"
 #include "server/history/recording.h"
@@ -50,6 +52,19 @@ TEST_F(VatReplay, ComparesEveryStateAndSucceeds) {
   EXPECT_THAT(result.out, HasSubstr("position 10, tick 10, hash "));
   EXPECT_THAT(result.out, HasSubstr("10 ticks, 2 entries, 2 hashes the same, in "));
   EXPECT_THAT(result.err, IsEmpty());
+}
+
+// Recordings of earlier versions, made with the baseline instruction set.
+TEST_F(VatReplay, RepeatsRecordingsOfEarlierVersions) {
+  int count = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(VAT_SOURCE_DIR "/tests/golden/recordings")) {
+    const ProgramResult result = run_vat({"replay", "--verify", file.path().string()});
+    EXPECT_EQ(result.exit_code, 0) << file.path() << ": " << result.err;
+    EXPECT_THAT(result.out, HasSubstr(" hashes the same, in "));
+    ++count;
+  }
+  EXPECT_GE(count, 1);
 }
 
 TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {

@@ -60,16 +60,16 @@ struct PositionGrid {
     return {origin.x() + unit * p.x, origin.y() + unit * p.y, origin.z() + unit * p.z};
   }
 };
-/// Coefficients of a source for the viscosity of a pair of different liquids: mu share / (own mu +
-/// resistance), with the viscosity mu of the target.
+/// Coefficients of a source. The viscosity of a pair of different liquids is share * mu / (own * mu
+/// + resistance), with the viscosity mu of the target.
 struct PairViscosity {
   Real share;
   Real own;
   Real resistance;
 };
 
-/// A cluster of targets: particles of one cell, with the sources [begin, end). The candidates are
-/// all sources that may be within a support radius of a target, followed by padding.
+/// A cluster of targets: the particles of one cell that are the sources [begin, end). The
+/// candidates are all sources that may be within a support radius of a target, followed by padding.
 struct TargetCluster {
   Vec3 center;  ///< centre of the box of the targets [m]
   Index begin = 0;
@@ -114,8 +114,8 @@ struct PairInputs {
 /// weight of a source, p is the pressure, and v = v_i - v_j is the relative velocity. x is the
 /// vector from source to target in units of the support radius, and q = |x|. w(q) is the kernel
 /// divided by its scale. g(q) is w'(q) / q divided by a constant factor; see
-/// SmoothingKernel::slope_scale(). Sources beyond the support radius add 0. As a source, a target
-/// adds 0 to its own terms with the factor x.
+/// SmoothingKernel::slope_scale(). Sources beyond the support radius add 0. A target is also one of
+/// its own candidates (j = i). Its terms with the factor x are then 0.
 struct PairSums {
   using Function = void (*)(const PairInputs&, std::span<const TargetCluster>, Real* sums);
   /// The sum_j a_j w; one number for each target.
@@ -168,9 +168,9 @@ struct CullBox {
   float reach;
 };
 
-/// A function that writes the sources near `box` in the slots [begin, end) to `found` from index
-/// `count` on. The function returns the new count. `found` must have space for all slots, plus
-/// lane_count() elements.
+/// A function that searches the slots [begin, end) for sources near `box`. It writes their indices
+/// to `found`, starting at index `count`. The function returns the new count. `found` must have
+/// space for all slots, plus lane_count() elements.
 using CullFunction = std::size_t (*)(const CullSlots& slots, Index begin, Index end,
                                      const CullBox& box, Index* found, std::size_t count);
 CullFunction cull_function(InstructionSet set);

@@ -40,8 +40,8 @@ class Database {
   /// Uses a write-ahead log, which survives a crash of the process at any moment. Only move_log()
   /// copies the log into the database file.
   void use_log();
-  /// Runs a checkpoint of SQLite: copies the part of the write-ahead log that no reader uses into
-  /// the database file. If `wait` is true, blocks writers and restarts the log from its beginning.
+  /// Runs an SQLite checkpoint: copies log pages into the database file, except pages that a reader
+  /// still needs. If `wait` is true, blocks writers and restarts the log from its beginning.
   /// Returns the size of the log [bytes].
   std::size_t move_log(bool wait);
 

@@ -56,6 +56,6 @@ export class Kept {
     this.note.hidden = storage !== 'memory';
     this.recordings.showServer(storage !== 'memory');
     this.note.textContent =
-      'This server has no data folder. All saves and recordings are lost when the server ends. Download important items.';
+      'This server has no data folder. All saved states and scenes are lost when the server ends.';
   }
 }

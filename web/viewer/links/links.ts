@@ -106,7 +106,7 @@ export class Links {
       ...(settings.contacts && newest
         ? [
             contacts === 0
-              ? 'There are no contacts. Liquids act on bodies by pressure, without contacts.'
+              ? 'There are no contacts. In most scenes, liquids act on bodies by pressure, without contacts.'
               : `Contacts: red for the largest forces, up to ${formatQuantity(force)} N.`,
           ]
         : []),
