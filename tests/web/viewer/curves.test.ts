@@ -62,7 +62,7 @@ describe('what ticks are spent on', () => {
     expect(profileInWords(profile, 0.02, 1)).toBe(
       'A tick takes 10 ms of the 20 ms that it may take, so the speed is reached. The largest part is finding neighbours: 90 %.',
     );
-    expect(profileInWords(profile, 0.02, 4)).toContain('runs 2.0 times slower than set');
+    expect(profileInWords(profile, 0.02, 4)).toContain('runs 2.0 times slower than the set speed');
   });
 });
 
