@@ -167,7 +167,7 @@ it('tells place, density and mass of the particle that is clicked', async () => 
   const [, name, particle] = /^(.*) · particle (\d+)/.exec(text)!;
   const { bodies: there } = await observer.request('state.query', { bodies: [name!] });
   const place = there[0]!.positions[Number(particle)]!;
-  const [x, y, z] = /Place([-\d.]+), ([-\d.]+), ([-\d.]+) m/.exec(text)!.slice(1).map(Number);
+  const [x, y, z] = /Position([-\d.]+), ([-\d.]+), ([-\d.]+) m/.exec(text)!.slice(1).map(Number);
   expect(Math.hypot(x! - place[0], y! - place[1], z! - place[2])).toBeLessThan(0.005);
   const { bodies, materials } = await visits.scene();
   const { shape, material } = bodies.find((one) => one.name === name)!;

@@ -65,7 +65,7 @@ it('says where a replay differs from its recording, and how to go on', async () 
   await page.page.focus('#replay-position');
   await page.page.keyboard.press('End');
   await says(page, 'replay-words', 'the replay differs from the recording');
-  await says(page, 'replay-words', 'the time line leads to all other positions');
+  await says(page, 'replay-words', 'Use the time line to go to another position');
   expect(await page.page.isVisible('#replay-mark')).toBe(true);
   await page.page.keyboard.press('Home');
   await page.until('#replay-words[data-diverged="false"]');
