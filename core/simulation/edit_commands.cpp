@@ -126,7 +126,8 @@ Status HostInterface::move_body(BodyId id, const BodyPlacement& placement) {
     return Error{"no_particles", "/body", "the body has no particles at present"};
   }
   if (body.sample && !body.sample->in_nozzles.empty()) {
-    return Error{"not_allowed", "/body", "some of the body is in its nozzle; close that first"};
+    return Error{"not_allowed", "/body",
+                 "a part of the body is in its nozzle; close the nozzle first"};
   }
   const Scene& scene = impl_->all().scene;
   Status status = check_placement(placement, body, scene.dimensions);

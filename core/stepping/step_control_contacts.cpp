@@ -150,7 +150,7 @@ Real allowed_step(const Numerics& numerics, const ContactPrediction& prediction,
   const Real share = std::min(Real{1}, amplitude / (kFullAmplitude * prediction.threshold));
   const Real resolving = contact_phase(numerics) / (rate * std::sqrt(share));
   const Real step = std::min(safe_step(numerics, all), resolving);
-  // Local levels hold for the whole step, at whatever time in it the contact begins.
+  // Local levels are constant during a step, so that contacts may begin at any time in the step.
   return numerics.control == StepControl::local ? step : std::max(prediction.time, step);
 }
 

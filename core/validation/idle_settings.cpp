@@ -177,7 +177,7 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
     warn("/settling", "no body is liquid", warnings);
   }
   if (scene.sleeping && scene.vat && moves_walls(*scene.vat, 0)) {
-    warn("/sleeping", "nothing sleeps in a vat that moves", warnings);
+    warn("/sleeping", "bodies do not sleep in a moving vat", warnings);
   }
   warn_of_solver(scene, warnings);
   warn_of_tolerance(scene.numerics, warnings);

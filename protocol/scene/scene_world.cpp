@@ -45,7 +45,7 @@ void mark_axis(const Json& value, const std::string& path, std::array<bool, 3>& 
   }
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     if (value.get_ref<const std::string&>() != kAxisNames[axis]) continue;
-    if (axes[axis]) add_error(errors, "duplicate", path, "must not be an axis that came before");
+    if (axes[axis]) add_error(errors, "duplicate", path, "must not repeat an earlier axis");
     axes[axis] = true;
     return;
   }

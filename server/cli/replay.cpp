@@ -115,23 +115,21 @@ int replay(const ReplayOptions& options) {
 
 void add_replay_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "replay",
-      "Run a recording of a session again, and compare its states with the recorded ones");
+      "replay", "Replay a recording of a session, and compare its states with the recorded states");
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("file", options->file, "Recording, in .vatrec")
       ->required()
       ->check(CLI::ExistingFile);
   command->add_flag("--verify", options->verify,
-                    "Compare all states that it holds too, and print hashes on the way");
+                    "Also compare all stored states, and print the hash of each tick");
   command
       ->add_option("--seeks", options->seeks,
-                   "Measure how long it takes to go to so many random positions, instead")
+                   "Measure the time of this number of seeks to random positions instead")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
   command->footer(
-      "Exit codes: 0 played to its end, 1 not a recording, or one that leads elsewhere: the tick "
-      "is "
-      "told; 2 wrong usage.");
+      "Exit codes: 0 replayed to the end, 1 not a recording, or a state that differs (its tick is "
+      "printed), 2 wrong usage.");
   command->callback([options, &exit_code] { exit_code = replay(*options); });
 }
 

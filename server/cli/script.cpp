@@ -17,12 +17,12 @@ namespace vat {
 
 namespace {
 
-constexpr const char* kScriptFooter = R"(A script is a file of JSON lines; protocol/SCRIPTS.md tells
-what they can say, and tests/protocol/scripts has examples. Without --server each script is played
-against a server of its own on a free port.
+constexpr const char* kScriptFooter = R"(A script is a file of JSON lines. protocol/SCRIPTS.md
+describes the format, and tests/protocol/scripts has examples. Without --server, each script is
+played against a separate server on a free port.
 
-Exit codes: 0 every line was met, 1 one was not, or there is no server, 2 wrong usage, or a mistake
-in a script.)";
+Exit codes: 0 all lines succeeded, 1 a line failed or there is no server, 2 wrong usage or an
+invalid script.)";
 
 constexpr double kMaxPatience = 86'400;  // [s] a day
 
@@ -53,7 +53,7 @@ int play(const std::string& path, const script::PlaySettings& settings, bool& wa
     return kExitOk;
   } catch (const script::NeedsOwnServer& reason) {
     was_played = false;
-    std::cout << path << ": passed over: it " << reason.what() << std::endl;
+    std::cout << path << ": skipped: it " << reason.what() << std::endl;
     return kExitOk;
   } catch (const script::ScriptError& mistake) {
     std::cerr << path << ": a mistake in the script\n" << mistake.what() << '\n';
@@ -64,7 +64,7 @@ int play(const std::string& path, const script::PlaySettings& settings, bool& wa
   }
 }
 
-/// Whether the options that tell whom to trust have something to tell.
+/// Returns false if an option for trusted certificates is given for a server without TLS.
 bool is_trust_of_use(const script::PlaySettings& settings) {
   const bool is_given = !settings.trust.authority_file.empty() || settings.trust.is_unchecked;
   return !is_given || !settings.server || settings.server->is_secure;
@@ -75,7 +75,7 @@ int play_all(ScriptOptions& options) {
   settings.patience = std::chrono::milliseconds(static_cast<std::int64_t>(options.patience * 1000));
   if (!options.server.empty()) settings.server = script::read_websocket_url(options.server);
   if (!is_trust_of_use(settings)) {
-    std::cerr << "--ca and --insecure are of servers with TLS, which are at wss://\n";
+    std::cerr << "--ca and --insecure apply to servers with TLS, at wss://\n";
     return kExitUsage;
   }
   settings.program = "/proc/self/exe";
@@ -89,7 +89,7 @@ int play_all(ScriptOptions& options) {
     any_was_played = any_was_played || was_played;
   }
   if (any_was_played) return exit_code;
-  std::cerr << "no script can be played against a server that runs already\n";
+  std::cerr << "none of the scripts can be played against a running server\n";
   return kExitUsage;
 }
 
@@ -101,32 +101,32 @@ void add_script_options(CLI::App& command, ScriptOptions& options) {
           "Address of a running server: ws://HOST[:PORT][/PATH], by default port 80, /ws; or "
           "wss:// over TLS, by default port 443")
       ->check(CLI::Validator(check_url, "URL"));
-  CLI::Option* authorities =
-      command
-          .add_option("--ca", options.play.trust.authority_file,
-                      "Certificates to trust in place of the system's, in PEM: of authorities, or "
-                      "the server's own")
-          ->check(CLI::ExistingFile);
+  CLI::Option* authorities = command
+                                 .add_option("--ca", options.play.trust.authority_file,
+                                             "Trusted certificates in PEM, in place of the "
+                                             "system's: of authorities or of the server")
+                                 ->check(CLI::ExistingFile);
   command
       .add_flag("--insecure", options.play.trust.is_unchecked,
-                "Do not check whose certificate a server with TLS shows: whoever sits between can "
-                "read and change all")
+                "Do not verify the certificate of a server with TLS; a third party can then read "
+                "and change all messages")
       ->excludes(authorities);
   command
       .add_option("--scene", options.scene,
-                  "The first session's of a server that is started. " + std::string(kSceneHelp))
+                  "Scene of the first session of a started server. " + std::string(kSceneHelp))
       ->capture_default_str();
-  command.add_option("--scenes", options.scenes_folder, "Folder of such a server's catalogue");
-  command.add_option("--patience", options.patience, "How long a line waits [s]")
+  command.add_option("--scenes", options.scenes_folder,
+                     "Folder of the scene catalogue of a started server");
+  command.add_option("--patience", options.patience, "Time limit of a line [s]")
       ->check(real_in(0, kMaxPatience))
       ->capture_default_str();
   command.add_option("--set", options.play.captures,
-                     "NAME TEXT: what the scripts' \"$NAME\" stands for");
+                     "NAME TEXT: value of \"$NAME\" in the scripts");
   command.add_option("--heading", options.play.heading,
-                     "Play what a Markdown document shows under this heading");
+                     "Play the script below this heading of a Markdown document");
   command
       .add_option("--transcript", options.play.transcript_folder,
-                  "Folder for what is sent and received, a file for each script")
+                  "Folder for the sent and received messages, one file per script")
       ->envname("VAT_TRANSCRIPT");
 }
 

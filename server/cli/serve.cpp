@@ -51,12 +51,13 @@ constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG",
                                                 "VAT_KILLS"};
 
 constexpr const char* kServeFooter =
-    R"(Every setting can also be a variable of the environment (VAT_MAX_CONNECTIONS for
---max-connections) or a member of the configuration file ("max_connections"): the file counts least,
-options count most.
+    R"(Every setting can also be an environment variable (VAT_MAX_CONNECTIONS for --max-connections)
+or a member of the configuration file ("max_connections"). Variables override the file, and options
+override both.
 
-Prints one line with its URL when it is ready; all else goes to standard error. SIGINT and SIGTERM
-end it cleanly, SIGTERM after --drain-seconds for those who are connected, a second one at once.
+When the server is ready, it prints one line with its URL. All other output goes to standard error.
+SIGINT ends the server cleanly. SIGTERM also does, after clients had --drain-seconds to leave. A
+second signal ends the server immediately.
 
 Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder, data
 that cannot be used or port in use, 2 wrong usage, or a variable with a bad value.)";
@@ -116,8 +117,8 @@ void raise_file_limit(std::size_t connections) {
   const std::size_t allowed = raise_open_files(connections + kOtherFiles);
   if (allowed >= connections + kOtherFiles) return;
   spdlog::warn(
-      "the system allows {} open files (ulimit -n): too few for {} connections, and those beyond "
-      "about {} will be refused",
+      "the system allows {} open files (ulimit -n), too few for {} connections: the server will "
+      "reject connections beyond about {}",
       allowed, connections, allowed - std::min(allowed, kOtherFiles));
 }
 
@@ -171,7 +172,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   }
   spdlog::info("instruction set: {}", to_string(settings.instructions));
   if (options.data == "none") {
-    spdlog::info("sessions are in memory alone (--data FOLDER keeps them)");
+    spdlog::info("sessions exist in memory only (--data FOLDER stores them)");
   } else {
     settings.data_folder = options.data;
   }
@@ -249,7 +250,7 @@ void add_serve_options(CLI::App& command, CommandLine& line) {
       ->type_name("FILE")
       ->envname("VAT_CONFIG");
   command.add_flag("--print-config", line.print_config,
-                   "Print the settings in force and where each comes from, and end");
+                   "Print all settings with their values and sources, and exit");
   for (const Setting& setting : line.table) add_setting(command, setting, line.options);
 }
 
@@ -284,17 +285,19 @@ int run(CommandLine& line) {
   }
   apply_options(line.table, line.options, sources);
   if (line.settings.tls_certificate.empty() != line.settings.tls_key.empty()) {
-    std::cerr << "tls_certificate and tls_key: either needs the other\n";
+    std::cerr << "tls_certificate and tls_key must be set together\n";
     return kExitUsage;
   }
   const std::vector<std::string> unknown = unknown_variables(line.table, variables);
   if (line.print_config) {
-    for (const std::string& one : unknown) std::cerr << "a variable is no setting: " << one << '\n';
+    for (const std::string& one : unknown)
+      std::cerr << "an environment variable is not a setting: " << one << '\n';
     std::cout << describe(line.table, sources).dump(2) << '\n';
     return kExitOk;
   }
   start_log(line.settings.log_level, line.settings.log_format == "json");
-  for (const std::string& one : unknown) spdlog::warn("a variable is no setting: {}", one);
+  for (const std::string& one : unknown)
+    spdlog::warn("an environment variable is not a setting: {}", one);
   return load_and_serve(line.settings);
 }
 

@@ -56,7 +56,7 @@ Result<ServeAccess> serve_access(const ServeSettings& settings) {
 void tell_access(const ServeSettings& settings, const ServeAccess& access, const std::string& url) {
   if (access.settings.mode == AccessMode::open) {
     if (is_loopback(settings.host)) return;
-    spdlog::warn("OPEN ACCESS on {}: whoever can reach this address controls the server",
+    spdlog::warn("OPEN ACCESS on {}: every client that reaches this address can control the server",
                  settings.host);
     return;
   }

@@ -196,7 +196,7 @@ void SessionDirectory::end_expired_sessions(SteadyClock::time_point now) {
   }
   for (const SessionNumber number : expired) {
     if (forget_stored(number)) continue;
-    close_session(number, Session::End::closed, "nobody was in it for too long", {});
+    close_session(number, Session::End::closed, "the session had no participant for too long", {});
   }
 }
 

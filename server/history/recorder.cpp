@@ -15,7 +15,7 @@ StoredSession find_session(SessionStore& sessions, std::uint64_t number) {
   for (StoredSession& session : sessions.sessions()) {
     if (session.number == number) return std::move(session);
   }
-  throw StorageError(StorageError::Kind::corrupt, "the session is not kept any more");
+  throw StorageError(StorageError::Kind::corrupt, "the session is no longer stored");
 }
 
 std::vector<LogEntry> read_log(SessionStore& sessions, std::uint64_t number) {

@@ -115,10 +115,10 @@ RpcError held_by_other(std::uint64_t participant, const std::string& name) {
 }
 
 RpcError storage_failed(StorageError::Kind reason) {
-  const char* message = reason == StorageError::Kind::full      ? "the server's disk is full"
-                        : reason == StorageError::Kind::corrupt ? "what was saved is damaged"
-                                                                : "the server cannot write what "
-                                                                  "it must keep";
+  const char* message = reason == StorageError::Kind::full ? "the server's disk is full"
+                        : reason == StorageError::Kind::corrupt
+                            ? "the saved data is damaged"
+                            : "the server cannot write its data";
   return {ErrorKind::storage_failed, message};
 }
 

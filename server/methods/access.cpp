@@ -19,7 +19,7 @@ ServerAction read_access_ticket(ObjectReader& params, Errors&) {
   return [role, session](SessionDirectory& directory,
                          PendingReply& reply) -> std::optional<RpcResult> {
     if (role == Role::admin && session) {
-      const Error error{"out_of_range", "/role", "an admin is one in all sessions"};
+      const Error error{"out_of_range", "/role", "the role admin applies to all sessions"};
       return invalid_params({error});
     }
     return directory.access().issue_ticket(reply, role, session);

@@ -48,19 +48,16 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
       text, "vat_build_info",
       label("version", now.version) + ',' + label("instruction_set", to_string(now.instructions)),
       1);
-  append_gauge(text, "vat_threads", "Threads that step sessions.", now.threads);
-  append_head(text, "vat_sessions", "gauge",
-              "Sessions, playing, paused, or playing with nobody in them.");
+  append_gauge(text, "vat_threads", "Threads that compute sessions.", now.threads);
+  append_head(text, "vat_sessions", "gauge", "Sessions by state.");
   append_sample(text, "vat_sessions", label("state", "playing"), now.playing_sessions);
   append_sample(text, "vat_sessions", label("state", "paused"), now.paused_sessions);
   append_sample(text, "vat_sessions", label("state", "hibernating"), now.hibernating_sessions);
   append_gauge(text, "vat_connections", "Open WebSockets.", now.connections);
   append_gauge(text, "vat_clients", "Connections that have joined a session.", now.clients);
   append_gauge(text, "vat_particles", "Particles of all sessions.", now.particles);
-  append_gauge(text, "vat_heap_bytes", "Memory in use, without freed memory.",
-               now.heap);
-  append_counter(text, "vat_storage_failures_total",
-                 "Failed writes to the data folder.",
+  append_gauge(text, "vat_heap_bytes", "Memory in use, without freed memory.", now.heap);
+  append_counter(text, "vat_storage_failures_total", "Failed writes to the data folder.",
                  now.storage.failures);
   append_counter(text, "vat_checkpoints_total", "Written checkpoints of sessions.",
                  now.storage.checkpoints);
@@ -139,9 +136,10 @@ std::string ServerMetrics::to_text(const Gauges& gauges) const {
   append_ticks(text);
   append_recent_ticks(text);
   append_counter(text, "vat_substeps_total",
-                 "Steps taken, parts of steps and undone ones included.", substeps_);
+                 "Executed steps, including parts of steps and undone steps.", substeps_);
   append_counter(text, "vat_undone_substeps_total",
-                 "Steps that the guard has undone and repeated in shorter ones.", undone_substeps_);
+                 "Steps that the guard has undone and repeated with shorter steps.",
+                 undone_substeps_);
   append_stages(text);
   append_frames(text);
   append_refusals(text);
@@ -164,37 +162,35 @@ void ServerMetrics::append_ticks(std::string& text) const {
 }
 
 void ServerMetrics::append_frames(std::string& text) const {
-  append_counter(text, "vat_states_shown_total", "States of which frames were made or looked for.",
+  append_counter(text, "vat_states_shown_total", "States that at least one client could receive.",
                  shown_states_);
   append_counter(text, "vat_frame_groups_total",
-                 "Groups of clients that such states had: those of one group share a frame.",
+                 "Different frames for these states; the clients of a group share a frame.",
                  frame_groups_);
-  append_counter(text, "vat_frames_encoded_total", "Frames encoded, each for all of a group.",
-                 encoded_frames_);
-  append_counter(text, "vat_key_frames_encoded_total", "Of them, those that build on no other.",
-                 encoded_keys_);
-  append_head(text, "vat_frame_encode_seconds_total", "counter", "Wall time of encoding.");
+  append_counter(text, "vat_frames_encoded_total", "Encoded frames.", encoded_frames_);
+  append_counter(text, "vat_key_frames_encoded_total", "Encoded key frames.", encoded_keys_);
+  append_head(text, "vat_frame_encode_seconds_total", "counter", "Wall time of the encoding.");
   append_sample(text, "vat_frame_encode_seconds_total", "", encode_seconds_);
-  append_counter(text, "vat_frames_sent_total", "Frames sent, one a client.", sent_frames_);
+  append_counter(text, "vat_frames_sent_total", "Sent frames, counted for each client.",
+                 sent_frames_);
   append_counter(text, "vat_frame_bytes_sent_total", "Their bytes.", sent_bytes_);
-  append_counter(text, "vat_frames_missed_total",
-                 "Frames that were due to a client and not sent: it was not ready for them.",
+  append_counter(text, "vat_frames_missed_total", "Frames that were due to a client but not sent.",
                  missed_frames_);
 }
 
 void ServerMetrics::append_refusals(std::string& text) const {
   append_head(text, "vat_refused_total", "counter",
-              "What was refused because of a limit, by its name in server.info.");
+              "Rejections, by the name of the limit in server.info.");
   for (const auto& [limit, count] : refusals_) {
     append_sample(text, "vat_refused_total", label("limit", limit), count);
   }
   append_head(text, "vat_rate_limited_total", "counter",
-              "Messages that were refused for coming too soon, by the limit's name.");
+              "Messages rejected by a rate limit, by the name of the limit.");
   for (const auto& [limit, count] : rate_limited_) {
     append_sample(text, "vat_rate_limited_total", label("limit", limit), count);
   }
   append_head(text, "vat_connections_closed_total", "counter",
-              "WebSockets that have ended, by close code; 1006: without one.");
+              "Closed WebSockets by close code; 1006: without a code.");
   for (const auto& [code, count] : closes_) {
     append_sample(text, "vat_connections_closed_total",
                   label("code", code == 0 ? "other" : std::to_string(code)), count);
@@ -208,22 +204,20 @@ void ServerMetrics::append_recent_ticks(std::string& text) const {
       append_sample(text, name, label("quantile", name_of_share), values.quantile(share));
     }
   };
-  append("vat_recent_tick_seconds", "Wall time of the steps of a tick, of the last 512 ticks.",
-         recent_ticks_);
+  append("vat_recent_tick_seconds", "Wall time of the last 512 ticks.", recent_ticks_);
   append("vat_recent_tick_lateness_seconds",
-         "How long after its time a tick began, of the last 512 of playing sessions.",
-         recent_lateness_);
+         "Start delay of the last 512 ticks of playing sessions.", recent_lateness_);
 }
 
 void ServerMetrics::append_stages(std::string& text) const {
-  append_head(text, "vat_stage_seconds_total", "counter",
-              "Wall time of each stage of steps; where ticks are short, measured in some of them.");
+  append_head(
+      text, "vat_stage_seconds_total", "counter",
+      "Wall time of each stage of steps; if ticks are short, only some ticks are measured.");
   for (const auto& [stage, total] : stages_) {
     append_sample(text, "vat_stage_seconds_total", label("stage", stage), total.seconds);
   }
-  append_head(
-      text, "vat_stage_calls_total", "counter",
-      "How often each stage of steps began; where ticks are short, counted in some of them.");
+  append_head(text, "vat_stage_calls_total", "counter",
+              "Calls of each stage of steps; if ticks are short, only some ticks are counted.");
   for (const auto& [stage, total] : stages_) {
     append_sample(text, "vat_stage_calls_total", label("stage", stage), total.calls);
   }

@@ -58,7 +58,7 @@ std::string read_person_name(ObjectReader& params, std::string_view key, Errors&
   std::string name = params.text(key, kMaxNameLength);
   if (errors.size() == before && !is_showable_name(name)) {
     add_error(errors, "bad_text", params.path_of(key),
-              "must have something to see, and no control characters or marks of direction");
+              "must contain a visible character, and no control characters or direction marks");
   }
   return name;
 }

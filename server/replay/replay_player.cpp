@@ -43,7 +43,7 @@ Simulation ReplayPlayer::load_state(const RecordedMoment& moment) const {
 
 Simulation ReplayPlayer::load_scene(std::uint64_t sequence) const {
   const auto entry = std::ranges::find(recording_.log, sequence, &LogEntry::sequence);
-  if (entry == recording_.log.end()) fail_replay("scene", "its entry is not there");
+  if (entry == recording_.log.end()) fail_replay("scene", "its log entry is missing");
   return load_entry_scene(*entry, environment_, recording_.instructions);
 }
 
@@ -72,7 +72,7 @@ void ReplayPlayer::go_to(SessionCore& core, const RecordedMoment& moment) {
   Simulation simulation = load_state(moment);
   const SessionMoment read = read_moment(moment.fields, simulation.snapshot());
   if (read.position != moment.position || read.sequence != moment.sequence) {
-    fail_replay("moment", "it tells of another place than its own");
+    fail_replay("moment", "its content names another position");
   }
   if (auto error = find_excess(simulation, environment_.limits))
     fail_replay("state", error->message);
@@ -121,7 +121,7 @@ void ReplayPlayer::compare_here(const SessionCore& core) {
     if (hash != expected.hash) {
       throw Diverged("at tick " + std::to_string(core.run().tick()) + " the state has the hash " +
                      describe_hash(hash) + ", and was recorded with " +
-                     describe_hash(expected.hash) + "; it was the same up to tick " +
+                     describe_hash(expected.hash) + "; the states are equal up to tick " +
                      std::to_string(same_until_));
     }
     same_until_ = core.run().tick();

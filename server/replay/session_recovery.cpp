@@ -55,22 +55,24 @@ std::optional<Simulation> SessionRecovery::begin_at(const CheckpointPlace& place
     start_.emplace(Start{std::move(moment), as_loaded.snapshot()});
     return std::move(simulation).value();
   } catch (const StorageError& error) {
-    spdlog::warn("session s{}: its checkpoint at {} is passed over: {}", stored_.number,
-                 place.position, error.what());
+    spdlog::warn("session s{}: its checkpoint at {} is skipped: {}", stored_.number, place.position,
+                 error.what());
     return {};
   }
 }
 
 Simulation SessionRecovery::begin_at_scene() {
   const std::vector<LogEntry> log = storage_.sessions().read(stored_.number, 0);
-  if (log.empty() || log.front().sequence != 1) fail("its log", "the beginning is gone");
-  if (log.size() > 1 && log[1].sequence != 2) fail("its log", "the beginning is gone");
+  if (log.empty() || log.front().sequence != 1)
+    fail("its log", "the beginning of the log is missing");
+  if (log.size() > 1 && log[1].sequence != 2)
+    fail("its log", "the beginning of the log is missing");
   return load_scene(1);
 }
 
 Simulation SessionRecovery::load_scene(std::uint64_t sequence) {
   const std::optional<LogEntry> entry = storage_.sessions().find(stored_.number, sequence);
-  if (!entry) fail("its scene", "the entry is gone");
+  if (!entry) fail("its scene", "the log entry is missing");
   return load_entry_scene(*entry, environment_, instructions_);
 }
 
@@ -147,7 +149,7 @@ void SessionRecovery::compare(SessionCore& core) {
   const std::uint64_t hash = core.run().simulation().state_hash();
   if (hash != progress->hash) {
     throw Diverged("the state at position " + std::to_string(progress->position) +
-                   " has the hash " + describe_hash(hash) + ", and was seen with " +
+                   " has the hash " + describe_hash(hash) + ", but the stored hash is " +
                    describe_hash(progress->hash));
   }
   apply_progress(core, *progress);

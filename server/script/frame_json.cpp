@@ -60,8 +60,8 @@ Json frame_to_json(const std::string& bytes, FrameDecoder& decoder, const BodyNa
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   const Result<const GridFrame*> result = decoder.decode({data, bytes.size()});
   if (!result) {
-    throw std::runtime_error("a bad frame came: " + result.errors().front().code + ": " +
-                             result.errors().front().message);
+    throw std::runtime_error("an invalid frame was received: " + result.errors().front().code +
+                             ": " + result.errors().front().message);
   }
   const GridFrame& frame = *result.value();
   const FrameHeader& header = frame.header;

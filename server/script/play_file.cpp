@@ -102,7 +102,7 @@ std::size_t play_file(const std::string& path, const PlaySettings& settings) {
   } else if (arguments.empty()) {
     play_lines(path, lines, *settings.server, settings);
   } else {
-    throw NeedsOwnServer("needs a server of its own, with" + joined(arguments));
+    throw NeedsOwnServer("needs a separate server, with" + joined(arguments));
   }
   return count;
 }

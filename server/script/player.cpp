@@ -166,7 +166,7 @@ Json Player::request(Peer& peer, const Json& method, const Json& params, const J
   send_text(peer, request.dump(), line);
   auto reply = take(peer, &Peer::replies, deadline_of(line),
                     [&](const Json& message) { return message["id"] == id; });
-  if (!reply) throw Failure("expected a reply, none came");
+  if (!reply) throw Failure("expected a reply, received none");
   return *std::move(reply);
 }
 
@@ -221,7 +221,7 @@ void Player::wait_for(const Json& line, const char* action, Inbox inbox) {
   const Deadline deadline = deadline_of(line);
   for (;;) {
     const auto message = take(peer_of(line), inbox, deadline, [](const Json&) { return true; });
-    if (!message) throw Failure("expected " + pattern.dump() + "; the last that came: " + last);
+    if (!message) throw Failure("expected " + pattern.dump() + "; the last received: " + last);
     const auto reason = mismatch(pattern, *message, captures_);
     if (!reason) return;
     last = *reason;
@@ -231,7 +231,7 @@ void Player::wait_for(const Json& line, const char* action, Inbox inbox) {
 void Player::expect_frame(const Json& line) {
   const auto frame =
       take(peer_of(line), &Peer::frames, deadline_of(line), [](const Json&) { return true; });
-  if (!frame) throw Failure("expected a frame, none came");
+  if (!frame) throw Failure("expected a frame, received none");
   require(line["expect_frame"], *frame);
 }
 
@@ -307,7 +307,7 @@ void Player::receive_text(Peer& peer, const std::string& text) {
   Json message = Json::parse(text, nullptr, false);
   if (!message.is_object() || message.value("jsonrpc", Json()) != "2.0" ||
       message.contains("id") == message.contains("method")) {
-    throw Failure("expected a JSON-RPC reply or event, came " + text);
+    throw Failure("expected a JSON-RPC reply or event, received " + text);
   }
   const bool is_reply = message.contains("id");
   const Json& content = message.value(is_reply ? "result" : "params", Json::object());

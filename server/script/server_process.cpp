@@ -99,11 +99,11 @@ std::string ServerProcess::read_line(steady_clock::time_point deadline) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now());
     pollfd ready{output_, POLLIN, 0};
     if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(left.count())) <= 0) {
-      throw std::runtime_error("the server did not tell its URL in time; last: " + line);
+      throw std::runtime_error("the server did not print its URL in time; last line: " + line);
     }
     char byte = 0;
     if (::read(output_, &byte, 1) != 1) {
-      throw std::runtime_error("the server ended before it told its URL; last: " + line);
+      throw std::runtime_error("the server ended before it printed its URL; last line: " + line);
     }
     if (byte == '\n') return line;
     line += byte;

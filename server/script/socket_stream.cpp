@@ -62,7 +62,7 @@ std::string handshake_fault(SSL* tls, const WebSocketUrl& url, const ErrorCode& 
   if (found != X509_V_OK && SSL_get_verify_mode(tls) != SSL_VERIFY_NONE) {
     return "the certificate of " + url.authority() +
            " is not trusted: " + X509_verify_cert_error_string(found) +
-           "; --ca FILE names whom to trust, --insecure trusts whoever answers";
+           "; --ca FILE sets the trusted certificates, --insecure disables the verification";
   }
   return "no TLS with " + url.authority() + ": " + failure.message() +
          "; a server without TLS is at ws://";

@@ -39,8 +39,7 @@ WebSocketUrl read_websocket_url(const std::string& text) {
   WebSocketUrl url;
   url.is_secure = text.starts_with(kSecure);
   if (url.is_secure) url.port = "443";
-  if (!url.is_secure && !text.starts_with(kPlain))
-    throw fault(text, "is no address of a WebSocket");
+  if (!url.is_secure && !text.starts_with(kPlain)) throw fault(text, "is not a WebSocket address");
   const std::string rest = text.substr((url.is_secure ? kSecure : kPlain).size());
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string authority = rest.substr(0, slash);

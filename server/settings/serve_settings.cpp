@@ -151,7 +151,8 @@ std::vector<Setting> connection_limits(ServerLimits& limits) {
       time_setting("handshake_seconds", limits.handshake_time, 0.001, kMaxSeconds,
                    "Time limit of an HTTP request or a WebSocket upgrade"),
       time_setting("ping_seconds", limits.ping_interval, 0.001, kMaxSeconds,
-                   "Interval of pings; the server drops a client that is silent for two intervals"),
+                   "Interval of pings; the server closes a connection that sends nothing during "
+                   "two intervals"),
   };
 }
 

@@ -97,7 +97,7 @@ Status apply_file(std::span<const Setting> settings, const std::string& file,
     const Setting* setting = find(settings, name);
     if (setting == nullptr) {
       add_error(errors, "unknown_member", path,
-                "is no setting; the nearest is " + nearest(settings, name).name +
+                "is not a setting; the nearest is " + nearest(settings, name).name +
                     ", and there are " + names_of(settings));
     } else if (std::string fault = setting->find_fault(value); !fault.empty()) {
       add_error(errors, "bad_value", path, std::move(fault));

@@ -65,18 +65,17 @@ int compare(const CompareOptions& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("compare", "Set two results of speed beside each other: what got slower");
+  CLI::App* command = app.add_subcommand("compare", "Compare two results of speed");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("before", options->before, "speed.csv of one run")->required();
   command->add_option("after", options->after, "speed.csv of the other")->required();
   command
       ->add_option("--tolerance", options->tolerance,
-                   "How much slower a row may be [%], by median and by least times")
+                   "Tolerated increase of the median and the minimum time of a row [%]")
       ->check(real_in(0, 1000))
       ->capture_default_str();
   command->footer(
-      "Exit codes: 0 fine, 1 something got slower or a file cannot be compared, 2 wrong usage.");
+      "Exit codes: 0 success, 1 a case is slower or a file cannot be compared, 2 wrong usage.");
   command->callback([options, &exit_code] { exit_code = compare(*options); });
 }
 

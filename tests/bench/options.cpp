@@ -22,7 +22,7 @@ void add_case_options(CLI::App& command, Options& options) {
   command.add_option("--case", options.cases, "Only this case; may be given again")
       ->take_all()
       ->expected(1);
-  command.add_flag("--list", options.list, "Print the names of the cases, and stop");
+  command.add_flag("--list", options.list, "Print the names of the cases and exit");
 }
 
 void add_options(CLI::App& command, Options& options) {

@@ -141,16 +141,17 @@ int seeks(const SeeksOptions& options) {
 
 void add_seeks_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("seeks", "Going to any moment of a recording, in a running server");
+      app.add_subcommand("seeks", "Time of seeks in a recording, in a running server");
   const auto options = std::make_shared<SeeksOptions>();
   command->add_option("--scene", options->scene, "What is recorded")->capture_default_str();
   const auto add = [&](const char* name, auto& target, const char* help, double min, double max) {
     command->add_option(name, target, help)->check(CLI::Range(min, max))->capture_default_str();
   };
-  add("--ticks", options->ticks, "How long the recording is", 1, 1e6);
-  add("--seeks", options->seeks, "How often one goes somewhere", 1, 1e6);
+  add("--ticks", options->ticks, "Length of the recording", 1, 1e6);
+  add("--seeks", options->seeks, "Number of seeks", 1, 1e6);
   add("--seed", options->seed, "Of where", 0, 1e6);
-  command->add_option("--program", options->program, "The vat that serves")->capture_default_str();
+  command->add_option("--program", options->program, "Program of the server")
+      ->capture_default_str();
   command->add_option("--output", options->output, "Folder of the results and the server's data")
       ->capture_default_str();
   command->footer("Exit codes: 0 measured, 1 the server failed, 2 wrong usage.");

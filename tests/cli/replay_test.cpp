@@ -73,7 +73,7 @@ TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {
   const ProgramResult result = run_vat({"replay", write(write_recording(recording))});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, HasSubstr("a.vatrec: differs: at tick 10 the state has the hash "));
-  EXPECT_THAT(result.err, HasSubstr("; it was the same up to tick 5\n"));
+  EXPECT_THAT(result.err, HasSubstr("; the states are equal up to tick 5\n"));
 }
 
 TEST_F(VatReplay, VerifiesNothingWhereThereIsNothingToCompare) {

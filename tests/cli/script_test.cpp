@@ -74,8 +74,7 @@ TEST_F(VatScript, PlaysAgainstAServerThatRuns) {
   const ProgramResult both = play({"--server", url, met(), with_arguments()});
   EXPECT_EQ(both.exit_code, 0) << both.err;
   EXPECT_THAT(both.out, HasSubstr("met.jsonl: 3 lines, all met\n"));
-  EXPECT_THAT(both.out,
-              EndsWith("passed over: it needs a server of its own, with --max-clients 1\n"));
+  EXPECT_THAT(both.out, EndsWith("skipped: it needs a separate server, with --max-clients 1\n"));
   const ProgramResult none = play({"--server", url, with_arguments()});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_TRUE(server.is_running());

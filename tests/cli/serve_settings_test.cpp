@@ -47,7 +47,7 @@ TEST(ServeSettings, AFileWithFaultsIsRefused) {
   const ProgramResult result = run_vat({"serve", "--config", folder.file("vat.json")});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_THAT(result.err, HasSubstr("vat.json: /prot: is no setting; the nearest is port"));
+  EXPECT_THAT(result.err, HasSubstr("vat.json: /prot: is not a setting; the nearest is port"));
   EXPECT_EQ(run_vat({"serve", "--config", folder.file("none.json")}).exit_code, 1);
 }
 
@@ -62,7 +62,8 @@ TEST(ServeSettings, AVariableThatIsNoSettingIsTold) {
   const Variable port("VAT_PROT", "1");
   const ProgramResult result = run_vat({"serve", "--print-config"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.err, HasSubstr("a variable is no setting: VAT_PROT, not VAT_PORT?"));
+  EXPECT_THAT(result.err,
+              HasSubstr("an environment variable is not a setting: VAT_PROT, not VAT_PORT?"));
 }
 
 }  // namespace

@@ -36,24 +36,24 @@ constexpr std::size_t kMaxThreads = 256;
 constexpr const char* kSimulateFooter = R"(Output files
   .csv   one row per particle and output time: time, body, kind, particle, position x y z,
          velocity vx vy vz, density and pressure (empty unless the body is a liquid)
-  .vtk   legacy VTK polydata in text, a file per output time (NAME-0000.vtk, NAME-0001.vtk, ...):
+  .vtk   legacy VTK polydata in text, one file per output time (NAME-0000.vtk, NAME-0001.vtk, ...):
          position, velocity, number of the body, kind (0 liquid, 1 deformable, 2 rigid), radius,
          density and pressure (0 unless the body is a liquid)
-  .ply   binary points in single precision, coloured by kind, a file per output time
-  .npy   one array [outputs, particles, 6] of float64: x, y, z, vx, vy, vz; not where the number of
-         particles changes
-Particles are in the order of the scene's bodies. Numbers in text have all digits needed to read
-back the same value. SI units throughout.
+  .ply   binary points in single precision, coloured by kind, one file per output time
+  .npy   one array [outputs, particles, 6] of float64: x, y, z, vx, vy, vz; only if the number of
+         particles is constant
+Particles are in the order of the scene's bodies. Numbers in text have all digits that
+an exact copy needs. All units are SI.
 
-Diagnostics (.csv), a row per output time: time, energies, liquid density error (mean and greatest),
+Diagnostics (.csv), one row per output time: time, energies, liquid density error (mean and greatest),
 particles outside the vat, particles emitted and drained and guard events so far, and for each body
 NAME.mass, centre of mass NAME.x y z, linear and angular momentum about the origin NAME.px py pz lx
 ly lz, and for a rigid body the orientation NAME.qw qx qy qz and angular velocity NAME.wx wy wz.
 
-Outputs are made at t = 0, at each multiple of --every, and at the end. A file ends in .part until
-it is complete, and keeps that ending if the run fails or is interrupted.
+Outputs are written at t = 0, at each multiple of --every, and at the end. The name of a file ends
+in .part until the file is complete, also after a failed or interrupted run.
 
-Exit codes: 0 fine, 1 invalid scene or failed run, 2 wrong usage, 128 + n interrupted by signal n.)";
+Exit codes: 0 success, 1 invalid scene or failed run, 2 wrong usage, 128 + n interrupted by signal n.)";
 
 std::map<std::string, IntegratorId> integrator_names() {
   std::map<std::string, IntegratorId> names;
@@ -258,17 +258,21 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
       command.add_option("--integrator", options.integrator, "Default: the scene's")
           ->check(CLI::IsMember(integrator_names()));
   CLI::Option* const step =
-      command.add_option("--dt", options.step, "Step [s], the longest of varied ones")
+      command.add_option("--dt", options.step, "Step [s]; the longest step if steps vary")
           ->check(real_in(kMinStep, kMaxStep));
   CLI::Option* const control =
-      command.add_option("--control", options.control, "Of the steps; default: the scene's")
+      command.add_option("--control", options.control, "Step control; default: the scene's")
           ->check(CLI::IsMember(control_names()));
-  command.add_option("--accuracy", options.accuracy, "Error that chooses the three above")
+  command
+      .add_option("--accuracy", options.accuracy,
+                  "Error from which the three options above are chosen")
       ->check(real_in(kMinAccuracy, kMaxAccuracy))
       ->excludes(integrator)
       ->excludes(step)
       ->excludes(control);
-  command.add_option("--threads", options.threads, "Threads of one step; never change a result")
+  command
+      .add_option("--threads", options.threads,
+                  "Threads of one step; results do not depend on this number")
       ->check(CLI::Range(std::size_t{1}, kMaxThreads))
       ->capture_default_str();
   add_isa_option(command, options.instructions);
@@ -278,8 +282,9 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--diagnostics", options.diagnostics, "File for the diagnostics: .csv")
       ->check(csv_file_name());
   command.add_flag("--plan", options.plan,
-                   "Print the stages of a step; alone or with --integrator and --dt, do no more");
-  command.add_flag("--profile", options.profile, "Print where the time went");
+                   "Print the stages of a step; do not run the scene, unless other options than "
+                   "--integrator and --dt are given");
+  command.add_flag("--profile", options.profile, "Print the run time of each stage");
   command.add_flag("--hash", options.hash, "Print a hash of the last state");
 }
 

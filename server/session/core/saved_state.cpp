@@ -60,7 +60,7 @@ ActionResult execute_restore(const Restore& restore, SessionCore& core) {
   const auto& as_loaded = std::get<Simulation>(made);
   if (const auto excess = core.run().admit(simulation, as_loaded)) return limit_reached(*excess);
   for (const std::uint64_t grab : restore.grabs) {
-    if (!simulation.grab_end(grab)) fail("a grab is not there");
+    if (!simulation.grab_end(grab)) fail("a grab is missing");
   }
   core.restore(std::move(simulation), as_loaded, restore.tick);
   return Json::object();

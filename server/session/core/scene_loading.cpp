@@ -18,7 +18,7 @@ RpcError scene_refused(Errors errors) {
 
 Result<std::string> refuse_mesh_file(const std::string&) {
   return Error{"not_allowed", "",
-               "a mesh that is sent must hold its vertices and triangles, not name a file"};
+               "a mesh in a message must contain vertices and triangles, not the name of a file"};
 }
 
 std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue) {

@@ -48,8 +48,8 @@ std::optional<RpcError> SessionHistory::append(std::span<LogEntry> entries) {
     log_->append(entries);
   } catch (const StorageError& error) {
     if (!std::exchange(log_fails_, true)) {
-      spdlog::error("session {}: commands are refused, they cannot be logged: {}", context_.id,
-                    error.what());
+      spdlog::error("session {}: commands are rejected, because they cannot be logged: {}",
+                    context_.id, error.what());
     }
     return storage_failed(error.kind());
   }

@@ -43,7 +43,7 @@ std::vector<std::uint8_t> decompress(std::span<const std::uint8_t> frame, std::s
   const std::size_t got =
       check(ZSTD_decompress(bytes.data(), bytes.size(), frame.data(), frame.size()));
   if (got != bytes.size()) {
-    throw StorageError(StorageError::Kind::corrupt, "compressed bytes: fewer than they say");
+    throw StorageError(StorageError::Kind::corrupt, "compressed bytes: fewer than stated");
   }
   return bytes;
 }

@@ -158,7 +158,7 @@ bool Statement::step() {
 void Statement::run() {
   if (!step()) return;
   reset();
-  throw StorageError(StorageError::Kind::failed, "a statement gave rows that nobody reads");
+  throw StorageError(StorageError::Kind::failed, "a statement returned rows that are not read");
 }
 
 std::int64_t Statement::integer(int column) const {

@@ -106,10 +106,11 @@ int accuracy(const Options& options) {
 
 void add_accuracy_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "accuracy", "Run time against error: every integrator and step control, ever finer steps");
+      "accuracy",
+      "Run time against error, for every integrator and step control, with decreasing steps");
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
-  command->footer("Exit codes: 0 fine, 1 a problem cannot be solved or written, 2 wrong usage.");
+  command->footer("Exit codes: 0 success, 1 a problem cannot be solved or written, 2 wrong usage.");
   command->callback([options, &exit_code] { exit_code = accuracy(*options); });
 }
 

@@ -268,7 +268,7 @@ int codec(CodecOptions options) {
 }  // namespace
 
 void add_codec_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("codec", "Frames: their size, and the time they take");
+  CLI::App* command = app.add_subcommand("codec", "Size and coding time of frames");
   const auto options = std::make_shared<CodecOptions>();
   add_options(*command, *options);
   command->add_flag("!--no-web", options->times_web, "Do not time the decoder in TypeScript");

@@ -126,7 +126,7 @@ void add_document_command(CLI::App& app, int& exit_code) {
   command->add_option("--results", *results, "Folder of the results")->capture_default_str();
   command->add_option("--page", *pages, "A page; may be given again")->take_all()->expected(1);
   command->footer(
-      "Exit codes: 0 fine, 1 a result is missing or the page does not fit, 2 wrong usage.");
+      "Exit codes: 0 success, 1 a result is missing or the page does not fit, 2 wrong usage.");
   command->callback([results, pages, &exit_code] {
     for (const std::string& page : *pages) {
       const Status written = write_document(*results, page);

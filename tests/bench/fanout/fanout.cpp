@@ -195,10 +195,11 @@ void add_fanout_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("fanout", "Many viewers of one session: rate and age of their frames");
   const auto options = std::make_shared<FanoutOptions>();
   add_case_options(*command, options->common);
-  command->add_option("--program", options->program, "The vat that serves")->capture_default_str();
+  command->add_option("--program", options->program, "Program of the server")
+      ->capture_default_str();
   command
       ->add_option("--max-error", options->max_error,
-                   "Greatest error of positions [m] that viewers ask for; 0: the finest")
+                   "Maximum position error [m] that viewers request; 0: the finest grid")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->footer("Exit codes: 0 measured, 1 the server or the viewers failed, 2 wrong usage.");

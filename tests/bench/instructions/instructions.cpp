@@ -121,13 +121,15 @@ int run_counted_scene(const std::string& name) {
 
 void add_instructions_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "instructions", "Instructions of a step by callgrind: the same on a busy machine");
+      "instructions",
+      "Instructions of a step, counted by callgrind; independent of the machine's load");
   const auto options = std::make_shared<InstructionOptions>();
   add_case_options(*command, options->common);
   command->add_option("--check", options->stored,
                       "File of counts to compare with, such as tests/golden/instructions.csv");
   command->footer(
-      "Exit codes: 0 fine, 1 a count differs by more than 3 % or cannot be taken, 2 wrong usage, "
+      "Exit codes: 0 success, 1 a count differs by more than 3 % or cannot be measured, 2 wrong "
+      "usage, "
       "77 no counts are stored for this compiler and its flags.");
   command->callback([options, &exit_code] { exit_code = instructions(*options); });
 

@@ -149,7 +149,7 @@ void add_race_command(CLI::App& app, int& exit_code) {
   command->add_option("--rounds", options->rounds, "Runs of each program")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command->footer("Exit codes: 0 fine, 1 a run failed, 2 wrong usage.");
+  command->footer("Exit codes: 0 success, 1 a run failed, 2 wrong usage.");
   command->callback([options, &exit_code] {
     if (options->program.empty() && !options->common.list) throw CLI::RequiredError("--program");
     exit_code = race(*options);

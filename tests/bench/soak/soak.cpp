@@ -244,20 +244,22 @@ int soak(const SoakOptions& options) {
 
 void add_soak_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("soak", "Many sessions, and clients of all manners, for minutes");
+      app.add_subcommand("soak", "Load test with many sessions and all kinds of clients");
   const auto options = std::make_shared<SoakOptions>();
   const auto add = [&](const char* name, auto& target, const char* help, double min, double max) {
     command->add_option(name, target, help)->check(CLI::Range(min, max))->capture_default_str();
   };
-  add("--seconds", options->seconds, "How long clients come and go", 1, 1e6);
+  add("--seconds", options->seconds, "Duration of the load", 1, 1e6);
   add("--sessions", options->sessions, "Sessions", 1, 1000);
-  add("--clients", options->clients, "Clients, of each manner as many", 1, 10'000);
-  add("--seed", options->seed, "Of the clients' choices", 0, 1e6);
-  command->add_option("--program", options->program, "The vat that serves")->capture_default_str();
+  add("--clients", options->clients, "Clients, in equal numbers of each kind", 1, 10'000);
+  add("--seed", options->seed, "Seed of the clients' choices", 0, 1e6);
+  command->add_option("--program", options->program, "Program of the server")
+      ->capture_default_str();
   command->add_option("--output", options->output, "Folder of the results and the server's data")
       ->capture_default_str();
   command->footer(
-      "Exit codes: 0 all was as it should be, 1 it was not, or could not be run, 2 wrong usage.");
+      "Exit codes: 0 all bounds hold, 1 a bound is exceeded or the test cannot run, 2 wrong "
+      "usage.");
   command->callback([options, &exit_code] { exit_code = soak(*options); });
 }
 

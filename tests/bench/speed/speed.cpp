@@ -211,7 +211,7 @@ void add_speed_command(CLI::App& app, int& exit_code) {
   command->add_option("scenes", options->scenes, "Scenes to time in place of the cases");
   command->add_option("--scenes", options->scenes_folder, "Folder of the catalogue");
   command->footer(
-      "Exit codes: 0 fine, 1 invalid scene, failed run or states that differ between "
+      "Exit codes: 0 success, 1 invalid scene, failed run or states that differ between "
       "thread counts, 2 wrong usage.");
   command->callback([options, &exit_code] { exit_code = speed(*options); });
 }

@@ -79,7 +79,7 @@ void add_stability_command(CLI::App& app, int& exit_code) {
       "stability", "Adversarial and random scenes, long runs and maps of the largest stable step");
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
-  command->footer("Exit codes: 0 fine, 1 something is not as it must be, 2 wrong usage.");
+  command->footer("Exit codes: 0 success, 1 a result exceeds its bound, 2 wrong usage.");
   command->callback([options, &exit_code] { exit_code = stability(*options); });
 }
 

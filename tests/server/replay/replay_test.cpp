@@ -86,7 +86,7 @@ TEST_F(ReplayTest, TellsTheFirstTickThatDiffers) {
     EXPECT_EQ(replay.core.run().position(), gravity->position + 1);
     EXPECT_NE(std::string(difference.what()).find("at tick 6 "), std::string::npos)
         << difference.what();
-    EXPECT_NE(std::string(difference.what()).find("the same up to tick 5"), std::string::npos);
+    EXPECT_NE(std::string(difference.what()).find("equal up to tick 5"), std::string::npos);
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(ReplayTest, RefusesAMomentThatTellsOfAnotherPlace) {
     ReplayPlayer player(other, environment_);
     SessionCore core("replay", {"replay"}, player.begin(), environment_);
     player.go_to_begin(core);
-    EXPECT_THAT(fault_of_seek(player, core, other.end), testing::HasSubstr("another place"))
+    EXPECT_THAT(fault_of_seek(player, core, other.end), testing::HasSubstr("another position"))
         << field;
   }
 }

@@ -37,7 +37,7 @@ const std::vector<BadParams>& bad_params() {
       {"scene.load", R"({"scene":{"format":"vat.scene/1","materials":[{"name":"w","density":1}],
         "bodies":[{"name":"b","kind":"rigid","material":"w","spacing":1,
         "shape":{"type":"mesh","file":"meshes/duck.obj"}}]}})",
-       "/scene/bodies/0/shape/file", "must hold its vertices and triangles"},
+       "/scene/bodies/0/shape/file", "must contain vertices and triangles"},
       {"control.step", R"({"ticks":0})", "/ticks", "from 1 to 1000"},
       {"control.step", R"({"ticks":1001})", "/ticks", "from 1 to 1000"},
       {"control.step", R"({"ticks":-1})", "/ticks", "from 1 to 1000"},

@@ -129,7 +129,7 @@ TEST(Player, WaitsForAnEventAndPassesOverOthers) {
                                             {"jsonrpc": "2.0", "method": "e", "params": {"n": 2}}]}})";
   EXPECT_EQ(outcome({events, R"({"wait_event": {"params": {"n": 2}}})"}), "");
   EXPECT_THAT(outcome({events, R"({"wait_event": {"params": {"n": 3}}})"}),
-              HasSubstr("the last that came: at /params/n\n  expected 3\n  came     2"));
+              HasSubstr("the last received: at /params/n\n  expected 3\n  came     2"));
 }
 
 TEST(Player, FramesMustMatch) {
@@ -138,7 +138,7 @@ TEST(Player, FramesMustMatch) {
             "");
   EXPECT_THAT(outcome({R"({"send": {"say": [[1, 4]]}})", R"({"expect_frame": {"epoch": 5}})"}),
               HasSubstr("at /epoch\n  expected 5\n  came     4"));
-  EXPECT_THAT(outcome({R"({"expect_frame": {}})"}), HasSubstr("expected a frame, none came"));
+  EXPECT_THAT(outcome({R"({"expect_frame": {}})"}), HasSubstr("expected a frame, received none"));
 }
 
 TEST(Player, FramesBelongToTheLastDescription) {
