@@ -76,7 +76,7 @@ it('shows a liquid that moves in a vat at rest', async () => {
 it('stands still when paused with the space bar', async () => {
   await viewer.page.keyboard.press('Space');
   const tick = await untilPaused();
-  const before = await viewer.picture();
+  const before = await viewer.stillPicture();
   const { playing } = await observer.nextStatus();
   await observer.nextStatus();
   expect(playing).toBe(false);
