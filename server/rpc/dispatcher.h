@@ -28,7 +28,7 @@ class Dispatcher {
   void refuse(ClientOutbox& client, const std::optional<Json>& id, const RateExcess& excess);
   std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
                                           std::optional<Json>& id) const;
-  /// Returns the reply, or nothing if `reply` was moved for a later answer.
+  /// Returns the result, or an empty optional if `reply` was moved and is answered later.
   std::optional<RpcResult> call(PendingReply& reply, Role role, RpcRequest request,
                                 std::size_t bytes);
 
