@@ -7,6 +7,8 @@
 #define VAT_PAIR_LOOPS_INL_H
 #endif
 
+#include <array>
+
 #include <hwy/highway.h>
 
 #include "core/liquid/pairs/pair_sums.h"
@@ -21,22 +23,94 @@ namespace {
 template <class T>
 inline constexpr std::size_t kTerms = Simd<T>::kCount == 1 ? 16 / sizeof(T) : 1;
 
-/// Returns the total over all lanes of the sum with index `sum`.
+/// The terms of one target.
 template <class T, class Term>
-HWY_INLINE Real total(const Term* terms, std::size_t sum) {
+using Terms = std::array<Term, kTerms<T>>;
+
+/// Number of targets whose sums are computed together.
+inline constexpr Index kTargetGroup = 4;
+
+#if HWY_TARGET <= HWY_AVX2
+
+/// Returns the sum of the halves of a vector of 64 bytes, or a vector of 32 bytes itself.
+HWY_INLINE hn::Vec<hn::FixedTag<float, 8>> fold(hn::Vec<hn::FixedTag<float, 8>> v) {
+  return v;
+}
+#if HWY_TARGET <= HWY_AVX3
+HWY_INLINE hn::Vec<hn::FixedTag<float, 8>> fold(hn::Vec<hn::FixedTag<float, 16>> v) {
+  const hn::FixedTag<float, 8> half;
+  return hn::Add(hn::LowerHalf(half, v), hn::UpperHalf(half, v));
+}
+#endif
+
+/// Implements add_totals() for four targets at once. The order of the additions, and therefore each
+/// bit, is that of hn::SumOfLanes().
+template <class Term>
+HWY_INLINE void add_totals_at_once(const Terms<float, Term>* group, Index count, std::size_t sum,
+                                   Real* sums) {
+  static_assert(kTargetGroup == 4);
+  const hn::FixedTag<float, 8> d;
+  const hn::Repartition<double, decltype(d)> pairs;
+  const auto fold_two = [&](std::size_t t) HWY_ATTR {
+    const auto a = fold(group[t][0].sums[sum]);
+    const auto b = fold(group[t + 1][0].sums[sum]);
+    return hn::BitCast(pairs,
+                       hn::Add(hn::ConcatLowerLower(d, b, a), hn::ConcatUpperUpper(d, b, a)));
+  };
+  const auto first = fold_two(0);   // lanes of targets 0 and 1
+  const auto second = fold_two(2);  // lanes of targets 2 and 3
+  const auto two = hn::Add(hn::BitCast(d, hn::InterleaveLower(pairs, first, second)),
+                           hn::BitCast(d, hn::InterleaveUpper(pairs, first, second)));
+  alignas(32) float totals[8];  // of targets 0, 2, 1 and 3, each twice
+  hn::Store(hn::Add(two, hn::Shuffle2301(two)), d, totals);
+  constexpr std::array<std::size_t, kTargetGroup> kLanes = {0, 4, 2, 6};
+  for (Index t = 0; t < count; ++t) {
+    sums[Term::kSums * t + sum] += static_cast<Real>(totals[kLanes[t]]);
+  }
+}
+
+#endif
+
+/// Adds the totals over all lanes of the sum with index `sum` to the sums of `count` targets.
+template <class T, class Term>
+HWY_INLINE void add_totals(const Terms<T, Term>* group, Index count, std::size_t sum, Real* sums) {
+#if HWY_TARGET <= HWY_AVX2
+  if constexpr (sizeof(T) == 4) return add_totals_at_once<Term>(group, count, sum, sums);
+#endif
   const typename Simd<T>::D d;
-  if constexpr (sizeof(T) * Simd<T>::kCount > 16) {
-    return static_cast<Real>(hn::GetLane(hn::SumOfLanes(d, terms[0].sums[sum])));
+  for (Index t = 0; t < count; ++t) {
+    Real& out = sums[Term::kSums * t + sum];
+    if constexpr (sizeof(T) * Simd<T>::kCount > 16) {
+      out += static_cast<Real>(hn::GetLane(hn::SumOfLanes(d, group[t][0].sums[sum])));
+      continue;
+    }
+    alignas(16) T lanes[16 / sizeof(T)];
+    for (std::size_t k = 0; k < kTerms<T>; ++k) {
+      hn::Store(group[t][k].sums[sum], d, lanes + k * Simd<T>::kCount);
+    }
+    if constexpr (sizeof(T) == 8) {
+      out += static_cast<Real>(lanes[0] + lanes[1]);
+    } else {
+      out += static_cast<Real>((lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+    }
   }
-  alignas(16) T lanes[16 / sizeof(T)];
-  for (std::size_t t = 0; t < kTerms<T>; ++t) {
-    hn::Store(terms[t].sums[sum], d, lanes + t * Simd<T>::kCount);
+}
+
+/// Returns the terms of one target for the candidates of a tile.
+template <class T, class Term>
+HWY_INLINE Terms<T, Term> sum_tile(const Target<T>& target, const Tile<T>& tile,
+                                   std::size_t count) {
+  Terms<T, Term> terms;
+  for (Term& term : terms) {
+    for (auto& sum : term.sums) sum = Simd<T>::set(0);
   }
-  if constexpr (sizeof(T) == 8) {
-    return static_cast<Real>(lanes[0] + lanes[1]);
-  } else {
-    return static_cast<Real>((lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+  for (std::size_t k = 0; k < count;) {
+    for (Term& term : terms) {
+      term.add(target, tile, k);
+      k += Simd<T>::kCount;
+    }
   }
+  return terms;
 }
 
 /// Sums over the candidates of the cluster from index `first`. Writes the result to `sums`. `first`
@@ -44,28 +118,25 @@ HWY_INLINE Real total(const Term* terms, std::size_t sum) {
 template <class T, class Term>
 void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile, Real* sums,
                  std::size_t first = 0) {
-  constexpr std::size_t kLanes = Simd<T>::kCount;
   const Frame<T> frame(cluster, in);
   const Index* const candidates = in.candidates + cluster.first_candidate;
   std::fill_n(sums, Term::kSums * cluster.size(), Real{0});
+  Terms<T, Term> group[kTargetGroup] = {};
   for (std::size_t done = first; done < cluster.candidate_count; done += kTile) {
     const std::size_t count = std::min<std::size_t>(kTile, cluster.candidate_count - done);
     fill_tile<Term::kParts>(in, frame, candidates + done, count, tile);
-    for (Index i = cluster.begin; i < cluster.end; ++i) {
-      Target<T> target =
-          load_target < Term::kParts.velocity || Term::kParts.pressure > (in, frame, i);
-      target.viscosity = Simd<T>::set(in.target_viscosities == nullptr
-                                          ? in.viscosity
-                                          : in.target_viscosities[i - in.first_target]);
-      Term terms[kTerms<T>];
-      for (Term& term : terms) {
-        for (auto& sum : term.sums) sum = Simd<T>::set(0);
-      }
-      for (std::size_t k = 0; k < count;) {
-        for (std::size_t t = 0; t < kTerms<T>; ++t, k += kLanes) terms[t].add(target, tile, k);
+    for (Index i = cluster.begin; i < cluster.end; i += kTargetGroup) {
+      const Index targets = std::min(kTargetGroup, cluster.end - i);
+      for (Index t = 0; t < targets; ++t) {
+        Target<T> target =
+            load_target < Term::kParts.velocity || Term::kParts.pressure > (in, frame, i + t);
+        target.viscosity = Simd<T>::set(in.target_viscosities == nullptr
+                                            ? in.viscosity
+                                            : in.target_viscosities[i + t - in.first_target]);
+        group[t] = sum_tile<T, Term>(target, tile, count);
       }
       Real* const out = sums + Term::kSums * (i - cluster.begin);
-      for (std::size_t s = 0; s < Term::kSums; ++s) out[s] += total<T>(terms, s);
+      for (std::size_t s = 0; s < Term::kSums; ++s) add_totals<T, Term>(group, targets, s, out);
     }
   }
 }
@@ -152,7 +223,10 @@ std::size_t cull(const CullSlots& slots, Index begin, Index end, const CullBox& 
     if (end - k < lanes) is_near = hn::And(is_near, hn::FirstN(d, end - k));
     const auto sources =
         hn::Iota(u, static_cast<std::uint32_t>(slots.first_source + static_cast<Index>(k)));
-    count += hn::CompressStore(sources, hn::RebindMask(u, is_near), u, found + count);
+    const auto is_found = hn::RebindMask(u, is_near);
+    // A store of all lanes, because a compressing store to memory is microcoded on AMD's Zen 4.
+    hn::StoreU(hn::Compress(sources, is_found), u, found + count);
+    count += hn::CountTrue(u, is_found);
   }
   return count;
 }

@@ -188,18 +188,22 @@ class PairSources {
   void charge_copies(TaskRunner* runner, const std::vector<Place>& places,
                      std::vector<Place>& charges, Charge&& charge) {
     using Number = decltype(Place::weight);
-    resize_closely(charges, places.size());
-    charges[count_] = places[count_];
+    if (charges_version_ != version_) {
+      resize_closely(charges, places.size());
+      for_blocks(runner, count_ + 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) charges[n] = places[n];
+      });
+      charges_version_ = version_;
+    }
+    VAT_ASSERT(charges.size() > count_);
     for_blocks(runner, images_begin_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        charges[n] = places[n];
-        charges[n].weight *= n < solids_ ? static_cast<Number>(charge(n)) : 0;
+        charges[n].weight = places[n].weight * (n < solids_ ? static_cast<Number>(charge(n)) : 0);
       }
     });
     for (const ImageGroup& group : images_) {
       for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
-          charges[group.first + s] = places[group.first + s];
           charges[group.first + s].weight = charges[group.image(s).source].weight;
         }
       });
@@ -231,6 +235,7 @@ class PairSources {
   std::vector<Vec3> image_points_;        ///< images of the last group that was found
   SearchCoordinates search_;
   std::uint64_t version_ = 0;
+  std::uint64_t charges_version_ = 0;  ///< version_ of the positions of the charges
   std::uint64_t liquid_version_ = 0;
   std::uint64_t solid_version_ = 0;
   Vec3 wall_offset_ = Vec3::Zero();
