@@ -209,6 +209,12 @@ std::uint64_t enforce_walls_on_particles(const Model& model, Real time, std::siz
   return stops;
 }
 
+void hold_liquid_inside(const ForceModel& f, Real time, Configuration& now) {
+  const std::uint64_t stops =
+      enforce_walls_on_particles(f.model, time, f.model.liquid_count, f.runner, now);
+  if (f.report != nullptr) f.report->wall_stops += stops;
+}
+
 std::uint64_t enforce_walls(const Model& model, const GuardBounds& bounds, const StepEnd& end,
                             const Configuration& before, TaskRunner* runner, Configuration& now) {
   if (model.walls.empty()) return 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/evaluation/force_model.h"
 #include "core/guard/guard.h"
 #include "core/laws/vat_motion.h"
 #include "core/state/state.h"
@@ -35,5 +36,9 @@ std::uint64_t enforce_walls(const Model& model, const GuardBounds& bounds, const
 /// particles.
 std::uint64_t enforce_walls_on_particles(const Model& model, Real time, std::size_t count,
                                          TaskRunner* runner, Configuration& now);
+
+/// Moves liquid particles back inside at `time` [s], before the cells and pairs of their positions
+/// are found. Adds the number of moved particles to ForceModel::report.
+void hold_liquid_inside(const ForceModel& force_model, Real time, Configuration& now);
 
 }  // namespace vat

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/guard/enforce_walls.h"
 #include "core/liquid/gas/stages.h"
 #include "core/liquid/incompressible/stages.h"
 #include "core/liquid/incompressible/volume_solve.h"
@@ -11,9 +12,16 @@
 namespace vat {
 namespace {
 
+/// Reflects liquid beyond a wall before the forces at the end of the step are computed. A
+/// reflection after this computation would make these forces invalid for the next step.
+void return_liquid_inside(const ForceModel& f, State& state, Real time) {
+  f.enter("enforce_walls");
+  hold_liquid_inside(f, time, state.now);
+}
+
 constexpr LiquidSolver kLiquidSolvers[] = {
     {PressureSolver::gas, &add_gas_stages},
-    {PressureSolver::tait, &add_tait_stages},
+    {PressureSolver::tait, &add_tait_stages, nullptr, &return_liquid_inside},
     {PressureSolver::incompressible, &add_incompressible_stages, &project_velocities,
      &correct_density},
 };

@@ -15,9 +15,9 @@ struct LiquidSolver {
   /// [s]. Null if the solver does not change velocities.
   void (*solve_velocities)(const ForceModel& force_model, State& state, Real time,
                            Real dt) = nullptr;
-  /// Changes the positions after the drift, at `time` [s]. Null if the solver does not change
-  /// positions.
-  void (*solve_density)(const ForceModel& force_model, State& state, Real time) = nullptr;
+  /// Changes the positions after the drift, at `time` [s], before the forces at the end of the step
+  /// are computed. Null if the solver does not change positions.
+  void (*correct_positions)(const ForceModel& force_model, State& state, Real time) = nullptr;
 };
 
 const LiquidSolver& liquid_solver_of(PressureSolver id);

@@ -24,7 +24,7 @@ std::optional<Fault> Stepper::take_step(const StepInput& input, const StepInterv
     solve_liquid_velocities(step);
     // Drift: positions by velocities.
     drift_particles(step);
-    solve_liquid_density(step);
+    correct_liquid_positions(step);
     apply_spring_changes(step);
     // Evaluate and kick: the forces at the end of the step.
     if (integrator.keeps_forces()) {

@@ -173,11 +173,10 @@ void solve_liquid_velocities(const StepArguments& step) {
   solver->solve_velocities(step.force_model, step.state, step.time, step.dt);
 }
 
-void solve_liquid_density(const StepArguments& step) {
+void correct_liquid_positions(const StepArguments& step) {
   const LiquidSolver* solver = acting_liquid_solver(step.force_model.model);
-  if (solver == nullptr || solver->solve_density == nullptr) return;
-  step.force_model.enter("correct_density");
-  solver->solve_density(step.force_model, step.state, step.time + step.dt);
+  if (solver == nullptr || solver->correct_positions == nullptr) return;
+  solver->correct_positions(step.force_model, step.state, step.time + step.dt);
 }
 
 void apply_spring_changes(const StepArguments& step) {

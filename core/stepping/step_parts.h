@@ -31,9 +31,8 @@ void drift_particles(const StepArguments& step);
 /// Makes the velocities of incompressible liquids free of divergence.
 void solve_liquid_velocities(const StepArguments& step);
 
-/// Moves particles of incompressible liquids until no density exceeds the rest density by more than
-/// the tolerance.
-void solve_liquid_density(const StepArguments& step);
+/// Corrects the positions of liquids after the drift; see LiquidSolver::correct_positions.
+void correct_liquid_positions(const StepArguments& step);
 
 /// Changes the rest lengths of plastic springs, and tears springs.
 void apply_spring_changes(const StepArguments& step);

@@ -54,7 +54,7 @@ TEST_F(VatReplay, ComparesEveryStateAndSucceeds) {
   EXPECT_THAT(result.err, IsEmpty());
 }
 
-// Recordings of earlier versions, made with the baseline instruction set.
+// Recordings of earlier versions with the present numerics, made with the baseline instruction set.
 TEST_F(VatReplay, RepeatsRecordingsOfEarlierVersions) {
   int count = 0;
   for (const auto& file :

@@ -11,13 +11,13 @@
 
 namespace vat {
 
-/// Stopping criteria of a Complementarity. The residual of an unknown with x > 0 or excess > 0 is
-/// |excess| / scale; other residuals are 0.
+/// Stopping criteria of a Complementarity. The residual of an unknown is |min(diagonal x, -excess)|
+/// / scale, which is 0 if and only if the conditions of the unknown hold. For the greatest
+/// residual, it is |excess| / scale if diagonal x / scale exceeds a tenth of the limit of the mean.
 struct SolveLimits {
   Real mean = 0;
   Real greatest = 0;
   int most_iterations = 0;
-  Real row = 0;  ///< upper bound of the row sums of |A| / diagonal
   /// Initial mean residual above which a solve makes at least one iteration.
   Real start = std::numeric_limits<Real>::infinity();
 };
@@ -26,11 +26,11 @@ struct SolveLimits {
 /// with the excess e(x) = e(0) - A x <= 0, and e_i = 0 if x_i > 0.
 ///
 /// The method is the conjugate gradient method with the diagonal as preconditioner (E. Polak, G.
-/// Ribiere, Rev. Franc. Inform. Rech. Oper. 16 (1969) 35), for the unknowns with x > 0 or excess >
-/// 0. After convergence, negative x are set to 0. If the mean residual may then exceed its limit,
-/// the excess is recomputed and the iteration restarts. The active set is thus updated as a whole,
-/// as in M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865. The result is bitwise
-/// independent of the number of threads.
+/// Ribiere, Rev. Franc. Inform. Rech. Oper. 16 (1969) 35). The gradient is projected onto x >= 0,
+/// and each direction is shortened for the unknowns close to 0, so that no step makes x negative
+/// (as in Z. Dostal, J. Schoeberl, Comput. Optim. Appl. 30 (2005) 23). No product is needed to
+/// verify the result, because the excess is that of the final x. The result is bitwise independent
+/// of the number of threads.
 class Complementarity {
  public:
   std::vector<Real> x;
@@ -42,16 +42,13 @@ class Complementarity {
 
   /// Solves the problem, starting from the present `x` >= 0 and its `excess`. `system.act(d)`
   /// followed by `system.find_product(product)` must compute product = A d. `system.add(share)`
-  /// must add `share` times the effect of d to the total effect. `system.replace()` must replace
-  /// the total effect by the effect of d. The final x is not negative. The final total effect does
-  /// not include the last change of negative x to 0. The reported mean residual
-  /// includes the effect of this change.
+  /// must add `share` times the effect of d to the total effect. The final x is not negative, and
+  /// the total effect is that of the change of x.
   template <class System>
   SolveReport solve(const SolveLimits& limits, TaskRunner* runner, System& system) {
     VAT_CHECK(excess.size() == x.size() && diagonal.size() == x.size() && scale.size() == x.size());
     SolveReport report;
-    bool is_new = true;
-    keep_start(runner);
+    negligible_ = kNegligible * limits.mean;
     find_gradient(runner, report);
     const auto is_open = [&] {
       // A NaN ends the solve; the guard (core/guard/guard.h) detects the NaN.
@@ -59,28 +56,15 @@ class Complementarity {
              (report.mean > limits.mean || report.greatest > limits.greatest);
     };
     const bool must_begin = report.mean > limits.start;
-    // The last of the allowed iterations is reserved for recomputing the excess.
     while ((is_open() || (must_begin && report.iterations == 0)) &&
-           report.iterations + 2 <= limits.most_iterations) {
-      const Real slope = choose_direction(is_new, runner);
+           report.iterations < limits.most_iterations) {
+      const Real slope = choose_direction(report.iterations == 0, runner);
       system.act(direction_);
       system.find_product(product_);
       ++report.iterations;
       const Real length = length_of_step(runner, slope);
       system.add(length);
       take_step(length, runner, report);
-      is_new = !is_open() || report.iterations + 2 > limits.most_iterations;
-      if (!is_new) continue;
-      const Real change = limits.row * clamp(runner);
-      if (report.mean + change <= limits.mean) {
-        report.mean += change;
-        break;
-      }
-      system.act(direction_);
-      system.find_product(product_);
-      system.replace();
-      ++report.iterations;
-      find_excess(runner, report);
     }
     return report;
   }
@@ -90,36 +74,33 @@ class Complementarity {
   struct Sums {
     Real residual = 0;
     Real greatest = 0;
-    Real square = 0;  ///< g.D g of the gradient g = D^-1 e over the active unknowns
+    Real square = 0;  ///< g.D g of the projected gradient g = max(D^-1 e, -x)
     Real mixed = 0;   ///< g.D g_last, with the preceding gradient g_last
   };
 
-  void keep_start(TaskRunner* runner);
   void find_gradient(TaskRunner* runner, SolveReport& report) { take_step(0, runner, report); }
-  /// Sets negative x to 0. Then sets direction_ to the change of x since the start of the solve.
-  /// Returns the mean over all unknowns of the negative part of x times diagonal / scale.
-  Real clamp(TaskRunner* runner);
-  /// Computes the excess at x from the product of A and the change of x since the start, and then
-  /// the gradient and the residuals.
-  void find_excess(TaskRunner* runner, SolveReport& report);
-  /// Sets the direction d to g + beta d, or to g if g + beta d is not a descent direction. Returns
-  /// the slope d.e.
+  /// Sets the direction d to g + beta d, or to g if g + beta d is not a descent direction. Shortens
+  /// d so that x + longest_step_ d >= 0. Returns the slope d.e.
   Real choose_direction(bool is_new, TaskRunner* runner);
   Real follow(Real share, TaskRunner* runner);
-  /// Returns the step length to the minimum of x.A x / 2 - e(0).x along the direction.
+  /// Returns the step length to the minimum of x.A x / 2 - e(0).x along the direction, at most
+  /// longest_step_, and sets longest_step_ for the next iteration.
   Real length_of_step(TaskRunner* runner, Real slope);
   /// Moves x by `length` times the direction, and computes the gradient and the residuals.
   void take_step(Real length, TaskRunner* runner, SolveReport& report);
   template <class F>
   Real sum(TaskRunner* runner, F&& f);
 
-  std::vector<Real> start_;         ///< x at the start
-  std::vector<Real> start_excess_;  ///< excess at the start
+  /// Share of the limit of the mean residual below which diagonal x / scale counts as 0.
+  static constexpr Real kNegligible = 0.1;
+
   std::vector<Real> gradient_;
   std::vector<Real> direction_;
   std::vector<Real> product_;
   std::vector<Real> partial_;  ///< by block
   std::vector<Sums> sums_;     ///< by block
+  Real longest_step_ = 0;      ///< upper bound of the length of a step
+  Real negligible_ = 0;        ///< x counts as 0 if x diagonal / scale is at most this
   Real square_ = 0;
   Real mixed_ = 0;
   Real last_square_ = 0;

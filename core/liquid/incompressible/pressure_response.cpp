@@ -203,11 +203,6 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
       });
 }
 
-void PressureResponse::replace() {
-  has_whole_ = false;
-  add(1);
-}
-
 void PressureResponse::add(Real share) {
   const bool is_first = !has_whole_;
   const auto add_to = [&](std::vector<Vec3>& whole, const std::vector<Vec3>& part) {

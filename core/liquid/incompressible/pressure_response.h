@@ -58,10 +58,9 @@ class PressureResponse {
   /// Computes an upper bound of the diagonal of the matrix of -V D M^-1 F, by liquid slot.
   void find_diagonal(std::span<Real> diagonal);
 
-  /// add() adds `share` times the present accelerations to the total accelerations. replace() sets
-  /// the total accelerations to the present accelerations. The initial total is zero.
+  /// Adds `share` times the present accelerations to the total accelerations, which are zero at
+  /// first.
   void add(Real share);
-  void replace();
 
   /// Adds `dt` times the total accelerations to the velocities.
   void kick(Real dt);

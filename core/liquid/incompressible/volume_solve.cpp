@@ -22,14 +22,13 @@ constexpr Real kGreatestDivergence = 200;
 // Bounds of loose tolerances. They keep the kinetic energy small that a step adds by removing
 // excess density, and start each solve from pressures that are close to its own.
 constexpr Real kMaxGreatestDivergence = 0.2;  // residual of one particle
-constexpr Real kMaxMeanDivergence = 0.01;     // mean residual
+constexpr Real kMaxMeanDivergence = 0.003;    // mean residual
 constexpr Real kStartDivergence = 0.001;      // mean residual above which pressures are updated
 constexpr Real kDivergenceOfDensity = 0.25;   // mean divergence / density tolerance
 constexpr Real kMaxRemoval = 0.0015;          // relative excess density that one step removes
 constexpr Real kLeftAlone = 0.2;      // share of the density tolerance that the velocities leave
 constexpr Real kClosing = 0.5;        // share of a gap that is closed in one step
 constexpr int kMaxCorrections = 12;   // rounds of Newton's method
-constexpr Real kRow = 16;             // for a lattice in space with a support radius of 3 spacings
 constexpr Real kLinearShare = 0.25;   // share of the density tolerance for the solve of one round
 constexpr Real kMaxExpansion = 0.05;  // per round; linear theory is inaccurate beyond it
 constexpr Real kAlone = 1;            // the diagonal of a particle without neighbours
@@ -74,7 +73,6 @@ class VolumeSolve {
     response_.compress(product, problem_.scale, -dt_ * dt_);
   }
   void add(Real share) { response_.add(share); }
-  void replace() { response_.replace(); }
 
  private:
   template <class F>
@@ -155,15 +153,7 @@ int VolumeSolve::shift_places() {
 
 SolveReport VolumeSolve::solve(SolveLimits limits) {
   limits.most_iterations = f_.model.scene.incompressible.most_iterations;
-  limits.row = kRow;
   return problem_.solve(limits, f_.runner, *this);
-}
-
-/// Moves back liquid that has passed a wall, before cells and pairs are found.
-void hold_liquid_inside(const ForceModel& f, Real time, Configuration& now) {
-  const std::uint64_t stops =
-      enforce_walls_on_particles(f.model, time, f.model.liquid_count, f.runner, now);
-  if (f.report != nullptr) f.report->wall_stops += stops;
 }
 
 /// Finds cells, pairs and densities after a change of positions.
@@ -200,6 +190,7 @@ void project_velocities(const ForceModel& f, State& state, Real time, Real dt) {
 }
 
 void correct_density(const ForceModel& f, State& state, Real time) {
+  f.enter("correct_density");
   Configuration& now = state.now;
   Forces unused;
   StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};

@@ -37,7 +37,7 @@ void recall_pressure(StepContext& context);
 ///
 /// The forces already include the impulses of the last step. The solve therefore computes only the
 /// change of the impulses. The divergence tolerance is at most a quarter of the density tolerance,
-/// clamped to the range 0.001 to 0.01.
+/// clamped to the range 0.001 to 0.003.
 void project_velocities(const ForceModel& force_model, State& state, Real time, Real dt);
 
 /// Moves liquid particles at the end of a step, at `time` [s], until the mean excess of s over 1 is

@@ -78,7 +78,6 @@ class Problem {
     void add(Real share) {
       for (std::size_t i = 0; i < last.size(); ++i) whole[i] += share * last[i];
     }
-    void replace() { whole = last; }
   };
 
   std::size_t count_;
@@ -87,9 +86,7 @@ class Problem {
   mutable std::vector<Real> whole_;
 };
 
-/// The row parameter of the problem's matrices: at least 11 entries per row, with a large diagonal.
-constexpr Real kRow = 60;
-constexpr SolveLimits kClose{1e-10, 1e-9, 10000, kRow};
+constexpr SolveLimits kClose{1e-10, 1e-9, 10000};
 
 TEST(Complementarity, IsSolvedFromAnyStart) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -106,7 +103,7 @@ TEST(Complementarity, IsSolvedFromAnyStart) {
         EXPECT_GE(problem.x[i], 0);
         EXPECT_LT(excess[i], 2e-9);
         EXPECT_LT(std::min(problem.x[i], -excess[i]), 2e-9);
-        above += problem.x[i] > 0 ? 1 : 0;
+        above += problem.x[i] > 1e-6 ? 1 : 0;
       }
       EXPECT_GT(above, 5U);
       EXPECT_LT(above, 55U);
@@ -114,26 +111,20 @@ TEST(Complementarity, IsSolvedFromAnyStart) {
   }
 }
 
-// If the solver checks the end, it sets x < 0 to 0 before the last step. If rows count as empty, it
-// skips the check and does so after the last step.
-TEST(Complementarity, HasDoneTheWayFromTheStart) {
-  for (const Real row : {1e9, 0.0}) {
-    bool differs = false;
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      const Problem given(60, seed);
-      Complementarity problem = given.start();
-      std::ranges::fill(problem.x, 0.5);
-      problem.excess = given.excess_at(problem.x);
-      ASSERT_GT(given.solve(problem, {1e-3, 1e-2, 1000, row}).iterations, 0);
-      ASSERT_GE(std::ranges::min(problem.x), 0);
-      for (std::size_t i = 0; i < problem.x.size(); ++i) {
-        const Real reached = 0.5 + given.whole()[i];
-        EXPECT_NEAR(std::max(Real{0}, reached), problem.x[i], 1e-14);
-        differs = differs || reached < -1e-14;
-      }
-      EXPECT_NE(std::ranges::count(problem.x, 0), 0);
+TEST(Complementarity, TotalEffectIsThatOfTheChange) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Problem given(60, seed);
+    Complementarity problem = given.start();
+    std::ranges::fill(problem.x, 0.5);
+    problem.excess = given.excess_at(problem.x);
+    ASSERT_GT(given.solve(problem, {1e-3, 1e-2, 1000}).iterations, 0);
+    const std::vector<Real> excess = given.excess_at(problem.x);
+    for (std::size_t i = 0; i < problem.x.size(); ++i) {
+      EXPECT_GE(problem.x[i], 0);
+      EXPECT_NEAR(0.5 + given.whole()[i], problem.x[i], 1e-14);
+      EXPECT_NEAR(excess[i], problem.excess[i], 1e-12);
     }
-    EXPECT_EQ(differs, row == 0);
+    EXPECT_LT(std::ranges::min(problem.x), 0.01);
   }
 }
 
