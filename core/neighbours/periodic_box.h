@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/scene/scene.h"
+#include "core/scene/world.h"
 #include "core/types.h"
 
 namespace vat {

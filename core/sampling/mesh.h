@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "core/scene/body.h"
 
 namespace vat {
 

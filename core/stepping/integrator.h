@@ -3,7 +3,7 @@
 #include "core/contact/projection/projection.h"
 #include "core/damping/damping_solve.h"
 #include "core/evaluation/force_model.h"
-#include "core/scene/scene.h"
+#include "core/scene/numerics.h"
 #include "core/solid/implicit_springs.h"
 #include "core/state/state.h"
 

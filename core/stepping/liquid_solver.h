@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/evaluation/force_model.h"
-#include "core/scene/scene.h"
+#include "core/scene/liquid_model.h"
 #include "core/stage/plan.h"
 
 namespace vat {

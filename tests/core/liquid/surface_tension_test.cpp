@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/numerics/step_limits.h"
-#include "protocol/scene/scene_json.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
@@ -210,17 +209,6 @@ TEST(SurfaceTension, LimitsSteps) {
   const Real brackbill = std::sqrt(1000 * std::pow(kSpacing, 3) / (2 * std::numbers::pi * kSigma));
   EXPECT_LT(limits[0].step, brackbill);
   EXPECT_GT(limits[0].step, 0.95 * brackbill);
-}
-
-TEST(SurfaceTension, IsReadFromAScene) {
-  const char* text = R"({"format": "vat.scene/1", "pressure_solver": "tait",
-    "materials": [{"name": "water", "liquid": {"stiffness": 10, "viscosity": 0,
-                   "support_radius": 0.3, "surface_tension": 0.073}}],
-    "bodies": [{"name": "drop", "kind": "liquid", "material": "water", "spacing": 0.1,
-                "shape": {"type": "sphere", "radius": 0.4}}]})";
-  const Result<Scene> scene = read_scene_text(text, {});
-  ASSERT_TRUE(scene);
-  EXPECT_EQ(scene.value().materials[0].liquid->surface_tension, 0.073);
 }
 
 }  // namespace

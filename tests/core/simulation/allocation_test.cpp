@@ -4,7 +4,7 @@
 #include <atomic>
 #include <thread>
 
-#include "tests/core/simulation/allocation_counter.h"
+#include "tests/support/allocation_counter.h"
 #include "tests/support/shaken_vat.h"
 
 namespace vat::allocation_test {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <new>
 
-#include "tests/core/simulation/allocation_counter.h"
+#include "tests/support/allocation_counter.h"
 #include "tests/support/commands.h"
 #include "tests/support/shaken_vat.h"
 

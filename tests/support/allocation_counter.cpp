@@ -1,4 +1,4 @@
-#include "tests/core/simulation/allocation_counter.h"
+#include "tests/support/allocation_counter.h"
 
 #include <cstdlib>
 #include <limits>
