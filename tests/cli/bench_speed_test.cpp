@@ -16,7 +16,7 @@
 #include "tests/bench/speed/skips.h"
 #include "tests/bench/speed/targets.h"
 #include "tests/cli/program.h"
-#include "tests/support/allocator.h"
+#include "tests/support/memory/allocator.h"
 
 namespace vat::bench::bench_speed_test {
 namespace {

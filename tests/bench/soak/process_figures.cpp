@@ -4,7 +4,7 @@
 #include <iterator>
 #include <string>
 
-#include "tests/support/resident_bytes.h"
+#include "tests/support/memory/resident_bytes.h"
 
 namespace vat::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <thread>
 
-#include "tests/support/allocation_counter.h"
+#include "tests/support/memory/allocation_counter.h"
 #include "tests/support/shaken_vat.h"
 
 namespace vat::allocation_test {

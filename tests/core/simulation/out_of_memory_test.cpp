@@ -3,8 +3,8 @@
 #include <functional>
 #include <new>
 
-#include "tests/support/allocation_counter.h"
 #include "tests/support/commands.h"
+#include "tests/support/memory/allocation_counter.h"
 #include "tests/support/shaken_vat.h"
 
 // A command that runs out of memory at any allocation changes nothing.

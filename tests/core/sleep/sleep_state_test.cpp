@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/allocation_counter.h"
+#include "tests/support/memory/allocation_counter.h"
 #include "tests/support/resting_scenes.h"
 #include "tests/support/same_bits.h"
 

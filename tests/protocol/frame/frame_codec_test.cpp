@@ -8,7 +8,7 @@
 #include "protocol/frame/rans.h"
 #include "protocol/frame/residual_tables.h"
 #include "tests/protocol/frame/frame_limit_cases.h"
-#include "tests/support/allocation_counter.h"
+#include "tests/support/memory/allocation_counter.h"
 
 namespace vat::frame_codec_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "protocol/frame/grid_frame.h"
-#include "tests/support/allocation_counter.h"
+#include "tests/support/memory/allocation_counter.h"
 #include "tests/support/scenes.h"
 
 namespace vat::publish_test {

@@ -7,7 +7,7 @@
 #include "server/messages/limits.h"
 #include "server/operations/heap.h"
 #include "tests/server/transport/transport_fixture.h"
-#include "tests/support/allocator.h"
+#include "tests/support/memory/allocator.h"
 #include "tests/support/wait.h"
 
 namespace vat::test::stalled_reader_test {

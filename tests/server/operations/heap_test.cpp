@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/allocator.h"
-#include "tests/support/resident_bytes.h"
+#include "tests/support/memory/allocator.h"
+#include "tests/support/memory/resident_bytes.h"
 
 #if VAT_HAS_SYSTEM_ALLOCATOR
 

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "tests/server/transport/transport_fixture.h"
+#include "tests/support/memory/resident_bytes.h"
 #include "tests/support/patience.h"
-#include "tests/support/resident_bytes.h"
 #include "tests/support/wait.h"
 
 namespace vat::test::transport_flood_test {

@@ -1,4 +1,4 @@
-#include "tests/support/allocation_counter.h"
+#include "tests/support/memory/allocation_counter.h"
 
 #include <cstdlib>
 #include <limits>
