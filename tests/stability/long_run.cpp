@@ -169,12 +169,12 @@ std::vector<LongRunRow> run_top(std::uint64_t steps) {
   const Real x = std::sqrt(2.5);
   const Real y = std::sqrt(1.5);
   const Real z = std::sqrt(0.5);
-  constexpr Real kRadius = 1e-5;  // the particles' own inertia is 1e-10 of the body's
+  constexpr Real kBodyRadius = 1e-5;  // the particles' own inertia is 1e-10 of the body's
   scene.bodies = {test::make_body(
       "top", BodyKind::rigid, "wood",
       test::make_particles({{x, 0, 0}, {-x, 0, 0}, {0, y, 0}, {0, -y, 0}, {0, 0, z}, {0, 0, -z}},
                            0.5),
-      kRadius)};
+      kBodyRadius)};
   scene.bodies[0].angular_velocity = {1, 0, 1};
   EnergySeries energy;
   Vec3 angular_momentum;
@@ -197,7 +197,7 @@ std::vector<LongRunRow> run_top(std::uint64_t steps) {
 std::vector<LongRunRow> run_stack(std::uint64_t steps) {
   constexpr Real kStiffness = 5e4;
   constexpr Real kMass = 2;
-  constexpr Real kRadius = 0.05;
+  constexpr Real kBallRadius = 0.05;
   constexpr Real kGravity = 9.81;
   Scene scene = make_tank();
   scene.default_interface = {kStiffness, 0.1 * std::sqrt(kStiffness * kMass)};
@@ -206,10 +206,10 @@ std::vector<LongRunRow> run_stack(std::uint64_t steps) {
   Real height = 0;
   for (int b = 0; b < 5; ++b) {
     const Real overlap = (5 - b) * kMass * kGravity / kStiffness;
-    height += (b == 0 ? kRadius : 2 * kRadius) - overlap;
+    height += (b == 0 ? kBallRadius : 2 * kBallRadius) - overlap;
     rest.push_back(height);
     scene.bodies.push_back(make_particle("ball " + std::to_string(b), BodyKind::rigid,
-                                         {0.5, 0.5, height + 1e-3}, kMass, kRadius));
+                                         {0.5, 0.5, height + 1e-3}, kMass, kBallRadius));
   }
   Real creep = 0;
   Real sideways = 0;
@@ -243,12 +243,12 @@ struct Pool {
 
 Pool run_pool_of(Real viscosity, std::uint64_t steps) {
   Scene scene = make_tank();
-  constexpr int kEdge = 5;
-  const Real width = kEdge * kSpacing;
+  constexpr int kPoolEdge = 5;
+  const Real width = kPoolEdge * kSpacing;
   scene.vat->max = {width, width, 1};
   scene.materials[0].liquid->viscosity = viscosity;
   scene.numerics.step = 2e-3;
-  scene.bodies = {make_block("pool", BodyKind::liquid, kEdge,
+  scene.bodies = {make_block("pool", BodyKind::liquid, kPoolEdge,
                              {width / 2, width / 2, width / 2 + kSpacing / 4})};
   EnergySeries kinetic;
   Pool pool;
@@ -256,7 +256,7 @@ Pool run_pool_of(Real viscosity, std::uint64_t steps) {
     kinetic.values.push_back(now.kinetic_energy);
     pool.outside = std::max(pool.outside, now.particles_outside);
   });
-  const Real scale = kEdge * kEdge * kEdge * 0.125 * 9.81 * width;
+  const Real scale = kPoolEdge * kPoolEdge * kPoolEdge * 0.125 * 9.81 * width;
   const std::size_t count = kinetic.values.size();
   pool.third_quarter = kinetic.mean(count / 2, 3 * count / 4) / scale;
   pool.last_quarter = kinetic.mean(3 * count / 4, count) / scale;
