@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "core/sleep/resting_bodies.h"
 #include "core/state/rigid_motion.h"
 #include "core/support/check.h"
+#include "core/support/disjoint_sets.h"
 
 namespace vat {
 
@@ -58,28 +58,6 @@ bool is_still(const Model& model, const ModelBody& body, const Configuration& at
 }
 
 namespace {
-
-/// A partition of bodies into sets of joined bodies.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  /// The lowest body of its set.
-  Index root(Index body) {
-    VAT_ASSERT(body < parent_.size());
-    while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
-    return body;
-  }
-  void join(Index a, Index b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 struct IslandSearch {
   const Model& model;
@@ -136,7 +114,8 @@ std::vector<Index> find_resting_islands(const Model& model, const Configuration&
     if (rested[b]) bodies.push_back(b);
   }
   std::vector<Index> islands(model.bodies.size(), kAwake);
-  DisjointSets sets(model.bodies.size());
+  DisjointSets sets;
+  sets.reset(model.bodies.size());
   std::vector<char> disturbed(model.bodies.size(), 0);
   if (const Real reach = greatest_reach(model); reach > 0) {
     IslandSearch search{model, at, rested, reach, {}, {}};

@@ -102,14 +102,17 @@ Vec3 ContactSolve::slip(const ContactConstraint& contact) const {
 }
 
 /// The extrapolated impulses may violate the constraints; the next sweep corrects them.
-Real ContactSolve::extrapolate(std::vector<ContactConstraint>& constraints, Real last) {
+Real ContactSolve::extrapolate(std::vector<ContactConstraint>& constraints,
+                               std::span<const Index> island, Real last) {
   Real size = 0;
-  for (ContactConstraint& contact : constraints) {
+  for (const Index c : island) {
+    ContactConstraint& contact = constraints[c];
     contact.gradient += contact.impulse();
     size += contact.gradient.squaredNorm();
   }
   const Real share = size < last ? size / last : 0;
-  for (ContactConstraint& contact : constraints) {
+  for (const Index c : island) {
+    ContactConstraint& contact = constraints[c];
     const Vec3 impulse = share * contact.direction;
     const Real along = impulse.dot(contact.normal);
     contact.push += along;

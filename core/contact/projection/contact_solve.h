@@ -1,9 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <ranges>
+#include <span>
 #include <vector>
 
 #include "core/contact/projection/contact_constraint.h"
+#include "core/contact/projection/contact_islands.h"
+#include "core/support/parallel.h"
 
 namespace vat {
 
@@ -34,38 +39,56 @@ struct ContactSolve {
   /// resulting relative displacement of the ends in `dt`, in thresholds.
   Real apply_friction(ContactConstraint& contact);
 
-  /// Calls relax(contact) for all contacts in order and in reverse order, until no contact changes.
-  /// relax() returns the change of the contact in thresholds. Returns whether the sweeps have
+  /// Calls relax(contact) for the contacts of each island in order and in reverse order, until no
+  /// contact of the island changes. relax() returns the change of the contact in thresholds.
+  /// Islands are independent and may run on different threads. Returns whether the sweeps have
   /// converged. The nonlinear conjugate gradient method of M. Silcowitz-Hansen, S. Niebe, K.
   /// Erleben, The Visual Computer 26 (2010) 893, accelerates the convergence. In this method, the
   /// change of a sweep is a gradient. While the gradients decrease, the next sweep starts at an
   /// extrapolation of the last sweeps.
   template <class Relax>
-  bool sweep(std::vector<ContactConstraint>& constraints, Relax&& relax) {
-    constexpr Real kTolerance = 1e-8;
+  bool sweep(std::vector<ContactConstraint>& constraints, const ContactIslands& islands,
+             Relax&& relax) {
+    constexpr std::size_t kIslandsPerBlock = 8;
     // The maximum number of operations is about equal for few and many contacts.
     const std::size_t most =
         std::clamp<std::size_t>(10'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
-    Real last = 0;
-    for (std::size_t round = 0; round < most; ++round) {
-      Real change = 0;
-      for (ContactConstraint& contact : constraints) contact.gradient = -contact.impulse();
-      for (ContactConstraint& contact : constraints) change = std::max(change, relax(contact));
-      for (auto contact = constraints.rbegin(); contact != constraints.rend(); ++contact) {
-        change = std::max(change, relax(*contact));
-      }
-      if (change <= kTolerance) return true;
-      last = extrapolate(constraints, last);
-    }
-    return false;
+    std::atomic<bool> is_solved = true;
+    for_blocks<kIslandsPerBlock>(force_model.runner, islands.count(),
+                                 [&](std::size_t begin, std::size_t end) {
+                                   for (std::size_t island = begin; island < end; ++island) {
+                                     if (!sweep_island(constraints, islands[island], most, relax))
+                                       is_solved = false;
+                                   }
+                                 });
+    return is_solved;
   }
 
  private:
+  template <class Relax>
+  bool sweep_island(std::vector<ContactConstraint>& constraints, std::span<const Index> island,
+                    std::size_t most, Relax&& relax) {
+    constexpr Real kTolerance = 1e-8;
+    Real last = 0;
+    for (std::size_t round = 0; round < most; ++round) {
+      Real change = 0;
+      for (const Index c : island) constraints[c].gradient = -constraints[c].impulse();
+      for (const Index c : island) change = std::max(change, relax(constraints[c]));
+      for (const Index c : island | std::views::reverse) {
+        change = std::max(change, relax(constraints[c]));
+      }
+      if (change <= kTolerance) return true;
+      last = extrapolate(constraints, island, last);
+    }
+    return false;
+  }
   Vec3 velocity(const ContactEnd& end) const;
   Real mobility(const ContactEnd& end, const Vec3& direction) const;
-  /// Extrapolates the impulses of the last sweeps. Returns the squared norm of the gradients [N^2
-  /// s^2]. `last` is the result after the preceding sweep, or 0 after the first sweep.
-  Real extrapolate(std::vector<ContactConstraint>& constraints, Real last);
+  /// Extrapolates the impulses of the last sweeps of an island. Returns the squared norm of the
+  /// gradients [N^2 s^2]. `last` is the result after the preceding sweep, or 0 after the first
+  /// sweep.
+  Real extrapolate(std::vector<ContactConstraint>& constraints, std::span<const Index> island,
+                   Real last);
   void apply(const ContactEnd& end, const Vec3& impulse);
   void set_arms(ContactConstraint& contact, Real distance) const;
 };

@@ -101,8 +101,9 @@ void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time
     if (contact.last.is_steady) solve.start_from(contact, dt * contact.last.drift);
   }
   const Gaps gap{model, vat, now, start_, rigid_, predicted_, dt};
+  islands_.find(model, constraints_);
   for (int round = 0; round < kMaxRounds; ++round) {
-    const bool is_solved = solve.sweep(constraints_, [&](ContactConstraint& contact) {
+    const bool is_solved = solve.sweep(constraints_, islands_, [&](ContactConstraint& contact) {
       const Real wanted = contact.push - gap(contact) / (dt * contact.mobility);
       const Real change = solve.push(contact, std::max(Real{0}, wanted) - contact.push);
       return std::max(change, solve.apply_friction(contact));
@@ -142,7 +143,8 @@ void ContactProjection::finish(const ForceModel& f, Configuration& now, Real tim
     const bool bounces = -contact.approach > slow;
     contact.parting = bounces ? -contact.restitution * contact.approach : 0;
   }
-  solve.sweep(constraints_, [&](ContactConstraint& contact) {
+  islands_.find(model, constraints_);
+  solve.sweep(constraints_, islands_, [&](ContactConstraint& contact) {
     const Real speed = solve.slip(contact).dot(contact.normal);
     const Real wanted = contact.push + (contact.parting - speed) / contact.mobility;
     const Real change = solve.push(contact, std::max(Real{0}, wanted) - contact.push);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/contact/projection/contact_constraint.h"
+#include "core/contact/projection/contact_islands.h"
 
 namespace vat {
 
@@ -29,7 +30,7 @@ namespace vat {
 /// end may cancel the speed that the separation of an overlap has added. The total p remains at
 /// least 0, and the total p_t remains within Coulomb's cone.
 ///
-/// Both solves process one contact after another on one thread, in order and in reverse order,
+/// Both solves process the contacts of an island one after another, in order and in reverse order,
 /// until no contact changes.
 class ContactProjection {
  public:
@@ -44,6 +45,7 @@ class ContactProjection {
 
   ConstraintSearch search_;
   std::vector<ContactConstraint> constraints_;
+  ContactIslands islands_;
   std::vector<RigidMotion> rigid_;      ///< present motion, changed by the impulses
   std::vector<RigidMotion> predicted_;  ///< motion of the predicted poses
   Configuration start_;                 ///< start of the step; impulses change the velocities
