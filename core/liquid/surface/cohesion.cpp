@@ -11,6 +11,10 @@
 namespace vat {
 namespace {
 
+/// Particles have many neighbours, and different numbers of them. Small blocks keep all threads
+/// busy.
+constexpr std::size_t kTargetsPerBlock = 32;
+
 Vec3 place_of(const CellSortedPoints& points, Index slot) {
   return {points.x[slot], points.y[slot], points.z[slot]};
 }
@@ -75,7 +79,7 @@ void add_cohesion(StepContext& c) {
   const std::span<const Index> order = points.grid.order();
   const CohesionKernel& kernel = *model.cohesion;
   const VatMotion motion = motion_of(c);
-  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+  for_blocks<kTargetsPerBlock>(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const Index i = order[slot];
       const Index material = model.material[i];
@@ -97,16 +101,25 @@ void add_cohesion(StepContext& c) {
 
 namespace {
 
+/// Whether no force moves the particle in this step.
+bool is_held(const StepContext& c, Index i) {
+  const ModelBody& body = c.model.bodies[c.model.body[i]];
+  if (body.kind != BodyKind::rigid) return c.model.inverse_mass[i] == 0;
+  return c.model.rigid_bodies[body.rigid].is_held(c.step);
+}
+
 /// Adds the forces on the points of one kind, whose first one is particle `first`, by those of the
-/// other kind. pull(i, j, x) is the force on i, divided by the volume of i.
+/// other kind. Held particles get no force. pull(i, j, x) is the force on i, divided by the volume
+/// of i.
 template <class Pull>
 void add_pulls(StepContext& c, const CellSortedPoints& points, Index first,
                const CellSortedPoints& others, Index first_other, Pull&& pull) {
   const std::span<const Index> order = points.grid.order();
   const Real reach = c.model.cohesion->reach();
-  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+  for_blocks<kTargetsPerBlock>(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const Index i = first + order[slot];
+      if (is_held(c, i)) continue;
       const Vec3 place = place_of(points, static_cast<Index>(slot));
       Vec3 sum = Vec3::Zero();
       for_each_near(c.model, others, place, reach, [&](Index other, const Vec3& x) {
