@@ -59,12 +59,6 @@ void PressureResponse::weigh_solids() {
   f_.work.of<LiquidScratch>().sources.set_weights(context_, factors);
 }
 
-PairInputs PressureResponse::charged_inputs() const {
-  PairInputs inputs = f_.work.of<LiquidScratch>().sources.charged_inputs();
-  inputs.inverse_support = pair_inputs(context_).inverse_support;
-  return inputs;
-}
-
 void PressureResponse::set_liquid_motion(std::size_t slot, const Vec3& motion) {
   LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   scratch_.liquid_motion[slot] = motion;
@@ -95,7 +89,7 @@ void PressureResponse::accelerate_liquid(std::span<const Real> pressure) {
     const Vec3 sum = pressure[s] * buffers.volume_slopes[s].gradient + Eigen::Map<const Vec3>(sums);
     set_liquid_motion(s, -own * sum);
   };
-  buffers.liquid_clusters.for_each_sum<3>(f_.runner, charged_inputs(), sums_.gradient,
+  buffers.liquid_clusters.for_each_sum<3>(f_.runner, charged_pair_inputs(context_), sums_.gradient,
                                           set_acceleration);
 }
 
@@ -121,7 +115,7 @@ void PressureResponse::sum_solid_forces() {
   const Real factor = -2 * slope_factor(model, *model.liquids[model.material[0]]);
   const Index first = buffers.sources.first_solid();
   buffers.solid_clusters.for_each_sum<3>(
-      f_.runner, charged_inputs(), sums_.gradient,
+      f_.runner, charged_pair_inputs(context_), sums_.gradient,
       [&](const TargetCluster&, Index n, const Real* sums) {
         const Index b = solids_[n - first];
         const Real volume = model.rest_volume[model.liquid_count + b];

@@ -73,7 +73,6 @@ class PressureResponse {
   /// Sets the motion of a liquid slot and of its source.
   void set_liquid_motion(std::size_t slot, const Vec3& motion);
   void charge(std::span<const Real> pressure);
-  PairInputs charged_inputs() const;
   void accelerate_liquid(std::span<const Real> pressure);
   template <class Scale>
   void compress_to(std::span<Real> rate, Scale&& scale);

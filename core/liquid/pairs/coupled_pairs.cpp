@@ -20,11 +20,22 @@ bool has_central_viscosity(const Model& model) {
   });
 }
 
-PairInputs pair_inputs(const StepContext& c) {
+namespace {
+
+PairInputs in_supports(const StepContext& c, PairInputs inputs) {
   VAT_CHECK(c.model.liquid_count > 0);
-  PairInputs inputs = c.work.of<LiquidScratch>().sources.inputs();
   inputs.inverse_support = 1 / support_of(c.model);
   return inputs;
+}
+
+}  // namespace
+
+PairInputs pair_inputs(const StepContext& c) {
+  return in_supports(c, c.work.of<LiquidScratch>().sources.inputs());
+}
+
+PairInputs charged_pair_inputs(const StepContext& c) {
+  return in_supports(c, c.work.of<LiquidScratch>().sources.charged_inputs());
 }
 
 PairInputs force_inputs(const StepContext& c) {

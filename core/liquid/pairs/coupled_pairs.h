@@ -51,6 +51,8 @@ bool has_central_viscosity(const Model& model);
 
 /// Returns the inputs of sums that depend on positions only.
 PairInputs pair_inputs(const StepContext& context);
+/// Returns these inputs with the charges of the sources in place of their weights.
+PairInputs charged_pair_inputs(const StepContext& context);
 
 /// Return the inputs of sums that also depend on motions, with liquid or solids as targets.
 PairInputs force_inputs(const StepContext& context);

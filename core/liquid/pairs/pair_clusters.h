@@ -80,6 +80,21 @@ class PairClusters {
       }
     });
   }
+  /// Calls f(cluster, target, sums) like for_each_sum(), for the clusters with takes(cluster).
+  template <std::size_t width, class Takes, class F>
+  void for_some_sums(TaskRunner* runner, const PairInputs& inputs, PairSums::Function sum,
+                     Takes&& takes, F&& f) const {
+    for_each_chunk(runner, inputs, [&](const PairInputs& in, auto clusters) {
+      std::array<Real, width * kMaxTargets> sums;
+      for (const TargetCluster& cluster : clusters) {
+        if (!takes(cluster)) continue;
+        sum(in.from_target(cluster.begin), {&cluster, 1}, sums.data());
+        for (Index n = cluster.begin; n < cluster.end; ++n) {
+          f(cluster, n, &sums[width * (n - cluster.begin)]);
+        }
+      }
+    });
+  }
 
  private:
   static constexpr Index kTargetsAtOnce = 256;

@@ -193,6 +193,8 @@ struct Loops {
         &sum_clusters<T, VolumeTerm<T, Kernel>>,
         &sum_clusters<T, ResponseTerm<T, Kernel>>,
         &sum_clusters<T, MeanTerm<T, Kernel>>,
+        &sum_clusters<T, BlendTerm<T, Kernel>>,
+        &sum_clusters<T, SpreadTerm<T, Kernel>>,
     };
     return kTable;
   }

@@ -140,10 +140,15 @@ struct PairSums {
   Function response;
   /// The sums sum_j a_j w vx_j x, sum_j a_j w and sum_j a_j w p_j; five numbers.
   Function mean;
+  /// The sum_j a_j w v_j; three numbers.
+  Function blend;
+  /// The sums sum_j a_j g v.x and sum_j a_j w; two numbers.
+  Function spread;
 };
 inline constexpr std::size_t kVolumeSums = 5;
 inline constexpr std::size_t kResponseSums = 5;
 inline constexpr std::size_t kMeanSums = 5;
+inline constexpr std::size_t kSpreadSums = 2;
 
 /// Returns scalar loops for processors without SSSE3. The results are bitwise equal to those of the
 /// baseline instruction set.

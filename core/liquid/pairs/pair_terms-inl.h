@@ -305,6 +305,39 @@ struct MeanTerm {
   }
 };
 
+template <class T, class Kernel>
+struct BlendTerm {
+  using V = typename Simd<T>::V;
+  static constexpr TileColumns kParts{.velocity = true};
+  static constexpr std::size_t kSums = 3;
+  V sums[kSums];
+
+  HWY_INLINE void add(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
+    const Offset<T> at = offset_of(i, tile, k);
+    const V weight = hn::Mul(load(tile.weight, k), Kernel::value(typename Simd<T>::D(), at.q));
+    sums[0] = hn::MulAdd(weight, load(tile.vx, k), sums[0]);
+    sums[1] = hn::MulAdd(weight, load(tile.vy, k), sums[1]);
+    sums[2] = hn::MulAdd(weight, load(tile.vz, k), sums[2]);
+  }
+};
+
+template <class T, class Kernel>
+struct SpreadTerm {
+  using V = typename Simd<T>::V;
+  static constexpr TileColumns kParts{.velocity = true};
+  static constexpr std::size_t kSums = kSpreadSums;
+  V sums[kSums];
+
+  HWY_INLINE void add(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
+    const typename Simd<T>::D d;
+    const Offset<T> at = offset_of(i, tile, k);
+    const V weight = load(tile.weight, k);
+    sums[0] =
+        hn::MulAdd(hn::Mul(weight, Kernel::slope(d, at.q)), approach(i, tile, k, at), sums[0]);
+    sums[1] = hn::MulAdd(weight, Kernel::value(d, at.q), sums[1]);
+  }
+};
+
 }  // namespace
 
 }  // namespace vat::HWY_NAMESPACE

@@ -93,18 +93,13 @@ void add_viscous_image_forces(StepContext& c) {
   const PairSums& table = pair_sums_of(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
-  buffers.liquid_clusters.for_each_chunk(
-      c.runner, inputs, [&](const PairInputs& in, auto clusters) {
-        for (const TargetCluster& cluster : clusters) {
-          if (!cluster.has_mirrored) continue;
-          std::array<Real, 3 * kMaxTargets> sums;
-          table.drag(in.from_target(cluster.begin), {&cluster, 1}, sums.data());
-          for (Index s = cluster.begin; s < cluster.end; ++s) {
-            const Index i = order[s];
-            c.forces.particle[i] += model.rest_volume[i] * factor[model.material[i]] *
-                                    Eigen::Map<const Vec3>(&sums[3 * (s - cluster.begin)]);
-          }
-        }
+  buffers.liquid_clusters.for_some_sums<3>(
+      c.runner, inputs, table.drag,
+      [](const TargetCluster& cluster) { return cluster.has_mirrored; },
+      [&](const TargetCluster&, Index s, const Real* sums) {
+        const Index i = order[s];
+        c.forces.particle[i] +=
+            model.rest_volume[i] * factor[model.material[i]] * Eigen::Map<const Vec3>(sums);
       });
 }
 

@@ -9,15 +9,14 @@ namespace {
 void add_curvature_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
   if (model.particle_count > model.liquid_count) {
-    plan.add("find_surface", {liquid_cells, solid_cells, liquid_pairs, liquid_solids}, {surface},
-             &find_surface);
+    plan.add("find_surface", {liquid_cells, solid_cells, pair_clusters}, {surface}, &find_surface);
   } else {
-    plan.add("find_surface", {liquid_cells, liquid_pairs}, {surface}, &find_surface);
+    plan.add("find_surface", {liquid_cells, pair_clusters}, {surface}, &find_surface);
   }
-  plan.add("surface_normals", {liquid_cells, liquid_pairs, surface}, {surface_normals},
-           &find_surface_normals);
-  plan.add("surface_tension", {liquid_cells, liquid_pairs, surface, surface_normals, force},
-           {force}, &add_surface_tension);
+  plan.add("surface_normals", {liquid_cells, pair_clusters, surface},
+           {pair_motion, surface_normals}, &find_surface_normals);
+  plan.add("surface_tension", {liquid_cells, pair_clusters, surface, surface_normals, force},
+           {pair_motion, force}, &add_surface_tension);
 }
 
 void add_cohesion_stages(const Model& model, PlanBuilder& plan) {

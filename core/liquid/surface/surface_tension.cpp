@@ -1,89 +1,85 @@
 #include "core/liquid/surface/surface_tension.h"
-#include "core/liquid/pairs/scratch.h"
-#include "core/liquid/surface/scratch.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
-#include "core/liquid/pairs/weakly_compressible_pairs.h"
+#include "core/liquid/surface/scratch.h"
 #include "core/support/check.h"
 
 namespace vat {
 namespace {
 
-/// A liquid particle and its neighbourhood.
-struct Neighbourhood {
+/// A liquid particle.
+struct SurfacePoint {
   const StepContext& c;
-  const VatMotion& motion;
   Index slot;
 
-  Index particle_of(Index other) const {
-    return c.work.of<LiquidScratch>().liquid.grid.order()[other];
-  }
-  Index solid_of(Index other) const {
-    return c.model.liquid_count + c.work.of<LiquidScratch>().solids_in_liquid.grid.order()[other];
-  }
-  const LiquidModel& liquid() const { return liquid_of(c.model, particle_of(slot)); }
-  bool is_alike(Index other) const {
-    return c.model.material[particle_of(other)] == c.model.material[particle_of(slot)];
-  }
-  Real volume(Index other) const { return c.model.rest_volume[particle_of(other)]; }
+  const SurfaceScratch& surface() const { return c.work.of<SurfaceScratch>(); }
+  Index particle() const { return c.work.of<LiquidScratch>().liquid.grid.order()[slot]; }
+  Index material() const { return c.model.material[particle()]; }
+  const LiquidModel& liquid() const { return liquid_of(c.model, particle()); }
+  Real volume() const { return c.model.rest_volume[particle()]; }
   Vec3 position() const {
     const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
     return {points.x[slot], points.y[slot], points.z[slot]};
   }
+  const Vec3& normal() const { return surface().surface_normals[slot]; }
+  /// |g| [1/m]
+  Real steepness() const { return surface().surface[slot].gradient.norm(); }
+  bool is_at_surface() const { return steepness() * liquid().support_radius > kSurfaceThreshold; }
 };
 
-/// Calls f(slot, x, mirror) for the liquid particles in reach and for their images, with x pointing
-/// to the particle at the place. The mirror is null for particles.
+/// Calls f(point) for each liquid particle.
 template <class F>
-void for_each_liquid(const Neighbourhood& at, F&& f) {
-  const StepContext& c = at.c;
-  const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
-  const PairBlock& pairs = c.work.of<LiquidScratch>().liquid_pairs[at.slot / kBlockSize];
-  const Vec3 place = at.position();
-  const Index in_block = at.slot % kBlockSize;
-  for (Index k = pairs.begin[in_block]; k < pairs.begin[in_block + 1]; ++k) {
-    const Index slot = pairs.slots[k];
-    const Vec3 x = place - Vec3(points.x[slot], points.y[slot], points.z[slot]);
-    f(slot, nearest_image(c.model, x), static_cast<const Mirror*>(nullptr));
-  }
-  if (c.model.walls.empty()) return;
-  for_each_image(c.model, at.motion, points, place, at.liquid().support_radius,
-                 [&](Index slot, const Vec3& x, const Mirror& mirror) { f(slot, x, &mirror); });
-}
-
-/// Calls f(solid particle, x) for the solid particles in reach and their images.
-template <class F>
-void for_each_solid(const Neighbourhood& at, F&& f) {
-  const StepContext& c = at.c;
-  if (!has_solids(c.model)) return;
-  const CellSortedPoints& solids = c.work.of<LiquidScratch>().solids_in_liquid;
-  const PairBlock& near = c.work.of<LiquidScratch>().solids_of_liquid[at.slot / kBlockSize];
-  const Vec3 place = at.position();
-  const Real support = at.liquid().support_radius;
-  const Index in_block = at.slot % kBlockSize;
-  for (Index k = near.begin[in_block]; k < near.begin[in_block + 1]; ++k) {
-    const Index slot = near.slots[k];
-    const Vec3 x = place - Vec3(solids.x[slot], solids.y[slot], solids.z[slot]);
-    const Vec3 nearest = nearest_image(c.model, x);
-    if (nearest.squaredNorm() < support * support) f(at.solid_of(slot), nearest);
-  }
-  if (c.model.walls.empty()) return;
-  for_each_image(c.model, at.motion, solids, place, support,
-                 [&](Index slot, const Vec3& x, const Mirror&) { f(at.solid_of(slot), x); });
-}
-
-/// Calls f(place) for each liquid particle.
-template <class F>
-void for_each_neighbourhood(const StepContext& c, F&& f) {
-  const VatMotion motion = motion_of(c);
+void for_each_point(const StepContext& c, F&& f) {
   for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
-      f(Neighbourhood{c, motion, static_cast<Index>(slot)});
+      f(SurfacePoint{c, static_cast<Index>(slot)});
     }
   });
+}
+
+/// Calls f(material) for each material of the liquid bodies.
+template <class F>
+void for_each_liquid(const Model& model, F&& f) {
+  if (!has_several_liquids(model)) {
+    f(model.material[0]);
+    return;
+  }
+  for (Index material = 0; material < model.liquids.size(); ++material) {
+    if (model.liquids[material]) f(material);
+  }
+}
+
+/// Sets the motion of each liquid particle to a vector, and that of its images to
+/// image_vector(image, vector).
+template <class Vector, class ImageVector>
+void set_vectors(StepContext& c, Vector&& vector, ImageVector&& image_vector) {
+  c.work.of<LiquidScratch>().sources.set_motions(
+      c.runner, [&](std::size_t s) { return motion_of(0, vector(s)); },
+      [](std::size_t) { return PairMotion{}; },
+      [&](const PairImage& image, const PairMotion& source) {
+        if (image.source >= c.model.liquid_count) return PairMotion{};
+        return motion_of(0, image_vector(image, Vec3(source.vx, source.vy, source.vz)));
+      });
+}
+
+/// Calls f(point, sums) for the liquid particles with takes(point). The sources are the charges.
+template <std::size_t width, class Takes, class F>
+void sum_charges(const StepContext& c, PairSums::Function sum, Takes&& takes, F&& f) {
+  c.work.of<LiquidScratch>().liquid_clusters.for_some_sums<width>(
+      c.runner, charged_pair_inputs(c), sum,
+      [&](const TargetCluster& cluster) {
+        for (Index slot = cluster.begin; slot < cluster.end; ++slot) {
+          if (takes(SurfacePoint{c, slot})) return true;
+        }
+        return false;
+      },
+      [&](const TargetCluster&, Index slot, const Real* sums) {
+        if (const SurfacePoint point{c, slot}; takes(point)) f(point, sums);
+      });
 }
 
 /// The normal of a surface at the contact angle with a wall, in the direction of `normal` along the
@@ -99,16 +95,15 @@ Vec3 contact_normal(const Vec3& normal, int axis, Real inwards, Real cosine) {
   return result;
 }
 
-Real wall_cosine(const Neighbourhood& at) {
-  return at.c.model.wall_cosines[at.c.model.material[at.particle_of(at.slot)]];
-}
-
 /// The normal of the image of a particle with `normal`: reflected at the contact normal, so that
 /// the surface has the contact normal at the wall.
-Vec3 image_normal(const Neighbourhood& at, Vec3 normal, const Mirror& mirror) {
-  const Real cosine = wall_cosine(at);
-  if (cosine == 0) return mirror.turn(normal);
-  const Vec3 place = at.position();
+Vec3 image_normal(const StepContext& c, const PairImage& image, Vec3 normal) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const Index particle = buffers.liquid.grid.order()[image.source];
+  const Real cosine = c.model.wall_cosines[c.model.material[particle]];
+  if (cosine == 0) return image.turn(normal);
+  const Vec3 place = buffers.sources.place(image.source);
+  const Mirror mirror = image.mirror();
   for (int axis = 0; axis < 3; ++axis) {
     if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
     const Real inwards = 2 * place[axis] > mirror.twice_plane[axis] ? 1 : -1;
@@ -119,13 +114,13 @@ Vec3 image_normal(const Neighbourhood& at, Vec3 normal, const Mirror& mirror) {
 }
 
 /// Interpolates normals near walls to the contact normal.
-Vec3 turn_at_walls(const Neighbourhood& at, Vec3 normal) {
+Vec3 turn_at_walls(const SurfacePoint& at, const VatMotion& motion, Vec3 normal) {
   const Model& model = at.c.model;
-  const Real cosine = wall_cosine(at);
+  const Real cosine = model.wall_cosines[at.material()];
   if (cosine == 0) return normal;
   for (const int wall : model.walls) {
-    const Real q = wall_distance(*model.scene.vat, at.motion, wall, at.position()) /
-                   at.liquid().support_radius;
+    const Real q =
+        wall_distance(*model.scene.vat, motion, wall, at.position()) / at.liquid().support_radius;
     if (q >= 1) continue;
     const Vec3 contact = contact_normal(normal, wall / 2, wall % 2 == 0 ? 1 : -1, cosine);
     const Real share = 1 - std::max(Real{0}, q);
@@ -135,130 +130,96 @@ Vec3 turn_at_walls(const Neighbourhood& at, Vec3 normal) {
   return normal;
 }
 
-SurfaceRecord surface_at(const Neighbourhood& at) {
-  const LiquidModel& liquid = at.liquid();
-  const SmoothingKernel& kernel = liquid.kernel;
-  Vec3 gradient = Vec3::Zero();
-  Real sum = at.volume(at.slot) * kernel.value(0);
-  for_each_liquid(at, [&](Index other, const Vec3& x, const Mirror*) {
-    const Real r = x.norm();
-    sum += at.volume(other) * kernel.value(r);
-    if (at.is_alike(other)) gradient += (at.volume(other) * kernel.slope_over_r(r)) * x;
-  });
-  for_each_solid(at, [&](Index solid, const Vec3& x) {
-    const Real r = x.norm();
-    sum += at.c.model.rest_volume[solid] * kernel.value(r);
-    gradient += (at.c.model.rest_volume[solid] * kernel.slope_over_r(r)) * x;
-  });
-  return {liquid.slope_scale * gradient, std::max(Real{0}, 1 - sum)};
-}
-
-/// The kernel-weighted mean of the gradients of the neighbours, as a direction.
-Vec3 normal_at(const Neighbourhood& at) {
-  const std::vector<SurfaceRecord>& surface = at.c.work.of<SurfaceScratch>().surface;
-  const LiquidModel& liquid = at.liquid();
-  const Vec3& own = surface[at.slot].gradient;
-  if (own.norm() * liquid.support_radius <= kSurfaceThreshold) return Vec3::Zero();
-  Vec3 sum = at.volume(at.slot) * liquid.kernel.value(0) * own;
-  for_each_liquid(at, [&](Index other, const Vec3& x, const Mirror* mirror) {
-    if (!at.is_alike(other)) return;
-    const Vec3& there = surface[other].gradient;
-    sum += (at.volume(other) * liquid.kernel.value(x.norm())) *
-           (mirror == nullptr ? there : mirror->turn(there));
-  });
-  const Real length = sum.norm();
-  return length > 0 ? turn_at_walls(at, sum / length) : Vec3(Vec3::Zero());
-}
-
 /// The curvature of the surface, from the curvature of the parallel surface of the particles below
 /// it.
-Real lift_to_surface(const Neighbourhood& at, Real curvature) {
+Real lift_to_surface(const SurfacePoint& at, Real curvature) {
   const int dimensions = at.c.model.scene.dimensions;
   const Real share = kSurfaceDepth / (dimensions - 1) + kSurfaceBulge;
   const Real h = at.liquid().support_radius;
   return curvature / (1 + std::max(Real{-0.5}, share * h * curvature));
 }
 
-/// -div n over particles at the surface and their images.
-Real curvature_at(const Neighbourhood& at) {
-  const std::vector<Vec3>& normals = at.c.work.of<SurfaceScratch>().surface_normals;
-  const SmoothingKernel& kernel = at.liquid().kernel;
-  const Vec3& own = normals[at.slot];
-  Real divergence = 0;
-  Real weight = at.volume(at.slot) * kernel.value(0);
-  for_each_liquid(at, [&](Index other, const Vec3& x, const Mirror* mirror) {
-    if (normals[other].isZero(0) || !at.is_alike(other)) return;
-    const Real r = x.norm();
-    const Vec3 there =
-        mirror == nullptr ? normals[other] : image_normal(at, normals[other], *mirror);
-    const Vec3 change = there - own;
-    divergence += at.volume(other) * kernel.slope_over_r(r) * change.dot(x);
-    weight += at.volume(other) * kernel.value(r);
+/// Subtracts the parts of other liquids from the gradients.
+void remove_other_liquids(StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  std::vector<SurfaceRecord>& surface = c.work.of<SurfaceScratch>().surface;
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  for_each_liquid(c.model, [&](Index material) {
+    const Real slope = slope_factor(c.model, *c.model.liquids[material]);
+    buffers.sources.set_charges(
+        c.runner, [&](std::size_t s) -> Real { return c.model.material[order[s]] != material; });
+    sum_charges<3>(
+        c, pair_sums_of(c).gradient,
+        [&](const SurfacePoint& point) { return point.material() == material; },
+        [&](const SurfacePoint& point, const Real* sums) {
+          surface[point.slot].gradient -= slope * Eigen::Map<const Vec3>(sums);
+        });
   });
-  return lift_to_surface(at, -divergence / weight);
-}
-
-/// Half the derivative of the cohesion energy by s_i [Pa].
-Real cohesion_of(const Neighbourhood& at, Index slot) {
-  const LiquidModel& liquid = liquid_of(at.c.model, at.particle_of(slot));
-  return 2 * kCohesion * liquid.surface_tension / liquid.support_radius *
-         at.c.work.of<SurfaceScratch>().surface[slot].kernel_deficiency;
-}
-
-/// The force of cohesion, divided by the particle's volume.
-Vec3 cohesion_at(const Neighbourhood& at) {
-  const LiquidModel& liquid = at.liquid();
-  const Real own = cohesion_of(at, at.slot);
-  Vec3 sum = Vec3::Zero();
-  for_each_liquid(at, [&](Index other, const Vec3& x, const Mirror*) {
-    const Real both = own + cohesion_of(at, other);
-    if (both > 0) sum += (at.volume(other) * both * liquid.kernel.slope_over_r(x.norm())) * x;
-  });
-  return liquid.slope_scale * sum;
 }
 
 }  // namespace
 
 void find_surface(StepContext& c) {
-  SurfaceScratch& surface_buffers = c.work.of<SurfaceScratch>();
-  VAT_CHECK(c.work.of<LiquidScratch>().liquid.grid.order().size() == c.model.liquid_count);
-  surface_buffers.surface.resize(c.model.liquid_count);
-  for_each_neighbourhood(
-      c, [&](const Neighbourhood& at) { surface_buffers.surface[at.slot] = surface_at(at); });
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  std::vector<SurfaceRecord>& surface = c.work.of<SurfaceScratch>().surface;
+  const Model& model = c.model;
+  VAT_CHECK(buffers.liquid.grid.order().size() == model.liquid_count);
+  if (has_solids(model)) buffers.sources.set_weights(c, {});
+  const auto scale =
+      by_material(model, [&](const LiquidModel& liquid) { return scale_factor(model, liquid); });
+  const auto slope =
+      by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
+  surface.resize(model.liquid_count);
+  buffers.liquid_clusters.for_each_sum<kVolumeSums>(
+      c.runner, pair_inputs(c), pair_sums_of(c).volume,
+      [&](const TargetCluster&, Index slot, const Real* sums) {
+        const Index material = SurfacePoint{c, slot}.material();
+        surface[slot] = {slope[material] * Eigen::Map<const Vec3>(sums + 1),
+                         std::max(Real{0}, 1 - scale[material] * sums[0])};
+      });
+  if (has_several_liquids(model)) remove_other_liquids(c);
 }
 
+// The kernel-weighted mean of the gradients of the neighbours, as a direction.
 void find_surface_normals(StepContext& c) {
-  SurfaceScratch& surface_buffers = c.work.of<SurfaceScratch>();
-  VAT_CHECK(surface_buffers.surface.size() == c.model.liquid_count);
-  surface_buffers.surface_normals.resize(c.model.liquid_count);
-  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
-    surface_buffers.surface_normals[at.slot] = normal_at(at);
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  SurfaceScratch& own = c.work.of<SurfaceScratch>();
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  const VatMotion motion = motion_of(c);
+  VAT_CHECK(own.surface.size() == c.model.liquid_count);
+  own.surface_normals.assign(c.model.liquid_count, Vec3::Zero());
+  set_vectors(
+      c, [&](std::size_t s) { return own.surface[s].gradient; },
+      [](const PairImage& image, const Vec3& gradient) { return image.turn(gradient); });
+  for_each_liquid(c.model, [&](Index material) {
+    buffers.sources.set_charges(
+        c.runner, [&](std::size_t s) -> Real { return c.model.material[order[s]] == material; });
+    sum_charges<3>(
+        c, pair_sums_of(c).blend,
+        [&](const SurfacePoint& point) {
+          return point.material() == material && point.is_at_surface();
+        },
+        [&](const SurfacePoint& point, const Real* sums) {
+          const Eigen::Map<const Vec3> sum(sums);
+          if (const Real length = sum.norm(); length > 0) {
+            own.surface_normals[point.slot] = turn_at_walls(point, motion, sum / length);
+          }
+        });
   });
 }
 
 namespace {
 
-/// The force of curvature, divided by the particle's volume.
-Vec3 squeeze_at(const Neighbourhood& at) {
-  SurfaceScratch& surface_buffers = at.c.work.of<SurfaceScratch>();
-  const Vec3& normal = surface_buffers.surface_normals[at.slot];
-  if (normal.isZero(0)) return Vec3::Zero();
-  const Real delta = 2 * surface_buffers.surface[at.slot].gradient.norm();
-  return (at.liquid().surface_tension * curvature_at(at) * delta) * normal;
-}
-
 /// The weight of the particle in corrections: sigma times its part of the surface.
-Real share_of(const Neighbourhood& at) {
-  SurfaceScratch& surface_buffers = at.c.work.of<SurfaceScratch>();
-  if (surface_buffers.surface_normals[at.slot].isZero(0)) return 0;
-  return at.liquid().surface_tension * at.volume(at.slot) *
-         surface_buffers.surface[at.slot].gradient.norm();
+Real share_of(const SurfacePoint& at) {
+  if (at.normal().isZero(0)) return 0;
+  return at.liquid().surface_tension * at.volume() * at.steepness();
 }
 
 SurfaceSum sum_surface(StepContext& c, const std::vector<Vec3>& force) {
   std::vector<SurfaceSum>& sums = c.work.of<SurfaceScratch>().surface_sums;
   sums.assign(block_count(force.size()), {});
-  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
+  for_each_point(c, [&](const SurfacePoint& at) {
     SurfaceSum& sum = sums[at.slot / kBlockSize];
     const Real share = share_of(at);
     const Vec3 x = at.position();
@@ -289,24 +250,82 @@ void balance(StepContext& c, std::vector<Vec3>& force) {
     const bool is_line = !(solver.vectorD().minCoeff() > 1e-9 * inertia.trace());
     if (!is_line) turn = solver.solve(all.torque - center.cross(all.force));
   }
-  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
+  for_each_point(c, [&](const SurfacePoint& at) {
     force[at.slot] -= share_of(at) * (excess + turn.cross(at.position() - center));
   });
+}
+
+/// Sets the curvature forces. The curvature is -div n over particles at the surface and their
+/// images.
+void find_curvature_forces(StepContext& c, std::vector<Vec3>& force) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const std::vector<Vec3>& normals = c.work.of<SurfaceScratch>().surface_normals;
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  force.assign(c.model.liquid_count, Vec3::Zero());
+  set_vectors(
+      c, [&](std::size_t s) { return normals[s]; },
+      [&](const PairImage& image, const Vec3& normal) { return image_normal(c, image, normal); });
+  for_each_liquid(c.model, [&](Index material) {
+    const LiquidModel& liquid = *c.model.liquids[material];
+    const Real ratio =
+        slope_factor(c.model, liquid) / liquid.slope_scale / scale_factor(c.model, liquid);
+    buffers.sources.set_charges(c.runner, [&](std::size_t s) -> Real {
+      return c.model.material[order[s]] == material && !normals[s].isZero(0);
+    });
+    sum_charges<kSpreadSums>(
+        c, pair_sums_of(c).spread,
+        [&](const SurfacePoint& point) {
+          return point.material() == material && !point.normal().isZero(0);
+        },
+        [&](const SurfacePoint& point, const Real* sums) {
+          const Real curvature = lift_to_surface(point, ratio * sums[0] / sums[1]);
+          force[point.slot] =
+              (point.volume() * liquid.surface_tension * curvature * 2 * point.steepness()) *
+              point.normal();
+        });
+  });
+}
+
+/// Half the derivative of the cohesion energy by s_i [Pa].
+Real cohesion_of(const SurfacePoint& at) {
+  const LiquidModel& liquid = at.liquid();
+  return 2 * kCohesion * liquid.surface_tension / liquid.support_radius *
+         at.surface().surface[at.slot].kernel_deficiency;
+}
+
+/// Adds the attraction between particles at the surface.
+void add_surface_cohesion(StepContext& c) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  buffers.sources.set_motions(
+      c.runner,
+      [&](std::size_t s) {
+        return motion_of(cohesion_of(SurfacePoint{c, static_cast<Index>(s)}), Vec3::Zero());
+      },
+      [](std::size_t) { return PairMotion{}; },
+      [](const PairImage&, const PairMotion& source) { return source; });
+  buffers.sources.set_charges(c.runner, [](std::size_t) { return Real{1}; });
+  const auto slope = by_material(
+      c.model, [&](const LiquidModel& liquid) { return slope_factor(c.model, liquid); });
+  buffers.liquid_clusters.for_each_sum<3>(
+      c.runner, charged_pair_inputs(c), pair_sums_of(c).pressure,
+      [&](const TargetCluster&, Index slot, const Real* sums) {
+        const SurfacePoint point{c, slot};
+        c.forces.particle[point.particle()] -=
+            (point.volume() * slope[point.material()]) * Eigen::Map<const Vec3>(sums);
+      });
 }
 
 }  // namespace
 
 void add_surface_tension(StepContext& c) {
-  std::vector<Vec3>& squeeze = c.work.of<SurfaceScratch>().surface_forces;
+  std::vector<Vec3>& force = c.work.of<SurfaceScratch>().surface_forces;
   VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
-  squeeze.resize(c.model.liquid_count);
-  for_each_neighbourhood(
-      c, [&](const Neighbourhood& at) { squeeze[at.slot] = at.volume(at.slot) * squeeze_at(at); });
-  if (c.model.walls.empty() && !has_solids(c.model)) balance(c, squeeze);
-  for_each_neighbourhood(c, [&](const Neighbourhood& at) {
-    const Vec3 pull = cohesion_at(at);
-    c.forces.particle[at.particle_of(at.slot)] += squeeze[at.slot] + at.volume(at.slot) * pull;
+  find_curvature_forces(c, force);
+  if (c.model.walls.empty() && !has_solids(c.model)) balance(c, force);
+  for_each_point(c, [&](const SurfacePoint& point) {
+    c.forces.particle[point.particle()] += force[point.slot];
   });
+  add_surface_cohesion(c);
 }
 
 }  // namespace vat

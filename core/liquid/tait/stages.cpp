@@ -70,12 +70,14 @@ void add_coupled_force_stages(const Model& model, PlanBuilder& plan) {
     plan.add("liquid_forces", {velocity, liquid_cells, pair_clusters, density, pressure, force},
              {pair_motion, force}, &add_tait_forces);
   }
-  if (model.is_filled || model.has_surface_tension) add_list_stages(model, plan);
   if (has_viscous_images(model)) {
     plan.add("viscous_images", {velocity, liquid_cells, pair_clusters, force}, {pair_motion, force},
              &add_viscous_image_forces);
   }
-  if (model.is_filled) add_transport_stages(model, plan);
+  if (model.is_filled) {
+    add_list_stages(model, plan);
+    add_transport_stages(model, plan);
+  }
 }
 
 void add_tait_stages(const Model& model, PlanBuilder& plan) {

@@ -263,6 +263,24 @@ TEST_P(PairSumsOf, MeanHasWeightsAndMoments) {
   });
 }
 
+TEST_P(PairSumsOf, BlendIsTheWeightedVelocity) {
+  expect(&PairSums::blend, pairs_, false, 3, [&](const Pair& p, auto add) {
+    const PairMotion& motion = pairs_.motions[p.j];
+    const Real weight = pairs_.places[p.j].weight * p.w;
+    add(0, weight * motion.vx);
+    add(1, weight * motion.vy);
+    add(2, weight * motion.vz);
+  });
+}
+
+TEST_P(PairSumsOf, SpreadHasRelativeVelocitiesAndWeights) {
+  expect(&PairSums::spread, pairs_, false, kSpreadSums, [&](const Pair& p, auto add) {
+    const Real weight = pairs_.places[p.j].weight;
+    for (int a = 0; a < 3; ++a) add(0, weight * p.g * p.v[a] * p.x[a]);
+    add(1, weight * p.w);
+  });
+}
+
 TEST(PositionGrid, RoundsToItsUnitAndKeepsToItself) {
   const PositionGrid grid({-3, 2, 5}, 7);
   EXPECT_LE(grid.unit, 2 * 7.0 / PositionGrid::kCount);
@@ -285,9 +303,10 @@ TEST(PairSums, OfTheBaselineAreTheSameBitsWithoutVectors) {
     for (const KernelId kernel : {KernelId::wendland_c2, KernelId::cubic_spline}) {
       const PairSums& a = pair_sums(InstructionSet::baseline, precision, kernel);
       const PairSums& b = pair_sums_without_vectors(precision, kernel);
-      for (const auto function : {&PairSums::density, &PairSums::pressure, &PairSums::force,
-                                  &PairSums::drag, &PairSums::gradient, &PairSums::divergence,
-                                  &PairSums::volume, &PairSums::response, &PairSums::mean}) {
+      for (const auto function :
+           {&PairSums::density, &PairSums::pressure, &PairSums::force, &PairSums::drag,
+            &PairSums::gradient, &PairSums::divergence, &PairSums::volume, &PairSums::response,
+            &PairSums::mean, &PairSums::blend, &PairSums::spread}) {
         for (const bool mixed : {false, true}) {
           std::vector<Real> with(kTargets * kMeanSums, 0);
           std::vector<Real> without = with;
