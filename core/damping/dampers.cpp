@@ -8,9 +8,9 @@
 
 #include "core/contact/contact_rules.h"
 #include "core/contact/walls.h"
-#include "core/evaluation/force_model.h"
+#include "core/damping/liquid_drags.h"
+#include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
-#include "core/liquid/pairs/neighbour_lists.h"
 #include "core/liquid/pairs/no_slip.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/solid/spring_sums.h"
@@ -44,50 +44,47 @@ void add_settling_dampers(const Model& model, Index i, std::vector<Damper>& damp
 
 }  // namespace
 
-void DampingMatrix::collect(const ForceModel& f, const Configuration& at, Real time,
-                            bool viscosity) {
-  const Model& model = f.model;
-  is_viscous_ = viscosity && (model.is_coupled || has_viscosity(model));
-  collect_own(f, at, time, viscosity);
-  if (is_viscous_) collect_viscosity(f);
-  has_images_ = is_viscous_ && has_viscous_images(model);
-  if (has_images_) images_.collect(f, time);
-  has_solid_drags_ = is_viscous_ && model.is_coupled && has_solids(model);
-  if (has_solid_drags_) solid_drags_.collect(f);
-  collect_rigid(f);
+void DampingMatrix::collect(const StepContext& c, bool viscosity) {
+  const Model& model = c.model;
+  const bool is_coupled = model.is_coupled;
+  has_liquid_drags_ = viscosity && is_coupled && has_central_viscosity(model);
+  is_viscous_ = viscosity && !is_coupled && has_viscosity(model);
+  collect_own(c, viscosity);
+  if (is_viscous_) collect_viscosity(c);
+  collect_rigid(c);
 }
 
-void DampingMatrix::collect_own(const ForceModel& f, const Configuration& at, Real time,
-                                bool viscosity) {
-  const Model& model = f.model;
-  const VatMotion motion = model.scene.vat ? vat_motion(*model.scene.vat, time) : VatMotion{};
-  const bool has_no_slip = is_viscous_ && !model.is_coupled && !model.no_slip_walls.empty();
-  const bool settles = viscosity && is_settling(model, time);
+void DampingMatrix::collect_own(const StepContext& c, bool viscosity) {
+  const Model& model = c.model;
+  const VatMotion motion = motion_of(c);
+  const bool has_no_slip = is_viscous_ && !model.no_slip_walls.empty();
+  const bool settles = viscosity && is_settling(model, c.time);
   has_own_ = has_no_slip || settles;
   if (!has_own_) return;
   own_.resize(block_count(model.liquid_count));
-  for_blocks(f.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
+  for_blocks(c.runner, model.liquid_count, [&](std::size_t begin, std::size_t end) {
     DamperBlock& block = own_[begin / kBlockSize];
     block.clear();
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Index>(k);
-      if (has_no_slip) add_no_slip_dampers(model, f.work, motion, at, i, block.dampers);
+      if (has_no_slip)
+        add_no_slip_dampers(model, c.work, motion, c.configuration, i, block.dampers);
       if (settles) add_settling_dampers(model, i, block.dampers);
       block.close(i);
     }
   });
 }
 
-void DampingMatrix::collect_rigid(const ForceModel& f) {
-  const Model& model = f.model;
+void DampingMatrix::collect_rigid(const StepContext& c) {
+  const Model& model = c.model;
   rigid_.clear();
-  if (has_solid_drags_) {
+  if (has_liquid_drags_ && has_solids(model)) {
     for (Index i = model.free_count; i < model.particle_count; ++i) rigid_.push_back(i);
     return;
   }
   for (std::size_t b = model.free_count / kBlockSize; b < block_count(model.particle_count); ++b) {
     const std::size_t first = rigid_.size();
-    for_kept_blocks(f, b, [&](const DamperBlock& block) {
+    for_kept_blocks(c, b, [&](const DamperBlock& block) {
       for (const DamperBlock::Row& row : block.rows) {
         if (row.particle >= model.free_count) rigid_.push_back(row.particle);
       }
@@ -100,48 +97,41 @@ void DampingMatrix::collect_rigid(const ForceModel& f) {
 }
 
 template <class F>
-void DampingMatrix::for_kept_blocks(const ForceModel& f, std::size_t block, F&& visit) const {
-  ContactForceScratch& contact_buffers = f.work.of<ContactForceScratch>();
+void DampingMatrix::for_kept_blocks(const StepContext& c, std::size_t block, F&& visit) const {
+  ContactForceScratch& contact_buffers = c.work.of<ContactForceScratch>();
   if (has_own_ && block < own_.size()) visit(own_[block]);
-  if (has_contact_forces(f.model)) visit(contact_buffers.contact_dampers[block]);
-  if (has_wall_forces(f.model)) visit(contact_buffers.wall_dampers[block]);
+  if (has_contact_forces(c.model)) visit(contact_buffers.contact_dampers[block]);
+  if (has_wall_forces(c.model)) visit(contact_buffers.wall_dampers[block]);
 }
 
 namespace {
 
 /// The viscosity of a pair of liquid slots: the factor of the difference of velocities in
-/// add_liquid_forces(), or of its component along x in add_tait_forces(), divided by |x|^2.
-Real pair_viscosity(const ForceModel& f, Index slot, Index other_slot) {
-  LiquidScratch& buffers = f.work.of<LiquidScratch>();
-  const Model& model = f.model;
-  const std::span<const Index> order = buffers.liquid.grid.order();
-  const LiquidModel& liquid = liquid_of(model, order[slot]);
+/// add_liquid_forces().
+Real pair_viscosity(const StepContext& c, Index slot, Index other_slot) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const LiquidModel& liquid = liquid_of(c.model, buffers.liquid.grid.order()[slot]);
   const LiquidRecord& own = buffers.liquid_records[slot];
   const LiquidRecord& other = buffers.liquid_records[other_slot];
-  const Real r = model.periodic.nearest(own.position - other.position).norm();
-  if (model.is_coupled) {
-    return -mean_viscosity(liquid, liquid_of(model, order[other_slot])) * liquid.slope_scale *
-           own.volume * other.volume * liquid.kernel.slope_over_r(r) / softened_square(liquid, r);
-  }
+  const Real r = c.model.periodic.nearest(own.position - other.position).norm();
   const Real strength =
       liquid.viscosity * own.volume * other.volume * liquid.viscosity_kernel.laplacian(r);
-  return model.no_slip_walls.empty()
+  return c.model.no_slip_walls.empty()
              ? strength
              : strength * (buffers.filling[slot] * buffers.filling[other_slot]);
 }
 
 }  // namespace
 
-void DampingMatrix::collect_viscosity(const ForceModel& f) {
-  if (f.model.is_coupled) list_neighbours(f.model, f.work, f.runner);
-  viscosities_.resize(block_count(f.model.liquid_count));
-  for_blocks(f.runner, f.model.liquid_count, [&](std::size_t begin, std::size_t end) {
-    const PairBlock& pairs = f.work.of<LiquidScratch>().liquid_pairs[begin / kBlockSize];
+void DampingMatrix::collect_viscosity(const StepContext& c) {
+  viscosities_.resize(block_count(c.model.liquid_count));
+  for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    const PairBlock& pairs = c.work.of<LiquidScratch>().liquid_pairs[begin / kBlockSize];
     std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
     viscosities.resize(pairs.begin[end - begin]);
     for (std::size_t s = begin; s < end; ++s) {
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
-        viscosities[k] = pair_viscosity(f, static_cast<Index>(s), pairs.slots[k]);
+        viscosities[k] = pair_viscosity(c, static_cast<Index>(s), pairs.slots[k]);
       }
     }
   });
@@ -166,12 +156,12 @@ ContactForce friction_force(const Model& model, const FrictionDamper& damper,
   return {force, damper.arm.cross(force)};
 }
 
-void damp_springs(const ForceModel& f, const std::vector<Vec3>& w, Index begin, Index end,
+void damp_springs(const StepContext& c, const std::vector<Vec3>& w, Index begin, Index end,
                   std::vector<Vec3>& force) {
-  const SpringEnd* const ends = f.model.spring_ends.data();
-  const Vec3* const directions = f.work.of<SolidScratch>().spring_directions.data();
+  const SpringEnd* const ends = c.model.spring_ends.data();
+  const Vec3* const directions = c.work.of<SolidScratch>().spring_directions.data();
   BlockSums sums;
-  sum_over_springs(f.model, begin, end, sums, [&, changes = w.data()](Index e) {
+  sum_over_springs(c.model, begin, end, sums, [&, changes = w.data()](Index e) {
     return [=, own = changes[e]](Index s) -> Vec3 {
       const Vec3& n = directions[s];
       return (-ends[s].damping * (own - changes[ends[s].other]).dot(n)) * n;
@@ -182,19 +172,19 @@ void damp_springs(const ForceModel& f, const std::vector<Vec3>& w, Index begin, 
 
 }  // namespace
 
-void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
+void DampingMatrix::multiply(const StepContext& c, const std::vector<Vec3>& w,
                              const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                              std::vector<Vec3>& torque) {
-  LiquidScratch& buffers = f.work.of<LiquidScratch>();
-  const Model& model = f.model;
-  VAT_CHECK(w.size() == f.model.particle_count && force.size() == f.model.particle_count);
-  for_blocks(f.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const Model& model = c.model;
+  VAT_CHECK(w.size() == c.model.particle_count && force.size() == c.model.particle_count);
+  for_blocks(c.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
     std::fill(force.begin() + static_cast<std::ptrdiff_t>(begin),
               force.begin() + static_cast<std::ptrdiff_t>(end), Vec3::Zero());
     const Index springs_begin = std::max(static_cast<Index>(begin), model.liquid_count);
     const Index springs_end = std::min(static_cast<Index>(end), model.implicit_begin);
-    if (springs_begin < springs_end) damp_springs(f, w, springs_begin, springs_end, force);
-    for_kept_blocks(f, begin / kBlockSize, [&](const DamperBlock& block) {
+    if (springs_begin < springs_end) damp_springs(c, w, springs_begin, springs_end, force);
+    for_kept_blocks(c, begin / kBlockSize, [&](const DamperBlock& block) {
       Index damper = 0;
       Index friction_index = 0;
       for (const DamperBlock::Row& row : block.rows) {
@@ -209,32 +199,25 @@ void DampingMatrix::multiply(const ForceModel& f, const std::vector<Vec3>& w,
       }
     });
   });
+  if (has_liquid_drags_) add_liquid_drags(c, w, force);
   if (!is_viscous_) return;
 
   VAT_CHECK(viscosities_.size() == block_count(model.liquid_count));
   const std::span<const Index> order = buffers.liquid.grid.order();
   by_slot_.resize(order.size());
   for (std::size_t s = 0; s < order.size(); ++s) by_slot_[s] = w[order[s]];
-  for_blocks(f.runner, order.size(), [&](std::size_t begin, std::size_t end) {
+  for_blocks(c.runner, order.size(), [&](std::size_t begin, std::size_t end) {
     const PairBlock& pairs = buffers.liquid_pairs[begin / kBlockSize];
     const std::vector<Real>& viscosities = viscosities_[begin / kBlockSize];
     for (std::size_t s = begin; s < end; ++s) {
       Vec3 sum = Vec3::Zero();
       for (Index k = pairs.begin[s - begin]; k < pairs.begin[s - begin + 1]; ++k) {
         const Vec3 change = by_slot_[pairs.slots[k]] - by_slot_[s];
-        if (f.model.is_coupled) {
-          const Vec3 x = f.model.periodic.nearest(buffers.liquid_records[s].position -
-                                                  buffers.liquid_records[pairs.slots[k]].position);
-          sum += viscosities[k] * change.dot(x) * x;
-        } else {
-          sum += viscosities[k] * change;
-        }
+        sum += viscosities[k] * change;
       }
       force[order[s]] += sum;
     }
   });
-  if (has_images_) images_.add(f, w, force);
-  if (has_solid_drags_) solid_drags_.add(f, w, force);
 }
 
 }  // namespace vat

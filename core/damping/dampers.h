@@ -3,14 +3,10 @@
 #include <vector>
 
 #include "core/contact/scratch.h"
-#include "core/damping/solid_drags.h"
-#include "core/liquid/pairs/viscous_images.h"
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
 namespace vat {
-
-struct ForceModel;
 
 /// The symmetric, negative semi-definite matrix D of all velocity-dependent forces at one
 /// configuration. A change w of the velocities changes the forces by D w. D excludes grabs, and
@@ -19,10 +15,10 @@ struct ForceModel;
 /// slip speed grows within half a step.
 class DampingMatrix {
  public:
-  /// Collects the forces of the configuration at which `force_model` was last evaluated with
-  /// Scratch::keep_dampers. If `viscosity` is true, D includes the viscosity and the settling drag
-  /// of liquids.
-  void collect(const ForceModel& force_model, const Configuration& at, Real time, bool viscosity);
+  /// Collects the forces of the configuration of `context`, at which the forces were last
+  /// evaluated with Scratch::keep_dampers. If `viscosity` is true, D includes the viscosity and the
+  /// settling drag of liquids.
+  void collect(const StepContext& context, bool viscosity);
 
   /// Returns the rigid particles with nonzero rows of D, in ascending order.
   const std::vector<Index>& rigid_particles() const { return rigid_; }
@@ -31,26 +27,22 @@ class DampingMatrix {
   /// rigid_particles() are used. `spins` are the angular velocities of w, by rigid body. `torque`
   /// is the torque of friction on rigid particles about their centres; it is written only if there
   /// is friction.
-  void multiply(const ForceModel& force_model, const std::vector<Vec3>& w,
+  void multiply(const StepContext& context, const std::vector<Vec3>& w,
                 const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                 std::vector<Vec3>& torque);
 
  private:
-  void collect_own(const ForceModel& force_model, const Configuration& at, Real time,
-                   bool viscosity);
-  void collect_viscosity(const ForceModel& force_model);
-  void collect_rigid(const ForceModel& force_model);
+  void collect_own(const StepContext& context, bool viscosity);
+  void collect_viscosity(const StepContext& context);
+  void collect_rigid(const StepContext& context);
   /// Calls visit(dampers) for the dampers of a block of particles.
   template <class F>
-  void for_kept_blocks(const ForceModel& force_model, std::size_t block, F&& visit) const;
+  void for_kept_blocks(const StepContext& context, std::size_t block, F&& visit) const;
 
   bool has_own_ = false;
-  bool is_viscous_ = false;
-  bool has_images_ = false;
-  ViscousImages images_;
-  bool has_solid_drags_ = false;
-  SolidDrags solid_drags_;
-  std::vector<DamperBlock> own_;  ///< liquid particles, without viscosity
+  bool has_liquid_drags_ = false;  ///< viscosity of coupled liquids
+  bool is_viscous_ = false;        ///< viscosity of other liquids
+  std::vector<DamperBlock> own_;   ///< liquid particles, without viscosity
   std::vector<Index> rigid_;
   std::vector<std::vector<Real>>
       viscosities_;            ///< mu V_i V_j laplacian W, in the order of liquid_pairs [N s/m]

@@ -15,12 +15,11 @@ constexpr int kMaxDampingPasses = 200;
 
 /// The constants of the solve.
 struct Equation {
-  const ForceModel& force_model;
-  const Configuration& at;
+  const StepContext& context;
   Real dt;
   DampingScratch& scratch;
 
-  const Model& model() const { return force_model.model; }
+  const Model& model() const { return context.model; }
 };
 
 void resize(const Model& model, Motion& motion) {
@@ -34,7 +33,7 @@ template <class Sums, class F>
 Sums sum_over_particles(const Equation& eq, std::vector<Sums>& partial, F&& f) {
   const Index count = eq.model().free_count;
   partial.assign(block_count(count), Sums{});
-  for_blocks(eq.force_model.runner, count, [&](std::size_t begin, std::size_t end) {
+  for_blocks(eq.context.runner, count, [&](std::size_t begin, std::size_t end) {
     Sums sum{};
     for (std::size_t i = begin; i < end; ++i) f(i, sum);
     partial[begin / kBlockSize] = sum;
@@ -50,8 +49,8 @@ void find_inertias(const Equation& eq) {
   bodies.resize(model.rigid_bodies.size());
   for (std::size_t r = 0; r < bodies.size(); ++r) {
     const RigidModel& rigid = model.rigid_bodies[r];
-    const Mat3 turn = eq.at.rigid[r].orientation.toRotationMatrix();
-    const bool is_held = rigid.is_held(eq.force_model.step);
+    const Mat3 turn = eq.context.configuration.rigid[r].orientation.toRotationMatrix();
+    const bool is_held = rigid.is_held(eq.context.step);
     bodies[r] = {
         1 / rigid.inverse_mass, is_held ? 0 : rigid.inverse_mass,
         turn * rigid.inertia * turn.transpose(),
@@ -66,15 +65,16 @@ void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   const auto for_rigid_particles = [&](auto&& f) {
     for (const Index e : eq.scratch.matrix.rigid_particles()) {
       const Index r = model.bodies[model.body[e]].rigid;
-      f(r, e, Vec3(eq.at.position[e] - eq.at.rigid[r].center_of_mass));
+      f(r, e,
+        Vec3(eq.context.configuration.position[e] -
+             eq.context.configuration.rigid[r].center_of_mass));
     }
   };
   for_rigid_particles([&](Index r, Index e, const Vec3& arm) {
     w.particle[e] = w.linear[r] + w.angular[r].cross(arm);
     if (model.has_friction) friction_torque[e].setZero();
   });
-  eq.scratch.matrix.multiply(eq.force_model, w.particle, w.angular, force.particle,
-                             friction_torque);
+  eq.scratch.matrix.multiply(eq.context, w.particle, w.angular, force.particle, friction_torque);
   std::ranges::fill(force.linear, Vec3::Zero());
   std::ranges::fill(force.angular, Vec3::Zero());
   for_rigid_particles([&](Index r, Index e, const Vec3& arm) {
@@ -168,7 +168,7 @@ void turn_direction(const Equation& eq, Real share) {
   const std::vector<DampedBody>& bodies = eq.scratch.bodies;
   const Motion& r = eq.scratch.residual;
   Motion& p = eq.scratch.direction;
-  for_blocks(eq.force_model.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+  for_blocks(eq.context.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       p.particle[i] = model.inverse_mass[i] * r.particle[i] + share * p.particle[i];
     }
@@ -271,12 +271,13 @@ bool must_solve_own_damping(const Model& model, Real dt) {
                              [&](const Oscillation& own) { return must_solve_damping(own, dt); });
 }
 
-void solve_damping(const ForceModel& f, const Configuration& from, const Configuration& at,
-                   Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
-  const Equation eq{f, at, dt, scratch};
+void solve_damping(const ForceModel& f, const Configuration& from, Configuration& at, Real time,
+                   Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
+  const StepContext context{f.model, f.controls, time, f.step, at, forces, f.work, f.runner};
+  const Equation eq{context, dt, scratch};
   VAT_CHECK(forces.particle.size() == f.model.particle_count &&
             from.velocity.size() == at.velocity.size());
-  scratch.matrix.collect(f, at, time, viscosity);
+  scratch.matrix.collect(context, viscosity);
   for (Motion* motion :
        {&scratch.change, &scratch.force, &scratch.residual, &scratch.direction, &scratch.product}) {
     resize(f.model, *motion);

@@ -64,9 +64,8 @@ bool must_solve_damping(const Oscillation& bound, Real dt);
 /// solved by conjugate gradients. D w is a sum of equal and opposite forces, so that momentum is
 /// conserved after any number of iterations. Requires the dampers of an evaluation with
 /// Scratch::keep_dampers. Rigid bodies must have the same motion in `at` and `from`.
-void solve_damping(const ForceModel& force_model, const Configuration& from,
-                   const Configuration& at, Real time, Real dt, bool viscosity, Forces& forces,
-                   DampingScratch& scratch);
+void solve_damping(const ForceModel& force_model, const Configuration& from, Configuration& at,
+                   Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch);
 
 /// Returns whether the viscosity of any liquid requires a solve in a step of `dt` [s].
 bool must_solve_viscosity(const Model& model, Real dt);

@@ -77,7 +77,9 @@ void set_viscosities(const StepContext& c, F&& f) {
   });
 }
 
-/// Between liquids, mu_ij is 2 mu_i mu_j / (mu_i + mu_j); see mean_viscosity().
+/// Between liquids, mu_ij is 2 mu_i mu_j / (mu_i + mu_j). With this mean, both liquids have the
+/// same shear stress at their interface (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136
+/// (1997) 214, eq. 22).
 PairViscosity mean_of(Real mu) {
   // Avoids 0 / 0 between two inviscid liquids.
   constexpr Real kLeast = static_cast<Real>(std::numeric_limits<float>::min());

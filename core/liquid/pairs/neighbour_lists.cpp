@@ -9,13 +9,14 @@ namespace vat {
 namespace {
 
 template <bool periodic>
-void list_liquid(const Model& model, Scratch& work, TaskRunner* runner) {
-  LiquidScratch& buffers = work.of<LiquidScratch>();
+void list_liquid(StepContext& c) {
+  const Model& model = c.model;
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const CellSortedPoints& points = buffers.liquid;
   const std::span<const Index> order = points.grid.order();
   buffers.liquid_records.resize(order.size());
   VAT_CHECK(model.rest_volume.size() == model.particle_count);
-  find_pairs<periodic>(model, work, runner, [&](Index s, std::span<const Index>) {
+  find_pairs<periodic>(model, c.work, c.runner, [&](Index s, std::span<const Index>) {
     LiquidRecord& record = buffers.liquid_records[s];
     record.position = {points.x[s], points.y[s], points.z[s]};
     record.volume = model.rest_volume[order[s]];
@@ -43,17 +44,11 @@ void list_near(const Model& model, const CellSortedPoints& from, const CellSorte
 
 }  // namespace
 
-void list_neighbours(const Model& model, Scratch& work, TaskRunner* runner) {
-  LiquidScratch& buffers = work.of<LiquidScratch>();
-  model.periodic.any() ? list_liquid<true>(model, work, runner)
-                       : list_liquid<false>(model, work, runner);
-  if (!has_solids(model)) return;
-  list_near(model, buffers.liquid, buffers.solids_in_liquid, runner, buffers.solids_of_liquid);
-  list_near(model, buffers.solids_in_liquid, buffers.liquid, runner, buffers.liquid_of_solids);
-}
-
 void list_neighbours(StepContext& c) {
-  list_neighbours(c.model, c.work, c.runner);
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  c.model.periodic.any() ? list_liquid<true>(c) : list_liquid<false>(c);
+  if (!has_solids(c.model)) return;
+  list_near(c.model, buffers.liquid, buffers.solids_in_liquid, c.runner, buffers.solids_of_liquid);
 }
 
 }  // namespace vat

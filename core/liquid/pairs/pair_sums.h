@@ -124,7 +124,8 @@ struct PairSums {
   Function pressure;
   /// The sum_j a_j (mu_ij v.x / (q^2 + 0.01/4) - (p_i + p_j)) g x; three numbers. The viscous force
   /// acts along x, so that angular momentum is conserved (J. J. Monaghan, Rep. Prog. Phys. 68
-  /// (2005) 1703, sec. 4).
+  /// (2005) 1703, sec. 4). The number 0.01/4 is Monaghan's 0.01 h^2 with the smoothing length h,
+  /// which is half of the support radius.
   Function force;
   /// The sum_j a_j mu_ij max(p_i, p_j) / (q^2 + 0.01/4) g x_a^2 v_a for each axis a; three numbers.
   /// The sum is over candidates from TargetCluster::mirrored_begin on. Without viscosities by

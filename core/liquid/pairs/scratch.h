@@ -56,11 +56,10 @@ struct LiquidScratch {
   std::vector<Real> filled_density;
   std::vector<Real> filling;   ///< by liquid slot: density / filled density
   std::vector<Real> pressure;  ///< by liquid particle [Pa]
-  // Members for solids in coupled liquids: neighbour lists between liquid and solid slots.
-  CellSortedPoints solids_in_liquid;  ///< index 0 is the first solid particle
-  std::vector<PairBlock> solids_of_liquid;
-  std::vector<PairBlock> liquid_of_solids;
-  std::vector<Real> solid_pressure;  ///< by slot of solids_in_liquid [Pa]
+  // Members for solids in coupled liquids.
+  CellSortedPoints solids_in_liquid;        ///< index 0 is the first solid particle
+  std::vector<PairBlock> solids_of_liquid;  ///< neighbours of liquid slots, as slots of solids
+  std::vector<Real> solid_pressure;         ///< by slot of solids_in_liquid [Pa]
 };
 
 }  // namespace vat

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/stage/context.h"
 #include "core/state/state.h"
 
 namespace vat {
-
-struct ForceModel;
 
 /// Stage that adds the viscous forces between liquids and their images in walls (see
 /// Model::is_coupled). At a no-slip wall, an image has the reversed velocity of its particle, so
@@ -23,26 +20,9 @@ struct ForceModel;
 /// whose purpose is the damping of sound.
 void add_viscous_image_forces(StepContext& context);
 
-/// The viscous forces of images as a symmetric, negative semi-definite matrix D; see DampingMatrix.
-class ViscousImages {
- public:
-  void collect(const ForceModel& force_model, Real time);
-  /// Adds D w to `force`. Both vectors have an element for each particle.
-  void add(const ForceModel& force_model, const std::vector<Vec3>& w,
-           std::vector<Vec3>& force) const;
-
- private:
-  /// An image with the force -strength (w - factor w_other) on its particle, for each axis.
-  struct Image {
-    Index other;    ///< particle
-    Vec3 strength;  ///< [N s/m]
-    Vec3 factor;    ///< 1 or -1
-  };
-  struct Block {
-    std::vector<Image> images;
-    std::array<Index, kBlockSize + 1> begin;  ///< by slot
-  };
-  std::vector<Block> blocks_;
-};
+/// Adds these forces for the given velocities of the particles to `force`. If `walls_move` is
+/// false, all walls are at rest.
+void add_viscous_image_forces(const StepContext& context, const std::vector<Vec3>& velocities,
+                              bool walls_move, std::vector<Vec3>& force);
 
 }  // namespace vat

@@ -28,22 +28,6 @@ inline Vec3 fall_in_vat(const Model& model, const VatMotion& motion, const Vec3&
   return fall;
 }
 
-/// Returns 2 (d + 2) mu for pairs of two liquids in d dimensions, with the harmonic mean mu of
-/// their viscosities. With this mean, both liquids have the same shear stress at their interface
-/// (J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq. 22).
-inline Real mean_viscosity(const LiquidModel& a, const LiquidModel& b) {
-  const Real sum = a.central_viscosity + b.central_viscosity;
-  return sum > 0 ? 2 * a.central_viscosity * b.central_viscosity / sum : 0;
-}
-
-/// Returns r^2 + 0.01 h^2 with the smoothing length h, which is half of the support radius, as in
-/// Monaghan's form. With the support radius in place of h, the viscosity would be too small by a
-/// thirtieth.
-inline Real softened_square(const LiquidModel& liquid, Real r) {
-  const Real h = liquid.support_radius / 2;
-  return r * r + Real{0.01} * h * h;
-}
-
 /// Returns the pressure in units of rho_0 c^2 at the relative density s. For s <= 1.03, the
 /// pressure is that of Tait's equation, (s^7 - 1) / 7. For 1.03 < s <= 2, the pressure is linear in
 /// 1 / s. Only impacts compress a liquid beyond 1.03, with pressures rho c v of the chosen speed of

@@ -51,21 +51,25 @@ void extrapolate_pressure(StepContext& c) {
 }
 
 void add_tait_forces_on_solids(StepContext& c) {
+  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
+  const PairSums& table = pair_sums_of(c);
+  add_pair_forces_on_solids(c, has_central_viscosity(c.model) ? table.force : table.pressure,
+                            c.forces.particle);
+}
+
+void add_pair_forces_on_solids(const StepContext& c, PairSums::Function sum,
+                               std::vector<Vec3>& force) {
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  VAT_CHECK(c.forces.particle.size() == c.model.particle_count);
   const std::span<const Index> order = buffers.solids_in_liquid.grid.order();
-  const bool is_mixed = has_several_liquids(model);
-  if (is_mixed) set_solid_viscosities(c);
+  if (has_several_liquids(model)) set_solid_viscosities(c);
   set_slope_weights(c);
-  const PairSums& table = pair_sums_of(c);
-  const auto sum = has_central_viscosity(model) ? table.force : table.pressure;
   const Real factor = slope_factor(model, *model.liquids[model.material[0]]);
   buffers.solid_clusters.for_each_sum<3>(
       c.runner, solid_force_inputs(c), sum,
       [&](const TargetCluster&, Index target, const Real* sums) {
         const Index b = model.liquid_count + order[target - buffers.sources.first_solid()];
-        c.forces.particle[b] += model.rest_volume[b] * factor * Eigen::Map<const Vec3>(sums);
+        force[b] += model.rest_volume[b] * factor * Eigen::Map<const Vec3>(sums);
       });
 }
 

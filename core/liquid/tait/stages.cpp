@@ -16,11 +16,11 @@ bool has_solid_particles(const Model& model) {
 
 void add_list_stages(const Model& model, PlanBuilder& plan) {
   using enum Column;
-  const auto run = static_cast<StageFunction>(&list_neighbours);
   if (has_solid_particles(model)) {
-    plan.add("list_neighbours", {liquid_cells, solid_cells}, {liquid_pairs, liquid_solids}, run);
+    plan.add("list_neighbours", {liquid_cells, solid_cells}, {liquid_pairs, liquid_solids},
+             &list_neighbours);
   } else {
-    plan.add("list_neighbours", {liquid_cells}, {liquid_pairs}, run);
+    plan.add("list_neighbours", {liquid_cells}, {liquid_pairs}, &list_neighbours);
   }
 }
 
@@ -72,7 +72,7 @@ void add_coupled_force_stages(const Model& model, PlanBuilder& plan) {
   }
   if (has_viscous_images(model)) {
     plan.add("viscous_images", {velocity, liquid_cells, pair_clusters, force}, {pair_motion, force},
-             &add_viscous_image_forces);
+             static_cast<StageFunction>(&add_viscous_image_forces));
   }
   if (model.is_filled) {
     add_list_stages(model, plan);

@@ -139,18 +139,23 @@ void add_tait_forces(StepContext& c) {
   const Model& model = c.model;
   VAT_CHECK(buffers.pressure.size() == c.model.liquid_count &&
             c.forces.particle.size() == c.model.particle_count);
-  const std::span<const Index> order = buffers.liquid.grid.order();
   set_motions(c);
-  if (has_several_liquids(model)) set_liquid_viscosities(c);
   const PairSums& table = pair_sums_of(c);
-  const auto sum = has_central_viscosity(model) ? table.force : table.pressure;
+  add_pair_forces(c, has_central_viscosity(model) ? table.force : table.pressure,
+                  c.forces.particle);
+}
+
+void add_pair_forces(const StepContext& c, PairSums::Function sum, std::vector<Vec3>& force) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const Model& model = c.model;
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  if (has_several_liquids(model)) set_liquid_viscosities(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
   buffers.liquid_clusters.for_each_sum<3>(
       c.runner, force_inputs(c), sum, [&](const TargetCluster&, Index slot, const Real* sums) {
         const Index i = order[slot];
-        c.forces.particle[i] +=
-            model.rest_volume[i] * factor[model.material[i]] * Eigen::Map<const Vec3>(sums);
+        force[i] += model.rest_volume[i] * factor[model.material[i]] * Eigen::Map<const Vec3>(sums);
       });
 }
 

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <vector>
+
+#include "core/liquid/pairs/pair_sums.h"
+#include "core/types.h"
+
 namespace vat {
 
 struct StepContext;
@@ -50,5 +55,11 @@ void extrapolate_pressure(StepContext& context);
 /// Stages that add the pressure and viscous forces on liquid particles and on solid particles.
 void add_tait_forces(StepContext& context);
 void add_tait_forces_on_solids(StepContext& context);
+
+/// Add the sums `sum` (PairSums::pressure or PairSums::force) with the present motions of the
+/// sources, as forces on liquid particles and on solid particles, to `force`.
+void add_pair_forces(const StepContext& context, PairSums::Function sum, std::vector<Vec3>& force);
+void add_pair_forces_on_solids(const StepContext& context, PairSums::Function sum,
+                               std::vector<Vec3>& force);
 
 }  // namespace vat

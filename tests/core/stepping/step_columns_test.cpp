@@ -139,8 +139,7 @@ void visit(Column column, Columns& columns, Visit& v) {
     case Column::pressure:
       return v.numbers(work.of<LiquidScratch>().pressure);
     case Column::liquid_solids:
-      v.pair_blocks(work.of<LiquidScratch>().solids_of_liquid);
-      return v.pair_blocks(work.of<LiquidScratch>().liquid_of_solids);
+      return v.pair_blocks(work.of<LiquidScratch>().solids_of_liquid);
     case Column::solid_pressure:
       return v.numbers(work.of<LiquidScratch>().solid_pressure);
     case Column::transport:
