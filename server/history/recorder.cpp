@@ -6,7 +6,6 @@
 
 #include "core/support/check.h"
 #include "protocol/json/json_reader.h"
-#include "server/storage/sqlite/compression.h"
 
 namespace vat {
 namespace {
@@ -51,10 +50,10 @@ std::vector<RecordedMoment> read_moments(CheckpointStore& checkpoints, std::uint
   std::vector<RecordedMoment> moments;
   for (const CheckpointPlace& place : places) {
     if (place.sequence < first || place.sequence > last) continue;
-    const std::optional<Checkpoint> checkpoint = checkpoints.read(place);
+    std::optional<Checkpoint> checkpoint = checkpoints.read_compressed(place);
     if (!checkpoint) continue;  // thinned meanwhile
     moments.push_back({checkpoint->position, checkpoint->sequence,
-                       without_tokens(checkpoint->fields), compress(checkpoint->state)});
+                       without_tokens(checkpoint->fields), std::move(checkpoint->state)});
   }
   return moments;
 }

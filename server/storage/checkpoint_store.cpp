@@ -119,20 +119,23 @@ void CheckpointStore::remove_row(std::uint64_t row) {
 }
 
 std::optional<Checkpoint> CheckpointStore::read(const CheckpointPlace& place) {
-  Checkpoint checkpoint;
-  std::vector<std::uint8_t> compressed;
-  {
-    const std::lock_guard lock(mutex_);
-    Statement query = database_.prepare(
-        "SELECT session, position, sequence, fields, state FROM checkpoints WHERE number = ?");
-    query.bind(0, place.row);
-    if (!query.step()) return {};
-    checkpoint = {query.count(0), query.count(1), query.count(2), std::string(query.text(3)), {}};
-    const std::span<const std::uint8_t> bytes = query.bytes(4);
-    compressed.assign(bytes.begin(), bytes.end());
-  }
-  checkpoint.state = decompress(compressed, kMaxStateBytes);
+  std::optional<Checkpoint> checkpoint = read_compressed(place);
+  if (checkpoint) checkpoint->state = decompress(checkpoint->state, kMaxStateBytes);
   return checkpoint;
+}
+
+std::optional<Checkpoint> CheckpointStore::read_compressed(const CheckpointPlace& place) {
+  const std::lock_guard lock(mutex_);
+  Statement query = database_.prepare(
+      "SELECT session, position, sequence, fields, state FROM checkpoints WHERE number = ?");
+  query.bind(0, place.row);
+  if (!query.step()) return {};
+  const std::span<const std::uint8_t> state = query.bytes(4);
+  return Checkpoint{query.count(0),
+                    query.count(1),
+                    query.count(2),
+                    std::string(query.text(3)),
+                    {state.begin(), state.end()}};
 }
 
 void CheckpointStore::write_hashes(std::uint64_t session, std::span<const TickHash> hashes) {

@@ -50,6 +50,8 @@ class CheckpointStore {
   /// Returns the checkpoint, or nothing if the checkpoint was removed meanwhile. Throws
   /// StorageError (kind `corrupt`) if the checkpoint is damaged.
   std::optional<Checkpoint> read(const CheckpointPlace& place);
+  /// Returns the checkpoint with its compressed state; see decompress(). The state may be damaged.
+  std::optional<Checkpoint> read_compressed(const CheckpointPlace& place);
   /// Adds hashes at increasing positions. Removes hashes that are more than kMaxHashes positions
   /// older.
   void write_hashes(std::uint64_t session, std::span<const TickHash> hashes);

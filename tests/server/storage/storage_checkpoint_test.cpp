@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/history/recorder.h"
 #include "server/history/session_log.h"
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/sqlite/compression.h"
@@ -143,6 +144,26 @@ TEST_F(StorageCheckpoints, ADamagedOneIsToldByItsKind) {
   } catch (const StorageError& error) {
     EXPECT_EQ(error.kind(), StorageError::Kind::corrupt);
   }
+}
+
+// The recorder does not decompress states. It therefore does not see that this one is damaged.
+TEST(StorageRecorder, TakesStoredStatesAsTheyAre) {
+  const TemporaryFolder folder;
+  ManualClock clock;
+  Storage storage(folder.file("data"), {}, clock);
+  const LogEntry first{1, 0, 0, 0, "scene.load", "{}", false};
+  const std::uint64_t number = storage.sessions().create({0, "name", "avx2", "{}", 0, {}}, first);
+  Checkpoint written = checkpoint(number, 100, 1000);
+  written.sequence = 1;
+  storage.checkpoints().write(written);
+  Database database(folder.file("data/checkpoints.db"), Database::Mode::create);
+  database.execute("UPDATE checkpoints SET state = CAST(substr(state, 1, 900) AS BLOB)");
+  const std::optional<Recording> recording = record_session(storage, number, 1 << 20);
+  ASSERT_TRUE(recording);
+  ASSERT_EQ(recording->moments.size(), 1U);
+  std::vector<std::uint8_t> stored = compress(written.state);
+  stored.resize(900);
+  EXPECT_EQ(recording->moments[0].state, stored);
 }
 
 TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
