@@ -5,6 +5,7 @@
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
 #include "core/validation/validate.h"
+#include "protocol/scene/part_names.h"
 #include "protocol/scene/scene_parts.h"
 
 namespace vat {
@@ -21,6 +22,8 @@ struct PartialScene {
   std::vector<std::size_t> drains_at;
   /// Names of materials with read errors.
   std::set<std::string> broken_materials;
+  std::vector<NamedPart> material_names;
+  std::vector<NamedPart> body_names;
   bool material_names_known = true;
   bool body_names_known = true;  ///< all bodies were read without errors
 };
@@ -32,6 +35,15 @@ bool can_be_checked(const PartialScene& partial, const std::string& material) {
     if (known.name == material) return true;
   }
   return partial.material_names_known && partial.broken_materials.count(material) == 0;
+}
+
+/// Adds an error if `material` is certainly missing. Used for parts that the core does not check.
+void find_missing_material(const PartialScene& partial, const std::string& material,
+                           const std::string& path, Errors& errors) {
+  const auto& known = partial.scene.materials;
+  if (material.empty() || !can_be_checked(partial, material)) return;
+  if (std::ranges::find(known, material, &Material::name) != known.end()) return;
+  add_error(errors, "unknown_name", path, "must be the name of one of the scene's materials");
 }
 
 /// Calls `read(element, path, errors)` for each element of the list `key`, and then
@@ -53,6 +65,11 @@ void read_materials(ObjectReader& reader, PartialScene& partial, Errors& errors)
   partial.material_names_known = list != nullptr;
   for_elements(reader, list, "materials", errors, scene_parts::to_material,
                [&](Material material, std::size_t at, bool intact) {
+                 partial.material_names.push_back({at, material.name, intact});
+                 if (!intact && material.name == kVatMaterial) {
+                   add_error(errors, "reserved_name", pointer_to("/materials", at) + "/name",
+                             "must not be \"vat\": that names the walls");
+                 }
                  if (intact) {
                    partial.scene.materials.push_back(std::move(material));
                    partial.materials_at.push_back(at);
@@ -89,6 +106,14 @@ void read_bodies(ObjectReader& reader, const MeshSource& meshes, PartialScene& p
       [&](BodyDescription body, std::size_t at, bool intact) {
         const bool is_known = intact && can_be_checked(partial, body.material) &&
                               (!body.melting || can_be_checked(partial, body.melting->into));
+        partial.body_names.push_back({at, body.name, is_known});
+        if (!is_known) {
+          const std::string path = pointer_to("/bodies", at);
+          find_missing_material(partial, body.material, path + "/material", errors);
+          if (body.melting) {
+            find_missing_material(partial, body.melting->into, path + "/melting/into", errors);
+          }
+        }
         partial.body_names_known = partial.body_names_known && is_known;
         if (!is_known) return;
         partial.scene.bodies.push_back(std::move(body));
@@ -204,6 +229,8 @@ Result<Scene> read_scene(const Json& document, const MeshSource& meshes) {
     path = document_path(path, "drains", partial.drains_at);
     add_error(errors, std::move(error.code), std::move(path), std::move(error.message));
   }
+  find_repeated_names(partial.material_names, "materials", errors);
+  find_repeated_names(partial.body_names, "bodies", errors);
   if (!errors.empty()) return errors;
   resolve_accuracy(partial.scene);
   return std::move(partial.scene);

@@ -67,6 +67,49 @@ TEST(SceneMistakes, OneFileTellsAllOfThemAtOnceAndNothingElse) {
   EXPECT_EQ(mistakes_of(scene), expected);
 }
 
+// The invalid members do not hide errors of the others.
+TEST(SceneMistakes, PartsWithInvalidMembersAreCheckedFurther) {
+  const Json scene = Json::parse(R"({
+    "format": "vat.scene/1",
+    "materials": [
+      {"name": "stone"},
+      {"name": "stone", "density": -5, "liquid": {"stiffness": 100}},
+      {"name": "vat", "density": "light"}],
+    "bodies": [
+      {"name": "a", "kind": "rigid", "material": "wood", "spacing": 0.1,
+       "shape": {"type": "sphere", "radius": -1}},
+      {"name": "a", "kind": "rigid", "material": "stone", "spacing": 0.1,
+       "shape": {"type": "sphere", "radius": 0.2}},
+      {"name": "a", "kind": "rigid", "material": "stone", "spacing": 0.1, "mass": "heavy",
+       "melting": {"into": "wax", "at": 1},
+       "shape": {"type": "sphere", "radius": 0.2}}]})");
+  const Mistakes expected{{"duplicate", "/materials/1/name"},
+                          {"out_of_range", "/materials/1/density"},
+                          {"missing", "/materials/1/liquid/viscosity"},
+                          {"missing", "/materials/1/liquid/support_radius"},
+                          {"reserved_name", "/materials/2/name"},
+                          {"wrong_type", "/materials/2/density"},
+                          {"out_of_range", "/bodies/0/shape/radius"},
+                          {"unknown_name", "/bodies/0/material"},
+                          {"duplicate", "/bodies/1/name"},
+                          {"wrong_type", "/bodies/2/mass"},
+                          {"unknown_name", "/bodies/2/melting/into"},
+                          {"duplicate", "/bodies/2/name"}};
+  EXPECT_EQ(mistakes_of(read_scene(scene, meshes_in_folder(kFolder))), expected);
+}
+
+// The name of a material with an invalid name is unknown, so any reference may be to it.
+TEST(SceneMistakes, ReferencesToPartsWithoutAValidNameAreNotErrors) {
+  const Json scene = Json::parse(R"({
+    "format": "vat.scene/1",
+    "materials": [{"name": 5}],
+    "bodies": [{"name": "a", "kind": "rigid", "material": "wood", "spacing": 0.1,
+                "shape": {"type": "sphere", "radius": -1}}]})");
+  const Mistakes expected{{"wrong_type", "/materials/0/name"},
+                          {"out_of_range", "/bodies/0/shape/radius"}};
+  EXPECT_EQ(mistakes_of(read_scene(scene, meshes_in_folder(kFolder))), expected);
+}
+
 /// Each error is detected independently: it remains if all others are removed.
 class SceneMistakesAlone : public testing::Test {
  protected:
