@@ -17,6 +17,7 @@ from urllib.parse import urlsplit
 
 GUID = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455
 PORTS = {"ws": 80, "wss": 443}
+EVENTS_KEPT = 1000
 CONTINUATION, TEXT, BINARY, CLOSE, PING, PONG = 0, 1, 2, 8, 9, 10
 
 
@@ -149,9 +150,11 @@ class Client:
         self.socket = WebSocket(url, timeout, tls)
         self.last_id = 0
         self.replies = {}
-        self.events = deque()  # (name, params) of received events that were not taken
+        # (name, params) of received events that were not taken. The oldest are dropped.
+        self.events = deque(maxlen=EVENTS_KEPT)
         self.frames = deque()  # bytes of received frames that were not taken
         self.decoder = None
+        self.waits_for_key = False  # a frame was rejected, and no later frame was decoded
 
     def __enter__(self):
         return self
@@ -204,14 +207,26 @@ class Client:
 
     def next_frame(self, timeout=None):
         """Returns the next frame, decoded and acknowledged: header, scale and blocks of
-        decode_frame.
+        decode_frame. Rejects invalid frames; the server then sends a key frame.
         """
+        from decode_frame import BadFrame, Decoder, read_header
         if self.decoder is None:
-            from decode_frame import Decoder
             self.decoder = Decoder()
-        frame = self.decoder.decode(self.next_frame_bytes(timeout))
-        self.notify("frames.ack", number=frame.header.number)
-        return frame
+        deadline = time.monotonic() + (timeout or self.timeout)
+        while True:
+            data = self.next_frame_bytes(deadline - time.monotonic())
+            try:
+                frame = self.decoder.decode(data)
+            except BadFrame as error:
+                # The key frame is requested once. The frames before it lack references too.
+                wants_key = not (self.waits_for_key and error.reason == "missing_reference")
+                self.waits_for_key = True
+                more = {"rejected": True} if wants_key else {}
+                self.notify("frames.ack", number=read_header(data).number, **more)
+                continue
+            self.waits_for_key = False
+            self.notify("frames.ack", number=frame.header.number)
+            return frame
 
     def next_frame_bytes(self, timeout=None):
         """Returns the bytes of the next frame. The caller acknowledges it with frames.ack."""
@@ -228,7 +243,7 @@ class Client:
             return
         message = json.loads(payload)
         if "method" in message:
-            self.events.append((message["method"], message["params"]))
+            self.events.append((message["method"], message.get("params", {})))
         elif message["id"] is None:
             raise VatError(message["error"])
         else:

@@ -3,18 +3,21 @@
 The tests cover functions beyond the example. Servers with TLS use this self-signed certificate.
 """
 
+import json
 import re
 import ssl
 import subprocess
 import sys
 import unittest
+from collections import deque
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = ROOT / "tests" / "protocol" / "scenes"
 sys.path.insert(0, str(ROOT / "protocol" / "python"))
 
-from vat_client import Client, Closed, VatError
+from vat_client import BINARY, EVENTS_KEPT, TEXT, Client, Closed, VatError
 
 PROGRAM, CERTIFICATE, KEY = (sys.argv.pop(1) for _ in range(3))
 
@@ -82,6 +85,59 @@ class VatClient(ServerTest):
             Client("wss://")
         with self.assertRaises(ConnectionError):
             Client(self.url.replace("/ws", "/elsewhere"))
+
+
+class ScriptedSocket:
+    """A socket whose messages are those of the test."""
+
+    def __init__(self, *_):
+        self.messages = deque()
+        self.sent = []
+
+    def send(self, opcode, payload):
+        if opcode == TEXT:
+            self.sent.append(json.loads(payload))
+
+    def receive(self, _):
+        if not self.messages:
+            raise TimeoutError
+        return self.messages.popleft()
+
+    def tell(self, **message):
+        self.messages.append((TEXT, json.dumps({"jsonrpc": "2.0", **message}).encode()))
+
+
+class ScriptedServer(unittest.TestCase):
+    def setUp(self):
+        with mock.patch("vat_client.WebSocket", ScriptedSocket):
+            self.client = Client()
+        self.socket = self.client.socket
+
+    def test_unknown_events_and_members_are_ignored(self):
+        self.socket.tell(method="moon.rose", params={"phase": 1}, source="sky")
+        self.socket.tell(method="moon.set")
+        self.socket.tell(method="session.closed", params={"session": "s1", "moon": 1})
+        self.socket.tell(id=1, result={"tick": 3, "moon": "new"}, source="sky")
+        self.assertEqual(self.client.call("control.pause")["tick"], 3)
+        self.assertEqual(self.client.wait_event("session.closed")["session"], "s1")
+
+    def test_the_oldest_events_that_nobody_takes_are_dropped(self):
+        for number in range(EVENTS_KEPT + 5):
+            self.socket.tell(method="session.status", params={"tick": number})
+        self.socket.tell(id=1, result={})
+        self.client.call("session.hash")
+        self.assertEqual(len(self.client.events), EVENTS_KEPT)
+        self.assertEqual(self.client.wait_event("session.status")["tick"], 5)
+
+    def test_a_frame_that_lacks_its_reference_is_rejected_once(self):
+        for name in ("delta-one", "delta-two", "key", "delta-one"):
+            frame = (ROOT / "tests" / "golden" / "frames" / f"v2-{name}.bin").read_bytes()
+            self.socket.messages.append((BINARY, frame))
+        self.assertEqual(self.client.next_frame().header.number, 10)
+        self.assertEqual(self.client.next_frame().header.number, 12)
+        self.assertEqual([message["params"] for message in self.socket.sent],
+                         [{"number": 12, "rejected": True}, {"number": 13}, {"number": 10},
+                          {"number": 12}])
 
 
 class FullServer(ServerTest):

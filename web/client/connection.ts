@@ -155,12 +155,9 @@ export class Connection {
     if (!message) {
       this.handlers.onFault?.('a text message that is not a JSON object');
     } else if (typeof message.method === 'string') {
-      if (isEventName(message.method)) {
-        this.attempts = 0;
-        this.handlers.onEvent?.({ event: message.method, params: message.params } as Event);
-      } else {
-        this.handlers.onFault?.(`an unknown event "${message.method}"`);
-      }
+      if (!isEventName(message.method)) return; // an event of a later version
+      this.attempts = 0;
+      this.handlers.onEvent?.({ event: message.method, params: message.params } as Event);
     } else if (!this.pending.settle(message as Reply)) {
       this.reportStrayReply(message as Reply);
     }

@@ -281,10 +281,24 @@ describe('messages', () => {
     expect(events).toEqual([{ event: 'session.closed', params: { session: 's', reason: 'done' } }]);
   });
 
+  // Later versions of the server may send them.
+  it('ignores unknown events and unknown members', async () => {
+    const socket = openLine();
+    socket.receiveJson({ method: 'moon.rose', params: { phase: 1 }, source: 'sky' });
+    expect(events).toEqual([]);
+    const params = { session: 's', reason: 'done', moon: { phase: 1 } };
+    socket.receiveJson({ method: 'session.closed', params, source: 'sky' });
+    expect(events).toEqual([{ event: 'session.closed', params }]);
+    const reply = connection.request('control.pause', {});
+    await socket.answer('control.pause', { result: { tick: 3, moon: 'new' } });
+    await expect(reply).resolves.toMatchObject({ tick: 3 });
+    expect(faults).toEqual([]);
+    expect(states.at(-1)).toEqual({ name: 'open' });
+  });
+
   it.each([
     ['text that is not JSON', '{', 'a text message that is not a JSON object'],
     ['a list', '[]', 'a text message that is not a JSON object'],
-    ['an unknown event', '{"method":"x.y"}', 'an unknown event "x.y"'],
     ['a refusal without id', '{"id":null,"error":{"code":-32700,"message":"no JSON"}}', 'no JSON'],
     ['a stray reply', '{"id":null,"result":1}', 'a reply without a request'],
     ['other data', 5, 'a message that is neither text nor bytes'],
