@@ -1,16 +1,19 @@
 #include "server/clients/client_outbox.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "core/support/check.h"
 #include "protocol/frame/frame_codec.h"
+#include "protocol/json/printable.h"
 #include "server/messages/limits.h"
 
 namespace vat {
 namespace {
 
 constexpr std::uint16_t kTooSlow = 4008;
+constexpr std::size_t kMaxReasonBytes = 123;  // RFC 6455, section 5.5
 
 }  // namespace
 
@@ -61,8 +64,7 @@ ClientOutbox::ClientOutbox(std::shared_ptr<Connection> connection,
 
 void ClientOutbox::close(std::uint16_t code, std::string_view reason) {
   const std::lock_guard lock(mutex_);
-  closed_ = true;
-  connection_->close(code, reason);
+  close_locked(code, reason);
 }
 
 bool ClientOutbox::is_closed() {
@@ -73,6 +75,19 @@ bool ClientOutbox::is_closed() {
 void ClientOutbox::send(std::string text) {
   const std::lock_guard lock(mutex_);
   send_control(std::move(text));
+}
+
+void ClientOutbox::report_rejected(std::string_view method, const RpcError& error) {
+  const std::lock_guard lock(mutex_);
+  ++rejected_;
+  last_rejected_ = printable(method);
+  if (!std::has_single_bit(rejected_)) return;
+  const ErrorRow& row = error_row(error.kind);
+  send_control(write_event("notification.rejected", {{"count", rejected_},
+                                                     {"method", last_rejected_},
+                                                     {"code", row.code},
+                                                     {"kind", row.name},
+                                                     {"message", error.message}}));
 }
 
 std::uint64_t ClientOutbox::join() {
@@ -147,7 +162,8 @@ bool ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
   return true;
 }
 
-bool ClientOutbox::acknowledge(std::uint32_t number, SteadyClock::time_point now) {
+bool ClientOutbox::acknowledge(std::uint32_t number, SteadyClock::time_point now,
+                               bool is_rejected) {
   std::shared_ptr<FrameWaker> waker;
   bool was_sent = false;
   {
@@ -157,9 +173,12 @@ bool ClientOutbox::acknowledge(std::uint32_t number, SteadyClock::time_point now
     if (before > 0 && window_.in_flight() == 0) queue_.frames_arrived();
     // Also after an acknowledgement of an earlier membership, whose frames may have filled the
     // window.
-    if (std::exchange(wants_wake_, false) && is_subscribed_) waker = waker_.lock();
+    is_rejected = is_rejected && was_sent;
+    if ((std::exchange(wants_wake_, false) || is_rejected) && is_subscribed_) waker = waker_.lock();
   }
-  if (waker != nullptr) waker->wake(id());
+  if (waker == nullptr) return was_sent;
+  if (is_rejected) waker->frame_rejected(id(), number);
+  waker->wake(id());
   return was_sent;
 }
 
@@ -203,9 +222,19 @@ void ClientOutbox::send_control(std::string text) {
 }
 
 void ClientOutbox::close_as_too_slow(std::string_view reason) {
+  close_locked(kTooSlow, reason);
+}
+
+void ClientOutbox::close_locked(std::uint16_t code, std::string_view reason) {
   VAT_CHECK(mutex_.is_held());
   closed_ = true;
-  connection_->close(kTooSlow, reason);
+  std::string text(reason);
+  // A misspelt acknowledgement is a frequent cause.
+  if (code == kTooSlow && rejected_ > 0) {
+    text += "; rejected notifications: " + std::to_string(rejected_) + ", last " + last_rejected_;
+    text.resize(std::min(text.size(), kMaxReasonBytes));
+  }
+  connection_->close(code, text);
 }
 
 }  // namespace vat

@@ -13,6 +13,7 @@
 #include "server/clients/frame_window.h"
 #include "server/clients/message_meter.h"
 #include "server/messages/limits.h"
+#include "server/messages/rpc_message.h"
 #include "server/support/limit_excess.h"
 #include "server/support/owned_mutex.h"
 #include "server/transport/transport.h"
@@ -64,11 +65,14 @@ struct FrameChannel {
   AckDelays delays;
 };
 
-/// Callback for a client that was not ready for a frame and may have become ready.
+/// Source of a client's frames.
 class FrameWaker {
  public:
   virtual ~FrameWaker() = default;
+  /// Called if the client was not ready for a frame and may have become ready.
   virtual void wake(ConnectionId client) = 0;
+  /// Called if the client could not decode the frame with this number.
+  virtual void frame_rejected(ConnectionId client, std::uint32_t number) = 0;
 };
 
 /// Flow control for one client (PROTOCOL.md, "Flow control"). Replies and events are reliable.
@@ -93,6 +97,9 @@ class ClientOutbox {
   bool is_closed();
   /// Sends a reply, regardless of the membership.
   void send(std::string text);
+  /// Counts a rejected notification. Sends notification.rejected for the first one and whenever the
+  /// number has doubled, so that a client cannot request many events.
+  void report_rejected(std::string_view method, const RpcError& error);
 
   /// Starts a membership and ends the previous membership. Unacknowledged frames are no longer
   /// counted.
@@ -118,9 +125,9 @@ class ClientOutbox {
   /// Sends a frame. Returns false if the subscription or the epoch has ended.
   bool send_frame(std::uint64_t subscription, std::uint32_t epoch, const SharedFrame& frame,
                   SteadyClock::time_point now);
-  /// Acknowledges all frames up to this number. Returns false if no frame with this number was sent
-  /// since the last join.
-  bool acknowledge(std::uint32_t number, SteadyClock::time_point now);
+  /// Acknowledges all frames up to this number. If the client has rejected the frame, its source
+  /// sends a key frame. Returns false if no frame with this number was sent since the last join.
+  bool acknowledge(std::uint32_t number, SteadyClock::time_point now, bool is_rejected = false);
   /// Closes the connection if a subscriber has acknowledged no frame for `patience` after a frame
   /// was sent.
   void close_if_silent(SteadyClock::time_point now, std::chrono::seconds patience);
@@ -135,12 +142,16 @@ class ClientOutbox {
   // The caller must hold the mutex for these functions.
   void send_control(std::string text);
   void close_as_too_slow(std::string_view reason);
+  /// `reason` is ASCII text.
+  void close_locked(std::uint16_t code, std::string_view reason);
 
   const std::shared_ptr<Connection> connection_;
   std::unique_ptr<MessageMeter> meter_;
   OwnedMutex mutex_;
   ControlQueue queue_;
   bool closed_ = false;
+  std::uint64_t rejected_ = 0;    // notifications
+  std::string last_rejected_;     // method of the last rejected notification
   std::uint64_t membership_ = 0;  // odd: the client is in a session
   Role role_ = Role::none;
   std::uint32_t epoch_ = 0;

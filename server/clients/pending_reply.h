@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "core/support/check.h"
@@ -20,16 +21,20 @@ class PendingReply {
   PendingReply(std::shared_ptr<ClientOutbox> client, std::optional<Json> id,
                ServerMetrics* metrics = nullptr)
       : client_(std::move(client)), id_(std::move(id)), metrics_(metrics) {}
+  /// Reports an error to the client as that of a notification of this method.
+  void set_notification(std::string method) { notification_ = std::move(method); }
   PendingReply(PendingReply&& other) noexcept
       : client_(std::move(other.client_)),
         id_(std::move(other.id_)),
         metrics_(other.metrics_),
+        notification_(std::move(other.notification_)),
         method_(other.method_),
         counted_bytes_(std::exchange(other.counted_bytes_, std::nullopt)) {}
   PendingReply& operator=(PendingReply&& other) noexcept {
     std::swap(client_, other.client_);
     std::swap(id_, other.id_);
     std::swap(metrics_, other.metrics_);
+    std::swap(notification_, other.notification_);
     std::swap(method_, other.method_);
     std::swap(counted_bytes_, other.counted_bytes_);
     return *this;
@@ -63,7 +68,12 @@ class PendingReply {
   void answer(const RpcResult& result) {
     if (metrics_ != nullptr) count_refusal(result);
     uncount();  // first, because the client may send a command as soon as it gets the reply
-    if (id_) client_->send(write_reply(*id_, result));
+    if (id_) {
+      client_->send(write_reply(*id_, result));
+    } else if (const auto* error = std::get_if<RpcError>(&result);
+               error != nullptr && !notification_.empty()) {
+      client_->report_rejected(notification_, *error);
+    }
   }
 
  private:
@@ -78,7 +88,8 @@ class PendingReply {
 
   std::shared_ptr<ClientOutbox> client_;
   std::optional<Json> id_;
-  ServerMetrics* metrics_;  // null: refusals are not counted
+  ServerMetrics* metrics_;    // null: refusals are not counted
+  std::string notification_;  // method; empty: a request, or a call by the server itself
   const MethodRow* method_ = nullptr;
   std::optional<std::size_t> counted_bytes_;
 };

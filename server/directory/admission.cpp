@@ -1,5 +1,7 @@
 #include "server/directory/admission.h"
 
+#include <algorithm>
+
 #include "core/support/check.h"
 
 namespace vat {
@@ -34,10 +36,16 @@ std::optional<RpcError> Admission::refuse_session() const {
 std::variant<SessionCreator, RpcError> Admission::admit_creator(const PendingReply& reply) {
   VAT_CHECK(has_lock());
   const std::size_t maximum = resources_.settings.limits.max_sessions_per_address;
-  SessionCreator creator{reply.client()->id(),
-                         sessions_by_address_.take(reply.client()->address(), maximum)};
-  if (creator.place == nullptr) return limit_reached("sessions_per_address", maximum);
-  return creator;
+  const std::string& address = reply.client()->address();
+  SessionCreator creator{reply.client()->id(), sessions_by_address_.take(address, maximum)};
+  if (creator.place != nullptr) return creator;
+  const auto abandoned = std::ranges::count_if(tables_.sessions.running(), [&](const auto& entry) {
+    return tables_.sessions.is_from(entry.first, address) && is_abandoned(entry.first);
+  });
+  RpcError error = limit_reached("sessions_per_address", maximum);
+  error.message += "; " + std::to_string(abandoned) + " of them are abandoned and can be closed";
+  error.data["abandoned"] = abandoned;
+  return error;
 }
 
 std::optional<RpcError> Admission::refuse_replay() const {
@@ -59,15 +67,33 @@ std::optional<RpcError> Admission::refuse_role(const PendingReply& reply,
   VAT_CHECK(has_lock());
   const Client* client = tables_.clients.find(reply);
   if (client == nullptr) return not_allowed("the connection is closed");
-  Role role = client->access.role;
-  if (role != Role::admin) {
-    const bool is_in = client->session == session;
-    const auto found = tables_.sessions.running().find(session);  // a lost one has no owner
-    const bool is_creator = found != tables_.sessions.running().end() &&
-                            found->second->summary().creator == reply.client()->id();
-    role = is_creator ? Role::owner : is_in ? client->outbox->role() : Role::viewer;
-  }
-  return vat::refuse_role(reply.method(), role);
+  return vat::refuse_role(reply.method(), role_in(*client, session));
+}
+
+Role Admission::role_in(const Client& client, SessionNumber session) const {
+  VAT_CHECK(has_lock());
+  if (client.access.role == Role::admin) return Role::admin;
+  const auto found = tables_.sessions.running().find(session);  // a lost one has no owner
+  const bool is_creator = found != tables_.sessions.running().end() &&
+                          found->second->summary().creator == client.outbox->id();
+  if (is_creator) return Role::owner;
+  return client.session == session ? client.outbox->role() : Role::viewer;
+}
+
+bool Admission::is_abandoned(SessionNumber session) const {
+  VAT_CHECK(has_lock());
+  if (session == tables_.sessions.first()->first) return false;
+  if (tables_.clients.count_in(session) > 0) return false;
+  const SessionSummary summary = tables_.sessions.at(session).summary();
+  return summary.empty_since.has_value() && tables_.clients.find(summary.creator) == nullptr;
+}
+
+bool Admission::may_close(const Client& client, SessionNumber session) const {
+  VAT_CHECK(has_lock());
+  if (refuse_access(client, session)) return false;
+  if (role_in(client, session) >= Role::owner) return true;
+  return client.access.role >= Role::controller &&
+         tables_.sessions.is_from(session, client.outbox->address()) && is_abandoned(session);
 }
 
 RpcError Admission::refuse_missing(const Client& client, const SessionId& id) const {

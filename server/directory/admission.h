@@ -42,13 +42,20 @@ class Admission {
   bool admits_connection() const;
   /// Returns an error if no further session is admitted.
   std::optional<RpcError> refuse_session() const;
-  /// Returns the creator, counted for its address, or the error limit_reached.
+  /// Returns the creator, counted for its address, or the error limit_reached. The error contains
+  /// the number of abandoned sessions of the address.
   std::variant<SessionCreator, RpcError> admit_creator(const PendingReply& reply);
   std::optional<RpcError> refuse_replay() const;
   /// Returns an error if the client's token is for another session.
   std::optional<RpcError> refuse_access(const Client& client, SessionNumber session) const;
   /// Returns an error if the client's role in the session is below the method's least role.
   std::optional<RpcError> refuse_role(const PendingReply& reply, SessionNumber session) const;
+  /// Returns whether a running session is abandoned: it has no participant, nobody can resume one,
+  /// and its creator has disconnected. The first session is never abandoned.
+  bool is_abandoned(SessionNumber session) const;
+  /// Returns whether the client may close the running session: as its owner, as an admin, or as a
+  /// controller from the address that created the abandoned session.
+  bool may_close(const Client& client, SessionNumber session) const;
   /// Returns the error for a session id without a running session.
   RpcError refuse_missing(const Client& client, const SessionId& id) const;
   /// Returns the request with the role that the client's token grants.
@@ -58,6 +65,7 @@ class Admission {
 
  private:
   bool has_lock() const { return tables_.mutex.is_held(); }
+  Role role_in(const Client& client, SessionNumber session) const;
 
   const ServerResources& resources_;
   DirectoryTables& tables_;

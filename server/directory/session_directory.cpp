@@ -166,14 +166,16 @@ std::vector<SessionDirectory::Listed> SessionDirectory::list(const PendingReply&
   if (client == nullptr) return list;
   for (const auto& [number, session] : tables_.sessions.running()) {
     if (admission_.refuse_access(*client, number)) continue;
-    list.push_back({to_id(number), session->summary(), "running"});
+    const bool is_closable = admission_.may_close(*client, number);
+    list.push_back({to_id(number), session->summary(), "running", is_closable});
     list.back().summary.clients = tables_.clients.count_in(number);
   }
   for (const auto& [number, absent] : tables_.sessions.absent()) {
     if (admission_.refuse_access(*client, number)) continue;
     SessionSummary summary;
     summary.name = absent.name;
-    list.push_back({to_id(number), std::move(summary), absent.is_lost ? "lost" : "recovering"});
+    list.push_back({to_id(number), std::move(summary), absent.is_lost ? "lost" : "recovering",
+                    absent.is_lost && client->access.role == Role::admin});
   }
   return list;
 }

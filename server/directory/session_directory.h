@@ -57,7 +57,8 @@ class SessionDirectory {
   struct Listed {
     SessionId id;
     SessionSummary summary;
-    const char* state;  ///< "running", "recovering" or "lost"; the last two have only a name
+    const char* state;         ///< "running", "recovering" or "lost"; the last two have only a name
+    bool is_closable = false;  ///< the client may close the session
   };
   /// Returns the sessions that the client may join.
   std::vector<Listed> list(const PendingReply& reply) const;

@@ -35,7 +35,10 @@ std::optional<RpcError> SessionDirectory::close(PendingReply& reply, const Sessi
   const auto* session = tables_.sessions.find(id);
   if (session == nullptr) return close_absent(reply, id);
   const SessionNumber number = session->first;
-  if (auto error = admission_.refuse_role(reply, number)) return error;
+  const Client* client = tables_.clients.find(reply);
+  if (client == nullptr || !admission_.may_close(*client, number)) {
+    if (auto error = admission_.refuse_role(reply, number)) return error;
+  }
   if (const auto failure = forget_stored(number)) return storage_failed(*failure);
   close_session(number, Session::End::closed, reason, std::move(reply));
   return {};
@@ -104,6 +107,7 @@ std::string SessionDirectory::metrics() const {
       ++(summary.hibernating ? gauges.hibernating_sessions
          : summary.playing   ? gauges.playing_sessions
                              : gauges.paused_sessions);
+      gauges.abandoned_sessions += admission_.is_abandoned(number) ? 1 : 0;
       gauges.clients += tables_.clients.count_in(number);
       gauges.particles += summary.particles;
     }

@@ -35,6 +35,12 @@ void SessionRegistry::remove(SessionNumber number) {
   VAT_CHECK(removed == 1);
 }
 
+bool SessionRegistry::is_from(SessionNumber number, const std::string& address) const {
+  VAT_CHECK(mutex_.is_held());
+  const auto place = places_.find(number);
+  return place != places_.end() && place->second != nullptr && place->second->address == address;
+}
+
 const SessionRegistry::Running::value_type* SessionRegistry::find(const SessionId& id) const {
   VAT_CHECK(mutex_.is_held());
   const auto found =

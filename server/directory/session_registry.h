@@ -43,6 +43,8 @@ class SessionRegistry {
   /// the server created the session.
   void add(SessionNumber number, std::shared_ptr<Session> session, AddressCounts::Place place);
   void remove(SessionNumber number);
+  /// Returns whether the session is counted for this address.
+  bool is_from(SessionNumber number, const std::string& address) const;
   /// Returns the running session with this id, or null.
   const Running::value_type* find(const SessionId& id) const;
   /// Returns the first running session, or null. The first session never expires.

@@ -47,6 +47,14 @@ void FrameDelivery::remove(ConnectionId client) {
   if (viewers_.empty()) has_state_ = false;  // it would be old when the next viewer comes
 }
 
+void FrameDelivery::restart(ConnectionId client, std::uint32_t number) {
+  const auto found = viewers_.find(client);
+  if (found == viewers_.end() || number < found->second.key_number) return;
+  Viewer& viewer = found->second;
+  viewer.held = {};
+  viewer.awaits_any = viewer.owes_frame = true;
+}
+
 void FrameDelivery::set_vat(const std::optional<Vat>& vat) {
   source_.set_vat(vat);
   has_state_ = false;
@@ -178,6 +186,7 @@ bool FrameDelivery::send(Viewer& viewer, const EncodedFrame& encoded, SteadyCloc
   if (!viewer.outbox->send_frame(viewer.subscription, epoch_, encoded.bytes, now)) return false;
   viewer.awaits_any = false;
   viewer.sent_tick = tick_;
+  if (viewer.held[0] == nullptr) viewer.key_number = source_.number();
   viewer.held = {encoded.frame, std::exchange(viewer.held[0], nullptr)};
   return true;
 }

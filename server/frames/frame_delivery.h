@@ -26,6 +26,9 @@ class FrameDelivery {
   void add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscription,
            Subscription subscribed);
   void remove(ConnectionId client);
+  /// Sends a key frame to a client that could not decode the frame `number`. Ignores frames before
+  /// the last key frame, because the client drops them. publish() or retry() sends the key frame.
+  void restart(ConnectionId client, std::uint32_t number);
   /// Sets the vat of later states after a scene change or a reset.
   void set_vat(const std::optional<Vat>& vat);
   /// Sets the position error [m] for subscriptions without `max_error`. The initial value 0 selects
@@ -48,9 +51,10 @@ class FrameDelivery {
     bool has_turn = false;    ///< the last state was due for the viewer
     bool owes_frame = false;  ///< a state was due, and no frame was sent afterwards
     HeldFrames held;
-    std::uint32_t shown = 0;      ///< number of the last state that the viewer shows
-    std::uint64_t sent_tick = 0;  ///< tick of the last sent frame
-    std::size_t passed_over = 0;  ///< consecutive states in which its group was not encoded
+    std::uint32_t key_number = 0;  ///< number of the last frame that was sent without references
+    std::uint32_t shown = 0;       ///< number of the last state that the viewer shows
+    std::uint64_t sent_tick = 0;   ///< tick of the last sent frame
+    std::size_t passed_over = 0;   ///< consecutive states in which its group was not encoded
 
     std::uint64_t period() const { return subscribed.every * pace.stride(); }  ///< [ticks]
   };

@@ -68,6 +68,10 @@ void FrameFeed::wake(ConnectionId client) {
   put([&] { pending_.woken.push_back(client); });
 }
 
+void FrameFeed::frame_rejected(ConnectionId client, std::uint32_t number) {
+  put([&] { pending_.changes.emplace_back(Rejected{client, number}); });
+}
+
 void FrameFeed::post(std::function<void()> task) {
   boost::asio::post(strand_, std::move(task));
 }
@@ -108,6 +112,8 @@ void FrameFeed::apply_pending_changes() {
       delivery_.remove(*client);
     } else if (const auto* error = std::get_if<DefaultError>(&change)) {
       delivery_.set_default_error(error->max_error);
+    } else if (const auto* rejected = std::get_if<Rejected>(&change)) {
+      delivery_.restart(rejected->client, rejected->number);
     } else {
       delivery_.set_vat(std::get<std::optional<Vat>>(change));
     }

@@ -35,6 +35,8 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   /// not allocate.
   void publish(PublishedState& state);
   void wake(ConnectionId client) override;
+  /// See FrameDelivery::restart(). The caller must also call wake().
+  void frame_rejected(ConnectionId client, std::uint32_t number) override;
   /// Runs `task` after all earlier calls have taken effect.
   void post(std::function<void()> task);
 
@@ -47,7 +49,11 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
   struct DefaultError {
     double max_error;
   };
-  using Change = std::variant<Added, ConnectionId, std::optional<Vat>, DefaultError>;
+  struct Rejected {
+    ConnectionId client;
+    std::uint32_t number;
+  };
+  using Change = std::variant<Added, ConnectionId, std::optional<Vat>, DefaultError, Rejected>;
   struct PendingChanges {
     std::vector<Change> changes;
     PublishedState state;

@@ -25,8 +25,9 @@ constexpr ErrorRow kRows[] = {
     {ErrorKind::limit_reached, 1005, "limit_reached",
      "Request less, or release resources that count towards data.limit, and try again."},
     {ErrorKind::not_allowed, 1006, "not_allowed",
-     "Ask an owner for a role, ask a controller for control, or try again later; the message names "
-     "the reason."},
+     "The message names the reason: ask an owner for a role or a controller for control, use a "
+     "grab "
+     "of your own, or try again later."},
     {ErrorKind::not_authenticated, 1007, "not_authenticated",
      "Send a valid token with access.enter, or ask for a new one."},
     {ErrorKind::busy, 1008, "busy",

@@ -36,7 +36,7 @@ ActionResult set_material(SessionCore& core, const Json& value) {
 }  // namespace
 
 SessionAction read_world_move_body(ObjectReader& params, Errors& errors) {
-  const BodyId body = read_body_id(params);
+  const BodyId body = read_body_id(params, errors);
   BodyPlacement place;
   place.center_of_mass = params.vector("position", kAnyMin, kAnyMax);
   place.orientation = read_orientation(params, errors);
@@ -61,7 +61,8 @@ SessionAction read_world_set_numerics(ObjectReader& params, Errors& errors) {
   std::optional<Real> step;
   if (params.has("step")) step = params.real("step", kAnyMin, kAnyMax);
   if (!integrator && !step) {
-    add_error(errors, "missing", params.path_of("integrator"), "is needed, or a step");
+    add_error(errors, "missing", params.path_of("integrator"),
+              "must be given, unless step is given");
   }
   return [integrator, step](SessionCore& core, Participant&) -> ActionResult {
     Simulation& simulation = core.run().simulation();

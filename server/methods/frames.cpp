@@ -70,8 +70,11 @@ SessionAction read_frames_unsubscribe(ObjectReader&, Errors&) {
 ServerAction read_frames_ack(ObjectReader& params, Errors&) {
   const auto number = static_cast<std::uint32_t>(
       params.count("number", 1, std::numeric_limits<std::uint32_t>::max()));
-  return [number](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
-    if (!reply.client()->acknowledge(number, directory.resources().clock.now())) {
+  const bool is_rejected = params.boolean("rejected", false);
+  return [number, is_rejected](SessionDirectory& directory,
+                               PendingReply& reply) -> std::optional<RpcResult> {
+    const auto now = directory.resources().clock.now();
+    if (!reply.client()->acknowledge(number, now, is_rejected)) {
       return invalid_params({Error{"out_of_range", "/number", "must be of a frame that was sent"}});
     }
     Json answer = Json::object();

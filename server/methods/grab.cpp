@@ -31,10 +31,13 @@ Index index_of(const Simulation& simulation, BodyId id, Index number) {
   return static_cast<Index>(found - body->numbers.begin());
 }
 
-ActionResult start(SessionCore& core, Participant& participant, BodyId body, Index number,
+ActionResult start(SessionCore& core, Participant& participant, const BodyKey& key, Index number,
                    const Vec3& target) {
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
   if (participant.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
+  const std::optional<BodyView> found = find_body(core.run().simulation(), key);
+  if (!found) return no_body_with_key("/body");
+  const BodyId body = found->id;
   if (auto error = refuse_held_body(core, participant, body)) return *std::move(error);
   const std::uint64_t grab = core.run().last_grab() + 1;
   Simulation& simulation = core.run().simulation();
@@ -62,13 +65,16 @@ std::optional<RpcError> refuse_grab(SessionCore& core, const Participant& partic
 
 }  // namespace
 
-SessionAction read_grab_start(ObjectReader& params, Errors&) {
-  const BodyId body = read_body_id(params);
+SessionAction read_grab_start(ObjectReader& params, Errors& errors) {
+  const Json* body = params.member("body", true);
+  std::optional<BodyKey> key;
+  if (body != nullptr) key = to_body_key(*body, params.path_of("body"), errors);
   const auto particle =
       static_cast<Index>(params.count("particle", 0, std::numeric_limits<Index>::max()));
   const Vec3 target = read_target(params);
-  return [body, particle, target](SessionCore& core, Participant& participant) {
-    return start(core, participant, body, particle, target);
+  if (!key) return {};
+  return [key = *std::move(key), particle, target](SessionCore& core, Participant& participant) {
+    return start(core, participant, key, particle, target);
   };
 }
 

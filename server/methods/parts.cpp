@@ -7,8 +7,39 @@
 
 namespace vat {
 
-BodyId read_body_id(ObjectReader& params) {
-  return static_cast<BodyId>(params.count("body", 0, std::numeric_limits<BodyId>::max()));
+BodyId read_body_id(ObjectReader& params, Errors& errors) {
+  const Json* value = params.member("body", true);
+  if (value == nullptr) return 0;
+  if (value->is_string()) {
+    add_error(errors, "wrong_type", params.path_of("body"), "must be the id of a body, not a name");
+    return 0;
+  }
+  constexpr BodyId kMax = std::numeric_limits<BodyId>::max();
+  return static_cast<BodyId>(to_count(*value, params.path_of("body"), 0, kMax, errors).value_or(0));
+}
+
+std::optional<BodyKey> to_body_key(const Json& value, const std::string& path, Errors& errors) {
+  if (value.is_string()) {
+    if (auto name = to_text(value, path, kMaxNameLength, errors)) return *std::move(name);
+    return {};
+  }
+  if (!value.is_number()) {
+    add_error(errors, "wrong_type", path, "must be the id or the name of a body");
+    return {};
+  }
+  const auto id = to_count(value, path, 0, std::numeric_limits<BodyId>::max(), errors);
+  if (!id) return {};
+  return static_cast<BodyId>(*id);
+}
+
+std::optional<BodyView> find_body(const Simulation& simulation, const BodyKey& key) {
+  if (const auto* id = std::get_if<BodyId>(&key)) return simulation.find_body(*id);
+  const auto id = simulation.find_body(std::get<std::string>(key));
+  return id ? simulation.find_body(*id) : std::nullopt;
+}
+
+RpcError no_body_with_key(const std::string& path) {
+  return no_such_body("no body has this id or name", path);
 }
 
 SessionId read_session_id(ObjectReader& params) {
@@ -46,11 +77,12 @@ std::optional<RpcError> refuse_held_body(SessionCore& core, const Participant& p
 RpcResult list_sessions(const SessionDirectory& directory, const PendingReply& reply,
                         void (*add)(Json& session, const SessionSummary& summary)) {
   Json sessions = Json::array();
-  for (const auto& [id, summary, state] : directory.list(reply)) {
+  for (const auto& [id, summary, state, is_closable] : directory.list(reply)) {
     Json session{{"session", id},          {"name", summary.name},
                  {"state", state},         {"kind", summary.is_replay ? "replay" : "live"},
                  {"scene", summary.scene}, {"playing", summary.playing},
-                 {"tick", summary.tick},   {"particles", summary.particles}};
+                 {"tick", summary.tick},   {"particles", summary.particles},
+                 {"closable", is_closable}};
     add(session, summary);
     sessions.push_back(std::move(session));
   }

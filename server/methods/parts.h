@@ -2,14 +2,26 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <variant>
 
 #include "server/directory/session_directory.h"
 
 /// Functions that several method handlers use.
 namespace vat {
 
-/// Returns the parameter `body`. The body may not exist.
-BodyId read_body_id(ObjectReader& params);
+/// Returns the parameter `body`, which must be an id. The body may not exist.
+BodyId read_body_id(ObjectReader& params, Errors& errors);
+
+/// A body by id or by name.
+using BodyKey = std::variant<BodyId, std::string>;
+/// Returns the key in `value`. If the value is neither an id nor a name, adds an error.
+std::optional<BodyKey> to_body_key(const Json& value, const std::string& path, Errors& errors);
+/// Returns the body, or an empty optional if there is no such body.
+std::optional<BodyView> find_body(const Simulation& simulation, const BodyKey& key);
+/// Returns the error for a key without a body.
+RpcError no_body_with_key(const std::string& path);
+
 /// Returns the parameter `session`. The session may not exist.
 SessionId read_session_id(ObjectReader& params);
 

@@ -41,6 +41,10 @@ ServerAction read_session_join(ObjectReader& params, Errors& errors) {
   JoinRequest join_request;
   if (params.has("name")) join_request.name = read_person_name(params, "name", errors);
   if (params.has("resume")) join_request.resume = params.text("resume", kMaxTokenBytes);
+  if (params.has("role")) {
+    constexpr Role kRoles[] = {Role::viewer, Role::controller};
+    join_request.greatest_role = kRoles[params.choice("role", {"viewer", "controller"})];
+  }
   return [session, join_request](SessionDirectory& directory, PendingReply& reply) {
     return to_answer(directory.join(reply, session, join_request));
   };

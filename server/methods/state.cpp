@@ -9,35 +9,19 @@
 #include "core/limits.h"
 #include "server/messages/describe.h"
 #include "server/methods/handlers.h"
+#include "server/methods/parts.h"
 
 namespace vat {
 namespace {
 
-/// A body by id or by name.
-using BodyKey = std::variant<BodyId, std::string>;
-
-std::optional<BodyKey> read_key(const Json& value, const std::string& path, Errors& errors) {
-  if (value.is_string()) {
-    if (auto name = to_text(value, path, kMaxNameLength, errors)) return *std::move(name);
-    return {};
-  }
-  const auto id = to_count(value, path, 0, std::numeric_limits<BodyId>::max(), errors);
-  if (!id) return {};
-  return static_cast<BodyId>(*id);
-}
-
 std::vector<BodyKey> read_keys(const Json& list, const std::string& path, Errors& errors) {
   std::vector<BodyKey> keys;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (auto key = read_key(list[i], pointer_to(path, i), errors)) keys.push_back(*std::move(key));
+    if (auto key = to_body_key(list[i], pointer_to(path, i), errors)) {
+      keys.push_back(*std::move(key));
+    }
   }
   return keys;
-}
-
-std::optional<BodyView> find_body(const Simulation& simulation, const BodyKey& key) {
-  if (const auto* id = std::get_if<BodyId>(&key)) return simulation.find_body(*id);
-  const auto id = simulation.find_body(std::get<std::string>(key));
-  return id ? simulation.find_body(*id) : std::nullopt;
 }
 
 /// Without keys: all bodies.
@@ -48,7 +32,7 @@ ActionResult query(const Simulation& simulation, const std::optional<std::vector
   } else {
     for (std::size_t i = 0; i < keys->size(); ++i) {
       const auto body = find_body(simulation, (*keys)[i]);
-      if (!body) return no_such_body("no body has this id or name", pointer_to("/bodies", i));
+      if (!body) return no_body_with_key(pointer_to("/bodies", i));
       bodies.push_back(describe_state(*body));
     }
   }
@@ -81,7 +65,7 @@ SessionAction read_state_query(ObjectReader& params, Errors& errors) {
 SessionAction read_state_connections(ObjectReader& params, Errors& errors) {
   std::optional<BodyKey> key;
   if (const Json* body = params.member("body")) {
-    key = read_key(*body, params.path_of("body"), errors);
+    key = to_body_key(*body, params.path_of("body"), errors);
   }
   const std::size_t most = params.count("most", 1, kMaxConnections, kDefaultConnections);
   return [key, most](SessionCore& core, Participant&) -> ActionResult {
@@ -89,7 +73,7 @@ SessionAction read_state_connections(ObjectReader& params, Errors& errors) {
     ConnectionQuery wish{{}, most};
     if (key) {
       const auto body = find_body(simulation, *key);
-      if (!body) return no_such_body("no body has this id or name", "/body");
+      if (!body) return no_body_with_key("/body");
       wish.body = body->id;
     }
     const Result<Connections> found = simulation.connections(wish);

@@ -78,8 +78,8 @@ SessionAction read_world_add_body(ObjectReader& params, Errors&) {
   };
 }
 
-SessionAction read_world_remove_body(ObjectReader& params, Errors&) {
-  const BodyId body = read_body_id(params);
+SessionAction read_world_remove_body(ObjectReader& params, Errors& errors) {
+  const BodyId body = read_body_id(params, errors);
   return [body](SessionCore& core, Participant&) -> ActionResult {
     const Status removed = core.run().simulation().remove_body(body);
     if (!removed) return refused(removed.errors());
@@ -90,8 +90,8 @@ SessionAction read_world_remove_body(ObjectReader& params, Errors&) {
   };
 }
 
-SessionAction read_world_melt_body(ObjectReader& params, Errors&) {
-  const BodyId body = read_body_id(params);
+SessionAction read_world_melt_body(ObjectReader& params, Errors& errors) {
+  const BodyId body = read_body_id(params, errors);
   std::string material = params.text("material", kMaxNameLength);
   return [body, material = std::move(material)](SessionCore& core, Participant&) -> ActionResult {
     const Status melted = core.run().simulation().melt_body(body, material);
@@ -126,8 +126,8 @@ SessionAction read_world_set_interface(ObjectReader& params, Errors&) {
   return read_action_on("interface", params, set_interface);
 }
 
-SessionAction read_world_apply_force(ObjectReader& params, Errors&) {
-  const BodyId body = read_body_id(params);
+SessionAction read_world_apply_force(ObjectReader& params, Errors& errors) {
+  const BodyId body = read_body_id(params, errors);
   const Vec3 force = params.vector("force", kAnyMin, kAnyMax);
   const Real duration = params.real("duration", kAnyMin, kAnyMax);
   return [body, force, duration](SessionCore& core, Participant&) -> ActionResult {

@@ -53,6 +53,9 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_sample(text, "vat_sessions", label("state", "playing"), now.playing_sessions);
   append_sample(text, "vat_sessions", label("state", "paused"), now.paused_sessions);
   append_sample(text, "vat_sessions", label("state", "hibernating"), now.hibernating_sessions);
+  append_gauge(text, "vat_abandoned_sessions",
+               "Sessions without participants whose creator has disconnected.",
+               now.abandoned_sessions);
   append_gauge(text, "vat_connections", "Open WebSockets.", now.connections);
   append_gauge(text, "vat_clients", "Connections that have joined a session.", now.clients);
   append_gauge(text, "vat_particles", "Particles of all sessions.", now.particles);

@@ -77,6 +77,8 @@ class ServerMetrics {
     std::size_t playing_sessions = 0;
     std::size_t paused_sessions = 0;
     std::size_t hibernating_sessions = 0;  ///< playing, but stopped without participants
+    /// Sessions without participants whose creator has disconnected; also counted by their state.
+    std::size_t abandoned_sessions = 0;
     std::size_t connections = 0;
     std::size_t clients = 0;    ///< connections that have joined a session
     std::size_t particles = 0;  ///< in all sessions

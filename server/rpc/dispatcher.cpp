@@ -28,17 +28,19 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
   try {
     const auto now = directory_.resources().clock.now();
     if (auto excess = client.meter()->count_bytes(message.size(), now)) {
-      return refuse(client, id, *excess);
+      return refuse(client, id, {}, *excess);
     }
     auto request = read(message, sender.role, id);
     if (auto excess = client.meter()->count(class_of(request), now)) {
-      return refuse(client, id, *excess);
+      const auto* good = std::get_if<RpcRequest>(&request);
+      return refuse(client, id, good == nullptr ? std::string_view() : good->method, *excess);
     }
     if (auto* error = std::get_if<RpcError>(&request)) {
       client.send(write_reply(id.value_or(nullptr), std::move(*error)));
       return;
     }
     PendingReply reply(sender.outbox, id, &directory_.resources().metrics);
+    if (!id) reply.set_notification(std::get<RpcRequest>(request).method);
     if (auto result =
             call(reply, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
       reply.answer(*std::move(result));
@@ -57,17 +59,20 @@ void Dispatcher::receive_binary(ClientOutbox& client, std::size_t bytes) {
   const auto now = directory_.resources().clock.now();
   auto excess = client.meter()->count_bytes(bytes, now);
   if (!excess) excess = client.meter()->count(RateClass::query, now);
-  if (excess) return refuse(client, {}, *excess);
+  if (excess) return refuse(client, {}, {}, *excess);
   client.send(write_reply(nullptr, invalid_request("only the server sends binary messages")));
 }
 
 void Dispatcher::refuse(ClientOutbox& client, const std::optional<Json>& id,
-                        const RateExcess& excess) {
+                        std::string_view method, const RateExcess& excess) {
   directory_.resources().metrics.add_rate_limited(excess.limit);
   if (excess.is_flood) return client.close(kFlooding, "too many messages");
-  if (!id) return;  // a notification, or not read
   const RpcError error = rate_limited(excess.limit, excess.maximum, excess.retry_after.count());
-  client.send(write_reply(*id, error));
+  if (id) {
+    client.send(write_reply(*id, error));
+  } else if (!method.empty()) {
+    client.report_rejected(method, error);
+  }
 }
 
 std::variant<RpcRequest, RpcError> Dispatcher::read(std::string_view message, Role role,

@@ -24,8 +24,9 @@ class Dispatcher {
  private:
   const ServerLimits& limits() const { return directory_.resources().settings.limits; }
   /// Answers a message that exceeds a rate. Closes the connection of a client that continues to
-  /// exceed rates.
-  void refuse(ClientOutbox& client, const std::optional<Json>& id, const RateExcess& excess);
+  /// exceed rates. `method` is empty if the message was not read.
+  void refuse(ClientOutbox& client, const std::optional<Json>& id, std::string_view method,
+              const RateExcess& excess);
   std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
                                           std::optional<Json>& id) const;
   /// Returns the result, or an empty optional if `reply` was moved and is answered later.

@@ -12,8 +12,9 @@ namespace vat {
 /// Counter of items per network address. Thread-safe.
 class AddressCounts {
  public:
+  struct Held;
   /// One counted item. The item is counted until the last copy is destroyed. Null: refused.
-  using Place = std::shared_ptr<void>;
+  using Place = std::shared_ptr<Held>;
 
   /// Adds an item of the address. Returns null if the address already has `most` items.
   Place take(const std::string& address, std::size_t most) {
@@ -23,7 +24,7 @@ class AddressCounts {
       if (count == 0) table_->counts.erase(address);
       return nullptr;
     }
-    Place place(new Held(table_, address), [](Held* held) { delete held; });
+    const auto place = std::make_shared<Held>(table_, address);
     ++count;
     return place;
   }
@@ -33,6 +34,9 @@ class AddressCounts {
     std::mutex mutex;
     std::map<std::string, std::size_t> counts;
   };
+  std::shared_ptr<Table> table_ = std::make_shared<Table>();
+
+ public:
   struct Held {
     Held(std::shared_ptr<Table> table_in, std::string address_in)
         : table(std::move(table_in)), address(std::move(address_in)) {}
@@ -43,10 +47,10 @@ class AddressCounts {
     }
     Held(const Held&) = delete;
     Held& operator=(const Held&) = delete;
-    std::shared_ptr<Table> table;  // a Place may outlive the AddressCounts
-    std::string address;
+
+    const std::shared_ptr<Table> table;  // a Place may outlive the AddressCounts
+    const std::string address;
   };
-  std::shared_ptr<Table> table_ = std::make_shared<Table>();
 };
 
 }  // namespace vat

@@ -300,6 +300,8 @@ export interface LimitReached {
     /** Name in server.info */
     limit: string;
     maximum: number;
+    /** Only for sessions_per_address: number of abandoned sessions among them */
+    abandoned?: number;
   };
 }
 
@@ -434,6 +436,18 @@ export interface GrabEnded {
   participant: ParticipantId;
   reason: 'idle';
 }
+/** A notification of this client was rejected; sent when the count is a power of two */
+export interface NotificationRejected {
+  /** Rejected notifications of this connection */
+  count: number;
+  /** Method of the last one */
+  method: string;
+  /** As in an error reply */
+  code: number;
+  /** As in an error reply */
+  kind: string;
+  message: string;
+}
 /** A participant requests control; sent to participants who can hand it over */
 export interface ControlRequested {
   participant: ParticipantId;
@@ -464,6 +478,8 @@ export interface FramesSubscribeParams {
 export interface FramesAckParams {
   /** Number in the header of a received frame; also acknowledges all earlier frames */
   number: number;
+  /** Whether the client could not decode the frame; the server then sends a key frame */
+  rejected?: boolean;
 }
 /** Contains the tick if the client is in a session */
 export interface FramesAckResult {
@@ -471,7 +487,8 @@ export interface FramesAckResult {
 }
 /** Pulls a particle to a target */
 export interface GrabStartParams {
-  body: BodyId;
+  /** Name or id */
+  body: BodyId | Name;
   particle: ParticleNumber;
   target: Point;
 }
@@ -683,6 +700,8 @@ export interface WatchedSession {
   tick: Tick;
   particles: number;
   participants: WatchedParticipant[];
+  /** Whether this client may close the session */
+  closable: boolean;
 }
 
 export interface WatchedParticipant {
@@ -732,12 +751,16 @@ export interface SessionEntry {
   playing: boolean;
   tick: Tick;
   particles: number;
+  /** Whether this client may close the session */
+  closable: boolean;
 }
 /** Joins a session */
 export interface SessionJoinParams {
   session?: SessionId;
   name?: PersonName;
   resume?: Token;
+  /** Greatest role of a new participant */
+  role?: 'viewer' | 'controller';
 }
 
 export interface SessionJoinResult {
@@ -1112,6 +1135,7 @@ export interface Events {
   'session.configured': Settings;
   'presence.changed': PresenceChanged;
   'grab.ended': GrabEnded;
+  'notification.rejected': NotificationRejected;
   'control.requested': ControlRequested;
 }
 
@@ -1128,5 +1152,6 @@ export const kEventNames = [
   'session.configured',
   'presence.changed',
   'grab.ended',
+  'notification.rejected',
   'control.requested',
 ] as const;

@@ -249,14 +249,22 @@ export class Session {
     this.handlers.onFrame?.(frame, bytes.byteLength);
   }
 
-  /** Subscribes anew after an invalid frame, because later frames can refer to it. */
+  /**
+   * Reports an invalid frame, and the server sends a key frame. Until then, later frames that refer
+   * to it are rejected too, and only acknowledged.
+   */
   private refuse(bytes: ArrayBuffer, error: FrameError, wasWaiting: boolean): void {
     const number = frameNumber(bytes);
-    if (number !== undefined) this.acknowledge(number); // the server waits for the acknowledgement
-    if (wasWaiting && error.code === 'missing_reference') return; // a key frame was requested
+    const isExpected = wasWaiting && error.code === 'missing_reference';
+    if (number !== undefined) this.reject(number, !isExpected);
+    if (isExpected) return;
     const words = `an invalid frame (${error.code}): ${error.message}`;
     this.handlers.onFault?.(words);
     if (wasWaiting) this.connection.restart(words);
-    else this.subscribeAgain();
+    else if (number === undefined) this.subscribeAgain(); // there is no number to reject
+  }
+
+  private reject(number: number, needsKey: boolean): void {
+    this.connection.notify('frames.ack', { number, ...(needsKey && { rejected: true }) });
   }
 }

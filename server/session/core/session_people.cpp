@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -51,8 +52,9 @@ std::variant<JoinedParticipant, RpcError> SessionPeople::join(
 Participant& SessionPeople::add(const ClientOutbox& outbox, const JoinRequest& request,
                                 std::string& token) {
   const bool is_creator = outbox.id() == context_.settings.creator && request.role != Role::admin;
-  const Role role =
+  const Role granted =
       is_creator ? Role::owner : request.role.value_or(context_.settings.default_role);
+  const Role role = std::min(granted, request.greatest_role.value_or(granted));
   token = make_token();
   Participant& participant = participants_.add(request.name, role);
   if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);

@@ -14,6 +14,7 @@ struct JoinRequest {
   std::string name;                   ///< empty: the server chooses a name
   std::optional<std::string> resume;  ///< token of the participant to resume
   std::optional<Role> role;           ///< role of an invitation; absent: default role
+  std::optional<Role> greatest_role;  ///< greatest role that the client requests; absent: any
   bool passes_lock = false;
 };
 

@@ -31,7 +31,9 @@ std::string make_text(std::size_t bytes) {
 class CountingWaker final : public FrameWaker {
  public:
   void wake(ConnectionId) override { ++count; }
+  void frame_rejected(ConnectionId, std::uint32_t number) override { rejected.push_back(number); }
   int count = 0;
+  std::vector<std::uint32_t> rejected;
 };
 
 constexpr std::uint32_t kEpoch = 5;
@@ -106,6 +108,46 @@ TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
   EXPECT_FALSE(outbox.acknowledge(4, now));
   EXPECT_FALSE(outbox.acknowledge(0xffffffff, now));
   EXPECT_FALSE(outbox.frame_channel(subscription).is_ready) << "the window is still full";
+}
+
+TEST_F(Outbox, ARejectedFrameIsReportedToItsSourceAndAcknowledged) {
+  offer(1, 3);
+  EXPECT_FALSE(outbox.acknowledge(4, now, true)) << "this frame was not sent";
+  EXPECT_TRUE(waker->rejected.empty());
+  EXPECT_TRUE(outbox.acknowledge(2, now, true));
+  EXPECT_EQ(waker->rejected, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(waker->count, 1) << "the source must send although no frame was missed";
+  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
+  outbox.unsubscribe();
+  EXPECT_TRUE(outbox.acknowledge(3, now, true));
+  EXPECT_EQ(waker->rejected.size(), 1u) << "the client no longer subscribes";
+}
+
+TEST_F(Outbox, RejectedNotificationsAreReportedWhenTheirNumberDoubles) {
+  for (int i = 0; i < 9; ++i) outbox.report_rejected("frames.akc", method_not_found("frames.akc"));
+  std::vector<int> counts;
+  for (const Json& text : connection->texts()) {
+    EXPECT_EQ(text.at("method"), "notification.rejected");
+    EXPECT_EQ(text.at("params").at("method"), "frames.akc");
+    EXPECT_EQ(text.at("params").at("kind"), "method_not_found");
+    counts.push_back(text.at("params").at("count"));
+  }
+  EXPECT_EQ(counts, (std::vector<int>{1, 2, 4, 8}));
+}
+
+TEST_F(Outbox, TheReasonOfATooSlowClientNamesItsRejectedNotifications) {
+  constexpr std::chrono::seconds kPatience(30);
+  const std::string method = "frames." + std::string(57, 'z');
+  outbox.report_rejected("control.fly", method_not_found("control.fly"));
+  outbox.report_rejected(method, method_not_found(method));
+  offer(1, 1);
+  outbox.close_if_silent(now + kPatience, kPatience);
+  const std::string reason = connection->close_reason();
+  EXPECT_TRUE(
+      reason.starts_with("too slow: no frame was acknowledged for 30 s; rejected "
+                         "notifications: 2, last frames.zzz"))
+      << reason;
+  EXPECT_EQ(reason.size(), 123u) << "a close frame has no room for more";
 }
 
 // The cost of a peer that stops reading, beyond the buffers of the operating system.

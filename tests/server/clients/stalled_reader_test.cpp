@@ -16,6 +16,7 @@ namespace {
 class NoWaker final : public FrameWaker {
  public:
   void wake(ConnectionId) override {}
+  void frame_rejected(ConnectionId, std::uint32_t) override {}
 };
 
 /// Random particle positions in each state. Frames are unpredictable and therefore large.

@@ -15,6 +15,10 @@ namespace {
 class Wakes final : public FrameWaker {
  public:
   void wake(ConnectionId client) override { clients.push_back(client); }
+  void frame_rejected(ConnectionId client, std::uint32_t number) override {
+    delivery->restart(client, number);
+  }
+  FrameDelivery* delivery = nullptr;
   std::vector<ConnectionId> clients;
 };
 
@@ -55,6 +59,11 @@ class FrameDeliveryTest : public testing::Test {
     state.bodies[0].positions.assign(particles, {x, 0.5, 0.5});
     now += std::chrono::milliseconds(20);
     delivery.publish(state, now);
+  }
+  void reject(const TestViewer& viewer, std::uint32_t number) {
+    wakes->delivery = &delivery;
+    EXPECT_TRUE(viewer.outbox->acknowledge(number, now, true));
+    delivery.retry(std::exchange(wakes->clients, {}), now);
   }
   void acknowledge_all(const TestViewer& viewer) {
     EXPECT_TRUE(viewer.outbox->acknowledge(viewer.last().number, now));
@@ -142,6 +151,25 @@ TEST_F(FrameDeliveryTest, WhoComesToAStateAtRestGetsIt) {
   publish(1, 0.5);
   EXPECT_EQ(second.ticks(), (Ticks{1}));
   EXPECT_EQ(first.ticks(), (Ticks{1}));
+}
+
+// Also in a paused session, in which no newer state comes.
+TEST_F(FrameDeliveryTest, WhoRejectsAFrameGetsOneKeyFrame) {
+  const TestViewer viewer = add();
+  publish(1, 0.1);
+  publish(2, 0.2);
+  publish(3, 0.3, false);
+  ASSERT_EQ(viewer.ticks(), (Ticks{1, 2, 3}));
+  ASSERT_TRUE(counted("vat_key_frames_encoded_total 1"));
+  reject(viewer, 2);
+  EXPECT_EQ(viewer.ticks(), (Ticks{1, 2, 3, 3}));
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2"));
+  publish(4, 0.4);
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2")) << "it refers to the key frame";
+  reject(viewer, 2);
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 2")) << "the frame is before the key frame";
+  reject(viewer, 3);
+  EXPECT_TRUE(counted("vat_key_frames_encoded_total 3")) << "the key frame itself";
 }
 
 TEST_F(FrameDeliveryTest, AnEpochBeginsWithAFrameForAll) {

@@ -78,6 +78,14 @@ TEST_F(SessionGrabs, OfAnotherClientAreProtected) {
   client->result("grab.end", {{"grab", grab}});
 }
 
+TEST_F(SessionGrabs, NameTheirBodyByItsIdOrName) {
+  client->result("grab.start", {{"body", "ball"}, {"particle", 0}, {"target", kTarget}});
+  client->result("control.step", {{"ticks", 50}});
+  ASSERT_TRUE(reference.grab_start(1, kBall, 0, target));
+  advance_ticks(reference, 50);
+  EXPECT_EQ(hash(), hash_of(reference));
+}
+
 TEST_F(SessionGrabs, HaveIdsOfTheirOwn) {
   const auto other = join();
   EXPECT_NE(client->grab(kBall), other->grab(2));

@@ -56,6 +56,30 @@ TEST_F(SessionParticipants, HaveNumbersThatAreNeverUsedTwiceAndTokensOfTheirOwn)
   EXPECT_NE(first.at("resume"), second.at("resume"));
 }
 
+TEST_F(SessionParticipants, MayHaveALowerRoleThanTheirs) {
+  const auto guest = connect();
+  EXPECT_EQ(guest->result("session.join", {{"role", "viewer"}}).at("role"), "viewer");
+  EXPECT_EQ(guest->error("control.play").at("code"), 1006);
+  EXPECT_EQ(guest->result("session.join", {{"role", "controller"}}).at("role"), "controller");
+  const Json own = guest->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  const Json session = own.at("session");
+  const Json watching = guest->result("session.join", {{"session", session}, {"role", "viewer"}});
+  EXPECT_EQ(watching.at("role"), "viewer");
+  EXPECT_EQ(guest->result("session.join", {{"session", session}}).at("role"), "owner")
+      << "the creator is still the owner";
+}
+
+TEST_F(SessionParticipants, CannotRequestAHigherRole) {
+  const auto owner = connect();
+  const Json session =
+      owner->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
+  owner->result("session.join", {{"session", session}});
+  owner->result("session.configure", {{"default_role", "viewer"}});
+  const auto guest = connect();
+  const Json joined = guest->result("session.join", {{"session", session}, {"role", "controller"}});
+  EXPECT_EQ(joined.at("role"), "viewer");
+}
+
 TEST_F(SessionParticipants, HaveNamesThatCanBeShown) {
   const auto guest = connect();
   const char* const wrong[] = {"",           "  ",          "\u00a0",       "a\u202eb",

@@ -19,7 +19,8 @@ const std::map<std::string_view, Json>& all_params() {
   static const Json kTarget = {0, 0, 0};
   static const std::map<std::string_view, Json> kParams = {
       {"session.create", {{"name", "n"}, {"scene", "mixed"}}},
-      {"session.join", {{"session", "SESSION"}, {"name", "n"}, {"resume", "x"}}},
+      {"session.join",
+       {{"session", "SESSION"}, {"name", "n"}, {"resume", "x"}, {"role", "controller"}}},
       {"session.close", {{"session", "SESSION"}}},
       {"session.configure", {{"name", "n"}, {"default_role", "viewer"}, {"locked", false}}},
       {"session.stats", {{"diagnostics", false}}},
@@ -48,7 +49,7 @@ const std::map<std::string_view, Json>& all_params() {
         {"detail", 3},
         {"region", {{"min", kTarget}, {"max", {1, 1, 1}}}},
         {"attributes", {{"speed", 1}}}}},
-      {"frames.ack", {{"number", 1}}},
+      {"frames.ack", {{"number", 1}, {"rejected", true}}},
       {"state.query", {{"bodies", {1}}}},
       {"state.connections", {{"body", 1}, {"most", 1}}},
       {"session.invite", {{"role", "viewer"}, {"uses", 1}, {"expires", 60}}},
