@@ -36,7 +36,7 @@ class PairTable {
   }
 
   std::span<const Index> of(Index i) const {
-    VAT_ASSERT(i / kBlockSize < blocks_.size());
+    VAT_CHECK(i / kBlockSize < blocks_.size());
     const Block& block = blocks_[i / kBlockSize];
     const Index begin = block.begin[i % kBlockSize];
     return {block.others.data() + begin, block.begin[i % kBlockSize + 1] - begin};

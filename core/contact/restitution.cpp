@@ -85,7 +85,7 @@ void find_contact_mobilities(StepContext& c) {
 }
 
 Real ContactMobility::along(Index i, const Vec3& normal) const {
-  VAT_ASSERT(i < work.of<ContactForceScratch>().mobilities.size());
+  VAT_CHECK(i < work.of<ContactForceScratch>().mobilities.size());
   const Real shared = normal.dot(work.of<ContactForceScratch>().mobilities[i]);
   if (i < model.free_count) return std::max(shared, model.inverse_mass[i]);
   const Index body = model.bodies[model.body[i]].rigid;

@@ -30,7 +30,7 @@ Real damping_ratio_for(Real restitution) {
 }
 
 Real damping_for(Real damping_ratio, Real stiffness, Real mobility) {
-  VAT_ASSERT(damping_ratio >= 0 && stiffness >= 0);
+  VAT_CHECK(damping_ratio >= 0 && stiffness >= 0);
   return mobility > 0 ? 2 * damping_ratio * std::sqrt(stiffness / mobility) : 0;
 }
 

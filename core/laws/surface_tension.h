@@ -18,7 +18,7 @@ inline constexpr Real kRelaxation = 1.52;
 
 /// Returns the attraction A [Pa] of a liquid with `surface_tension` [N/m] and `support_radius` [m].
 inline Real attraction_of(Real surface_tension, Real support_radius, int dimensions) {
-  VAT_ASSERT(support_radius > 0);
+  VAT_CHECK(support_radius > 0);
   const Real moment = CohesionKernel::first_moment(dimensions) *
                       (CohesionKernel::kReach - CohesionKernel::kCore) * support_radius;
   return 2 * surface_tension / (kRelaxation * moment);

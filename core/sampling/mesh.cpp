@@ -118,7 +118,7 @@ void add_crossings(const Triangle& t, const MeshLines& lines, std::vector<MeshCr
       // Clamped, because steep triangles amplify the rounding errors of x and y.
       const Real z = std::clamp(t.a.z() - slope / normal.z(), t.low.z(), t.high.z());
       const std::size_t line = static_cast<std::size_t>(j) * lines.count[0] + i;
-      VAT_ASSERT(i < lines.count[0] && j < lines.count[1]);
+      VAT_CHECK(i < lines.count[0] && j < lines.count[1]);
       found.push_back({line, z, normal.z() > 0 ? 1 : -1});
     }
   }

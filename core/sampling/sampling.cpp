@@ -157,7 +157,7 @@ void take_particles(const ParticleShape& shape, const BodyDescription& body,
 void add_listed_springs(const BodyDescription& body, SampledBody& sample) {
   for (const SpringDescription& spring : body.springs) {
     const Real distance = (sample.positions[spring.a] - sample.positions[spring.b]).norm();
-    VAT_ASSERT(spring.a < sample.positions.size() && spring.b < sample.positions.size());
+    VAT_CHECK(spring.a < sample.positions.size() && spring.b < sample.positions.size());
     sample.springs.push_back({spring.a, spring.b, spring.constants.stiffness,
                               spring.constants.damping, spring.rest_length.value_or(distance)});
   }

@@ -38,7 +38,7 @@ struct Pair {
 };
 
 ConnectedParticle particle_of(const Model& model, Index particle) {
-  VAT_ASSERT(particle < model.particle_count);
+  VAT_CHECK(particle < model.particle_count);
   const ModelBody& body = model.bodies[model.body[particle]];
   const Index place = particle - body.particles.begin;
   const bool is_numbered = body.sample && !body.sample->numbers.empty();

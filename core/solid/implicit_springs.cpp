@@ -192,7 +192,7 @@ bool BodyDrift::remove_turn(Real half) {
 
 bool BodyDrift::take(Real dt, Real part, int halvings) {
   const bool is_solved = solve(dt * part / 2);
-  VAT_ASSERT(part > 0 && dt > 0);
+  VAT_CHECK(part > 0 && dt > 0);
   if (!is_solved && halvings < kMaxDriftHalvings) {
     const bool first = take(dt, part / 2, halvings + 1);
     return take(dt, part / 2, halvings + 1) && first;

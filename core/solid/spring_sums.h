@@ -29,7 +29,7 @@ void for_spring_blocks(const Model& model, TaskRunner* runner, Body&& body) {
 template <class F>
 void sum_over_springs(const Model& model, Index begin, Index end, BlockSums& sums,
                       F&& at_particle) {
-  VAT_ASSERT(begin <= end && end - begin <= sums.size());
+  VAT_CHECK(begin <= end && end - begin <= sums.size());
   const SpringEnd* const ends = model.spring_ends.data();
   std::fill_n(sums.begin(), end - begin, Vec3::Zero());
   for (Index e = begin; e < end; ++e) {

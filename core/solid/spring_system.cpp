@@ -29,7 +29,7 @@ void SpringSystem::multiply() {
     if (model_.inverse_mass[i] > 0) {
       sum = model_.mass[i] * p[k];
       for (Index e = model_.spring_begin[i]; e < model_.spring_begin[i + 1]; ++e) {
-        VAT_ASSERT(model_.spring_ends[e].other >= model_.implicit_begin);
+        VAT_CHECK(model_.spring_ends[e].other >= model_.implicit_begin);
         const SpringSlope& s = slope(e);
         const Vec3 d = p[k] - p[place_of(model_.spring_ends[e].other)];
         sum += s.across * d + ((s.along - s.across) * s.direction.dot(d)) * s.direction;

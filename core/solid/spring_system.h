@@ -48,7 +48,7 @@ class SpringSystem {
 
   std::size_t place_of(Index particle) const { return particle - model_.implicit_begin; }
   SpringSlope& slope(Index end) {
-    VAT_ASSERT(end - model_.spring_begin[model_.implicit_begin] < scratch_.slopes.size());
+    VAT_CHECK(end - model_.spring_begin[model_.implicit_begin] < scratch_.slopes.size());
     return scratch_.slopes[end - model_.spring_begin[model_.implicit_begin]];
   }
 

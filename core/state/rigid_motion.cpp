@@ -77,8 +77,8 @@ Quat rotate_freely(const RigidModel& rigid, const Quat& orientation, const Vec3&
 void pose_rigid_body(const Model& model, const RigidModel& rigid, const RigidState& state,
                      Configuration& configuration) {
   const Mat3 r = state.orientation.normalized().toRotationMatrix();
-  VAT_ASSERT(rigid.particles.begin >= model.free_count &&
-             rigid.particles.end <= model.particle_count);
+  VAT_CHECK(rigid.particles.begin >= model.free_count &&
+            rigid.particles.end <= model.particle_count);
   const Vec3 velocity = rigid.inverse_mass * state.momentum;
   const Vec3 omega = angular_velocity(rigid, state.orientation, state.angular_momentum);
   for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {

@@ -114,7 +114,7 @@ void LocalPairs::sort_particles(const Model& model, const LocalLevels& levels) {
     finest_of_[i] = finest;
     finest_ = std::max(finest_, finest);
     if (i >= model.free_count) finest_rigid_ = std::max(finest_rigid_, finest);
-    VAT_ASSERT(finest <= kMaxStepLevel);
+    VAT_CHECK(finest <= kMaxStepLevel);
     ++count[static_cast<std::size_t>(kMaxStepLevel - finest)];
   }
   coarsest_ = std::min(coarsest_, finest_);

@@ -19,7 +19,7 @@ class DisjointSets {
   }
   /// Returns the lowest number of the set of `number`.
   Index root(Index number) {
-    VAT_ASSERT(number < parent_.size());
+    VAT_CHECK(number < parent_.size());
     while (parent_[number] != number) number = parent_[number] = parent_[parent_[number]];
     return number;
   }

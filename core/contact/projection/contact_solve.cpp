@@ -82,7 +82,7 @@ Real ContactSolve::mobility(const ContactEnd& end, const Vec3& direction) const 
 
 void ContactSolve::apply(const ContactEnd& end, const Vec3& impulse) {
   if (end.inverse_mass == 0) return;
-  VAT_ASSERT(end.rigid == kNoParticle || end.rigid < rigid.size());
+  VAT_CHECK(end.rigid == kNoParticle || end.rigid < rigid.size());
   if (end.rigid == kNoParticle) {
     at.velocity[end.particle] += end.inverse_mass * impulse;
     return;

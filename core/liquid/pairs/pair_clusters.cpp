@@ -105,7 +105,7 @@ class CandidateSearch {
     make_room(found, count + lanes_);
     while ((count - cluster.first_candidate) % lanes_ != 0) found[count++] = search_.padding;
     cluster.candidate_count = static_cast<Index>(count - cluster.first_candidate);
-    VAT_ASSERT(cluster.candidate_count % lanes_ == 0 && count <= found.size());
+    VAT_CHECK(cluster.candidate_count % lanes_ == 0 && count <= found.size());
     return count;
   }
 

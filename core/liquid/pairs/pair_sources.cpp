@@ -118,17 +118,17 @@ PackedImage ImageOffsets::pack(const PairImage& image) const {
     } else if (offset != 0) {
       kind = offset < 0 ? back : on;
     }
-    VAT_ASSERT(offset == along[kind]);
+    VAT_CHECK(offset == along[kind]);
   }
   return packed;
 }
 
 Index PairSources::source_of(Index n) const {
-  VAT_ASSERT(n < count_);
+  VAT_CHECK(n < count_);
   if (n < images_begin_) return n;
   const auto group = std::ranges::find_if(
       images_, [&](const ImageGroup& one) { return n - one.first < one.count(); });
-  VAT_ASSERT(group != images_.end());
+  VAT_CHECK(group != images_.end());
   return group->image(n - group->first).source;
 }
 

@@ -195,7 +195,7 @@ class PairSources {
       });
       charges_version_ = version_;
     }
-    VAT_ASSERT(charges.size() > count_);
+    VAT_CHECK(charges.size() > count_);
     for_blocks(runner, images_begin_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         charges[n].weight = places[n].weight * (n < solids_ ? static_cast<Number>(charge(n)) : 0);
