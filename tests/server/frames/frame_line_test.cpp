@@ -101,6 +101,7 @@ class FrameLine : public testing::Test {
  private:
   struct Wakes final : FrameWaker {
     void wake(ConnectionId) override { is_woken = true; }
+    void frame_rejected(ConnectionId, std::uint32_t) override {}
     bool is_woken = false;
   };
 

@@ -73,7 +73,6 @@ const std::vector<BadParams>& bad_params() {
         "velocity":[0,0,0],"angular_velocity":[0,0,0]}})",
        "/state", ""},
       {"world.remove_body", "{}", "/body", "must be given"},
-      {"world.remove_body", R"({"body":"ball"})", "/body", "from 0 to 4294967295"},
       {"world.melt_body", R"({"body":2})", "/material", "must be given"},
       {"world.melt_body", R"({"body":2,"material":"wood"})", "/material", "liquid constants"},
       {"world.melt_body", R"({"body":3,"material":"water"})", "/body", "only a deformable body"},
