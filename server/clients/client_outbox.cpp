@@ -17,9 +17,11 @@ constexpr std::size_t kMaxReasonBytes = 123;  // RFC 6455, section 5.5
 
 }  // namespace
 
-void ControlQueue::sent(std::size_t bytes, bool control, std::size_t queued) {
+void ControlQueue::sent(std::size_t own_bytes, const SharedText& shared, bool control,
+                        std::size_t queued) {
   take(queued);
-  waiting_.push_back({bytes, control});
+  const std::size_t bytes = own_bytes + (shared == nullptr ? 0 : shared->size());
+  waiting_.push_back({bytes, own_bytes, shared, control});
   waiting_bytes_ += bytes;
   count(waiting_.back(), true);
 }
@@ -37,6 +39,22 @@ bool ControlQueue::holds_frame(std::size_t queued) {
 
 void ControlQueue::frames_arrived() {
   for (QueuedMessage& message : waiting_) message.has_arrived = !message.control;
+}
+
+std::size_t ControlQueue::add_to(QueueMemory& memory, std::size_t queued) {
+  take(queued);
+  std::size_t share = 0;
+  for (const QueuedMessage& message : waiting_) {
+    const std::size_t own = message.own_bytes + kMessageCost;
+    share += own;
+    memory.add(own);
+    const auto owners = static_cast<std::size_t>(message.shared.use_count());
+    if (const SharedText shared = message.shared.lock()) {
+      share += shared->size() / std::max<std::size_t>(1, owners);
+      memory.add_shared(*shared);
+    }
+  }
+  return share;
 }
 
 // The socket takes messages in order, so the last ones still wait.
@@ -72,9 +90,9 @@ bool ClientOutbox::is_closed() {
   return closed_;
 }
 
-void ClientOutbox::send(std::string text) {
+void ClientOutbox::send(std::string head, SharedText tail) {
   const std::lock_guard lock(mutex_);
-  send_control(std::move(text));
+  send_control(std::move(head), std::move(tail));
 }
 
 void ClientOutbox::report_rejected(std::string_view method, const RpcError& error) {
@@ -87,7 +105,8 @@ void ClientOutbox::report_rejected(std::string_view method, const RpcError& erro
                                                      {"method", last_rejected_},
                                                      {"code", row.code},
                                                      {"kind", row.name},
-                                                     {"message", error.message}}));
+                                                     {"message", error.message}}),
+               nullptr);
 }
 
 std::uint64_t ClientOutbox::join() {
@@ -116,9 +135,9 @@ Role ClientOutbox::role() {
   return role_;
 }
 
-void ClientOutbox::send_event(std::uint64_t membership, const std::string& text) {
+void ClientOutbox::send_event(std::uint64_t membership, const SharedText& text) {
   const std::lock_guard lock(mutex_);
-  if (membership == membership_) send_control(text);
+  if (membership == membership_) send_control({}, text);
 }
 
 void ClientOutbox::start_epoch(std::uint64_t membership, std::uint32_t epoch) {
@@ -157,7 +176,7 @@ bool ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
   VAT_CHECK(frame != nullptr && !frame->empty());
   window_.sent(frame_number({reinterpret_cast<const std::uint8_t*>(frame->data()), frame->size()}),
                now);
-  queue_.sent(frame->size(), false, connection_->queued_bytes());
+  queue_.sent(0, frame, false, connection_->queued_bytes());
   connection_->send_binary(frame);
   return true;
 }
@@ -191,6 +210,17 @@ void ClientOutbox::close_if_silent(SteadyClock::time_point now, std::chrono::sec
                     " s");
 }
 
+std::size_t ClientOutbox::add_queue(QueueMemory& memory) {
+  const std::lock_guard lock(mutex_);
+  if (closed_) return 0;
+  return queue_.add_to(memory, connection_->queued_bytes());
+}
+
+void ClientOutbox::close_for_others() {
+  const std::lock_guard lock(mutex_);
+  close_as_too_slow("too slow: the queues of all clients are full");
+}
+
 std::optional<LimitExcess> ClientOutbox::begin_command(std::size_t bytes, std::size_t max_commands,
                                                        std::size_t max_bytes) {
   const std::lock_guard lock(mutex_);
@@ -210,15 +240,15 @@ void ClientOutbox::end_command(std::size_t bytes) {
   command_bytes_ -= bytes;
 }
 
-void ClientOutbox::send_control(std::string text) {
+void ClientOutbox::send_control(std::string head, SharedText tail) {
   VAT_CHECK(mutex_.is_held());
   if (closed_) return;
-  queue_.sent(text.size(), true, connection_->queued_bytes());
+  queue_.sent(head.size(), tail, true, connection_->queued_bytes());
   if (queue_.over_limit()) {
     close_as_too_slow("too slow: the control queue is full");
     return;
   }
-  connection_->send_text(std::move(text));
+  connection_->send_text(std::move(head), std::move(tail));
 }
 
 void ClientOutbox::close_as_too_slow(std::string_view reason) {

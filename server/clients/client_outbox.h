@@ -12,6 +12,7 @@
 #include "server/access/role.h"
 #include "server/clients/frame_window.h"
 #include "server/clients/message_meter.h"
+#include "server/clients/queue_memory.h"
 #include "server/messages/limits.h"
 #include "server/messages/rpc_message.h"
 #include "server/support/limit_excess.h"
@@ -22,6 +23,8 @@ namespace vat {
 
 /// An encoded frame that several clients share.
 using SharedFrame = std::shared_ptr<const std::string>;
+/// The text of an event, or the end of a reply, that several clients share.
+using SharedText = std::shared_ptr<const std::string>;
 
 /// Messages that the socket has not accepted yet. The queue is computed from the sizes of all sent
 /// messages and the number of currently queued bytes. The control messages may have at most
@@ -33,18 +36,24 @@ class ControlQueue {
   static constexpr std::size_t kMessageCost = 512;
 
   explicit ControlQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
-  /// Adds a sent message. `queued` is the number of bytes that the socket had not accepted before.
-  void sent(std::size_t bytes, bool control, std::size_t queued);
+  /// Adds a sent message with `own_bytes` and a shared part, which may be null. `queued` is the
+  /// number of bytes that the socket had not accepted before.
+  void sent(std::size_t own_bytes, const SharedText& shared, bool control, std::size_t queued);
   bool over_limit() const;
   /// Returns whether a frame waits. `queued` is the number of bytes that the socket has not
   /// accepted.
   bool holds_frame(std::size_t queued);
   /// Marks all frames as received, even if the transport still counts their bytes.
   void frames_arrived();
+  /// Adds the memory of the waiting messages. Returns the queue's share of this memory: the owners
+  /// of a shared part share its bytes equally. `queued` as in holds_frame().
+  std::size_t add_to(QueueMemory& memory, std::size_t queued);
 
  private:
   struct QueuedMessage {
     std::size_t bytes;
+    std::size_t own_bytes;
+    std::weak_ptr<const std::string> shared;
     bool control;
     bool has_arrived = false;
   };
@@ -95,8 +104,8 @@ class ClientOutbox {
   /// Closes the connection with a code of PROTOCOL.md. No messages are sent or received afterwards.
   void close(std::uint16_t code, std::string_view reason);
   bool is_closed();
-  /// Sends a reply, regardless of the membership.
-  void send(std::string text);
+  /// Sends a reply, regardless of the membership. The text is `head` followed by `tail`, if any.
+  void send(std::string head, SharedText tail = nullptr);
   /// Counts a rejected notification. Sends notification.rejected for the first one and whenever the
   /// number has doubled, so that a client cannot request many events.
   void report_rejected(std::string_view method, const RpcError& error);
@@ -109,7 +118,7 @@ class ClientOutbox {
   /// client.
   void set_role(std::uint64_t membership, Role role);
   Role role();
-  void send_event(std::uint64_t membership, const std::string& text);
+  void send_event(std::uint64_t membership, const SharedText& text);
   /// Drops frames of other epochs from now on.
   void start_epoch(std::uint64_t membership, std::uint32_t epoch);
   /// Starts a subscription and ends the previous subscription. Returns 0 if the membership has
@@ -132,6 +141,12 @@ class ClientOutbox {
   /// was sent.
   void close_if_silent(SteadyClock::time_point now, std::chrono::seconds patience);
 
+  /// Adds the memory of the waiting messages. Returns the client's share of it [bytes], as in
+  /// ControlQueue::add_to(). A closed connection has no queue.
+  std::size_t add_queue(QueueMemory& memory);
+  /// Closes the connection because the queues of all clients are too long.
+  void close_for_others();
+
   /// Counts a command as in flight. Returns the exceeded limit if more than `max_commands` commands
   /// or `max_bytes` of their messages would be in flight.
   std::optional<LimitExcess> begin_command(std::size_t bytes, std::size_t max_commands,
@@ -140,7 +155,7 @@ class ClientOutbox {
 
  private:
   // The caller must hold the mutex for these functions.
-  void send_control(std::string text);
+  void send_control(std::string head, SharedText tail);
   void close_as_too_slow(std::string_view reason);
   /// `reason` is ASCII text.
   void close_locked(std::uint16_t code, std::string_view reason);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/support/check.h"
@@ -74,6 +75,13 @@ class PendingReply {
                error != nullptr && !notification_.empty()) {
       client_->report_rejected(notification_, *error);
     }
+  }
+
+  /// Answers with a result whose text is `head` followed by `tail`. The tail also ends the message
+  /// with a closing brace, and several replies can share the tail.
+  void answer_text(std::string_view head, const SharedText& tail) {
+    uncount();
+    if (id_) client_->send(begin_reply(*id_).append(head), tail);
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/support/check.h"
 #include "protocol/json/printable.h"
 
 namespace vat {
@@ -27,12 +28,12 @@ Json rpc_error_to_json(const RpcError& error) {
   return {{"code", row.code}, {"message", error.message}, {"data", std::move(data)}};
 }
 
+}  // namespace
+
 std::string to_message_text(const Json& message) {
   // Foreign text is checked to be UTF-8 when it is received. Replacing is a second defence.
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
-
-}  // namespace
 
 RpcError parse_failed(const Error& error) {
   return {ErrorKind::parse_error, error.message, {{"reason", error.code}}};
@@ -170,6 +171,21 @@ std::variant<RpcRequest, RpcError> read_request(Json message, std::optional<Json
     request.params = std::move(*params);
   }
   return request;
+}
+
+std::string begin_reply(const Json& id) {
+  return R"({"jsonrpc":"2.0","id":)" + to_message_text(id) + R"(,"result":)";
+}
+
+std::string begin_event(std::string_view event) {
+  return R"({"jsonrpc":"2.0","method":)" + to_message_text(event) + R"(,"params":)";
+}
+
+std::string begin_object(const Json& object, std::string_view last_member) {
+  std::string text = to_message_text(object);
+  VAT_CHECK(object.is_object() && !object.empty());
+  text.back() = ',';  // instead of the closing brace
+  return text + to_message_text(last_member) + ':';
 }
 
 std::string write_reply(const Json& id, const RpcResult& result) {

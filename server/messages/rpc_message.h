@@ -78,6 +78,16 @@ struct RpcRequest {
 /// message is invalid, so that the error reply can contain the id.
 std::variant<RpcRequest, RpcError> read_request(Json message, std::optional<Json>& id);
 
+/// Return parts of the text of a message. The text is the beginning, the text of the result or of
+/// the params, and a closing brace.
+std::string begin_reply(const Json& id);
+std::string begin_event(std::string_view event);
+/// Returns the beginning of the text of `object` with another last member. The text is the
+/// beginning, the text of the member's value, and a closing brace. `object` must not be empty.
+std::string begin_object(const Json& object, std::string_view last_member);
+/// Returns the text of a JSON value. Invalid UTF-8 is replaced.
+std::string to_message_text(const Json& message);
+
 /// Return the text of a message to a client. The reply to an unreadable message has the id null.
 std::string write_reply(const Json& id, const RpcResult& result);
 std::string write_event(std::string_view event, Json params);

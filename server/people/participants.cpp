@@ -101,10 +101,11 @@ void Participants::send_away(SteadyClock::time_point now) {
   }
 }
 
-void Participants::send_event(const std::string& text, Role least) {
+void Participants::send_event(std::string text, Role least) {
+  const auto shared = std::make_shared<const std::string>(std::move(text));
   for (auto& [number, participant] : all_) {
     if (!participant.is_here() || participant.role < least) continue;
-    participant.outbox->send_event(participant.membership, text);
+    participant.outbox->send_event(participant.membership, shared);
   }
 }
 

@@ -87,7 +87,7 @@ class Participants {
   void send_away(SteadyClock::time_point now);
 
   /// Sends an event to all participants with at least this role.
-  void send_event(const std::string& text, Role least = Role::viewer);
+  void send_event(std::string text, Role least = Role::viewer);
   /// Drops frames of earlier epochs for all clients.
   void start_epoch(std::uint32_t epoch);
   /// Returns whether a connected participant has subscribed to the frame of this tick.

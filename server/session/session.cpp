@@ -190,16 +190,17 @@ void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
   }
   const auto& [participant, resume, resumed] = std::get<JoinedParticipant>(joined);
   update_summary();  // before the answer, as below: lists then show what was done
-  reply.answer(Json{{"tick", core_->run().tick()},
-                    {"session", id()},
-                    {"participant", participant.number},
-                    {"name", participant.name},
-                    {"role", to_string(participant.role)},
-                    {"resume", resume},
-                    {"resumed", resumed},
-                    {"settings", core_->people().describe_settings()},
-                    {"participants", describe_participants(core_->participants())},
-                    {"description", core_->notifier().description()}});
+  const Json content{{"tick", core_->run().tick()},
+                     {"session", id()},
+                     {"participant", participant.number},
+                     {"name", participant.name},
+                     {"role", to_string(participant.role)},
+                     {"resume", resume},
+                     {"resumed", resumed},
+                     {"settings", core_->people().describe_settings()},
+                     {"participants", describe_participants(core_->participants())}};
+  const auto description = core_->notifier().description();
+  reply.answer_text(begin_object(content, "description") + description.begin, description.end);
 }
 
 void Session::execute_leave(PendingReply reply) {

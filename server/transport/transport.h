@@ -25,7 +25,9 @@ class Connection {
   /// Returns the address for the per-address limits. For IPv4, returns the complete address. For
   /// IPv6, returns the /64 network, because one host can use many addresses in its network.
   virtual const std::string& address() const = 0;
-  virtual void send_text(std::string message) = 0;
+  /// Sends a text message, which is `head` followed by `tail`. Null: there is no tail. The tail is
+  /// shared and not copied before the socket accepts it.
+  virtual void send_text(std::string head, std::shared_ptr<const std::string> tail = nullptr) = 0;
   /// Sends bytes. The bytes are shared and not copied before the socket accepts them.
   virtual void send_binary(std::shared_ptr<const std::string> bytes) = 0;
   /// Returns the number of sent bytes that the socket has not accepted yet.

@@ -32,19 +32,23 @@ WsConnection::WsConnection(ConnectionId id, std::string address, std::shared_ptr
       stream_(std::move(stream)),
       queued_bytes_(std::make_shared<std::atomic<std::size_t>>(0)) {}
 
-void WsConnection::send_text(std::string message) {
-  message.shrink_to_fit();  // may wait long, and often has unused capacity
-  send(std::make_shared<const std::string>(std::move(message)), websocketpp::frame::opcode::TEXT);
+void WsConnection::send_text(std::string head, std::shared_ptr<const std::string> tail) {
+  constexpr auto kText = websocketpp::frame::opcode::TEXT;
+  if (tail != nullptr) return send(head, std::move(tail), kText);
+  head.shrink_to_fit();  // may wait long, and often has unused capacity
+  send({}, std::make_shared<const std::string>(std::move(head)), kText);
 }
 
 void WsConnection::send_binary(std::shared_ptr<const std::string> bytes) {
-  send(std::move(bytes), websocketpp::frame::opcode::BINARY);
+  send({}, std::move(bytes), websocketpp::frame::opcode::BINARY);
 }
 
-void WsConnection::send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode) {
+void WsConnection::send(const std::string& head, std::shared_ptr<const std::string> tail,
+                        WsMessage::Opcode opcode) {
   if (!open_) return;
-  auto queued = std::make_shared<QueuedBytes>(queued_bytes_, payload->size());
-  tasks_->send(stream_, std::make_shared<WsMessage>(opcode, std::move(payload), std::move(queued)));
+  auto queued = std::make_shared<QueuedBytes>(queued_bytes_, head.size() + tail->size());
+  tasks_->send(stream_,
+               std::make_shared<WsMessage>(opcode, std::move(tail), std::move(queued), head));
 }
 
 void WsConnection::close(std::uint16_t code, std::string_view reason) {

@@ -20,7 +20,7 @@ class WsConnection final : public Connection {
 
   ConnectionId id() const override { return id_; }
   const std::string& address() const override { return address_; }
-  void send_text(std::string message) override;
+  void send_text(std::string head, std::shared_ptr<const std::string> tail) override;
   void send_binary(std::shared_ptr<const std::string> bytes) override;
   std::size_t queued_bytes() const override { return *queued_bytes_; }
   void close(std::uint16_t code, std::string_view reason) override;
@@ -29,7 +29,8 @@ class WsConnection final : public Connection {
   void set_gone() { open_ = false; }
 
  private:
-  void send(std::shared_ptr<const std::string> payload, WsMessage::Opcode opcode);
+  void send(const std::string& head, std::shared_ptr<const std::string> tail,
+            WsMessage::Opcode opcode);
 
   ConnectionId id_;
   std::string address_;

@@ -22,16 +22,19 @@ class WsMessage {
   WsMessage(const std::shared_ptr<Manager>&, Opcode opcode, std::size_t size) : opcode_(opcode) {
     own_payload_.reserve(size);
   }
-  /// Creates a complete unmasked frame.
-  WsMessage(Opcode opcode, std::shared_ptr<const std::string> payload, std::shared_ptr<void> token)
+  /// Creates a complete unmasked frame, whose payload is `head` followed by `payload`. The library
+  /// writes the header before the payload, so `head` is stored with the header.
+  WsMessage(Opcode opcode, std::shared_ptr<const std::string> payload, std::shared_ptr<void> token,
+            const std::string& head = {})
       : shared_payload_(std::move(payload)),
         token_(std::move(token)),
         opcode_(opcode),
         prepared_(true) {
     namespace frame = websocketpp::frame;
-    const std::uint64_t size = shared_payload_->size();
+    const std::uint64_t size = head.size() + shared_payload_->size();
     header_ = frame::prepare_header(frame::basic_header(opcode, size, true, false),
-                                    frame::extended_header(size));
+                                    frame::extended_header(size)) +
+              head;
   }
 
   bool get_prepared() const { return prepared_; }

@@ -48,7 +48,8 @@ class CheckingConnection final : public Connection {
 
   ConnectionId id() const override { return id_; }
   const std::string& address() const override { return address_; }
-  void send_text(std::string message) override {
+  void send_text(std::string message, std::shared_ptr<const std::string> tail) override {
+    if (tail != nullptr) message += *tail;
     const Json json = Json::parse(message, nullptr, false);
     VAT_CHECK(json.is_object() && json.value("jsonrpc", "") == "2.0");
     const bool is_reply = json.contains("id");

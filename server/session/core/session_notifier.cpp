@@ -26,6 +26,7 @@ SessionNotifier::SessionNotifier(const SessionContext& context, const SessionRun
 
 void SessionNotifier::start_epoch() {
   VAT_CHECK(context_.owner.allows_this_thread());
+  description_end_.reset();
   description_due_ = status_due_ = frame_due_ = true;
   participants_.start_epoch(run_.epoch());
   recorded_.start_epoch(run_.epoch());  // the viewers, while a recorded command is executed
@@ -76,7 +77,10 @@ void SessionNotifier::tell_guard(const AdvanceReport& report) {
 
 void SessionNotifier::tell_description() {
   if (!description_due_) return;
-  participants_.send_event(write_event("session.description", description()));
+  const DescriptionText text = description();
+  std::string event = begin_event("session.description") + text.begin;
+  event.append(*text.end, 0, text.end->size() - 1);  // a reply has one more object around it
+  participants_.send_event(std::move(event));
   description_due_ = false;  // stays due if the above throws
 }
 
@@ -149,7 +153,16 @@ Json SessionNotifier::status() const {
   return status;
 }
 
-Json SessionNotifier::description() const {
+SessionNotifier::DescriptionText SessionNotifier::description() {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  if (description_end_ == nullptr) {
+    description_end_ = std::make_shared<const std::string>(
+        to_message_text(describe_bodies(run_.simulation())) + "}}}");
+  }
+  return {begin_object(describe_session(), "bodies"), description_end_};
+}
+
+Json SessionNotifier::describe_session() const {
   const Scene& scene = run_.simulation().scene();
   Json description{
       {"session", context_.id},
@@ -163,7 +176,6 @@ Json SessionNotifier::description() const {
       {"tick_seconds", run_.tick_seconds()},
       {"gravity", to_json(scene.gravity)},
       {"vat", describe_vat(scene.vat)},
-      {"bodies", describe_bodies(run_.simulation())},
   };
   if (context_.playback != nullptr) {
     const Playback::Range range = context_.playback->range();

@@ -54,14 +54,22 @@ class SessionNotifier {
   /// Sends the event presence.changed if the participants have changed.
   void tell_presence(SteadyClock::time_point now);
 
+  /// Text of a description in two parts. The long second part contains the bodies. It is constant
+  /// within an epoch and written once.
+  struct DescriptionText {
+    std::string begin;
+    SharedText end;  ///< also ends the result of session.join and its reply, by two braces
+  };
   /// Returns the session's description for session.join and session.description.
-  Json description() const;
+  DescriptionText description();
   SessionSummary summary();
   /// Runs `task` on a frame thread, after the frames of all states that were published before.
   void post_behind_frames(std::function<void()> task) { frames_->post(std::move(task)); }
 
  private:
   Json status() const;
+  /// Returns the description's members except `bodies`.
+  Json describe_session() const;
   void tell_description();
   void tell_divergence();
   void publish_frame();
@@ -80,6 +88,7 @@ class SessionNotifier {
   Presence presence_;
   std::shared_ptr<const std::vector<PersonSummary>> people_;  // list at the time of people_changes_
   std::uint64_t people_changes_ = 0;
+  SharedText description_end_;  // null: not written since the start of the epoch
   bool description_due_ = false;
   bool status_due_ = false;
   bool divergence_due_ = false;

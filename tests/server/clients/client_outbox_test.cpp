@@ -28,6 +28,10 @@ std::string make_text(std::size_t bytes) {
   return "\"" + std::string(bytes - 2, 'x') + "\"";
 }
 
+SharedText share(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
 class CountingWaker final : public FrameWaker {
  public:
   void wake(ConnectionId) override { ++count; }
@@ -162,7 +166,7 @@ TEST_F(Outbox, OneFrameAtMostWaitsForTheSocket) {
 
 TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
   connection->stall(true);
-  outbox.send_event(membership, R"("event")");
+  outbox.send_event(membership, share(R"("event")"));
   EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
@@ -190,17 +194,17 @@ TEST_F(Outbox, NothingOfAnEarlierMembershipIsSent) {
   const std::uint64_t old = membership;
   offer(1, 2);
   outbox.leave();
-  outbox.send_event(old, R"("left")");
+  outbox.send_event(old, share(R"("left")"));
   send(5);
   EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
   EXPECT_EQ(outbox.subscribe(old, waker, now), 0u);
   EXPECT_EQ(frame_count(), 2u);
   membership = outbox.join();
-  outbox.send_event(old, R"("late")");
+  outbox.send_event(old, share(R"("late")"));
   send(6);
   EXPECT_EQ(frame_count(), 2u);
   EXPECT_TRUE(connection->texts().empty());
-  outbox.send_event(membership, R"("new")");
+  outbox.send_event(membership, share(R"("new")"));
   EXPECT_EQ(connection->texts(), std::vector<Json>{"new"});
 }
 
@@ -223,7 +227,7 @@ TEST_F(Outbox, NothingOfAnEarlierSubscriptionOrEpochIsSent) {
 TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
   connection->stall(true);
   const std::string event = make_text(1024 - kMessageCost);
-  for (int i = 0; i < 1024; ++i) outbox.send_event(membership, event);
+  for (int i = 0; i < 1024; ++i) outbox.send_event(membership, share(event));
   EXPECT_FALSE(connection->close_code().has_value()) << "1 MiB is allowed";
   outbox.send("1");
   EXPECT_EQ(connection->close_code(), 4008);
@@ -235,6 +239,35 @@ TEST_F(Outbox, AClientThatReadsNothingIsClosedBeforeItsQueuePassesAMebibyte) {
   }
   EXPECT_EQ(connection->queued(), queued) << "the queue no longer grows";
   EXPECT_EQ(frame_count(), 0u);
+}
+
+// The queues of two clients: a frame and an event that both wait for, and a reply.
+TEST_F(Outbox, SharedPartsCountOnceInTheMemoryOfAllQueues) {
+  const auto other_connection = std::make_shared<FakeConnection>(2);
+  ClientOutbox other(other_connection, kQueueBytes);
+  const std::uint64_t other_membership = other.join();
+  connection->stall(true);
+  other_connection->stall(true);
+  const SharedText event = share(make_text(100'000));
+  const SharedFrame frame = make_frame(1);
+  outbox.send_event(membership, event);
+  other.send_event(other_membership, event);
+  outbox.send_frame(subscription, kEpoch, frame, now);
+  other.send_event(other_membership, event);
+  other.send(make_text(300));
+  QueueMemory memory;
+  const std::size_t share_of_one = outbox.add_queue(memory);
+  EXPECT_EQ(memory.bytes(), 2 * kMessageCost + event->size() + frame->size());
+  EXPECT_LT(share_of_one, memory.bytes()) << "the event has other owners";
+  EXPECT_GT(share_of_one, 2 * kMessageCost);
+  other.add_queue(memory);
+  EXPECT_EQ(memory.bytes(), 5 * kMessageCost + event->size() + frame->size() + 300);
+  connection->stall(false);
+  QueueMemory later;
+  EXPECT_EQ(outbox.add_queue(later), 0U) << "the socket has taken all";
+  other.close(4003, "kicked");
+  EXPECT_EQ(other.add_queue(later), 0U);
+  EXPECT_EQ(later.bytes(), 0U);
 }
 
 TEST_F(Outbox, FramesDoNotCountForTheControlQueue) {
@@ -255,8 +288,8 @@ TEST_F(Outbox, WhatTheSocketHasTakenIsQueuedNoLonger) {
   const std::string event = make_text(500'000);
   for (int i = 0; i < 20; ++i) {
     connection->stall(true);
-    outbox.send_event(membership, event);
-    outbox.send_event(membership, event);
+    outbox.send_event(membership, share(event));
+    outbox.send_event(membership, share(event));
     connection->stall(false);  // the socket accepts both
   }
   EXPECT_FALSE(connection->close_code().has_value());

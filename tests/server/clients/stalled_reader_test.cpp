@@ -1,6 +1,8 @@
 // The cost of a viewer that stops reading, over a real socket.
 
+#include <memory>
 #include <random>
+#include <vector>
 
 #include "protocol/frame/frame_codec.h"
 #include "server/frames/frame_delivery.h"
@@ -93,6 +95,28 @@ TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
   constexpr std::size_t kCounted = kText + ControlQueue::kMessageCost;
   EXPECT_TRUE(wait_until([&] { return taken() <= kCounted; }));
   EXPECT_GE(taken(), kCounted / 2) << "memory is close to the accounted size";
+}
+
+TEST_F(StalledReader, AnEventThatWaitsForManyIsStoredOnce) {
+  constexpr std::size_t kClients = 20;
+  constexpr std::size_t kMostOfEach = std::size_t{64} << 10;
+  start();
+  std::vector<std::unique_ptr<WsClient>> clients;
+  std::vector<std::unique_ptr<ClientOutbox>> outboxes;
+  for (std::size_t i = 1; i <= kClients; ++i) {
+    clients.push_back(std::make_unique<WsClient>(port));
+    ASSERT_TRUE(recorder.wait_opened(i));
+    outboxes.push_back(std::make_unique<ClientOutbox>(recorder.connection(i)));
+    outboxes.back()->join();
+  }
+  // Exceeds the system's buffers.
+  const auto event = std::make_shared<const std::string>(std::size_t{8} << 20, 'x');
+  const std::size_t before = heap_in_use();
+  for (const auto& outbox : outboxes) outbox->send_event(1, event);
+  clients.front()->send_text("the transport has begun to write");
+  ASSERT_TRUE(recorder.wait([&] { return recorder.received.size() == 1; }));
+  EXPECT_EQ(event.use_count(), 1 + static_cast<long>(kClients)) << "the event waits for all";
+  EXPECT_LT(heap_in_use(), before + kClients * kMostOfEach);
 }
 #endif
 

@@ -32,7 +32,7 @@ class Line final : public Connection {
 
   ConnectionId id() const override { return 1; }
   const std::string& address() const override { return address_; }
-  void send_text(std::string) override {}
+  void send_text(std::string, std::shared_ptr<const std::string>) override {}
   void send_binary(std::shared_ptr<const std::string> bytes) override {
     sent_.push_back(std::move(bytes));
   }
