@@ -48,6 +48,11 @@ class Simulation : public HostInterface {
   static Result<Simulation> load(std::span<const std::uint8_t> bytes, TaskRunner* runner = nullptr,
                                  std::optional<InstructionSet> instructions = {});
 
+  /// Returns an independent simulation in the state of the snapshot, which continues bitwise equal.
+  /// Another thread can use it at the same time as the simulation of the snapshot. `runner` as in
+  /// create().
+  static Simulation from(const Snapshot& snapshot, TaskRunner* runner = nullptr);
+
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();

@@ -24,6 +24,15 @@ Snapshot Simulation::snapshot() const {
           impl_->work.instructions};
 }
 
+Simulation Simulation::from(const Snapshot& snapshot, TaskRunner* runner) {
+  Simulation simulation;
+  simulation.impl_->runner = runner;
+  simulation.impl_->work.instructions = snapshot.instructions_;
+  simulation.impl_->measured.instructions = snapshot.instructions_;
+  simulation.restore(snapshot);
+  return simulation;
+}
+
 void Simulation::restore(const Snapshot& snapshot) {
   VAT_CHECK(snapshot.instructions_ == impl_->work.instructions);
   const SimulationContent& content = *snapshot.content_;

@@ -24,6 +24,7 @@ class Snapshot {
 
   /// Returns Simulation::state_hash() at the time of the snapshot.
   std::uint64_t state_hash() const;
+  InstructionSet instruction_set() const { return instructions_; }
   /// Returns Simulation::scene() at the time of the snapshot.
   const Scene& scene() const;
   /// Returns bytes for Simulation::load(): scene, state and active commands. A particle needs 48

@@ -34,8 +34,9 @@ class StandaloneEnvironment {
  public:
   explicit StandaloneEnvironment(const Catalogue& catalogue, InstructionSet instructions)
       : runner_(std::max(1U, std::thread::hardware_concurrency())),
-        environment_{catalogue,  limits_,        instructions, runner_, metrics_,
-                     resources_, frame_threads_, tokens_,      clock_,  session_methods()} {
+        environment_{catalogue, limits_,    instructions,     runner_,
+                     metrics_,  resources_, frame_threads_,   read_threads_,
+                     tokens_,   clock_,     session_methods()} {
     limits_.max_particles = kMaxParticles;
     limits_.max_springs = kMaxSprings;
     limits_.max_particle_steps_per_tick = kMaxParticles * kMaxStepsPerTick;
@@ -48,6 +49,7 @@ class StandaloneEnvironment {
   ServerMetrics metrics_;
   ResourceBudget resources_{kUnlimitedResources};
   boost::asio::thread_pool frame_threads_{1};
+  boost::asio::thread_pool read_threads_{1};
   SystemClock clock_;
   AccessTokens tokens_{1, clock_};
   const SessionEnvironment environment_;

@@ -13,6 +13,7 @@
 #include "server/clients/frame_window.h"
 #include "server/clients/message_meter.h"
 #include "server/clients/queue_memory.h"
+#include "server/clients/read_budget.h"
 #include "server/messages/limits.h"
 #include "server/messages/rpc_message.h"
 #include "server/support/limit_excess.h"
@@ -101,6 +102,9 @@ class ClientOutbox {
   /// connection's transport thread may use the meter.
   MessageMeter* meter() const { return meter_.get(); }
   void set_meter(std::unique_ptr<MessageMeter> meter) { meter_ = std::move(meter); }
+  /// Returns the budget of the client's reads, or null if reads are not limited.
+  ReadBudget* read_budget() const { return read_budget_.get(); }
+  void set_read_budget(std::unique_ptr<ReadBudget> budget) { read_budget_ = std::move(budget); }
   /// Closes the connection with a code of PROTOCOL.md. No messages are sent or received afterwards.
   void close(std::uint16_t code, std::string_view reason);
   bool is_closed();
@@ -162,6 +166,7 @@ class ClientOutbox {
 
   const std::shared_ptr<Connection> connection_;
   std::unique_ptr<MessageMeter> meter_;
+  std::unique_ptr<ReadBudget> read_budget_;
   OwnedMutex mutex_;
   ControlQueue queue_;
   bool closed_ = false;

@@ -14,7 +14,8 @@ MessageMeter::MessageMeter(const ServerLimits& limits, SteadyClock::time_point n
         return std::array{limit("queries_per_second", limits.max_queries_per_second),
                           limit("controls_per_second", limits.max_controls_per_second),
                           limit("pointer_moves_per_second", limits.max_pointer_moves_per_second),
-                          limit("scenes_per_second", limits.max_scenes_per_second)};
+                          limit("scenes_per_second", limits.max_scenes_per_second),
+                          limit("reads_per_second", limits.max_reads_per_second)};
       }()),
       refusals_(limits.max_refusals_per_second,
                 limits.max_refusals_per_second * limits.burst_seconds, now) {}

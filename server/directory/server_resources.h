@@ -40,6 +40,7 @@ struct ServerResources {
   ResourceBudget budget;
   SlowTickGate slow_tick_gate;
   boost::asio::thread_pool frame_threads;
+  boost::asio::thread_pool read_threads{1};
   Downloads downloads;
   Imports imports;
   const std::unique_ptr<Storage> storage;                // null: sessions are in memory only

@@ -43,6 +43,7 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   auto outbox =
       std::make_shared<ClientOutbox>(std::move(connection), limits.max_control_queue_bytes);
   outbox->set_meter(std::make_unique<MessageMeter>(limits, resources_.clock.now()));
+  outbox->set_read_budget(client_read_budget(limits, resources_.clock.now()));
   access_.start(tables_.clients.add(std::move(outbox)));
   return true;
 }

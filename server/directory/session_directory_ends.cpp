@@ -148,6 +148,7 @@ void SessionDirectory::flush() {
   for (const auto& session : sessions) {
     wait_for_task([&session](auto done) { session->post_behind(done); });
   }
+  wait_for_task([this](auto done) { boost::asio::post(resources_.read_threads, done); });
   if (resources_.storage) resources_.storage->flush();
 }
 
@@ -162,6 +163,7 @@ void SessionDirectory::stop() {
   }
   resources_.deferred->stop();
   recoverer_.join();
+  resources_.read_threads.join();
   resources_.pool.join();
   resources_.frame_threads.join();
   if (resources_.storage) resources_.storage->flush();

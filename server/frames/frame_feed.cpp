@@ -1,12 +1,12 @@
 #include "server/frames/frame_feed.h"
 
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <utility>
 #include "core/support/check.h"
+#include "server/support/low_priority.h"
 
 namespace vat {
 namespace {
@@ -14,14 +14,6 @@ namespace {
 /// About a tenth of a busy processor: a late encoder drops a frame, but a late tick slows the
 /// session down.
 constexpr int kNiceness = 10;
-
-/// Lowers the priority of the calling thread. A refusal of the system is ignored: it is only less
-/// fair.
-bool give_way() {
-  setpriority(PRIO_PROCESS, 0, kNiceness);  // of a thread, on Linux
-  pthread_setname_np(pthread_self(), "vat-frames");
-  return true;
-}
 
 }  // namespace
 
@@ -86,8 +78,8 @@ void FrameFeed::put(Put&& put) {
 
 void FrameFeed::turn() {
   VAT_CHECK(strand_.running_in_this_thread());
-  thread_local const bool gives_way = give_way();
-  static_cast<void>(gives_way);
+  thread_local const bool is_low = (lower_thread_priority(kNiceness, "vat-frames"), true);
+  static_cast<void>(is_low);
   {
     const std::lock_guard lock(mutex_);
     std::swap(pending_, active_changes_);

@@ -38,8 +38,15 @@ struct ServerLimits {
   double max_controls_per_second = 200;
   double max_pointer_moves_per_second = 250;
   double max_scenes_per_second = 5;                 ///< a message can be long, and is fully checked
+  double max_reads_per_second = 20;                 ///< a result can be long
   double max_message_bytes_per_second = 8'000'000;  ///< parsing takes a fifth of a processor core
   double burst_seconds = 4;                         ///< a burst may have the messages of this time
+  // Costs of the reads of one client, and of all clients of a session. With 50 clients at these
+  // limits, all threads of the server need about a tenth of a processor core for reads.
+  double max_read_bytes_per_second = 4'000'000;
+  double max_read_seconds_per_second = 0.025;  ///< processor time per second
+  double max_session_read_bytes_per_second = 16'000'000;
+  double max_session_read_seconds_per_second = 0.05;
   /// Refused messages per second, with the same burst. A connection that exceeds the limit is
   /// closed.
   double max_refusals_per_second = 100;

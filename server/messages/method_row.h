@@ -13,13 +13,14 @@ namespace vat {
 
 /// Rate limit that applies to a message.
 enum class RateClass : std::uint8_t {
-  query,    ///< reads data, or acknowledges a frame
+  query,    ///< reads few data, or acknowledges a frame
   control,  ///< command with a few numbers
   pointer,  ///< command that follows a pointer; only the latest per tick is executed
-  scene     ///< command with a scene or a body, which may be long
+  scene,    ///< command with a scene or a body, which may be long
+  read      ///< reads the state of a session, which may be long
 };
 template <>
-inline constexpr std::array kNamesOf<RateClass>{"query", "control", "pointer", "scene"};
+inline constexpr std::array kNamesOf<RateClass>{"query", "control", "pointer", "scene", "read"};
 
 /// Whether calls of a method are logged. A recovery or a replay repeats logged calls.
 enum class Logging : std::uint8_t {

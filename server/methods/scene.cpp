@@ -3,6 +3,7 @@
 #include "core/limits.h"
 #include "server/methods/handlers.h"
 #include "server/session/core/scene_loading.h"
+#include "server/session/core/session_view.h"
 
 namespace vat {
 namespace {
@@ -22,7 +23,7 @@ std::size_t count_values(const Json& json, std::size_t most) {
 }
 
 /// Returns the scene, or the limit that a message which loads it would exceed.
-ActionResult give(Json scene, const ServerLimits& limits) {
+RpcResult give(Json scene, const ServerLimits& limits) {
   // Counted before it is written, which takes long.
   if (count_values(scene, limits.max_message_values) + kCallValues > limits.max_message_values) {
     return limit_reached("message_values", limits.max_message_values);
@@ -33,7 +34,7 @@ ActionResult give(Json scene, const ServerLimits& limits) {
   return Json{{"scene", std::move(scene)}};
 }
 
-ActionResult get_named(const std::string& name, const SessionEnvironment& environment) {
+RpcResult get_named(const std::string& name, const SessionEnvironment& environment) {
   if (const Scene* scene = environment.catalogue.find(name)) {
     return give(write_scene(*scene), environment.limits);
   }
@@ -51,13 +52,21 @@ SessionAction read_scene_get(ObjectReader& params, Errors& errors) {
       params.boolean("current");
     }
     const std::string name = params.text("scene", kMaxNameLength);
-    return [name](SessionCore& core, Participant&) { return get_named(name, core.environment()); };
+    return [name](SessionCore& core, Participant&) -> ActionResult {
+      const SessionEnvironment& environment = core.environment();
+      return Read{
+          false, [name, &environment](SessionView&) { return get_named(name, environment); }, {}};
+    };
   }
   const bool is_current = params.boolean("current", false);
-  return [is_current](SessionCore& core, Participant&) {
-    const Scene& scene =
-        is_current ? core.run().simulation().scene() : core.run().as_loaded().scene();
-    return give(write_scene(scene), core.environment().limits);
+  return [is_current](SessionCore& core, Participant&) -> ActionResult {
+    const ServerLimits& limits = core.environment().limits;
+    return Read{is_current,
+                [is_current, &limits](SessionView& view) {
+                  const Snapshot& wanted = is_current ? view.snapshot() : view.as_loaded();
+                  return give(write_scene(wanted.scene()), limits);
+                },
+                {}};
   };
 }
 

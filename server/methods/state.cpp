@@ -10,6 +10,7 @@
 #include "server/messages/describe.h"
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
+#include "server/session/core/session_view.h"
 
 namespace vat {
 namespace {
@@ -25,7 +26,7 @@ std::vector<BodyKey> read_keys(const Json& list, const std::string& path, Errors
 }
 
 /// Without keys: all bodies.
-ActionResult query(const Simulation& simulation, const std::optional<std::vector<BodyKey>>& keys) {
+RpcResult query(const Simulation& simulation, const std::optional<std::vector<BodyKey>>& keys) {
   Json bodies = Json::array();
   if (!keys) {
     for (const BodyView& body : simulation.bodies()) bodies.push_back(describe_state(body));
@@ -37,6 +38,13 @@ ActionResult query(const Simulation& simulation, const std::optional<std::vector
     }
   }
   return Json{{"time", simulation.time()}, {"bodies", std::move(bodies)}};
+}
+
+/// Returns an action whose result is computed from the state of the session.
+SessionAction read_later(std::function<RpcResult(SessionView&)> make) {
+  return [make = std::move(make)](SessionCore&, Participant&) -> ActionResult {
+    return Read{true, make, {}};
+  };
 }
 
 double to_seconds(TickProfile::Clock::duration time) {
@@ -58,7 +66,7 @@ SessionAction read_state_query(ObjectReader& params, Errors& errors) {
   if (const Json* list = params.array("bodies", kMaxBodies)) {
     keys = read_keys(*list, params.path_of("bodies"), errors);
   }
-  return [keys](SessionCore& core, Participant&) { return query(core.run().simulation(), keys); };
+  return read_later([keys](SessionView& view) { return query(view.simulation(), keys); });
 }
 
 /// Bodies by id or name; all if no key is given.
@@ -68,8 +76,8 @@ SessionAction read_state_connections(ObjectReader& params, Errors& errors) {
     key = to_body_key(*body, params.path_of("body"), errors);
   }
   const std::size_t most = params.count("most", 1, kMaxConnections, kDefaultConnections);
-  return [key, most](SessionCore& core, Participant&) -> ActionResult {
-    const Simulation& simulation = core.run().simulation();
+  return read_later([key, most](SessionView& view) -> RpcResult {
+    const Simulation& simulation = view.simulation();
     ConnectionQuery wish{{}, most};
     if (key) {
       const auto body = find_body(simulation, *key);
@@ -81,17 +89,16 @@ SessionAction read_state_connections(ObjectReader& params, Errors& errors) {
     return Json{{"time", simulation.time()},
                 {"springs", describe_connections(found.value().springs, "strains")},
                 {"contacts", describe_connections(found.value().contacts, "forces")}};
-  };
+  });
 }
 
 SessionAction read_session_hash(ObjectReader&, Errors&) {
-  return [](SessionCore& core, Participant&) -> ActionResult {
-    const Simulation& simulation = core.run().simulation();
-    return Json{{"hash", describe_hash(simulation.state_hash())},
-                {"instruction_set", to_string(simulation.instruction_set())},
-                {"time", simulation.time()},
-                {"position", core.run().position()}};
-  };
+  return read_later([](SessionView& view) -> RpcResult {
+    return Json{{"hash", describe_hash(view.snapshot().state_hash())},
+                {"instruction_set", to_string(view.snapshot().instruction_set())},
+                {"time", view.time()},
+                {"position", view.position()}};
+  });
 }
 
 SessionAction read_session_stats(ObjectReader& params, Errors&) {
@@ -111,8 +118,14 @@ SessionAction read_session_stats(ObjectReader& params, Errors&) {
                {"seconds", to_seconds(totals.time)},
                {"longest_tick", to_seconds(totals.longest_tick)},
                {"stages", describe_stages(totals.stages)}};
-    if (with_diagnostics) stats["diagnostics"] = describe_diagnostics(simulation.diagnostics());
-    return stats;
+    if (!with_diagnostics) return stats;
+    return Read{true,
+                [stats](SessionView& view) -> RpcResult {
+                  Json content = stats;
+                  content["diagnostics"] = describe_diagnostics(view.simulation().diagnostics());
+                  return content;
+                },
+                stats.dump()};
   };
 }
 

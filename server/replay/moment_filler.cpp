@@ -64,8 +64,9 @@ void MomentFiller::run(const SessionEnvironment& shared) {
   ServerMetrics metrics;  // not counted as ticks of a session
   ResourceBudget resources(kUnlimitedResources);
   const SessionEnvironment environment{
-      shared.catalogue, shared.limits,        shared.instructions, runner,       metrics,
-      resources,        shared.frame_threads, shared.tokens,       shared.clock, shared.methods};
+      shared.catalogue, shared.limits, shared.instructions,  runner,
+      metrics,          resources,     shared.frame_threads, shared.read_threads,
+      shared.tokens,    shared.clock,  shared.methods};
   ReplayPlayer player(*recording_, environment);
   player.share(moments_);
   SessionCore core("filling", {recording_->name}, player.begin(), environment);

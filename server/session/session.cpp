@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "core/support/check.h"
-#include "server/clients/answer_with.h"
-#include "server/session/session_archive.h"
 
 namespace vat {
 namespace {
@@ -32,6 +30,7 @@ Session::Session(std::unique_ptr<SessionCore> core, std::unique_ptr<Playback> pl
       tick_timer_(clock_.make_timer(strand_)),
       status_timer_(clock_.make_timer(strand_)),
       presence_timer_(clock_.make_timer(strand_)),
+      reads_(core_->environment()),
       slow_tick_gate_(slow_tick_gate) {
   VAT_CHECK(core_->playback() == playback_.get());
   update_summary();
@@ -248,6 +247,11 @@ void Session::execute_command(PendingReply reply, SessionCommand command) {
   if (SessionLog* const log = core_->history().log()) log->add_work(CostClock::now() - begin);
   if (core_->clock().take_interruption()) end_all_steps();
   update_summary();
+  if (auto* read = std::get_if<Read>(&result)) {
+    std::string key = std::string(row.name) + command.params.dump() + read->copied;
+    reads_.add({std::move(reply), std::move(*read), std::move(key)});
+    return start_reads();
+  }
   answer(std::move(reply), std::move(result));
 }
 
@@ -269,38 +273,6 @@ void Session::answer(PendingReply reply, ActionResult result) {
     content["tick"] = core_->run().tick();
     reply.answer(std::move(content));
   }
-}
-
-void Session::export_recording(PendingReply reply) {
-  const auto pending = std::make_shared<PendingReply>(std::move(reply));
-  if (core_->environment().downloads == nullptr) {
-    pending->answer(not_allowed("this server offers no downloads"));
-    return;
-  }
-  // On the pool: the storage's thread has other sessions to store.
-  const auto make = [self = shared_from_this(), pending](Storage& storage, std::uint64_t number) {
-    boost::asio::post(self->strand_.get_inner_executor(), [self, pending, &storage, number] {
-      answer_with(*pending, "session " + self->id() + ": no recording", [&] {
-        return vat::export_recording(self->core_->environment(), self->id(), storage, number,
-                                     self->summary().tick);
-      });
-    });
-  };
-  SessionHistory& history = core_->history();
-  VAT_CHECK(history.log() != nullptr);
-  history.log()->store_then(history.moment(), clock_.now(), make);
-}
-
-void Session::save(PendingReply reply, SaveState save) {
-  // On the pool: the session continues meanwhile.
-  const auto pending = std::make_shared<PendingReply>(std::move(reply));
-  boost::asio::post(strand_.get_inner_executor(),
-                    [self = shared_from_this(), pending, save = std::move(save),
-                     moment = moment_to_save(*core_), &environment = core_->environment()] {
-                      answer_with(*pending, "session " + self->id() + ": not saved", [&] {
-                        return save_state(environment, self->id(), moment, save);
-                      });
-                    });
 }
 
 void Session::execute_pointers() {
@@ -374,6 +346,7 @@ void Session::close_turn() {
     for (PendingReply& reply : latest.replies) reply.answer(error);
   }
   for (Item& item : items) item.reply.answer(error);
+  reads_.refuse_all(error);
   core_->set_playback(nullptr);
   playback_.reset();
   core_->run().end();

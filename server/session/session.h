@@ -14,6 +14,7 @@
 #include "server/session/core/session_core.h"
 #include "server/session/pointer_commands.h"
 #include "server/session/session_inbox.h"
+#include "server/session/session_reads.h"
 #include "server/session/ticks/slow_tick_gate.h"
 #include "server/session/ticks/tick_clock.h"
 
@@ -91,8 +92,6 @@ class Session : public std::enable_shared_from_this<Session> {
   void execute_command(PendingReply reply, SessionCommand command);
   /// Answers the request, or starts the work that the result specifies.
   void answer(PendingReply reply, ActionResult result);
-  void export_recording(PendingReply reply);
-  void save(PendingReply reply, SaveState save);
   /// Returns whether pointer commands wait for the next tick.
   bool tick_is_coming() const { return core_->clock().playing() || !steps_.empty(); }
   void execute_pointers();
@@ -102,6 +101,13 @@ class Session : public std::enable_shared_from_this<Session> {
   void end_step(Steps::iterator job);
   void end_all_steps();
   void close_turn();
+
+  // Work on other threads, implemented in session_work.cpp.
+  /// Starts the computation of the waiting reads on the read thread.
+  void start_reads();
+  void reads_done_turn();
+  void export_recording(PendingReply reply);
+  void save(PendingReply reply, SaveState save);
 
   // Ticks and timers, implemented in session_ticks.cpp.
   void schedule_step();
@@ -148,6 +154,7 @@ class Session : public std::enable_shared_from_this<Session> {
   const std::unique_ptr<Timer> presence_timer_;
   bool presence_waits_ = false;
   PointerCommands pointers_;
+  SessionReads reads_;
   Steps steps_;
   bool step_scheduled_ = false;
   SlowTickGate& slow_tick_gate_;

@@ -20,6 +20,7 @@ constexpr std::size_t kMaxBytes = 1024 * 1024 * 1024;
 constexpr std::size_t kMaxInAll = 1'000'000'000;
 constexpr double kMaxPerSecond = 1e6;
 constexpr double kMaxBytesPerSecond = 1e9;
+constexpr double kMaxReadSeconds = 64;  // more than the read thread can use
 constexpr double kMaxAway = 1e8;
 constexpr std::uint64_t kMaxSeconds = 3600;
 
@@ -166,8 +167,14 @@ std::vector<Setting> rate_limits(ServerLimits& limits) {
                      kMaxPerSecond, "Commands that follow a pointer"),
       number_setting("max_scenes_per_second", limits.max_scenes_per_second, 0.01, kMaxPerSecond,
                      "Messages with a scene or a body"),
+      number_setting("max_reads_per_second", limits.max_reads_per_second, 0.01, kMaxPerSecond,
+                     "Reads of the state of a session"),
       number_setting("max_message_bytes_per_second", limits.max_message_bytes_per_second, 1024,
                      kMaxBytesPerSecond, "Bytes of all messages"),
+      number_setting("max_read_bytes_per_second", limits.max_read_bytes_per_second, 1024,
+                     kMaxBytesPerSecond, "Bytes of the results of reads"),
+      number_setting("max_read_seconds_per_second", limits.max_read_seconds_per_second, 0.001,
+                     kMaxReadSeconds, "Processor time of reads, in seconds per second"),
       number_setting("burst_seconds", limits.burst_seconds, 0.1, kMaxSeconds,
                      "Burst size of each rate limit, as seconds at the full rate"),
       number_setting(
@@ -192,6 +199,12 @@ std::vector<Setting> session_limits(ServerLimits& limits) {
                                   "Springs of all sessions"),
       number_setting<std::size_t>("max_particle_steps_per_tick", limits.max_particle_steps_per_tick,
                                   1, 1'000'000'000, "Particles of a session times steps per tick"),
+      number_setting("max_session_read_bytes_per_second", limits.max_session_read_bytes_per_second,
+                     1024, kMaxBytesPerSecond,
+                     "Bytes of the results of reads, of all clients of a session"),
+      number_setting("max_session_read_seconds_per_second",
+                     limits.max_session_read_seconds_per_second, 0.001, kMaxReadSeconds,
+                     "Processor time of reads, of all clients of a session, in seconds per second"),
       time_setting("hibernate_after", limits.hibernate_after, 0, kMaxAway,
                    "Seconds without participants after which a session hibernates; 0: never"),
       time_setting("expire_after", limits.expire_after, 0, kMaxAway,

@@ -18,9 +18,9 @@ class LoneEnvironment {
 
   /// Returns the environment with another budget.
   SessionEnvironment with(ResourceBudget& resources) {
-    return {catalogue_, limits,           best_instruction_set(), runner_,
-            metrics_,   resources,        frame_threads_,         tokens_,
-            clock,      session_methods()};
+    return {catalogue_, limits,    best_instruction_set(), runner_,
+            metrics_,   resources, frame_threads_,         read_threads_,
+            tokens_,    clock,     session_methods()};
   }
 
   ServerLimits limits;
@@ -32,6 +32,7 @@ class LoneEnvironment {
   ServerMetrics metrics_;
   ResourceBudget resources_{kUnlimitedResources};
   boost::asio::thread_pool frame_threads_{1};
+  boost::asio::thread_pool read_threads_{1};
   AccessTokens tokens_{1, clock};
 
  public:

@@ -16,6 +16,7 @@
 namespace vat {
 
 class SessionCore;
+class SessionView;
 
 /// Number of ticks that control.step runs before the reply.
 struct RunTicks {
@@ -36,9 +37,19 @@ struct SaveState {
   std::string saved_by;
 };
 
+/// Read whose result is computed later on another thread, because it may take long.
+struct Read {
+  bool needs_state = true;  ///< whether `make` uses the state of the simulation
+  /// Returns the content of the reply, or an error. Must not use the session.
+  std::function<RpcResult(SessionView&)> make;
+  /// Text of the values that `make` has copied from the session. Equal requests with equal text
+  /// share one result.
+  std::string copied;
+};
+
 /// Result of an action: content of the reply, an error, or work before the reply. The session adds
 /// the member `tick` to the content.
-using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState>;
+using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState, Read>;
 
 /// Function that executes a command with valid parameters.
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;

@@ -27,6 +27,7 @@ struct SessionEnvironment {
   ServerMetrics& metrics;
   ResourceBudget& resources;
   boost::asio::thread_pool& frame_threads;  ///< threads that quantise, encode and send frames
+  boost::asio::thread_pool& read_threads;   ///< threads that compute results of reads
   AccessTokens& tokens;
   Clock& clock;
   const SessionMethods& methods;

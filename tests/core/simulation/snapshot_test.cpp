@@ -39,6 +39,18 @@ TEST(Snapshot, TakingOneChangesNothing) {
   EXPECT_EQ(watched.state_hash(), hash_after(alone, kSteps));
 }
 
+TEST(Snapshot, GivesAnIndependentSimulation) {
+  Simulation original = make_busy();
+  hash_after(original, kSteps);
+  const Snapshot snapshot = original.snapshot();
+  const std::uint64_t later = hash_after(original, kSteps);
+  Simulation copy = Simulation::from(snapshot);
+  EXPECT_EQ(copy.state_hash(), snapshot.state_hash());
+  EXPECT_EQ(copy.instruction_set(), original.instruction_set());
+  EXPECT_EQ(hash_after(copy, kSteps), later);
+  EXPECT_EQ(original.state_hash(), later) << "the copy does not change the original";
+}
+
 TEST(Snapshot, BringsBackARemovedBody) {
   Simulation simulation = make_busy();
   hash_after(simulation, kSteps);

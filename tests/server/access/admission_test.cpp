@@ -50,6 +50,7 @@ ServerLimits few_messages() {
   limits.max_controls_per_second = 20;
   limits.max_pointer_moves_per_second = 30;
   limits.max_scenes_per_second = 1;
+  limits.max_reads_per_second = 5;
   limits.max_message_bytes_per_second = 1000;
   limits.burst_seconds = 2;
   limits.max_refusals_per_second = 3;
@@ -67,7 +68,8 @@ TEST(MessageMeter, EachClassHasItsOwnLimit) {
        {Expected{RateClass::query, "queries_per_second", 20},
         Expected{RateClass::control, "controls_per_second", 40},
         Expected{RateClass::pointer, "pointer_moves_per_second", 60},
-        Expected{RateClass::scene, "scenes_per_second", 2}}) {
+        Expected{RateClass::scene, "scenes_per_second", 2},
+        Expected{RateClass::read, "reads_per_second", 10}}) {
     MessageMeter meter(few_messages(), now);
     for (int i = 0; i < burst; ++i) EXPECT_FALSE(meter.count(rate_class, now)) << limit << i;
     const auto excess = meter.count(rate_class, now);

@@ -141,7 +141,7 @@ TEST_F(SessionCommands, AreAnsweredInTheirOrder) {
   for (int i = 0; i < 50; ++i) {
     ids.push_back(client->send("world.set_gravity", {{"gravity", {0, 0, -i}}}));
     ids.push_back(client->send("control.step"));
-    ids.push_back(client->send("state.query", {{"bodies", {3}}}));
+    ids.push_back(client->send("session.stats"));
   }
   client->wait_reply(ids.back());
   std::vector<int> answered;
@@ -156,6 +156,23 @@ TEST_F(SessionCommands, AreAnsweredInTheirOrder) {
     EXPECT_EQ(reply.at("result").at("tick"), i + 1);
   }
   EXPECT_EQ(hash(), hash_of(reference));
+}
+
+// A read may be answered after later commands. It describes a state after all earlier ones.
+TEST_F(SessionCommands, ReadsFollowTheEarlierCommandsOfTheirClient) {
+  std::vector<int> reads;
+  for (int i = 0; i < 50; ++i) {
+    client->send("control.step");
+    reads.push_back(client->send("state.query", {{"bodies", {3}}}));
+  }
+  std::uint64_t last = 0;
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    const std::uint64_t of_read = client->wait_reply(reads[i]).at("result").at("tick");
+    EXPECT_GE(of_read, i + 1);
+    EXPECT_GE(of_read, last);
+    last = of_read;
+  }
+  EXPECT_EQ(last, 50U);
 }
 
 TEST_F(SessionCommands, BodiesComeAndGoWithANewEpoch) {

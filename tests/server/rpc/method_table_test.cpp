@@ -121,6 +121,8 @@ TEST(MethodTable, RateClassesAreThoseOfTheProtocol) {
             names_of([](const MethodRow& row) { return row.rate_class == RateClass::query; }));
   EXPECT_EQ(documented_methods("| `pointer_moves_per_second` |"),
             names_of([](const MethodRow& row) { return row.rate_class == RateClass::pointer; }));
+  EXPECT_EQ(documented_methods("| `reads_per_second` |"),
+            names_of([](const MethodRow& row) { return row.rate_class == RateClass::read; }));
   EXPECT_EQ(documented_methods("| `scenes_per_second` |"),
             names_of([](const MethodRow& row) { return row.rate_class == RateClass::scene; }));
 }

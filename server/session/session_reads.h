@@ -1,0 +1,74 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/clients/pending_reply.h"
+#include "server/clients/read_budget.h"
+#include "server/session/core/session_command.h"
+#include "server/session/core/session_environment.h"
+
+namespace vat {
+
+class SessionRun;
+class SessionView;
+
+/// Request whose result is computed on the read thread.
+struct WaitingRead {
+  PendingReply reply;
+  Read read;
+  std::string key;  ///< method, parameters and Read::copied; equal keys have equal results
+};
+
+/// Reads of a session that are computed one after another from one view of the session. Equal reads
+/// share one result.
+class ReadBatch {
+ public:
+  /// The environment must outlive the batch.
+  ReadBatch(std::vector<WaitingRead> reads, std::unique_ptr<SessionView> view,
+            std::shared_ptr<ReadBudget> budget, const SessionEnvironment& environment);
+  ~ReadBatch();
+  /// Answers all reads. Called once, on the read thread.
+  void run();
+
+ private:
+  struct Result {
+    SharedText text;  ///< null: `error` is the result
+    std::optional<RpcError> error;
+  };
+  using Results = std::map<std::string, Result>;  // by WaitingRead::key
+  void answer(WaitingRead& waiting, Results& results);
+  Result compute(const WaitingRead& waiting);
+
+  std::vector<WaitingRead> reads_;
+  const std::unique_ptr<SessionView> view_;
+  const std::shared_ptr<ReadBudget> budget_;
+  const SessionEnvironment& environment_;
+};
+
+/// Reads of a session that wait for the read thread. At most one batch of a session is computed at
+/// a time, so that at most one view exists. Later reads wait for the next batch. Not thread-safe.
+class SessionReads {
+ public:
+  explicit SessionReads(const SessionEnvironment& environment);
+
+  /// Adds a read, or refuses it if the client or the session has exceeded its budget.
+  void add(WaitingRead read);
+  /// Returns the next batch, or null if a batch is being computed or no read waits. The caller must
+  /// run the batch on the read thread, and then call end_batch().
+  std::shared_ptr<ReadBatch> begin_batch(const SessionRun& run);
+  void end_batch() { is_busy_ = false; }
+  /// Answers all waiting reads with an error.
+  void refuse_all(const RpcError& error);
+
+ private:
+  const SessionEnvironment& environment_;
+  const std::shared_ptr<ReadBudget> budget_;  // batches may outlive the session
+  std::vector<WaitingRead> waiting_;
+  bool is_busy_ = false;
+};
+
+}  // namespace vat
