@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "core/support/check.h"
 
@@ -48,6 +49,33 @@ std::size_t ClientRegistry::count_in(SessionNumber session) const {
 const std::map<ConnectionId, Client>& ClientRegistry::all() const {
   VAT_CHECK(mutex_.is_held());
   return clients_;
+}
+
+std::size_t ClientRegistry::queue_bytes() const {
+  VAT_CHECK(mutex_.is_held());
+  QueueMemory memory;
+  for (const auto& [connection, client] : clients_) client.outbox->add_queue(memory);
+  return memory.bytes();
+}
+
+std::size_t ClientRegistry::bound_queues(std::size_t maximum) const {
+  VAT_CHECK(mutex_.is_held());
+  QueueMemory all;
+  std::vector<std::pair<std::size_t, ClientOutbox*>> queues;
+  for (const auto& [connection, client] : clients_) {
+    queues.emplace_back(client.outbox->add_queue(all), client.outbox.get());
+  }
+  if (all.bytes() <= maximum) return 0;
+  std::ranges::sort(queues, {}, &std::pair<std::size_t, ClientOutbox*>::first);
+  QueueMemory kept;
+  std::size_t closed = 0;
+  for (const auto& [share, outbox] : queues) {
+    outbox->add_queue(kept);
+    if (kept.bytes() <= maximum) continue;
+    outbox->close_for_others();
+    ++closed;
+  }
+  return closed;
 }
 
 void ClientRegistry::close_session(SessionNumber session, const std::string& event) {

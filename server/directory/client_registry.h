@@ -36,6 +36,11 @@ class ClientRegistry {
   /// Returns the number of clients that have joined the session.
   std::size_t count_in(SessionNumber session) const;
   const std::map<ConnectionId, Client>& all() const;
+  /// Returns the memory of the messages that wait for the clients [bytes].
+  std::size_t queue_bytes() const;
+  /// If the queues of all clients have more than `maximum` bytes, closes the clients with the
+  /// greatest shares. Returns their number.
+  std::size_t bound_queues(std::size_t maximum) const;
   /// Ends the membership of all clients of the session, and sends `event` to them.
   void close_session(SessionNumber session, const std::string& event);
 

@@ -36,6 +36,7 @@ struct ServerResources {
   /// Runs blocks of simulation steps on helper threads.
   ThreadPoolRunner runner;
   ServerMetrics metrics;
+  const MemoryLimit memory;
   AccessTokens tokens;
   ResourceBudget budget;
   SlowTickGate slow_tick_gate;

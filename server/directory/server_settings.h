@@ -10,6 +10,7 @@
 #include "core/support/instruction_set.h"
 #include "server/access/access.h"
 #include "server/messages/limits.h"
+#include "server/operations/memory_limit.h"
 #include "server/storage/sqlite/storage_limits.h"
 
 namespace vat {
@@ -31,6 +32,8 @@ struct ServerSettings {
   AccessSettings access;
   std::string data_folder;  ///< folder for stored sessions; empty: sessions are in memory only
   StorageLimits storage;
+  /// Returns the memory of the process, for ServerLimits::max_memory.
+  MemoryLimit::Measure measure_memory = process_memory;
   /// Ends the server after the given time for clients, or after the default time. Returns the time.
   /// Must be thread-safe. Empty: clients cannot end the server.
   std::function<std::chrono::milliseconds(std::optional<std::chrono::milliseconds>)> end;

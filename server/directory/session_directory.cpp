@@ -60,8 +60,9 @@ void SessionDirectory::disconnect(ConnectionId id) {
   if (tables_.clients.size() == 0) drained_.notify_all();
 }
 
-SessionDirectory::Sender SessionDirectory::find_client(ConnectionId id) const {
+SessionDirectory::Sender SessionDirectory::find_client(ConnectionId id) {
   const std::lock_guard lock(tables_.mutex);
+  bound_queues();  // queues grow fast only if clients send messages
   const Client* client = tables_.clients.find(id);
   if (client == nullptr || client->outbox->is_closed()) return {};
   return {client->outbox, client->access.role};

@@ -42,7 +42,8 @@ class SessionDirectory {
     std::shared_ptr<ClientOutbox> outbox;  ///< null: not connected, or closing
     Role role = Role::none;                ///< role granted to the connection
   };
-  Sender find_client(ConnectionId id) const;
+  /// Returns the sender of a message.
+  Sender find_client(ConnectionId id);
 
   /// Starts the recovery of the stored sessions and returns their number.
   std::size_t recover() { return recoverer_.start(); }
@@ -76,7 +77,7 @@ class SessionDirectory {
   std::optional<std::uint64_t> tick_of(const PendingReply& reply) const;
 
   /// Returns the metrics in the text format of Prometheus.
-  std::string metrics() const;
+  std::string metrics();
   /// Refuses new connections, sessions and joins, and sends server.draining. Returns after `time`,
   /// or as soon as all clients have left.
   void drain(std::chrono::milliseconds time);
@@ -89,6 +90,8 @@ class SessionDirectory {
 
  private:
   std::optional<SessionNumber> store(const std::string& name, const Scene& scene);
+  /// Measures and estimates the memory by use.
+  ServerMetrics::Memory memory_use();
   RpcResult create_from(const Json& scene, std::string name, SessionCreator creator);
   void undo_join(ConnectionId id, SessionNumber session);
   void end_expired();
@@ -105,6 +108,8 @@ class SessionDirectory {
   std::chrono::milliseconds expiry_of(SessionNumber session) const;
   void end_expired_sessions(SteadyClock::time_point now);
   void wait_for_expiry();
+  /// Closes clients if the queues of all clients are too long. Checks this once per second.
+  void bound_queues();
 
   ServerResources resources_;
   DirectoryTables tables_;
@@ -113,8 +118,9 @@ class SessionDirectory {
   ReplayOpener replays_;
   SessionRecoverer recoverer_;
   const std::unique_ptr<Timer> expiry_timer_;
-  bool drain_time_is_over_ = false;      // guarded by the lock
-  std::condition_variable_any drained_;  // signals the end of the time or of the last client
+  SteadyClock::time_point queue_check_{};  // next check of the queues; guarded by the lock
+  bool drain_time_is_over_ = false;        // guarded by the lock
+  std::condition_variable_any drained_;    // signals the end of the time or of the last client
 };
 
 }  // namespace vat

@@ -10,7 +10,6 @@
 
 #include "core/support/check.h"
 #include "server/directory/session_directory.h"
-#include "server/operations/heap.h"
 
 namespace vat {
 namespace {
@@ -92,12 +91,12 @@ void SessionDirectory::close_session(SessionNumber number, Session::End end,
   spdlog::info("session {} closed: {}", id, reason);
 }
 
-std::string SessionDirectory::metrics() const {
+std::string SessionDirectory::metrics() {
   ServerMetrics::Gauges gauges;
   gauges.version = resources_.settings.version;
   gauges.instructions = resources_.settings.instructions;
   gauges.threads = resources_.runner.thread_count();
-  gauges.heap = heap_in_use();
+  gauges.memory = memory_use();
   {
     const std::lock_guard lock(tables_.mutex);
     gauges.connections = tables_.clients.size();

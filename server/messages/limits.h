@@ -31,6 +31,8 @@ struct ServerLimits {
   /// Replies and events that a client has not received [bytes]. A connection that exceeds the limit
   /// is closed.
   std::size_t max_control_queue_bytes = 1024 * 1024;
+  /// Memory of the messages that wait for all clients. Shared messages count once.
+  std::size_t max_queue_bytes_in_all = std::size_t{256} << 20;
   std::size_t max_grabs_per_client = 10;  ///< one grab per finger
   // Messages per second of one connection, by rate class. The limits are several times the rates of
   // the viewer.
@@ -64,6 +66,8 @@ struct ServerLimits {
   std::chrono::milliseconds handshake_time{10'000};
   /// Interval of pings. A peer that sends nothing for two intervals is disconnected.
   std::chrono::milliseconds ping_interval{20'000};
+  /// Memory of the process above which new work is rejected [bytes]; 0: no limit.
+  std::size_t max_memory = 0;
   std::size_t max_tokens = 10'000;  ///< valid invitations and tickets
   // Limits of saved states and scenes.
   std::size_t max_states_per_session = 20;

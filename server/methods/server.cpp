@@ -60,6 +60,8 @@ Json describe_limits(const ServerLimits& limits) {
       {"session_read_bytes_per_second", limits.max_session_read_bytes_per_second},
       {"session_read_seconds_per_second", limits.max_session_read_seconds_per_second},
       {"message_bytes_per_second", limits.max_message_bytes_per_second},
+      {"queue_bytes_in_all", limits.max_queue_bytes_in_all},
+      {"memory_bytes", limits.max_memory},
       {"burst_seconds", limits.burst_seconds},
       {"refusals_per_second", limits.max_refusals_per_second},
       {"grabs_per_client", limits.max_grabs_per_client},

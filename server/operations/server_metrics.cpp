@@ -42,6 +42,19 @@ void append_counter(std::string& text, const char* name, const char* help, std::
   append_sample(text, name, "", value);
 }
 
+void append_memory(std::string& text, const ServerMetrics::Memory& memory) {
+  append_gauge(text, "vat_process_memory_bytes", "Memory of the process, including swapped pages.",
+               memory.process);
+  append_gauge(text, "vat_max_memory_bytes",
+               "Memory of the process above which new work is rejected; 0: no limit.",
+               memory.maximum);
+  append_gauge(text, "vat_heap_bytes", "Memory in use, without freed memory.", memory.heap);
+  append_head(text, "vat_memory_bytes", "gauge", "Memory in use by purpose, partly estimated.");
+  for (const auto& [use, bytes] : memory.uses) {
+    append_sample(text, "vat_memory_bytes", label("use", use), bytes);
+  }
+}
+
 void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_head(text, "vat_build_info", "gauge", "Version, and instruction set of all sessions.");
   append_sample(
@@ -59,7 +72,7 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_gauge(text, "vat_connections", "Open WebSockets.", now.connections);
   append_gauge(text, "vat_clients", "Connections that have joined a session.", now.clients);
   append_gauge(text, "vat_particles", "Particles of all sessions.", now.particles);
-  append_gauge(text, "vat_heap_bytes", "Memory in use, without freed memory.", now.heap);
+  append_memory(text, now.memory);
   append_counter(text, "vat_storage_failures_total", "Failed writes to the data folder.",
                  now.storage.failures);
   append_counter(text, "vat_checkpoints_total", "Written checkpoints of sessions.",

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/support/instruction_set.h"
@@ -69,6 +70,13 @@ class ServerMetrics {
   /// counter.
   void add_close(std::uint16_t code);
 
+  /// Memory of the process [bytes].
+  struct Memory {
+    std::size_t process = 0;  ///< pages in memory and in the swap space
+    std::size_t maximum = 0;  ///< setting max_memory; 0: no limit
+    std::size_t heap = 0;     ///< heap in use, without freed memory
+    std::vector<std::pair<std::string_view, std::size_t>> uses;  ///< parts of it, by use
+  };
   /// Current values of the server.
   struct Gauges {
     std::string version;
@@ -82,7 +90,7 @@ class ServerMetrics {
     std::size_t connections = 0;
     std::size_t clients = 0;    ///< connections that have joined a session
     std::size_t particles = 0;  ///< in all sessions
-    std::size_t heap = 0;       ///< heap memory in use [bytes]
+    Memory memory;
     StorageCounts storage;
   };
   /// Returns all metrics in the text format of Prometheus, version 0.0.4.

@@ -33,6 +33,7 @@ class ReplayRun final : public Playback {
   void end_seek(SessionCore& core) override;
   std::optional<std::uint64_t> find_tick(const SessionCore& core,
                                          std::uint64_t tick) const override;
+  std::size_t cached_bytes() const override { return moments_->bytes(); }
   Json describe(const SessionCore& core) const override;
   void tell_people(SessionCore& core, SteadyClock::time_point now) override;
 

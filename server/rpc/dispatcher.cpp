@@ -89,6 +89,14 @@ std::variant<RpcRequest, RpcError> Dispatcher::read(std::string_view message, Ro
   return read_request(std::move(json).value(), id);
 }
 
+std::optional<RpcError> Dispatcher::refuse_for_memory(const MethodRow& row) const {
+  // The other methods need little memory, and some of them release memory.
+  if (row.rate_class != RateClass::scene && row.rate_class != RateClass::read) return {};
+  const auto excess = directory_.resources().memory.find_excess();
+  if (!excess) return {};
+  return limit_reached(*excess);
+}
+
 std::optional<RpcResult> Dispatcher::call(PendingReply& reply, Role role, RpcRequest request,
                                           std::size_t bytes) {
   const Method* method = find_method(request.method);
@@ -101,6 +109,7 @@ std::optional<RpcResult> Dispatcher::call(PendingReply& reply, Role role, RpcReq
   if (row.rate_class != RateClass::scene && bytes > limits().max_message_bytes) {
     return limit_reached("message_bytes", limits().max_message_bytes);
   }
+  if (auto error = refuse_for_memory(row)) return *std::move(error);
   if (auto error =
           reply.count(bytes, limits().max_commands_in_flight, limits().max_bytes_in_flight)) {
     return *std::move(error);

@@ -29,6 +29,8 @@ class Dispatcher {
               const RateExcess& excess);
   std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
                                           std::optional<Json>& id) const;
+  /// Refuses a method that needs memory if the process exceeds its limit.
+  std::optional<RpcError> refuse_for_memory(const MethodRow& row) const;
   /// Returns the result, or an empty optional if `reply` was moved and is answered later.
   std::optional<RpcResult> call(PendingReply& reply, Role role, RpcRequest request,
                                 std::size_t bytes);

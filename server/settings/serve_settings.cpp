@@ -18,6 +18,7 @@ constexpr std::size_t kMaxSessions = 10'000;
 constexpr std::size_t kMinDepth = 10;  // of a request with a scene: 9
 constexpr std::size_t kMaxBytes = 1024 * 1024 * 1024;
 constexpr std::size_t kMaxInAll = 1'000'000'000;
+constexpr std::size_t kMostMemory = std::size_t{1} << 40;
 constexpr double kMaxPerSecond = 1e6;
 constexpr double kMaxBytesPerSecond = 1e9;
 constexpr double kMaxReadSeconds = 64;  // more than the read thread can use
@@ -135,6 +136,10 @@ std::vector<Setting> connection_limits(ServerLimits& limits) {
                                   16 * 1024, kMaxBytes,
                                   "Size of the replies and events that wait for one client; the "
                                   "server closes a connection that exceeds it"),
+      number_setting<std::size_t>("max_queue_bytes_in_all", limits.max_queue_bytes_in_all,
+                                  1024 * 1024, kMostMemory,
+                                  "Memory of the messages that wait for all clients; beyond it, "
+                                  "the server closes the connections with the longest queues"),
       time_setting("frame_patience_seconds", limits.frame_patience, 1, kMaxSeconds,
                    "Time without a frame acknowledgement after which the server closes a viewer's "
                    "connection"),
@@ -185,6 +190,10 @@ std::vector<Setting> rate_limits(ServerLimits& limits) {
 
 std::vector<Setting> session_limits(ServerLimits& limits) {
   return {
+      number_setting<std::size_t>(
+          "max_memory", limits.max_memory, 0, kMostMemory,
+          "Memory of the server in bytes, above which it rejects new sessions, scenes, bodies, "
+          "recordings, saves and reads; 0: no limit"),
       number_setting<std::size_t>("max_sessions", limits.max_sessions, 1, kMaxSessions,
                                   "Simultaneous sessions"),
       number_setting<std::size_t>("max_sessions_per_address", limits.max_sessions_per_address, 1,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -36,6 +37,9 @@ class Playback {
   /// scene.
   virtual std::optional<std::uint64_t> find_tick(const SessionCore& core,
                                                  std::uint64_t tick) const = 0;
+
+  /// Returns the size of the stored states of the recording [bytes].
+  virtual std::size_t cached_bytes() const = 0;
 
   /// Returns the result of the method replay.info.
   virtual Json describe(const SessionCore& core) const = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/saved/greatest_size.h"
+#include "server/operations/memory_limit.h"
 #include "server/storage/saved_scenes.h"
 
 namespace vat {
@@ -80,6 +81,9 @@ std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
   Result<Simulation> simulation = Simulation::create(scene, &environment.runner, instructions);
   if (!simulation) return scene_refused(simulation.errors());
   if (auto excess = find_excess(simulation.value(), environment.limits)) return *std::move(excess);
+  if (environment.memory != nullptr) {  // again, because the new simulation may be large
+    if (const auto excess = environment.memory->find_excess()) return limit_reached(*excess);
+  }
   return std::move(simulation).value();
 }
 

@@ -15,6 +15,7 @@
 namespace vat {
 
 class Downloads;
+class MemoryLimit;
 class SavedScenes;
 class SavedStates;
 
@@ -35,6 +36,7 @@ struct SessionEnvironment {
   // Null if the server cannot save states and scenes.
   SavedStates* states = nullptr;
   SavedScenes* scenes = nullptr;
+  const MemoryLimit* memory = nullptr;  ///< limit for new simulations; null: no limit
 };
 
 }  // namespace vat

@@ -197,7 +197,8 @@ SessionSummary SessionNotifier::summary() {
           context_.playback != nullptr,
           false,
           {},
-          people_};
+          people_,
+          context_.playback == nullptr ? 0 : context_.playback->cached_bytes()};
 }
 
 void SessionNotifier::list_people() {

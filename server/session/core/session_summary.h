@@ -32,6 +32,7 @@ struct SessionSummary {
   bool hibernating = false;  ///< playing, but stopped without participants
   std::optional<SteadyClock::time_point> empty_since;  ///< start of the time without participants
   std::shared_ptr<const std::vector<PersonSummary>> people;  ///< null: unknown
+  std::size_t replay_bytes = 0;                              ///< see Playback::cached_bytes()
 };
 
 }  // namespace vat

@@ -34,6 +34,10 @@ StorageError::Kind kind_of_code(int code) {
 
 }  // namespace
 
+std::size_t database_memory() {
+  return static_cast<std::size_t>(sqlite3_memory_used());
+}
+
 void Database::Close::operator()(sqlite3* connection) const {
   sqlite3_close_v2(connection);
 }

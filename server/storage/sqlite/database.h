@@ -16,6 +16,9 @@ namespace vat {
 
 class Statement;
 
+/// Returns the memory of all databases of the process, including databases in memory [bytes].
+std::size_t database_memory();
+
 /// Connection to an SQLite database. Not thread-safe. Functions throw StorageError.
 class Database {
  public:

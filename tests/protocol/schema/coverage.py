@@ -36,6 +36,7 @@ LIMITS = {
     "applied_forces": "limit", "bodies": ("path", "/scene/bodies"), "clients_per_session": "limit",
     "command_bytes_in_flight": ("script", "limits"), "commands_in_flight": "limit",
     "connections": ("closed", 1013), "control_queue_bytes": ("closed", 4008),
+    "queue_bytes_in_all": ("script", "slow-client"), "memory_bytes": ("script", "limits"),
     "frame_groups": ("script", "frames"), "frame_patience_seconds": ("script", "slow-client"),
     "frame_window": ("script", "acknowledging"), "grabs_per_client": "limit",
     "grab_idle_seconds": ("script", "presence"), "grabs_per_session": "limit",

@@ -23,7 +23,7 @@ ServerMetrics::Gauges make_present() {
   present.connections = 7;
   present.clients = 5;
   present.particles = 1200;
-  present.heap = 9'000'000;
+  present.memory = {50'000'000, 80'000'000, 9'000'000, {{"queues", 1000}, {"imports", 0}}};
   return present;
 }
 
@@ -36,7 +36,9 @@ TEST(ServerMetrics, WhatIsSoNow) {
   for (const char* sample :
        {"\nvat_threads 4\n", "\nvat_sessions{state=\"playing\"} 2\n",
         "\nvat_sessions{state=\"paused\"} 1\n", "\nvat_connections 7\n", "\nvat_clients 5\n",
-        "\nvat_particles 1200\n", "\nvat_heap_bytes 9000000\n"}) {
+        "\nvat_particles 1200\n", "\nvat_heap_bytes 9000000\n",
+        "\nvat_process_memory_bytes 50000000\n", "\nvat_max_memory_bytes 80000000\n",
+        "\nvat_memory_bytes{use=\"queues\"} 1000\nvat_memory_bytes{use=\"imports\"} 0\n"}) {
     EXPECT_THAT(text, HasSubstr(sample));
   }
 }
