@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kViewersPerProcess = 1000;
 constexpr std::size_t kDefaultConnections = 1024;  // of the server
+constexpr std::size_t kDefaultConnectionsPerAddress = 256;
 constexpr auto kSettling = std::chrono::seconds(3);
 
 void sleep(double seconds) {
@@ -24,6 +25,10 @@ std::size_t count_all(const ViewerCounts& viewers) {
   return std::accumulate(viewers.begin(), viewers.end(), std::size_t{0});
 }
 
+bool is_silent(const FanoutCase& one) {
+  return one.viewers[static_cast<std::size_t>(ViewerKind::silent)] > 0;
+}
+
 double quantile(std::vector<float> values, double share) {
   if (values.empty()) return FanoutResult::kAbsent;
   const auto rank = static_cast<long>(share * static_cast<double>(values.size() - 1));
@@ -32,12 +37,13 @@ double quantile(std::vector<float> values, double share) {
 }
 
 std::vector<std::string> server_arguments(const FanoutCase& one, const FanoutSettings& settings) {
-  std::vector<std::string> words{"--scene", settings.scene, "--log-level", "error"};
+  const std::string& scene = is_silent(one) ? settings.solids_scene : settings.scene;
+  std::vector<std::string> words{"--scene", scene, "--log-level", "error"};
   const std::size_t viewers = count_all(one.viewers);
   if (one.endpoints > 1) {
     words.insert(words.end(), {"--endpoints", std::to_string(one.endpoints)});
   }
-  if (viewers > kDefaultConnections) {
+  if (viewers > kDefaultConnectionsPerAddress) {
     const std::string most = std::to_string(viewers + kDefaultConnections);
     words.insert(words.end(), {"--max-connections", most, "--max-connections-per-address", most,
                                "--max-clients", most});
@@ -107,6 +113,10 @@ FanoutResult summarise(const Sightings& seen, std::size_t viewers, double second
   return result;
 }
 
+double count_ticks(const Served& server) {
+  return metric(server.metrics(), "vat_tick_duration_seconds_count");
+}
+
 void read_ticks(const Served& server, FanoutResult& result) {
   const auto metrics = server.metrics();
   result.tick_median = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.5\"}");
@@ -128,11 +138,19 @@ double measure_frame(LoadSettings settings) {
 
 const std::vector<FanoutCase>& fanout_cases() {
   static const std::vector<FanoutCase> kCases = {
-      {"viewers-1", {1, 0, 0, 0}, 1},        {"viewers-200", {200, 0, 0, 0}, 1},
-      {"viewers-1000", {1000, 0, 0, 0}, 1},  {"viewers-2000", {2000, 0, 0, 0}, 2},
-      {"half-speed", {199, 1, 0, 0}, 1},     {"stalled", {199, 0, 1, 0}, 1},
-      {"half-speed-50", {150, 50, 0, 0}, 1}, {"stalled-50", {150, 0, 50, 0}, 1},
+      {"viewers-1", {1, 0, 0, 0}, 1},
+      {"viewers-200", {200, 0, 0, 0}, 1},
+      {"viewers-1000", {1000, 0, 0, 0}, 1},
+      {"viewers-2000", {2000, 0, 0, 0}, 2},
+      {"half-speed", {199, 1, 0, 0}, 1},
+      {"stalled", {199, 0, 1, 0}, 1},
+      {"half-speed-50", {150, 50, 0, 0}, 1},
+      {"stalled-50", {150, 0, 50, 0}, 1},
       {"restless-50", {150, 0, 0, 50}, 1},
+      {"readers-1", {0, 0, 0, 0, 1}, 1},
+      {"readers-10", {0, 0, 0, 0, 10}, 1},
+      {"readers-50", {0, 0, 0, 0, 50}, 1},
+      {"silent-1000", {0, 0, 0, 0, 0, 1000}, 1},
   };
   return kCases;
 }
@@ -141,6 +159,7 @@ std::vector<FanoutResult> run_fanout(const FanoutCase& one, const FanoutSettings
   const Served server(settings.program, server_arguments(one, settings));
   LoadSettings load_settings{server.port(), settings.max_error, 0, "s1"};
   load_settings.half_bytes_per_second = measure_frame(load_settings) * kFullRate / 2;
+  const auto resident_before = static_cast<double>(server.resident_bytes());
 
   const auto load = start_load(load_settings, one.viewers);
   std::this_thread::sleep_for(kSettling);
@@ -148,9 +167,11 @@ std::vector<FanoutResult> run_fanout(const FanoutCase& one, const FanoutSettings
   for (const auto& process : load) process->begin();
   const double before = server.processor_seconds();
   const double delivery_before = server.delivery_seconds();
+  const double ticks_before = count_ticks(server);
   sleep(settings.seconds);
   const double processor = server.processor_seconds() - before;
   const double delivery = server.delivery_seconds() - delivery_before;
+  const double ticks = count_ticks(server) - ticks_before;
   const std::uint64_t resident = server.resident_bytes();
   const LoadSightings seen = end_load(load);
   const double seconds = std::chrono::duration<double>(LoadClock::now() - begin).count();
@@ -165,6 +186,9 @@ std::vector<FanoutResult> run_fanout(const FanoutCase& one, const FanoutSettings
     result.delivery_per_viewer = delivery / seconds / static_cast<double>(count_all(one.viewers));
     result.processor = processor / seconds;
     result.resident_megabytes = static_cast<double>(resident) / 1e6;
+    result.kilobytes_per_viewer = (static_cast<double>(resident) - resident_before) / 1e3 /
+                                  static_cast<double>(count_all(one.viewers));
+    result.ticks = ticks / seconds;
     read_ticks(server, result);
     results.push_back(std::move(result));
   }

@@ -18,10 +18,11 @@ struct FanoutCase {
 };
 
 struct FanoutSettings {
-  std::string program;   ///< `vat`
-  std::string scene;     ///< file
-  double max_error = 0;  ///< [m] maximum error that viewers request
-  double seconds = 10;   ///< measured
+  std::string program;       ///< `vat`
+  std::string scene;         ///< file
+  std::string solids_scene;  ///< file of the scene for silent viewers, with a long description
+  double max_error = 0;      ///< [m] maximum error that viewers request
+  double seconds = 10;       ///< measured
 };
 
 /// Results of one kind of viewer, and the cost of the server meanwhile.
@@ -43,7 +44,9 @@ struct FanoutResult {
   double resident_megabytes = 0;   ///< of the server
   double tick_median = 0;          ///< [s]
   double tick_99 = 0;
-  double lateness_99 = 0;  ///< [s] of ticks
+  double lateness_99 = 0;           ///< [s] of ticks
+  double ticks = 0;                 ///< per second
+  double kilobytes_per_viewer = 0;  ///< growth of the server's memory / viewers of all kinds
 };
 
 const std::vector<FanoutCase>& fanout_cases();

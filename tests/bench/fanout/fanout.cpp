@@ -40,6 +40,14 @@ constexpr const char* kScene = R"({
   "bodies": [{"name": "water", "kind": "liquid", "material": "water", "spacing": 0.085,
     "shape": {"type": "box", "center": [1.1, 1, 0.8], "size": [2.2, 2, 1.5]}}]})";
 
+/// A rigid block at rest, whose description has about 1.4 MB.
+constexpr const char* kSolidsScene = R"({
+  "format": "vat.scene/1", "name": "fanout-solids", "title": "Block", "gravity": [0, 0, 0],
+  "materials": [{"name": "stone", "density": 2000}],
+  "numerics": {"step": 0.03333333333333333, "tick": 0.03333333333333333},
+  "bodies": [{"name": "block", "kind": "rigid", "material": "stone", "spacing": 0.037,
+    "shape": {"type": "box", "size": [1.1, 1.1, 1.1]}}]})";
+
 std::vector<std::string> case_names() {
   std::vector<std::string> names;
   for (const FanoutCase& one : fanout_cases()) names.push_back(one.name);
@@ -63,6 +71,8 @@ Table to_fanout_table(const std::vector<FanoutResult>& results) {
                "% of a core per viewer",
                "cores",
                "resident [MB]",
+               "kB per viewer",
+               "ticks per second",
                "tick median [ms]",
                "tick 99 % [ms]",
                "tick lateness 99 % [ms]",
@@ -85,6 +95,8 @@ Table to_fanout_table(const std::vector<FanoutResult>& results) {
                           1e2 * r.delivery_per_viewer,
                           r.processor,
                           r.resident_megabytes,
+                          r.kilobytes_per_viewer,
+                          r.ticks,
                           1e3 * r.tick_median,
                           1e3 * r.tick_99,
                           1e3 * r.lateness_99,
@@ -136,6 +148,10 @@ int run_cases(const std::vector<std::size_t>& chosen, const FanoutOptions& optio
   settings.scene = (folder / "scene.json").string();
   if (const Status written = write_text(settings.scene, kScene); !written) {
     return fail(settings.scene, written.errors());
+  }
+  settings.solids_scene = (folder / "solids.json").string();
+  if (const Status written = write_text(settings.solids_scene, kSolidsScene); !written) {
+    return fail(settings.solids_scene, written.errors());
   }
   std::vector<FanoutResult> results;
   std::vector<TurnsResult> turns;

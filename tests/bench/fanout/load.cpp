@@ -150,7 +150,10 @@ class Load {
     for (std::size_t i = 0; i < connected_; ++i) {
       Viewer& viewer = *viewers_[i];
       const int before = viewer.socket();
-      if (viewer.kind() == ViewerKind::plain || viewer.kind() == ViewerKind::stalled) continue;
+      const ViewerKind kind = viewer.kind();
+      const bool needs_clock =
+          kind == ViewerKind::half || kind == ViewerKind::restless || kind == ViewerKind::reader;
+      if (!needs_clock) continue;
       if (!viewer.look_at_clock(now, sightings(viewer))) continue;
       // A new socket, possibly with the same number, is not in the poll set yet.
       const bool is_new = viewer.kind() == ViewerKind::restless || before != viewer.socket();

@@ -22,8 +22,8 @@ class LoadProcess {
   LoadProcess(const LoadProcess&) = delete;
   LoadProcess& operator=(const LoadProcess&) = delete;
 
-  /// Waits until every viewer has received a frame. Throws after one minute, or if the process
-  /// fails.
+  /// Waits until every viewer that subscribes has received a frame. Throws after one minute, or if
+  /// the process fails.
   void wait_ready();
   /// Starts the measurement.
   void begin();

@@ -17,7 +17,8 @@
 namespace vat::bench {
 namespace {
 
-constexpr int kStallAfter = 10;  // frames
+constexpr int kStallAfter = 10;                                   // frames
+constexpr auto kRequestInterval = std::chrono::milliseconds(50);  // server.info: reads_per_second
 constexpr int kSmallReceiveBuffer = 64 * 1024;
 constexpr std::size_t kLook = 2048;      // maximum of examined bytes
 constexpr std::size_t kThrow = 1 << 20;  // maximum of bytes discarded at once
@@ -59,7 +60,8 @@ float seconds_since(LoadClock::time_point begin) {
 }  // namespace
 
 const char* name_of(ViewerKind kind) {
-  constexpr std::array<const char*, kViewerKinds> kNames{"plain", "half", "stalled", "restless"};
+  constexpr std::array<const char*, kViewerKinds> kNames{"plain",    "half",   "stalled",
+                                                         "restless", "reader", "silent"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -87,7 +89,7 @@ void Viewer::connect() {
   if (socket_ < 0) throw std::runtime_error(std::string("no socket: ") + std::strerror(errno));
   const int on = 1;
   setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  if (kind_ == ViewerKind::half || kind_ == ViewerKind::stalled) {
+  if (kind_ == ViewerKind::half || kind_ == ViewerKind::stalled || kind_ == ViewerKind::silent) {
     setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &kSmallReceiveBuffer, sizeof kSmallReceiveBuffer);
   }
   sockaddr_in address{};
@@ -128,6 +130,7 @@ bool Viewer::read(Sightings& sightings) {
     }
     if (size < wanted && throws_away) return true;
     if (kind_ == ViewerKind::stalled && frames_ >= kStallAfter) return false;
+    if (kind_ == ViewerKind::silent && stage_ == Stage::open) return false;
   }
 }
 
@@ -141,6 +144,10 @@ bool Viewer::look_at_clock(LoadClock::time_point now, Sightings& sightings) {
     ++sightings.joins;
     connect();
     return true;
+  }
+  if (kind_ == ViewerKind::reader && has_frame_ && now >= next_request_) {
+    next_request_ = now + kRequestInterval;
+    send_text(R"({"jsonrpc":"2.0","id":1,"method":"state.query"})");
   }
   if (kind_ != ViewerKind::half || settings_.half_bytes_per_second <= 0) return false;
   const double rate = settings_.half_bytes_per_second;
@@ -188,8 +195,14 @@ std::size_t Viewer::take_reply(const char* bytes, std::size_t size) {
     if (!reply_.starts_with("HTTP/1.1 101")) throw std::runtime_error("refused: " + reply_);
     stage_ = Stage::open;
     subscribed_ = LoadClock::now();
-    send_text(R"({"jsonrpc":"2.0","method":"session.join","params":{"session":")" +
-              settings_.session + "\"}}");
+    // A silent viewer requests the reply, because it contains the description.
+    const char* const id = kind_ == ViewerKind::silent ? R"("id":0,)" : "";
+    send_text(std::string(R"({"jsonrpc":"2.0",)") + id +
+              R"("method":"session.join","params":{"session":")" + settings_.session + "\"}}");
+    if (kind_ == ViewerKind::silent) {
+      has_frame_ = true;  // it is ready, and requests no frame
+      return i + 1;
+    }
     send_text(R"({"jsonrpc":"2.0","method":"frames.subscribe","params":{"max_error":)" +
               std::to_string(settings_.max_error) + R"(,"attributes":{"speed":1e-5}}})");
     return i + 1;

@@ -17,8 +17,10 @@ enum class ViewerKind : std::uint8_t {
   half,      ///< reads half of the full rate
   stalled,   ///< stops reading after some frames
   restless,  ///< leaves after about a second, and returns
+  reader,    ///< as `plain`, and requests the state at the permitted rate
+  silent,    ///< joins and never reads
 };
-inline constexpr std::size_t kViewerKinds = 4;
+inline constexpr std::size_t kViewerKinds = 6;
 const char* name_of(ViewerKind kind);
 
 /// Measurements of the viewers of a kind.
@@ -58,7 +60,8 @@ class Viewer {
   /// Handles timeouts, called frequently. Returns true if the viewer has a new socket or may read
   /// again.
   bool look_at_clock(LoadClock::time_point now, Sightings& sightings);
-  /// Returns whether a frame has arrived since the last connect.
+  /// Returns whether a frame has arrived since the last connect. A silent viewer returns true if it
+  /// has requested to join.
   bool has_frame() const { return has_frame_; }
   ViewerKind kind() const { return kind_; }
 
@@ -84,6 +87,7 @@ class Viewer {
   int frames_ = 0;  // since the last connect
   LoadClock::time_point subscribed_;
   LoadClock::time_point leaves_;
+  LoadClock::time_point next_request_;
 
   std::string reply_;                     // received part of the reply to the upgrade
   std::array<unsigned char, 14> head_{};  // head of the current message
